@@ -1,0 +1,63 @@
+// Images: interleaved float channels, row 0 at v = 0.
+#pragma once
+
+#include <cassert>
+#include <cstddef>
+#include <vector>
+
+namespace prefilter {
+
+/// Most channels an image may have.
+inline constexpr int kMaxChannels = 4;
+
+/// A view of interleaved rows without gaps: texel (x, y), channel c at data[(y * width + x) *
+/// channels + c].
+struct ImageView {
+  const float* data = nullptr;
+  int width = 0;     // texels
+  int height = 0;    // texels
+  int channels = 0;  // 1 to kMaxChannels
+
+  const float* texel(int x, int y) const {
+    assert(x >= 0 && x < width && y >= 0 && y < height);
+    return data + (static_cast<std::ptrdiff_t>(y) * width + x) * channels;
+  }
+  std::size_t texel_count() const {
+    return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  }
+  std::size_t value_count() const { return texel_count() * static_cast<std::size_t>(channels); }
+};
+
+/// An image that owns its texels, in the layout of ImageView.
+struct Image {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  std::vector<float> data;
+
+  Image() = default;
+  Image(int width_, int height_, int channels_, float value = 0.0F)
+      : width(width_),
+        height(height_),
+        channels(channels_),
+        data(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) *
+                 static_cast<std::size_t>(channels_),
+             value) {}
+  explicit Image(const ImageView& view)
+      : width(view.width),
+        height(view.height),
+        channels(view.channels),
+        data(view.data, view.data + view.value_count()) {}
+
+  float* texel(int x, int y) { return data.data() + offset(x, y); }
+  const float* texel(int x, int y) const { return data.data() + offset(x, y); }
+  ImageView view() const { return {data.data(), width, height, channels}; }
+
+ private:
+  std::ptrdiff_t offset(int x, int y) const {
+    assert(x >= 0 && x < width && y >= 0 && y < height);
+    return (static_cast<std::ptrdiff_t>(y) * width + x) * channels;
+  }
+};
+
+}  // namespace prefilter

@@ -1,0 +1,37 @@
+// Progress of long work, and the way to stop it.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+namespace prefilter {
+
+/// Passes progress on to a callback. A copy that `part` makes covers a share of the whole, so a
+/// function reports 0 to 1 whatever it is a part of. Only the thread that started the work reports.
+class Progress {
+ public:
+  /// Is given the fraction done, in [0, 1]; returns false to stop the work.
+  using Callback = std::function<bool(double)>;
+
+  Progress() = default;
+  explicit Progress(Callback callback);
+
+  /// The share [from, to] of this one's range.
+  Progress part(double from, double to) const;
+
+  /// Tells the callback, at most every 30 ms and always at 1. Throws Error(kCancelled) where it
+  /// answers false.
+  void report(double fraction) const;
+
+ private:
+  struct State {
+    Callback callback;
+    std::chrono::steady_clock::time_point last;
+  };
+  std::shared_ptr<State> state_;
+  double from_ = 0.0;
+  double to_ = 1.0;
+};
+
+}  // namespace prefilter

@@ -1,0 +1,36 @@
+// Wrap modes: what a texture lookup reads outside of the image.
+#pragma once
+
+#include <algorithm>
+
+namespace prefilter {
+
+enum class Wrap {
+  kClamp,   // the nearest texel of the image
+  kRepeat,  // the image tiled
+  kBorder,  // zero, and what lies outside of the unit square weighs nothing
+};
+
+/// Wrap modes along u and v.
+struct WrapModes {
+  Wrap u = Wrap::kClamp;
+  Wrap v = Wrap::kClamp;
+};
+
+/// The texel that index i along an axis of `size` texels reads, or -1 for the border.
+inline int wrap_index(int i, int size, Wrap mode) {
+  if (i >= 0 && i < size) return i;
+  switch (mode) {
+    case Wrap::kClamp:
+      return std::clamp(i, 0, size - 1);
+    case Wrap::kRepeat: {
+      const int remainder = i % size;
+      return remainder < 0 ? remainder + size : remainder;
+    }
+    case Wrap::kBorder:
+      break;
+  }
+  return -1;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,240 @@
+// Figure 7.7. Between two levels the lookup is linear in the fraction f of the mip value, so the
+// squared error is a quadratic in f, and its three coefficients are quadratic forms in the texels
+// whose matrices are the moments.
+#include "prefilter/mipmap/mipmap_error.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+
+#include "prefilter/base/error.h"
+#include "prefilter/mipmap/coverage.h"
+#include "prefilter/mipmap/levels.h"
+#include "prefilter/mipmap/mipmaps.h"
+#include "prefilter/mipmap/moment_sweep.h"
+
+namespace prefilter {
+namespace {
+
+// A bilinear polynomial p00 + p10 x + p01 y + p11 x y at [2 * b + a].
+using Bilinear = std::array<double, 4>;
+
+// A level's bilinear interpolant on a cell of a grid with `cells` cells to the level's texel.
+template <int C>
+std::array<Bilinear, C> interpolant(const ImageView& level, WrapModes wrap, int cell_x, int cell_y,
+                                    int cells_x, int cells_y) {
+  // The cell's low corner, and its size, in texels from the centre of texel (column, row).
+  const auto place = [](int cell, int cells, int* texel, double* offset, double* size) {
+    *size = 1.0 / cells;
+    const double from_centre = (cell + 0.5) / cells - 0.5;
+    *texel = static_cast<int>(std::floor(from_centre));
+    *offset = static_cast<double>(cell) / cells - 0.5 - *texel;
+  };
+  int column = 0;
+  int row = 0;
+  double x = 0.0;
+  double y = 0.0;
+  double size_x = 0.0;
+  double size_y = 0.0;
+  place(cell_x, cells_x, &column, &x, &size_x);
+  place(cell_y, cells_y, &row, &y, &size_y);
+
+  const float* corners[4];
+  for (int k = 0; k < 4; ++k) {
+    const int i = wrap_index(column + k % 2, level.width, wrap.u);
+    const int j = wrap_index(row + k / 2, level.height, wrap.v);
+    corners[k] = i < 0 || j < 0 ? nullptr : level.texel(i, j);
+  }
+  std::array<Bilinear, C> result;
+  for (int c = 0; c < C; ++c) {
+    double v[4];
+    for (int k = 0; k < 4; ++k) v[k] = corners[k] == nullptr ? 0.0 : corners[k][c];
+    const double slope_x = v[1] - v[0];
+    const double slope_y = v[2] - v[0];
+    const double twist = v[3] - v[2] - v[1] + v[0];
+    result[c] = {v[0] + slope_x * x + slope_y * y + twist * x * y, (slope_x + twist * y) * size_x,
+                 (slope_y + twist * x) * size_y, twist * size_x * size_y};
+  }
+  return result;
+}
+
+double integral_of_product(const Bilinear& p, const Bilinear& q, const WeightMoments& moments) {
+  double sum = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      sum += p[i] * q[j] * moments[3 * (i / 2 + j / 2) + i % 2 + j % 2];
+    }
+  }
+  return sum;
+}
+
+double integral_with_image(const Bilinear& p, const ImageMoments& image) {
+  return p[0] * image[0] + p[1] * image[1] + p[2] * image[2] + p[3] * image[3];
+}
+
+// Of levels l and l + 1 with interpolants L and M and the image I.
+struct Integrals {
+  double level_level = 0.0;  // of L^2
+  double level_image = 0.0;  // of L I
+  double step_level = 0.0;   // of (M - L) L
+  double step_image = 0.0;   // of (M - L) I
+  double step_step = 0.0;    // of (M - L)^2
+};
+
+template <int C>
+std::vector<double> measure(const std::vector<ImageView>& levels, const ImageView& image,
+                            const TexelTriangles& triangles, const std::vector<double>& mip_values,
+                            WrapModes wrap, const Progress& progress, int threads) {
+  const auto level_count = static_cast<int>(levels.size());
+  const std::int64_t block_count = sweep_block_count(image.width, image.height);
+  std::vector<Integrals> parts(static_cast<std::size_t>(block_count * level_count));
+  std::vector<double> image_parts(static_cast<std::size_t>(block_count));
+
+  sweep_moments<C>(
+      triangles, image, wrap, {.first_level = 0, .last_level = level_count - 1, .threads = threads},
+      progress, [&](const MomentBlock<C>& block) {
+        const ImageView& level = levels[block.level];
+        const bool has_next = block.level + 1 < level_count;
+        const ImageView& next = levels[has_next ? block.level + 1 : block.level];
+        Integrals& sums = parts[block.index * level_count + block.level];
+        for (int y = 0; y < block.height; ++y) {
+          for (int x = 0; x < block.width; ++x) {
+            const CellMoments<C>& cell = block.at(x, y);
+            if (cell.empty()) continue;
+            const int cx = block.x0 + x;
+            const int cy = block.y0 + y;
+            const auto here = interpolant<C>(level, wrap, cx, cy, 2, 2);
+            const auto coarse = interpolant<C>(next, wrap, cx, cy, 2 * level.width / next.width,
+                                               2 * level.height / next.height);
+            if (block.level == 0) {
+              const auto source = interpolant<C>(image, wrap, cx, cy, 2, 2);
+              for (int c = 0; c < C; ++c) {
+                image_parts[block.index] += integral_of_product(source[c], source[c], cell.weight);
+              }
+            }
+            for (int c = 0; c < C; ++c) {
+              Bilinear step;
+              for (int i = 0; i < 4; ++i) step[i] = coarse[c][i] - here[c][i];
+              sums.level_level += integral_of_product(here[c], here[c], cell.weight);
+              sums.level_image += integral_with_image(here[c], cell.image[c]);
+              sums.step_level += integral_of_product(step, here[c], cell.weight);
+              sums.step_image += integral_with_image(step, cell.image[c]);
+              sums.step_step += integral_of_product(step, step, cell.weight);
+            }
+          }
+        }
+      });
+
+  double image_image = 0.0;
+  for (const double part : image_parts) image_image += part;
+  std::vector<Integrals> totals(levels.size());
+  for (std::int64_t block = 0; block < block_count; ++block) {
+    for (int level = 0; level < level_count; ++level) {
+      const Integrals& part = parts[block * level_count + level];
+      totals[level].level_level += part.level_level;
+      totals[level].level_image += part.level_image;
+      totals[level].step_level += part.step_level;
+      totals[level].step_image += part.step_image;
+      totals[level].step_step += part.step_step;
+    }
+  }
+
+  std::vector<double> errors;
+  for (const double mip_value : mip_values) {
+    const double value = std::clamp(mip_value, 0.0, static_cast<double>(level_count - 1));
+    const int level = static_cast<int>(value);
+    const double f = value - level;
+    const Integrals& sums = totals[level];
+    const double squared = sums.level_level - 2.0 * sums.level_image + image_image +
+                           2.0 * f * (sums.step_level - sums.step_image) + f * f * sums.step_step;
+    errors.push_back(std::sqrt(std::max(squared, 0.0) / (triangles.total_mass * C)));
+  }
+  return errors;
+}
+
+void check(const std::vector<ImageView>& levels, const ImageView& image,
+           const std::vector<const Surface*>& surfaces, const std::vector<double>& mip_values) {
+  check_mipmap_image(image);
+  if (surfaces.empty()) throw_invalid("surface: none was given; at least one is needed");
+  check_surface_area(surfaces);
+  const int full = full_level_count(image.width, image.height);
+  if (levels.empty() || static_cast<int>(levels.size()) > full) {
+    throw_invalid("levels: " + std::to_string(levels.size()) + " were given, but an image of " +
+                  std::to_string(image.width) + " x " + std::to_string(image.height) +
+                  " texels has 1 to " + std::to_string(full));
+  }
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const int width = level_size(image.width, static_cast<int>(k));
+    const int height = level_size(image.height, static_cast<int>(k));
+    const ImageView& level = levels[k];
+    if (level.width != width || level.height != height || level.channels != image.channels) {
+      throw_invalid("levels: level " + std::to_string(k) + " has " + std::to_string(level.width) +
+                    " x " + std::to_string(level.height) + " texels of " +
+                    std::to_string(level.channels) + " channels; " + std::to_string(width) + " x " +
+                    std::to_string(height) + " of " + std::to_string(image.channels) +
+                    " are expected");
+    }
+  }
+  for (const double value : mip_values) {
+    if (std::isnan(value)) throw_invalid("mip_values: holds nan; numbers are needed");
+  }
+}
+
+// The image or a level with the texels that no lookup reads set to 0, where any value is not
+// finite.
+Image readable(const ImageView& view, const std::string& name,
+               const std::vector<const Surface*>& surfaces, WrapModes wrap, int threads) {
+  Image copy(view);
+  if (std::all_of(copy.data.begin(), copy.data.end(), [](float v) { return std::isfinite(v); })) {
+    return copy;
+  }
+  const std::vector<unsigned char> read =
+      looked_up_texels(surfaces, view.width, view.height, wrap, Progress(), threads);
+  for (std::size_t i = 0; i < copy.data.size(); ++i) {
+    if (std::isfinite(copy.data[i])) continue;
+    const std::size_t texel = i / static_cast<std::size_t>(view.channels);
+    if (read[texel] != 0) {
+      throw_invalid(name + ": the texel in row " + std::to_string(texel / view.width) +
+                    ", column " + std::to_string(texel % view.width) + " holds " +
+                    std::to_string(copy.data[i]) +
+                    "; texels that the surface reads must be finite");
+    }
+    copy.data[i] = 0.0F;
+  }
+  return copy;
+}
+
+}  // namespace
+
+std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const ImageView& image,
+                                 const std::vector<const Surface*>& surfaces,
+                                 const std::vector<double>& mip_values, WrapModes wrap,
+                                 const Progress& progress, int threads) {
+  check(levels, image, surfaces, mip_values);
+  const Image readable_image = readable(image, "image", surfaces, wrap, threads);
+  std::vector<Image> copies;
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    copies.push_back(
+        readable(levels[k], "levels: level " + std::to_string(k), surfaces, wrap, threads));
+  }
+  std::vector<ImageView> views;
+  for (const Image& copy : copies) views.push_back(copy.view());
+  const TexelTriangles triangles =
+      map_to_texels(surfaces, image.width, image.height, wrap, MassOf::kArea);
+  const auto run = [&]<int C>() {
+    return measure<C>(views, readable_image.view(), triangles, mip_values, wrap, progress, threads);
+  };
+  switch (image.channels) {
+    case 1:
+      return run.operator()<1>();
+    case 2:
+      return run.operator()<2>();
+    case 3:
+      return run.operator()<3>();
+    default:
+      return run.operator()<4>();
+  }
+}
+
+}  // namespace prefilter

@@ -1,0 +1,392 @@
+// Chapter 7. Equation 7.1 with a box is kPamBox, where the texels of the image are boxes too, so
+// that an even parameterization gives the plain box filter; section 7.3 level by level is
+// kPamBilinear.
+#include "prefilter/mipmap/mipmaps.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "prefilter/base/error.h"
+#include "prefilter/filters/push_pull.h"
+#include "prefilter/mipmap/bilinear_system.h"
+#include "prefilter/mipmap/coverage.h"
+#include "prefilter/mipmap/levels.h"
+#include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/mipmap/texel_triangles.h"
+#include "prefilter/mipmap/texture_space.h"
+
+namespace prefilter {
+namespace {
+
+struct NamedFilter {
+  const char* name;
+  MipmapFilter filter;
+};
+
+constexpr NamedFilter kFilters[] = {
+    {"box", MipmapFilter::kBox},
+    {"tent", MipmapFilter::kTent},
+    {"lanczos3", MipmapFilter::kLanczos3},
+    {"box-covered", MipmapFilter::kBoxCovered},
+    {"tent-covered", MipmapFilter::kTentCovered},
+    {"lanczos3-covered", MipmapFilter::kLanczos3Covered},
+    {"pam-box", MipmapFilter::kPamBox},
+    {"pam-bilinear", MipmapFilter::kPamBilinear},
+};
+
+// Which texels of the image a filter reads.
+enum class Reads { kAll, kTouched, kWeighted, kLookedUp };
+
+Reads reads_of(MipmapFilter filter) {
+  switch (filter) {
+    case MipmapFilter::kBox:
+    case MipmapFilter::kTent:
+    case MipmapFilter::kLanczos3:
+      return Reads::kAll;
+    case MipmapFilter::kBoxCovered:
+    case MipmapFilter::kTentCovered:
+    case MipmapFilter::kLanczos3Covered:
+      return Reads::kTouched;
+    case MipmapFilter::kPamBox:
+      return Reads::kWeighted;
+    case MipmapFilter::kPamBilinear:
+      return Reads::kLookedUp;
+  }
+  return Reads::kAll;
+}
+
+Kernel kernel_of(MipmapFilter filter) {
+  switch (filter) {
+    case MipmapFilter::kTent:
+    case MipmapFilter::kTentCovered:
+      return Kernel::kTent;
+    case MipmapFilter::kLanczos3:
+    case MipmapFilter::kLanczos3Covered:
+      return Kernel::kLanczos3;
+    default:
+      return Kernel::kBox;
+  }
+}
+
+bool all_finite(const ImageView& image) {
+  return std::all_of(image.data, image.data + image.value_count(),
+                     [](float value) { return std::isfinite(value); });
+}
+
+class Builder {
+ public:
+  Builder(const ImageView& image, const std::vector<const Surface*>& surfaces,
+          const MipmapOptions& options)
+      : original_(image), surfaces_(surfaces), options_(options), image_(image) {
+    level_count_ =
+        options.levels > 0 ? options.levels : full_level_count(image.width, image.height);
+    straight_alpha_ = image.channels == 4 && !options.premultiplied;
+  }
+
+  std::vector<Image> run() {
+    check_texels();
+    if (straight_alpha_) premultiply();
+    std::vector<Image> levels;
+    switch (reads_of(options_.filter)) {
+      case Reads::kAll:
+      case Reads::kTouched:
+        levels = texture_space_levels();
+        break;
+      case Reads::kWeighted:
+        levels = pam_box_levels();
+        break;
+      case Reads::kLookedUp:
+        levels = pam_bilinear_levels();
+        break;
+    }
+    for (Image& level : levels) finish(&level);
+    levels.insert(levels.begin(), Image(original_));
+    options_.progress.report(1.0);
+    return levels;
+  }
+
+ private:
+  // Refuses a texel that counts and is not finite; one that does not count becomes 0.
+  void check_texels() {
+    if (reads_of(options_.filter) == Reads::kTouched) {
+      covered_ = touched_texels(surfaces_, image_.width, image_.height, options_.wrap,
+                                options_.progress.part(0.0, 0.1), options_.threads);
+    }
+    if (all_finite(image_)) return;
+    const std::vector<unsigned char> read = read_texels();
+    Image& copy = own_copy();
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      float* texel = copy.data.data() + i * static_cast<std::size_t>(image_.channels);
+      for (int c = 0; c < image_.channels; ++c) {
+        if (std::isfinite(texel[c])) continue;
+        if (read[i] != 0) {
+          const auto width = static_cast<std::size_t>(image_.width);
+          throw_invalid("image: the texel in row " + std::to_string(i / width) + ", column " +
+                        std::to_string(i % width) + " holds " + std::to_string(texel[c]) +
+                        " in channel " + std::to_string(c) + "; texels that count must be finite");
+        }
+        texel[c] = 0.0F;
+      }
+    }
+  }
+
+  std::vector<unsigned char> read_texels() const {
+    const Progress silent;
+    switch (reads_of(options_.filter)) {
+      case Reads::kAll:
+        break;
+      case Reads::kTouched:
+        return covered_;
+      case Reads::kWeighted: {
+        const std::vector<float> masses =
+            texel_masses(mapped(MassOf::kArea), silent, options_.threads);
+        std::vector<unsigned char> read(masses.size());
+        for (std::size_t i = 0; i < masses.size(); ++i) read[i] = masses[i] > 0.0F ? 1 : 0;
+        return read;
+      }
+      case Reads::kLookedUp:
+        return looked_up_texels(surfaces_, image_.width, image_.height, options_.wrap, silent,
+                                options_.threads);
+    }
+    return std::vector<unsigned char>(image_.texel_count(), 1);
+  }
+
+  Image& own_copy() {
+    if (copy_.data.empty()) {
+      copy_ = Image(image_);
+      image_ = copy_.view();
+    }
+    return copy_;
+  }
+
+  void premultiply() {
+    Image& copy = own_copy();
+    for (std::size_t i = 0; i < copy.data.size(); i += 4) {
+      const float alpha = copy.data[i + 3];
+      for (int c = 0; c < 3; ++c) copy.data[i + c] *= alpha;
+    }
+  }
+
+  TexelTriangles mapped(MassOf mass_of) const {
+    return map_to_texels(surfaces_, image_.width, image_.height, options_.wrap, mass_of);
+  }
+
+  int width(int level) const { return level_size(image_.width, level); }
+  int height(int level) const { return level_size(image_.height, level); }
+
+  std::vector<Image> texture_space_levels() const {
+    const Progress progress = options_.progress.part(0.1, 0.95);
+    const Kernel kernel = kernel_of(options_.filter);
+    std::vector<Image> levels;
+    for (int level = 1; level < level_count_; ++level) {
+      const Progress part = progress.part(static_cast<double>(level - 1) / (level_count_ - 1),
+                                          static_cast<double>(level) / (level_count_ - 1));
+      levels.push_back(
+          covered_.empty()
+              ? filter_level(image_, level, kernel, options_.wrap, part, options_.threads)
+              : filter_covered_level(image_, covered_, level, kernel, options_.wrap, part,
+                                     options_.threads));
+    }
+    return levels;
+  }
+
+  std::vector<Image> pam_box_levels() const {
+    std::vector<float> masses =
+        texel_masses(mapped(MassOf::kArea), options_.progress.part(0.0, 0.7), options_.threads);
+    // Sums of mass times colour, halved level by level along with the masses.
+    Image sums(image_);
+    for (std::size_t i = 0; i < sums.data.size(); ++i) {
+      sums.data[i] *= masses[i / static_cast<std::size_t>(image_.channels)];
+    }
+    std::vector<Image> levels;
+    for (int level = 1; level < level_count_; ++level) {
+      halve(width(level), height(level), &sums, &masses);
+      Image means = sums;
+      for (std::size_t i = 0; i < means.data.size(); ++i) {
+        const float mass = masses[i / static_cast<std::size_t>(image_.channels)];
+        means.data[i] = mass > 0.0F ? means.data[i] / mass : 0.0F;
+      }
+      fill_holes(masses, options_.wrap, image_.channels, &means);
+      levels.push_back(std::move(means));
+    }
+    return levels;
+  }
+
+  static void halve(int width, int height, Image* sums, std::vector<float>* masses) {
+    Image half(width, height, sums->channels);
+    std::vector<float> half_masses(static_cast<std::size_t>(width) * height);
+    const int step_x = sums->width / width;
+    const int step_y = sums->height / height;
+    for (int y = 0; y < sums->height; ++y) {
+      for (int x = 0; x < sums->width; ++x) {
+        const float* from = sums->texel(x, y);
+        float* to = half.texel(x / step_x, y / step_y);
+        for (int c = 0; c < sums->channels; ++c) to[c] += from[c];
+        half_masses[static_cast<std::size_t>(y / step_y) * width + x / step_x] +=
+            (*masses)[static_cast<std::size_t>(y) * sums->width + x];
+      }
+    }
+    *sums = std::move(half);
+    *masses = std::move(half_masses);
+  }
+
+  std::vector<Image> pam_bilinear_levels() const {
+    switch (image_.channels) {
+      case 1:
+        return solve_levels<1>();
+      case 2:
+        return solve_levels<2>();
+      case 3:
+        return solve_levels<3>();
+      default:
+        return solve_levels<4>();
+    }
+  }
+
+  template <int C>
+  std::vector<Image> solve_levels() const {
+    std::vector<std::unique_ptr<BilinearSystem<C>>> systems;
+    for (int level = 1; level < level_count_; ++level) {
+      systems.push_back(
+          std::make_unique<BilinearSystem<C>>(width(level), height(level), options_.wrap));
+    }
+    if (systems.empty()) return {};
+    sweep_moments<C>(
+        mapped(MassOf::kArea), image_, options_.wrap,
+        {.first_level = 1, .last_level = level_count_ - 1, .threads = options_.threads},
+        options_.progress.part(0.0, 0.5),
+        [&](const MomentBlock<C>& block) { systems[block.level - 1]->add(block); });
+
+    typename BilinearSystem<C>::SolveOptions solve;
+    for (int c = 0; c < C; ++c) solve.ranges[c] = filtered_range(c);
+    solve.threads = options_.threads;
+    std::vector<Image> levels;
+    double from = 0.5;
+    for (std::unique_ptr<BilinearSystem<C>>& system : systems) {
+      // A level has a quarter of the texels of the one before.
+      const double to = from + 0.75 * (0.99 - from);
+      auto solution = system->solve(solve, options_.progress.part(from, to));
+      system.reset();
+      from = to;
+      const std::vector<float> weights(solution.used.begin(), solution.used.end());
+      fill_holes(weights, options_.wrap, C, &solution.image);
+      levels.push_back(std::move(solution.image));
+    }
+    return levels;
+  }
+
+  ValueRange bounds() const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    return {options_.bounds.low.value_or(-kInfinity), options_.bounds.high.value_or(kInfinity)};
+  }
+
+  // What a channel may be while it is filtered: a colour within the bounds times an alpha in [0,
+  // 1].
+  ValueRange filtered_range(int channel) const {
+    if (!straight_alpha_) return bounds();
+    if (channel == 3) return {0.0F, 1.0F};
+    return {std::min(bounds().low, 0.0F), std::max(bounds().high, 0.0F)};
+  }
+
+  void finish(Image* level) const {
+    if (straight_alpha_) unpremultiply(level);
+    const ValueRange range = bounds();
+    for (float& value : level->data) value = std::min(std::max(value, range.low), range.high);
+  }
+
+  void unpremultiply(Image* level) const {
+    // Below this, a colour would be mostly rounding.
+    constexpr float kLeastAlpha = 1e-5F;
+    std::vector<float> weights(level->view().texel_count());
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      float* texel = level->data.data() + 4 * i;
+      texel[3] = std::clamp(texel[3], 0.0F, 1.0F);
+      weights[i] = texel[3] > kLeastAlpha ? texel[3] : 0.0F;
+      for (int c = 0; c < 3; ++c) texel[c] = weights[i] > 0.0F ? texel[c] / texel[3] : 0.0F;
+    }
+    fill_holes(weights, options_.wrap, 3, level);
+  }
+
+  const ImageView& original_;
+  const std::vector<const Surface*>& surfaces_;
+  const MipmapOptions& options_;
+  ImageView image_;  // what is filtered: the original, or a copy of it
+  Image copy_;
+  std::vector<unsigned char> covered_;
+  int level_count_ = 0;
+  bool straight_alpha_ = false;
+};
+
+void check_options(const ImageView& image, const std::vector<const Surface*>& surfaces,
+                   const MipmapOptions& options) {
+  const int full = full_level_count(image.width, image.height);
+  if (options.levels < 0 || options.levels > full) {
+    throw_invalid("levels: " + std::to_string(options.levels) + " asked for, but an image of " +
+                  std::to_string(image.width) + " x " + std::to_string(image.height) +
+                  " texels has 1 to " + std::to_string(full));
+  }
+  const Bounds& bounds = options.bounds;
+  if ((bounds.low && std::isnan(*bounds.low)) || (bounds.high && std::isnan(*bounds.high)) ||
+      (bounds.low && bounds.high && *bounds.low > *bounds.high)) {
+    throw_invalid("bounds: the low bound is " +
+                  (bounds.low ? std::to_string(*bounds.low) : "open") + " and the high bound is " +
+                  (bounds.high ? std::to_string(*bounds.high) : "open") +
+                  "; low must not be above high");
+  }
+  if (options.threads < 0) {
+    throw_invalid("threads: " + std::to_string(options.threads) +
+                  "; a positive number is needed, or 0 for all processors");
+  }
+  if (reads_of(options.filter) == Reads::kAll) return;
+  if (surfaces.empty()) {
+    throw_invalid(
+        "surface: none was given, and this filter needs one; without a surface use box, tent "
+        "or lanczos3");
+  }
+  check_surface_area(surfaces);
+}
+
+}  // namespace
+
+MipmapFilter mipmap_filter(const std::string& name) {
+  std::string names;
+  for (const NamedFilter& filter : kFilters) {
+    if (name == filter.name) return filter.filter;
+    names += (names.empty() ? "" : ", ") + std::string(filter.name);
+  }
+  throw_invalid("filter: '" + name + "' is not one of " + names);
+}
+
+void check_mipmap_image(const ImageView& image) {
+  const auto fits = [](int side) {
+    return side >= 2 && std::has_single_bit(static_cast<unsigned>(side));
+  };
+  if (image.channels < 1 || image.channels > kMaxChannels) {
+    throw_invalid("image: " + std::to_string(image.channels) + " channels; 1 to 4 are allowed");
+  }
+  if (!fits(image.width) || !fits(image.height)) {
+    throw_invalid("image: " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                  " texels; both sides must be powers of two, and at least 2");
+  }
+}
+
+void check_surface_area(const std::vector<const Surface*>& surfaces) {
+  double area = 0.0;
+  for (const Surface* surface : surfaces) area += surface->total_area();
+  if (!(area > 0.0) || !std::isfinite(area)) {
+    throw_invalid("surface: the triangles have an area of " + std::to_string(area) +
+                  " in all; a positive, finite one is needed");
+  }
+}
+
+std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
+                           const MipmapOptions& options) {
+  check_mipmap_image(image);
+  check_options(image, surfaces, options);
+  return Builder(image, surfaces, options).run();
+}
+
+}  // namespace prefilter

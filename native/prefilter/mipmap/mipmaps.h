@@ -1,0 +1,68 @@
+// Mipmaps of a texture on a surface (chapter 7).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "prefilter/base/image.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/base/wrap.h"
+#include "prefilter/surface/surface.h"
+
+namespace prefilter {
+
+enum class MipmapFilter {
+  kBox,  // texture space: every texel counts, and the surface is not looked at
+  kTent,
+  kLanczos3,
+  kBoxCovered,  // texture space: texels that no triangle touches are ignored
+  kTentCovered,
+  kLanczos3Covered,
+  kPamBox,       // means over the surface: equation 7.1 with a box
+  kPamBilinear,  // least squares for bilinear lookups, each level by itself: section 7.3
+};
+
+/// The filter of a public name such as "pam-bilinear". Throws Error for any other, naming all.
+MipmapFilter mipmap_filter(const std::string& name);
+
+/// Lowest and highest value of a texel; either may be open.
+struct Bounds {
+  std::optional<float> low = 0.0F;
+  std::optional<float> high = 1.0F;
+};
+
+struct MipmapOptions {
+  MipmapFilter filter = MipmapFilter::kPamBilinear;
+  WrapModes wrap;
+  Bounds bounds;
+  // How many levels to return, with level 0; 0 = down to 1 x 1.
+  int levels = 0;
+  // False: the fourth of four channels is coverage and the others are not multiplied by it yet.
+  // They are multiplied, filtered and divided again. True: every channel is filtered as it stands.
+  bool premultiplied = false;
+  int threads = 0;  // 0 = all processors
+  Progress progress;
+};
+
+/// Levels of an image: 0 is the image itself, each other half as wide and high (never less than 1).
+///
+/// A level of kPamBilinear minimises the integral over the surface of the squared difference
+/// between the bilinear lookups of the level and of the image, subject to the bounds. Levels of the
+/// other filters are clipped to them. Texels that the surface does not read have no influence; in
+/// the levels they are filled by push-pull.
+///
+/// Throws Error where a side is no power of two or less than 2, channels are not 1 to 4, levels or
+/// bounds are out of range, a filter that needs a surface gets none, no triangle has an area, or a
+/// texel that counts is not finite; and, from the progress callback, when cancelled.
+std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
+                           const MipmapOptions& options);
+
+/// Throws Error unless the image has 1 to 4 channels and sides that are powers of two of at
+/// least 2.
+void check_mipmap_image(const ImageView& image);
+
+/// Throws Error unless the surfaces have a positive, finite area in all.
+void check_surface_area(const std::vector<const Surface*>& surfaces);
+
+}  // namespace prefilter

@@ -1,0 +1,192 @@
+#include "prefilter/mipmap/texel_triangles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "prefilter/base/error.h"
+
+namespace prefilter {
+namespace {
+
+constexpr double kMaxTiles = 1 << 20;
+
+struct Extent {
+  double low, high;
+};
+
+Extent extent(const MassTriangle& triangle, double Point2::*axis) {
+  const auto [low, high] = std::minmax(
+      {triangle.corners[0].*axis, triangle.corners[1].*axis, triangle.corners[2].*axis});
+  return {low, high};
+}
+
+class Mapper final : public CellSink {
+ public:
+  Mapper(int width, int height, WrapModes wrap, TexelTriangles* out)
+      : width_(width), height_(height), wrap_(wrap), out_(out) {}
+
+  // `triangle` is in units of tiles; the indices name it in messages.
+  void add(const MassTriangle& triangle, std::size_t surface_index, std::size_t triangle_index) {
+    const Extent u = extent(triangle, &Point2::x);
+    const Extent v = extent(triangle, &Point2::y);
+    if (u.low >= 0.0 && u.high <= 1.0 && v.low >= 0.0 && v.high <= 1.0) {
+      push(triangle);
+      return;
+    }
+    const double tiles = tile_count(u, wrap_.u) * tile_count(v, wrap_.v);
+    const double reach = std::max(repeated_reach(u, wrap_.u), repeated_reach(v, wrap_.v));
+    if (tiles > kMaxTiles || reach > kMaxTiles) {
+      throw_invalid("surface " + std::to_string(surface_index) + ", uvs: triangle " +
+                    std::to_string(triangle_index) + " spans u from " + std::to_string(u.low) +
+                    " to " + std::to_string(u.high) + " and v from " + std::to_string(v.low) +
+                    " to " + std::to_string(v.high) +
+                    "; a repeated texture may be met in at most 2^20 tiles, and no farther than "
+                    "2^20 tiles from the origin");
+    }
+    if (wrap_.u == Wrap::kRepeat && wrap_.v == Wrap::kRepeat) {
+      const CellSpan columns = cell_span(u.low, u.high);
+      const CellSpan rows = cell_span(v.low, v.high);
+      cut_to_cells(triangle, {columns.first, rows.first, columns.last + 1, rows.last + 1}, this);
+    } else {
+      cut(whole_piece(triangle), 0, wrap_.u, u, [&](const CellPiece& part) {
+        cut(part, 1, wrap_.v, v, [&](const CellPiece& inner) { push_fan(inner); });
+      });
+    }
+  }
+
+ private:
+  void add_full(int, int x0, int x1, double density) override {
+    const double mass = density * (x1 - x0);
+    out_->uniform_density += mass / (static_cast<double>(width_) * height_);
+  }
+
+  void add_piece(int tile_x, int tile_y, const CellPiece& piece) override {
+    CellPiece moved = piece;
+    for (int i = 0; i < moved.count; ++i) {
+      moved.corners[i].x -= tile_x;
+      moved.corners[i].y -= tile_y;
+    }
+    push_fan(moved);
+  }
+
+  static double tile_count(const Extent& extent, Wrap mode) {
+    return mode == Wrap::kRepeat ? std::floor(extent.high) - std::floor(extent.low) + 1.0 : 1.0;
+  }
+
+  static double repeated_reach(const Extent& extent, Wrap mode) {
+    return mode == Wrap::kRepeat ? std::max(std::abs(extent.low), std::abs(extent.high)) : 0.0;
+  }
+
+  // Cuts a piece along one axis where the wrap mode breaks, and moves each part to where a lookup
+  // there reads the image.
+  template <typename Use>
+  static void cut(const CellPiece& piece, int axis, Wrap mode, const Extent& extent,
+                  const Use& use) {
+    const auto move_all = [axis](CellPiece part, const auto& move) {
+      for (int i = 0; i < part.count; ++i) {
+        double& value = axis == 0 ? part.corners[i].x : part.corners[i].y;
+        value = move(value);
+      }
+      return part;
+    };
+    CellPiece part;
+    CellPiece rest = piece;
+    CellPiece beyond;
+    if (mode == Wrap::kRepeat) {
+      const CellSpan tiles = cell_span(extent.low, extent.high);
+      for (int tile = tiles.first; tile <= tiles.last; ++tile) {
+        split_piece(rest, axis, tile + 1, &part, &beyond);
+        const auto shift = [tile](double value) { return value - tile; };
+        use(move_all(tile == tiles.last ? rest : part, shift));
+        rest = beyond;
+      }
+      return;
+    }
+    const auto to_edge = [](double value) { return std::clamp(value, 0.0, 1.0); };
+    if (extent.low < 0.0) {
+      split_piece(rest, axis, 0.0, &part, &beyond);
+      if (mode == Wrap::kClamp) use(move_all(part, to_edge));
+      rest = beyond;
+    }
+    if (extent.high > 1.0) {
+      split_piece(rest, axis, 1.0, &part, &beyond);
+      if (mode == Wrap::kClamp) use(move_all(beyond, to_edge));
+      rest = part;
+    }
+    use(rest);
+  }
+
+  void push_fan(const CellPiece& piece) {
+    for (int i = 2; i < piece.count; ++i) {
+      const PieceCorner& a = piece.corners[0];
+      const PieceCorner& b = piece.corners[i - 1];
+      const PieceCorner& c = piece.corners[i];
+      CellPiece triangle = piece;
+      triangle.corners[1] = b;
+      triangle.corners[2] = c;
+      triangle.count = 3;
+      push({{{{a.x, a.y}, {b.x, b.y}, {c.x, c.y}}}, triangle.mass()});
+    }
+  }
+
+  void push(MassTriangle triangle) {
+    if (!(triangle.mass > 0.0)) return;
+    for (Point2& corner : triangle.corners) {
+      corner.x = std::clamp(corner.x, 0.0, 1.0) * width_;
+      corner.y = std::clamp(corner.y, 0.0, 1.0) * height_;
+    }
+    keep_off_far_edge(&Point2::x, width_, &triangle);
+    keep_off_far_edge(&Point2::y, height_, &triangle);
+    out_->triangles.push_back(triangle);
+  }
+
+  // What lies all on the image's far edge belongs to the last texel, which is half-open like every
+  // cell.
+  static void keep_off_far_edge(double Point2::*axis, int size, MassTriangle* triangle) {
+    for (const Point2& corner : triangle->corners) {
+      if (corner.*axis != size) return;
+    }
+    for (Point2& corner : triangle->corners) corner.*axis = std::nextafter(size, 0.0);
+  }
+
+  int width_;
+  int height_;
+  WrapModes wrap_;
+  TexelTriangles* out_;
+};
+
+}  // namespace
+
+TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int width, int height,
+                             WrapModes wrap, MassOf mass_of) {
+  double total_area = 0.0;
+  std::size_t count = 0;
+  for (const Surface* surface : surfaces) {
+    total_area += surface->total_area();
+    count += surface->triangle_count();
+  }
+  // Scaled so that numbers stay of order 1 whatever the units of space.
+  const double scale = total_area > 0.0 ? static_cast<double>(width) * height / total_area : 0.0;
+
+  TexelTriangles out;
+  out.width = width;
+  out.height = height;
+  out.triangles.reserve(count);
+  Mapper mapper(width, height, wrap, &out);
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    const Surface& surface = *surfaces[s];
+    for (std::size_t k = 0; k < surface.triangle_count(); ++k) {
+      MassTriangle triangle;
+      triangle.mass = mass_of == MassOf::kPresence ? 1.0 : surface.areas[k] * scale;
+      if (!(triangle.mass > 0.0)) continue;
+      for (int i = 0; i < 3; ++i) triangle.corners[i] = {surface.uvs[k][i].u, surface.uvs[k][i].v};
+      mapper.add(triangle, s, k);
+    }
+  }
+  out.total_mass = out.uniform_mass();
+  for (const MassTriangle& triangle : out.triangles) out.total_mass += triangle.mass;
+  return out;
+}
+
+}  // namespace prefilter

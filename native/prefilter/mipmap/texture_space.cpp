@@ -1,0 +1,64 @@
+#include "prefilter/mipmap/texture_space.h"
+
+#include "prefilter/filters/push_pull.h"
+#include "prefilter/filters/resample.h"
+#include "prefilter/mipmap/levels.h"
+
+namespace prefilter {
+namespace {
+
+constexpr float kLeastWeight = 0.1F;
+
+struct Factors {
+  int x;
+  int y;
+};
+
+Factors factors_of(const ImageView& image, int level) {
+  return {image.width / level_size(image.width, level),
+          image.height / level_size(image.height, level)};
+}
+
+}  // namespace
+
+Image filter_level(const ImageView& image, int level, Kernel kernel, WrapModes wrap,
+                   const Progress& progress, int threads) {
+  const Factors factor = factors_of(image, level);
+  return downsample(image, factor.x, factor.y, kernel, wrap, progress, threads);
+}
+
+Image filter_covered_level(const ImageView& image, const std::vector<unsigned char>& covered,
+                           int level, Kernel kernel, WrapModes wrap, const Progress& progress,
+                           int threads) {
+  Image masked(image.width, image.height, image.channels);
+  Image mask(image.width, image.height, 1);
+  for (std::size_t i = 0; i < covered.size(); ++i) {
+    if (covered[i] == 0) continue;
+    mask.data[i] = 1.0F;
+    for (int c = 0; c < image.channels; ++c) {
+      const std::size_t at = i * static_cast<std::size_t>(image.channels) + c;
+      masked.data[at] = image.data[at];
+    }
+  }
+  const Factors factor = factors_of(image, level);
+  const auto reduce = [&](const Image& source, Kernel with, double from, double to) {
+    return downsample(source.view(), factor.x, factor.y, with, wrap, progress.part(from, to),
+                      threads);
+  };
+  Image sums = reduce(masked, kernel, 0.0, 0.4);
+  Image weights = reduce(mask, kernel, 0.4, 0.5);
+  const Image box_sums = reduce(masked, Kernel::kBox, 0.5, 0.9);
+  const Image box_weights = reduce(mask, Kernel::kBox, 0.9, 1.0);
+  for (std::size_t i = 0; i < weights.data.size(); ++i) {
+    const bool box = weights.data[i] < kLeastWeight;
+    const float weight = box ? box_weights.data[i] : weights.data[i];
+    for (int c = 0; c < image.channels && box_weights.data[i] > 0.0F; ++c) {
+      const std::size_t at = i * static_cast<std::size_t>(image.channels) + c;
+      sums.data[at] = (box ? box_sums : sums).data[at] / weight;
+    }
+  }
+  fill_holes(box_weights.data, wrap, image.channels, &sums);
+  return sums;
+}
+
+}  // namespace prefilter

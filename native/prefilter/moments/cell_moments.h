@@ -1,0 +1,78 @@
+// Moments of a measure on a grid cell, and how they nest.
+//
+// The measure is the surface's area carried into the texture; the cell is [0, 1]^2 in its own
+// coordinates. Moments up to degree 2 along each axis hold all that products of two bilinear
+// functions need (section 7.3), and those of a cell are a fixed combination of those of its four
+// quarters.
+#pragma once
+
+#include <array>
+
+namespace prefilter {
+
+/// Integrals of x^a y^b over the cell, a and b in {0, 1, 2}, at [3 * b + a].
+using WeightMoments = std::array<double, 9>;
+
+/// Integrals of I x^a y^b for one channel of an image I, a and b in {0, 1}, at [2 * b + a].
+using ImageMoments = std::array<double, 4>;
+
+/// The moments of the uniform measure 1 on the whole cell.
+inline constexpr WeightMoments kUniformMoments = {
+    1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 2.0, 1.0 / 4.0, 1.0 / 6.0, 1.0 / 3.0, 1.0 / 6.0, 1.0 / 9.0};
+
+/// Weight moments, and image moments of C channels.
+template <int C>
+struct CellMoments {
+  WeightMoments weight{};
+  std::array<ImageMoments, C> image{};
+
+  bool empty() const { return weight[0] == 0.0; }
+};
+
+/// Which half of the parent's side a child spans along one axis.
+enum class Half { kLow, kHigh, kWhole };
+
+namespace internal {
+
+/// Moments along one axis in the parent's coordinate X from those in the child's x:
+/// X = (x + h) / 2 with h = 0 or 1 for a half, X = x for the whole.
+template <int kDegrees>
+inline void lift(const double* child, int stride, Half half, double* parent) {
+  const double m0 = child[0];
+  const double m1 = child[stride];
+  if (half == Half::kWhole) {
+    parent[0] = m0;
+    parent[1] = m1;
+    if constexpr (kDegrees == 3) parent[2] = child[2 * stride];
+    return;
+  }
+  const double h = half == Half::kHigh ? 1.0 : 0.0;
+  parent[0] = m0;
+  parent[1] = 0.5 * (m1 + h * m0);
+  if constexpr (kDegrees == 3) parent[2] = 0.25 * (child[2 * stride] + h * (2.0 * m1 + m0));
+}
+
+}  // namespace internal
+
+/// Adds the moments of a child cell to its parent's.
+template <int C>
+void add_child(const CellMoments<C>& child, Half half_x, Half half_y, CellMoments<C>* parent) {
+  double rows[9];
+  for (int b = 0; b < 3; ++b) internal::lift<3>(&child.weight[3 * b], 1, half_x, rows + 3 * b);
+  for (int a = 0; a < 3; ++a) {
+    double column[3];
+    internal::lift<3>(rows + a, 3, half_y, column);
+    for (int b = 0; b < 3; ++b) parent->weight[3 * b + a] += column[b];
+  }
+  for (int c = 0; c < C; ++c) {
+    double lines[4];
+    for (int b = 0; b < 2; ++b) internal::lift<2>(&child.image[c][2 * b], 1, half_x, lines + 2 * b);
+    for (int a = 0; a < 2; ++a) {
+      double column[2];
+      internal::lift<2>(lines + a, 2, half_y, column);
+      for (int b = 0; b < 2; ++b) parent->image[c][2 * b + a] += column[b];
+    }
+  }
+}
+
+}  // namespace prefilter

@@ -1,0 +1,27 @@
+#include "convert.h"
+#include "prefilter/color/transfer.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+
+void bind_color(py::module_& m) {
+  const auto bind = [&m](const char* name, Image (*convert)(const ImageView&, int)) {
+    m.def(
+        name,
+        [convert](const Array<float>& array, int threads) {
+          const ImageView image = view_of(array);
+          Image result;
+          {
+            const py::gil_scoped_release unlocked;
+            result = convert(image, threads);
+          }
+          return to_array(std::move(result));
+        },
+        py::arg("image"), py::arg("threads"));
+  };
+  bind("decode_srgb", decode_srgb);
+  bind("encode_srgb", encode_srgb);
+}
+
+}  // namespace prefilter::python

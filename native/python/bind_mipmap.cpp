@@ -1,0 +1,68 @@
+#include <pybind11/stl.h>
+
+#include "convert.h"
+#include "prefilter/mipmap/mipmap_error.h"
+#include "prefilter/mipmap/mipmaps.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+namespace {
+
+using WrapNames = std::pair<std::string, std::string>;
+
+WrapModes wrap_modes(const WrapNames& names) {
+  return {wrap_mode(names.first), wrap_mode(names.second)};
+}
+
+std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
+                                        const std::vector<const Surface*>& surfaces,
+                                        const std::string& filter, const WrapNames& wrap,
+                                        std::optional<float> low, std::optional<float> high,
+                                        int levels, bool premultiplied, const py::object& progress,
+                                        int threads) {
+  MipmapOptions options;
+  options.filter = mipmap_filter(filter);
+  options.wrap = wrap_modes(wrap);
+  options.bounds = {low, high};
+  options.levels = levels;
+  options.premultiplied = premultiplied;
+  options.threads = threads;
+  options.progress = to_progress(progress);
+  const ImageView image = view_of(array);
+  std::vector<Image> images;
+  {
+    const py::gil_scoped_release unlocked;
+    images = mipmaps(image, surfaces, options);
+  }
+  std::vector<Array<float>> arrays;
+  for (Image& level : images) arrays.push_back(to_array(std::move(level)));
+  return arrays;
+}
+
+std::vector<double> bound_mipmap_error(const std::vector<Array<float>>& levels,
+                                       const Array<float>& array,
+                                       const std::vector<const Surface*>& surfaces,
+                                       const std::vector<double>& mip_values, const WrapNames& wrap,
+                                       const py::object& progress, int threads) {
+  std::vector<ImageView> views;
+  for (const Array<float>& level : levels) views.push_back(view_of(level));
+  const ImageView image = view_of(array);
+  const WrapModes modes = wrap_modes(wrap);
+  const Progress reporter = to_progress(progress);
+  const py::gil_scoped_release unlocked;
+  return mipmap_error(views, image, surfaces, mip_values, modes, reporter, threads);
+}
+
+}  // namespace
+
+void bind_mipmap(py::module_& m) {
+  m.def("mipmaps", &bound_mipmaps, py::arg("image"), py::arg("surfaces"), py::arg("filter"),
+        py::arg("wrap"), py::arg("low"), py::arg("high"), py::arg("levels"),
+        py::arg("premultiplied"), py::arg("progress"), py::arg("threads"));
+  m.def("mipmap_error", &bound_mipmap_error, py::arg("levels"), py::arg("image"),
+        py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("progress"),
+        py::arg("threads"));
+}
+
+}  // namespace prefilter::python

@@ -1,0 +1,66 @@
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <utility>
+
+#include "convert.h"
+#include "prefilter/base/error.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+
+void bind_color(py::module_& m);
+void bind_mipmap(py::module_& m);
+void bind_surface(py::module_& m);
+
+ImageView view_of(const Array<float>& array) {
+  return {array.data(), static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
+          static_cast<int>(array.shape(2))};
+}
+
+Array<float> to_array(Image image) {
+  auto owner = std::make_unique<Image>(std::move(image));
+  const Image& held = *owner;
+  const py::capsule capsule(owner.release(),
+                            [](void* pointer) { delete static_cast<Image*>(pointer); });
+  return Array<float>({held.height, held.width, held.channels}, held.data.data(), capsule);
+}
+
+Wrap wrap_mode(const std::string& name) {
+  if (name == "clamp") return Wrap::kClamp;
+  if (name == "repeat") return Wrap::kRepeat;
+  if (name == "border") return Wrap::kBorder;
+  throw_invalid("wrap: '" + name + "' is not one of clamp, repeat, border");
+}
+
+Progress to_progress(const py::object& callback) {
+  return Progress([callback = py::handle(callback)](double fraction) {
+    const py::gil_scoped_acquire locked;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (callback.is_none()) return true;
+    return !callback(fraction).is(py::bool_(false));
+  });
+}
+
+}  // namespace prefilter::python
+
+PYBIND11_MODULE(_native, m) {
+  using prefilter::Error;
+  using prefilter::ErrorCode;
+  static py::exception<Error> cancelled(m, "Cancelled");
+  py::register_exception_translator([](std::exception_ptr pointer) {
+    try {
+      if (pointer) std::rethrow_exception(pointer);
+    } catch (const Error& error) {
+      if (error.code() == ErrorCode::kCancelled) {
+        PyErr_SetString(cancelled.ptr(), error.what());
+      } else {
+        PyErr_SetString(PyExc_ValueError, error.what());
+      }
+    }
+  });
+  prefilter::python::bind_color(m);
+  prefilter::python::bind_surface(m);
+  prefilter::python::bind_mipmap(m);
+}

@@ -1,0 +1,15 @@
+"""Prefilter: images and shapes filtered for the surface that wears them.
+
+Arrays are numpy, float32 or float64 in, float32 out. Images have shape (height, width, channels),
+row 0 at v = 0 (the bottom row, as in Blender and OpenGL). Bad arguments raise ValueError, with a
+message that names the argument, what was found and what is allowed.
+"""
+
+from ._native import Cancelled
+from .color import to_linear, to_srgb
+from .mipmap import mipmap_error, mipmaps
+from .surface import Surface
+
+__version__ = "0.1.0"
+
+__all__ = ["Cancelled", "Surface", "mipmap_error", "mipmaps", "to_linear", "to_srgb"]

@@ -1,0 +1,44 @@
+"""The native module. The package around it checks and converts arguments; call that."""
+
+import numpy as np
+import numpy.typing as npt
+
+from .mipmap import ProgressCallback
+
+class Cancelled(Exception): ...  # noqa: N818
+
+class Surface:
+    def __init__(
+        self,
+        positions: npt.NDArray[np.float64],
+        triangles: npt.NDArray[np.int64],
+        uvs: npt.NDArray[np.float64],
+    ) -> None: ...
+    @property
+    def triangle_count(self) -> int: ...
+    @property
+    def area(self) -> float: ...
+
+def decode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
+def encode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
+def mipmaps(
+    image: npt.NDArray[np.float32],
+    surfaces: list[Surface],
+    filter: str,
+    wrap: tuple[str, str],
+    low: float | None,
+    high: float | None,
+    levels: int,
+    premultiplied: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> list[npt.NDArray[np.float32]]: ...
+def mipmap_error(
+    levels: list[npt.NDArray[np.float32]],
+    image: npt.NDArray[np.float32],
+    surfaces: list[Surface],
+    mip_values: list[float],
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> list[float]: ...

@@ -1,0 +1,61 @@
+"""Arrays as the native module takes them, checked once, here at the border."""
+
+from collections.abc import Sequence
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray: TypeAlias = npt.NDArray[np.float32] | npt.NDArray[np.float64]
+
+
+def as_floats(
+    name: str, array: npt.ArrayLike, shape: Sequence[int | str], dtype: npt.DTypeLike
+) -> np.ndarray:
+    """The array as a C-contiguous one of `dtype`, not copied where it is one.
+
+    `shape` gives the length of each axis, or a name where any length will do.
+    Raises ValueError where the shape differs or the values are not floating-point numbers.
+    """
+    found = np.asarray(array)
+    if found.dtype not in (np.float32, np.float64):
+        raise ValueError(f"{name}: dtype {found.dtype}; float32 or float64 is needed")
+    check_shape(name, found, shape)
+    return np.ascontiguousarray(found, dtype)
+
+
+def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
+    """The array as C-contiguous int64. Raises ValueError where it holds no integers."""
+    found = np.asarray(array)
+    if not np.issubdtype(found.dtype, np.integer):
+        raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
+    check_shape(name, found, shape)
+    return np.ascontiguousarray(found, np.int64)
+
+
+def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:
+    """A float32 image of shape (height, width, channels)."""
+    image = as_floats(name, array, ("height", "width", "channels"), np.float32)
+    if 0 in image.shape:
+        raise ValueError(f"{name}: shape {image.shape} holds no pixels")
+    return image
+
+
+def check_shape(name: str, array: np.ndarray, shape: Sequence[int | str]) -> None:
+    """Raises ValueError unless the array has the shape; a name fits any length."""
+    fits = array.ndim == len(shape) and all(
+        isinstance(wanted, str) or found == wanted
+        for found, wanted in zip(array.shape, shape, strict=True)
+    )
+    if not fits:
+        wanted = ", ".join(str(length) for length in shape)
+        raise ValueError(f"{name}: shape {array.shape}; ({wanted}) is needed")
+
+
+def as_threads(threads: int) -> int:
+    """A number of threads; 0 stands for all processors."""
+    if isinstance(threads, bool) or not isinstance(threads, int | np.integer) or threads < 0:
+        raise ValueError(
+            f"threads: {threads!r}; a whole number is needed, 0 meaning all processors"
+        )
+    return int(threads)

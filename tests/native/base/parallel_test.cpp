@@ -1,0 +1,82 @@
+#include "prefilter/base/parallel.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "prefilter/base/error.h"
+
+namespace prefilter {
+namespace {
+
+TEST(ParallelFor, VisitsEveryIndexOnce) {
+  for (const int threads : {1, 2, 7}) {
+    std::vector<std::atomic<int>> visits(1000);
+    parallel_for(1000, threads, Progress(), [&](std::int64_t i) { ++visits[i]; });
+    for (const std::atomic<int>& count : visits) EXPECT_EQ(count, 1);
+  }
+}
+
+TEST(ParallelFor, PassesOnTheExceptionOfABody) {
+  const auto fail = [] {
+    parallel_for(100, 3, Progress(), [](std::int64_t i) {
+      if (i == 17) throw std::runtime_error("seventeen");
+    });
+  };
+  EXPECT_THROW(fail(), std::runtime_error);
+}
+
+TEST(ParallelFor, StopsSoonWhenCancelled) {
+  using Clock = std::chrono::steady_clock;
+  const Progress progress([](double fraction) { return fraction < 0.01; });
+  const auto start = Clock::now();
+  const auto run = [&] {
+    parallel_for(10000, 2, progress,
+                 [](std::int64_t) { std::this_thread::sleep_for(std::chrono::milliseconds(1)); });
+  };
+  EXPECT_THROW(run(), Error);
+  EXPECT_LT(Clock::now() - start, std::chrono::seconds(2));
+}
+
+TEST(ParallelTeam, StepsTogether) {
+  std::vector<int> steps(4);
+  parallel_team(4, [&](Team& team) {
+    for (int step = 0; step < 100; ++step) {
+      steps[team.rank()] = step;
+      team.wait_for_all();
+      for (const int other : steps) EXPECT_EQ(other, step);
+      team.wait_for_all();
+    }
+  });
+}
+
+TEST(ParallelTeam, SharesCoverTheWhole) {
+  std::vector<std::atomic<int>> visits(101);
+  parallel_team(3, [&](Team& team) {
+    for (std::int64_t i = team.share_begin(101); i < team.share_end(101); ++i) ++visits[i];
+  });
+  for (const std::atomic<int>& count : visits) EXPECT_EQ(count, 1);
+}
+
+TEST(ProgressTest, PartsCoverTheirShareAndRise) {
+  std::vector<double> seen;
+  const Progress progress([&](double fraction) {
+    seen.push_back(fraction);
+    return true;
+  });
+  progress.part(0.0, 0.5).report(1.0);
+  std::this_thread::sleep_for(std::chrono::milliseconds(40));
+  progress.part(0.5, 1.0).part(0.0, 0.5).report(0.5);
+  progress.report(1.0);
+  ASSERT_EQ(seen.size(), 3U);
+  EXPECT_DOUBLE_EQ(seen[0], 0.5);
+  EXPECT_DOUBLE_EQ(seen[1], 0.625);
+  EXPECT_DOUBLE_EQ(seen[2], 1.0);
+}
+
+}  // namespace
+}  // namespace prefilter

@@ -1,0 +1,45 @@
+#include "prefilter/filters/kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace prefilter {
+namespace {
+
+constexpr Kernel kKernels[] = {Kernel::kBox, Kernel::kTent, Kernel::kLanczos3};
+
+TEST(Kernels, AreEvenAndZeroPastTheirRadius) {
+  for (const Kernel kernel : kKernels) {
+    for (double x = 0.0; x < 4.0; x += 0.07) {
+      EXPECT_DOUBLE_EQ(kernel_value(kernel, x), kernel_value(kernel, -x));
+      if (x > kernel_radius(kernel)) {
+        EXPECT_EQ(kernel_value(kernel, x), 0.0);
+      }
+    }
+    EXPECT_EQ(kernel_value(kernel, 0.0), 1.0);
+  }
+}
+
+TEST(DownsamplingTaps, SumToOneAndAreSymmetric) {
+  for (const Kernel kernel : kKernels) {
+    for (const int factor : {1, 2, 3, 4, 16, 64}) {
+      const Taps taps = downsampling_taps(kernel, factor);
+      EXPECT_NEAR(std::accumulate(taps.weights.begin(), taps.weights.end(), 0.0), 1.0, 1e-6);
+      for (std::size_t i = 0; i < taps.weights.size(); ++i) {
+        EXPECT_NEAR(taps.weights[i], taps.weights[taps.weights.size() - 1 - i], 1e-7);
+      }
+      // Symmetric about the middle of the first target texel.
+      EXPECT_EQ(2 * taps.first + static_cast<int>(taps.weights.size()), factor);
+    }
+  }
+}
+
+TEST(DownsamplingTaps, OfABoxAreItsTexels) {
+  const Taps taps = downsampling_taps(Kernel::kBox, 4);
+  EXPECT_EQ(taps.first, 0);
+  EXPECT_EQ(taps.weights, (std::vector<float>{0.25F, 0.25F, 0.25F, 0.25F}));
+}
+
+}  // namespace
+}  // namespace prefilter

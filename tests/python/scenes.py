@@ -1,0 +1,120 @@
+"""Small surfaces and images for tests, and lookups written without the library."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import prefilter
+
+
+@dataclass
+class Mesh:
+    """The arguments of prefilter.Surface."""
+
+    positions: np.ndarray
+    triangles: np.ndarray
+    uvs: np.ndarray
+
+    @property
+    def surface(self) -> prefilter.Surface:
+        return prefilter.Surface(self.positions, self.triangles, self.uvs)
+
+    @property
+    def areas(self) -> np.ndarray:
+        p = self.positions[self.triangles]
+        return 0.5 * np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1)
+
+
+def soup(uvs: np.ndarray, areas: np.ndarray | None = None) -> Mesh:
+    """Separate triangles with the given UVs, (n, 3, 2), and areas in space."""
+    uvs = np.asarray(uvs, np.float64)
+    areas = np.ones(len(uvs)) if areas is None else np.asarray(areas, np.float64)
+    side = np.sqrt(2.0 * areas)
+    positions = np.zeros((len(uvs), 3, 3))
+    positions[:, 1, 0] = side
+    positions[:, 2, 1] = side
+    triangles = np.arange(3 * len(uvs)).reshape(-1, 3)
+    return Mesh(positions.reshape(-1, 3), triangles, uvs)
+
+
+def square(low=(0.0, 0.0), high=(1.0, 1.0), area: float = 1.0) -> Mesh:
+    """Two triangles over a rectangle of the texture."""
+    (u0, v0), (u1, v1) = low, high
+    uvs = [[(u0, v0), (u1, v0), (u1, v1)], [(u0, v0), (u1, v1), (u0, v1)]]
+    return soup(np.array(uvs), np.array([area / 2, area / 2]))
+
+
+def join(*meshes: Mesh) -> Mesh:
+    offsets = np.cumsum([0] + [len(m.positions) for m in meshes[:-1]])
+    return Mesh(
+        np.concatenate([m.positions for m in meshes]),
+        np.concatenate([m.triangles + k for m, k in zip(meshes, offsets, strict=True)]),
+        np.concatenate([m.uvs for m in meshes]),
+    )
+
+
+def random_soup(seed: int, count: int, low: float = 0.0, high: float = 1.0) -> Mesh:
+    """Overlapping triangles of either winding and very different densities."""
+    random = np.random.default_rng(seed)
+    uvs = random.uniform(low, high, (count, 3, 2))
+    return soup(uvs, random.uniform(0.01, 1.0, count) ** 3)
+
+
+def random_image(seed: int, height: int, width: int, channels: int) -> np.ndarray:
+    return np.random.default_rng(seed).uniform(0, 1, (height, width, channels)).astype(np.float32)
+
+
+def surface_samples(mesh: Mesh, steps: int) -> tuple[np.ndarray, np.ndarray]:
+    """UVs, (n, 2), and area weights, (n,), of steps^2 points a triangle, spread evenly over it."""
+    i, j = np.meshgrid(np.arange(steps), np.arange(steps), indexing="ij")
+    upright = i + j < steps
+    inverted = i + j < steps - 1
+    s = np.concatenate([(i[upright] + 1 / 3), (i[inverted] + 2 / 3)]) / steps
+    t = np.concatenate([(j[upright] + 1 / 3), (j[inverted] + 2 / 3)]) / steps
+    a, b, c = mesh.uvs[:, 0, None], mesh.uvs[:, 1, None], mesh.uvs[:, 2, None]
+    s, t = s[None, :, None], t[None, :, None]
+    uvs = a + s * (b - a) + t * (c - a)
+    weights = np.repeat(mesh.areas / steps**2, steps**2)
+    return uvs.reshape(-1, 2), weights
+
+
+def wrap_indices(index: np.ndarray, size: int, mode: str) -> tuple[np.ndarray, np.ndarray]:
+    """Which texel each index reads, and whether it is one (outside of a border there is none)."""
+    if mode == "repeat":
+        return index % size, np.ones(index.shape, bool)
+    inside = (index >= 0) & (index < size)
+    return np.clip(index, 0, size - 1), inside | (mode == "clamp")
+
+
+def bilinear_taps(
+    uvs: np.ndarray, height: int, width: int, wrap: tuple[str, str]
+) -> tuple[np.ndarray, np.ndarray]:
+    """The four texels (flat indices, (n, 4)) and weights that a bilinear lookup reads."""
+    x = uvs[:, 0] * width - 0.5
+    y = uvs[:, 1] * height - 0.5
+    x0, y0 = np.floor(x).astype(int), np.floor(y).astype(int)
+    taps, weights = [], []
+    for dy in (0, 1):
+        for dx in (0, 1):
+            column, has_column = wrap_indices(x0 + dx, width, wrap[0])
+            row, has_row = wrap_indices(y0 + dy, height, wrap[1])
+            taps.append(row * width + column)
+            along_x = x - x0 if dx else 1 - (x - x0)
+            along_y = y - y0 if dy else 1 - (y - y0)
+            weights.append(along_x * along_y * has_column * has_row)
+    return np.stack(taps, 1), np.stack(weights, 1)
+
+
+def bilinear(image: np.ndarray, uvs: np.ndarray, wrap: tuple[str, str]) -> np.ndarray:
+    height, width, channels = image.shape
+    taps, weights = bilinear_taps(uvs, height, width, wrap)
+    flat = image.reshape(-1, channels).astype(np.float64)
+    return sum(weights[:, k, None] * flat[taps[:, k]] for k in range(4))
+
+
+def in_border(uvs: np.ndarray, wrap: tuple[str, str]) -> np.ndarray:
+    """Points that weigh nothing: outside of the image along an axis that has a border."""
+    outside = np.zeros(len(uvs), bool)
+    for axis, mode in enumerate(wrap):
+        if mode == "border":
+            outside |= (uvs[:, axis] < 0) | (uvs[:, axis] > 1)
+    return outside

@@ -1,0 +1,207 @@
+"""Levels against an independent oracle: dense quadrature over the surface, dense algebra."""
+
+import numpy as np
+import prefilter
+import pytest
+from scenes import (
+    bilinear,
+    bilinear_taps,
+    in_border,
+    join,
+    random_image,
+    random_soup,
+    soup,
+    square,
+    surface_samples,
+    wrap_indices,
+)
+
+# The part of BilinearSystem's documentation that a caller can see: texels are pulled to the mean of
+# the image under their tent by this times the mean diagonal.
+PULL = 1e-3
+
+# Of the gradient: quadrature with 200 steps a triangle.
+TOLERANCE = 2e-3
+
+WRAPS = [
+    ("clamp", "clamp"),
+    ("repeat", "repeat"),
+    ("border", "border"),
+    ("repeat", "clamp"),
+    ("clamp", "border"),
+    ("border", "repeat"),
+]
+
+
+class Oracle:
+    """The least-squares problem of one level, by quadrature."""
+
+    def __init__(self, mesh, image, shape, wrap, steps):
+        uvs, weights = surface_samples(mesh, steps)
+        kept = ~in_border(uvs, wrap)
+        uvs, weights = uvs[kept], weights[kept]
+        if "clamp" in wrap:
+            uvs = uvs.copy()
+            for axis, mode in enumerate(wrap):
+                if mode == "clamp":
+                    uvs[:, axis] = np.clip(uvs[:, axis], 0, 1)
+        source = bilinear(image, uvs, wrap)
+        height, width = shape
+        taps, shares = bilinear_taps(uvs, height, width, wrap)
+        count = height * width
+        self.matrix = np.zeros((count, count))
+        for i in range(4):
+            for j in range(4):
+                flat = taps[:, i] * count + taps[:, j]
+                products = weights * shares[:, i] * shares[:, j]
+                self.matrix += np.bincount(flat, products, count * count).reshape(count, count)
+        self.right = np.stack(
+            [
+                sum(
+                    np.bincount(taps[:, i], weights * shares[:, i] * source[:, c], count)
+                    for i in range(4)
+                )
+                for c in range(image.shape[2])
+            ],
+            1,
+        )
+        masses = sum(np.bincount(taps[:, i], weights * shares[:, i], count) for i in range(4))
+        self.used = np.diag(self.matrix) > 0
+        diagonal = np.diag(self.matrix)
+        self.pull = PULL * diagonal[self.used].mean()
+        means = np.zeros_like(self.right)
+        means[self.used] = self.right[self.used] / masses[self.used, None]
+        self.pulled = self.matrix + self.pull * np.diag(self.used.astype(float))
+        self.pulled_right = self.right + self.pull * means
+
+    def gradient(self, level):
+        """Of half the objective, over the diagonal: how far each texel would move by itself.
+
+        Where a texel has next to no weight, quadrature cannot tell it: the diagonal counts as at
+        least a hundredth of the mean one.
+        """
+        texels = level.reshape(-1, level.shape[2]).astype(np.float64)
+        residual = self.pulled @ texels - self.pulled_right
+        diagonal = np.diag(self.pulled)[self.used]
+        return residual[self.used] / np.maximum(diagonal, 0.01 * diagonal.mean())[:, None]
+
+
+@pytest.mark.parametrize("wrap", WRAPS)
+@pytest.mark.parametrize("channels", [1, 3])
+def test_unbounded_levels_solve_the_normal_equations(wrap, channels):
+    mesh = random_soup(3, 12, -0.4, 1.6)
+    image = random_image(1, 16, 8, channels)
+    levels = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=None)
+    assert [level.shape[:2] for level in levels] == [(16, 8), (8, 4), (4, 2), (2, 1), (1, 1)]
+    for level in levels[1:]:
+        oracle = Oracle(mesh, image, level.shape[:2], wrap, steps=200)
+        assert np.abs(oracle.gradient(level)).max() < TOLERANCE
+
+
+@pytest.mark.parametrize("wrap", WRAPS[:3])
+def test_bounded_levels_meet_the_optimality_conditions(wrap):
+    mesh = random_soup(5, 10, -0.2, 1.2)
+    image = (random_image(2, 16, 16, 3) > 0.5).astype(np.float32)
+    levels = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=(0.0, 1.0))
+    clipped = 0
+    for level in levels[1:4]:
+        oracle = Oracle(mesh, image, level.shape[:2], wrap, steps=200)
+        gradient = oracle.gradient(level)
+        texels = level.reshape(-1, 3)[oracle.used]
+        low, high = texels <= 0.0, texels >= 1.0
+        clipped += int(low.sum() + high.sum())
+        assert (gradient[low] > -TOLERANCE).all()
+        assert (gradient[high] < TOLERANCE).all()
+        assert np.abs(gradient[~low & ~high]).max() < TOLERANCE
+    assert clipped > 10
+
+
+def test_bounded_level_matches_a_dense_solver():
+    optimize = pytest.importorskip("scipy.optimize")
+    mesh = random_soup(7, 8)
+    image = (random_image(4, 16, 16, 1) > 0.5).astype(np.float32)
+    level = prefilter.mipmaps(image, mesh.surface, bounds=(0.0, 1.0))[1]
+    oracle = Oracle(mesh, image, level.shape[:2], ("clamp", "clamp"), steps=300)
+    used = oracle.used
+    factor = np.linalg.cholesky(oracle.pulled[np.ix_(used, used)])
+    target = np.linalg.solve(factor, oracle.pulled_right[used, 0])
+    solved = optimize.lsq_linear(factor.T, target, bounds=(0.0, 1.0), tol=1e-12)
+    weak = np.diag(oracle.pulled)[used] < 0.02 * np.diag(oracle.pulled)[used].mean()
+    difference = np.abs(solved.x - level.reshape(-1)[used])[~weak]
+    assert difference.max() < 5e-3
+
+    clipped = np.clip(np.linalg.solve(oracle.pulled[np.ix_(used, used)],
+                                      oracle.pulled_right[used, 0]), 0, 1)  # fmt: skip
+    assert np.abs(clipped - solved.x).max() > 0.05, "the case must tell solving from clipping"
+
+
+def test_levels_across_tiles_solve_the_normal_equations():
+    mesh = join(
+        soup([[(0.02, 0.1), (0.97, 0.03), (0.6, 0.95)], [(0.9, 0.99), (0.1, 0.8), (0.4, 0.4)]]),
+        square((0.7, 0.7), (1.25, 1.1), area=0.3),
+    )
+    image = random_image(6, 64, 128, 1)
+    wrap = ("repeat", "repeat")
+    levels = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=None)
+    for k in (3, 4, 5, 6, 7):
+        oracle = Oracle(mesh, image, levels[k].shape[:2], wrap, steps=500)
+        assert np.abs(oracle.gradient(levels[k])).max() < TOLERANCE, f"level {k}"
+
+
+@pytest.mark.parametrize("wrap", ["clamp", "repeat", "border"])
+def test_pam_box_is_the_mean_over_the_surface(wrap):
+    mesh = random_soup(11, 9, -0.3, 1.3)
+    image = random_image(5, 8, 16, 2)
+    levels = prefilter.mipmaps(image, mesh.surface, filter="pam-box", wrap=wrap)
+    uvs, weights = surface_samples(mesh, 500)
+    kept = ~in_border(uvs, (wrap, wrap))
+    uvs, weights = uvs[kept], weights[kept]
+    column, _ = wrap_indices(np.floor(uvs[:, 0] * 16).astype(int), 16, wrap)
+    row, _ = wrap_indices(np.floor(uvs[:, 1] * 8).astype(int), 8, wrap)
+    for k, level in enumerate(levels[1:], 1):
+        height, width = level.shape[:2]
+        flat = (row // (8 // height)) * width + column // (16 // width)
+        mass = np.bincount(flat, weights, height * width)
+        for c in range(2):
+            sums = np.bincount(flat, weights * image[row, column, c], height * width)
+            strong = mass > 0.05 * mass.mean()
+            found = level[..., c].reshape(-1)[strong]
+            assert np.abs(found - sums[strong] / mass[strong]).max() < 1e-2, f"level {k}"
+
+
+@pytest.mark.parametrize("wrap", WRAPS)
+def test_error_is_the_error_of_lookups(wrap):
+    mesh = random_soup(13, 7, -0.2, 1.2)
+    image = random_image(8, 16, 32, 3)
+    levels = [random_image(k, max(1, 16 >> k), max(1, 32 >> k), 3) for k in range(6)]
+    values = [0.0, 0.3, 1.0, 2.75, 4.5, 5.0]
+    found = prefilter.mipmap_error(levels, image, mesh.surface, values, wrap=wrap)
+    uvs, weights = surface_samples(mesh, 150)
+    kept = ~in_border(uvs, wrap)
+    uvs, weights = uvs[kept], weights[kept]
+    for axis, mode in enumerate(wrap):
+        if mode == "clamp":
+            uvs[:, axis] = np.clip(uvs[:, axis], 0, 1)
+    source = bilinear(image, uvs, wrap)
+    for value, error in zip(values, found, strict=True):
+        k = min(int(value), 4)
+        f = value - k
+        lookup = (1 - f) * bilinear(levels[k], uvs, wrap) + f * bilinear(levels[k + 1], uvs, wrap)
+        squared = ((lookup - source) ** 2).mean(axis=1)
+        expected = np.sqrt((squared * weights).sum() / weights.sum())
+        assert error == pytest.approx(expected, rel=2e-3)
+
+
+def test_error_of_flat_triangles_is_along_their_lines():
+    line = soup([[(0.1, 0.2), (0.9, 0.7), (0.5, 0.45)]])
+    point = soup([[(0.3, 0.6)] * 3], np.array([0.25]))
+    image = random_image(9, 16, 16, 1)
+    levels = prefilter.mipmaps(image, surface=square().surface)
+    mesh = join(line, point)
+    found = prefilter.mipmap_error(levels, image, mesh.surface, [1.0, 2.0])
+    uvs, weights = surface_samples(mesh, 1000)
+    source = bilinear(image, uvs, ("clamp", "clamp"))
+    for k, error in zip((1, 2), found, strict=True):
+        lookup = bilinear(levels[k], uvs, ("clamp", "clamp"))
+        expected = np.sqrt((((lookup - source) ** 2)[:, 0] * weights).sum() / weights.sum())
+        assert error == pytest.approx(expected, rel=1e-4)
