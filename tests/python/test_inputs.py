@@ -93,7 +93,7 @@ def test_mipmaps(arguments, message):
 
 def test_repeated_tiles_are_limited():
     far = soup([[(0, 0), (1e9, 0), (0, 1e9)], [(0, 0), (3000, 0), (0, 3000)]])
-    with pytest.raises(ValueError, match="surface 0, uvs: triangle 0 spans u from 0.0"):
+    with pytest.raises(ValueError, match=r"surface 0, uvs: triangle 0 spans u from 0.0"):
         prefilter.mipmaps(IMAGE, far.surface, wrap="repeat")
     for wrap in ("clamp", "border"):
         assert len(prefilter.mipmaps(IMAGE, far.surface, wrap=wrap)) == 5

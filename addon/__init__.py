@@ -1,0 +1,17 @@
+"""Prefilter: mipmaps that know the mesh, baked in Blender."""
+
+from . import commands, operators, panels, settings
+
+_PARTS = (settings, operators, panels, commands)
+
+
+def register() -> None:
+    """Registers every part of the add-on."""
+    for part in _PARTS:
+        part.register()
+
+
+def unregister() -> None:
+    """Unregisters every part of the add-on, in reverse."""
+    for part in reversed(_PARTS):
+        part.unregister()

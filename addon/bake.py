@@ -1,0 +1,293 @@
+"""Baking mipmaps in three steps: read from Blender, compute anywhere, write to Blender.
+
+The operator and the command are two ways to call this.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import bpy
+import prefilter
+
+from .bridge import files, images, meshes
+from .bridge.images import FloatArray, Picture
+
+FAILURES = (ValueError, OSError, MemoryError)
+"""What a bake raises for a reason that the user can act on."""
+
+Progress = Callable[[float], bool]
+
+
+class Choice(NamedTuple):
+    """One value of an option, and how to present it."""
+
+    label: str
+    description: str
+
+
+FILTERS = {
+    "pam-bilinear": Choice(
+        "PAM Bilinear", "Best fit over the surface, for readers that interpolate between texels"
+    ),
+    "pam-box": Choice("PAM Box", "Average of the surface under each texel"),
+    "box": Choice("Box", "Average of four texels, whether a face uses them or not"),
+    "tent": Choice("Tent", "Smoother than Box, whether a face uses the texels or not"),
+    "lanczos3": Choice("Lanczos 3", "Sharper than Box, whether a face uses the texels or not"),
+    "box-covered": Choice("Box, Covered Texels", "Box over the texels that a face touches"),
+    "tent-covered": Choice("Tent, Covered Texels", "Tent over the texels that a face touches"),
+    "lanczos3-covered": Choice(
+        "Lanczos 3, Covered Texels", "Lanczos 3 over the texels that a face touches"
+    ),
+}
+TEXTURE_SPACE_FILTERS = frozenset({"box", "tent", "lanczos3"})
+
+_MODES = {
+    "clamp": Choice("Clamp", "The border texels go on"),
+    "repeat": Choice("Repeat", "The image tiles the plane"),
+    "border": Choice("Border", "Black and transparent"),
+}
+WRAPS = {
+    "auto": Choice("As in Material", "What the Image Texture nodes of the image say"),
+    **_MODES,
+}
+WRAPS_V = {"same": Choice("Same as U", "The same as along U"), **_MODES}
+BOUNDS = {
+    "auto": Choice(
+        "Automatic",
+        "0 to 1 for byte images, 0 and up for float images; less a limit that the image passes",
+    ),
+    "unit": Choice("0 to 1", "Values stay between 0 and 1"),
+    "positive": Choice("0 and Up", "Values stay at or above 0"),
+    "none": Choice("None", "Values may leave the range of the image"),
+}
+
+_LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
+_WRAP_OF_EXTENSION = {
+    "REPEAT": "repeat",
+    "EXTEND": "clamp",
+    "CLIP": "border",
+    "MIRROR": "clamp",
+}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What to bake and where to put it.
+
+    Attributes:
+        filter: A key of `FILTERS`.
+        wrap: A key of `WRAPS`: what lies outside of the image along u.
+        wrap_v: A key of `WRAPS_V`: the same along v.
+        bounds: A key of `BOUNDS`.
+        levels: How many levels to make, the image itself included; 0 for all.
+        use_images: Whether to write an image datablock for each level.
+        filepath: A mip-mapped file to write; empty for none. It gets every level.
+        threads: How many threads to use; 0 for all.
+    """
+
+    filter: str = "pam-bilinear"
+    wrap: str = "auto"
+    wrap_v: str = "same"
+    bounds: str = "auto"
+    levels: int = 0
+    use_images: bool = True
+    filepath: str = ""
+    threads: int = 0
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a bake wrote, and what the user should know about it."""
+
+    summary: str
+    images: list[str]
+    filepath: str
+    warnings: list[str]
+
+
+class Bake:
+    """One bake.
+
+    `Bake.read` and `write` belong on the main thread; `compute` touches no Blender data and runs on
+    any thread. Nothing is written before everything is computed.
+    """
+
+    def __init__(
+        self,
+        picture: Picture,
+        found: meshes.ImageSurfaces,
+        settings: Settings,
+        target: Path | None,
+    ) -> None:
+        """Keeps copies of what was read; use `Bake.read`."""
+        self.warnings = list(found.problems)
+        self._picture = picture
+        self._surfaces = found.surfaces
+        self._objects = found.objects
+        self._settings = settings
+        self._target = target
+        self._wrap = self._choose_wrap(found.extensions)
+        self._levels: list[FloatArray] = []
+        self._staged: files.StagedFile | None = None
+
+    @classmethod
+    def read(
+        cls,
+        image: bpy.types.Image,
+        objects: Sequence[bpy.types.Object],
+        settings: Settings,
+        depsgraph: bpy.types.Depsgraph,
+        *,
+        all_faces: bool = False,
+    ) -> "Bake":
+        """Copies everything that the bake needs out of Blender.
+
+        Args:
+            image: Level 0.
+            objects: The objects to look for the image on.
+            settings: What to bake.
+            depsgraph: The evaluated dependency graph.
+            all_faces: See `meshes.image_surfaces`.
+
+        Raises:
+            ValueError: There is nothing to bake, or the image or a mesh is unfit.
+            OSError: The file of the settings cannot be written.
+        """
+        target = files.check_target(settings.filepath) if settings.filepath else None
+        if target is None and not settings.use_images:
+            raise ValueError("nothing to write: neither level images nor a file are asked for")
+        picture = images.read(image)
+        found = meshes.image_surfaces(objects, image, depsgraph, all_faces=all_faces)
+        if not found.surfaces and settings.filter not in TEXTURE_SPACE_FILTERS:
+            raise ValueError(_no_surface(image, objects, found.problems))
+        return cls(picture, found, settings, target)
+
+    @property
+    def image_name(self) -> str:
+        """The name of the image that is baked."""
+        return self._picture.name
+
+    def compute(self, progress: Progress) -> None:
+        """Filters, encodes and stages the file.
+
+        Raises:
+            prefilter.Cancelled: `progress` returned False.
+            ValueError: The library refuses the image or the surfaces.
+            OSError: The file cannot be written.
+        """
+        settings = self._settings
+        linear = images.scene_linear(self._picture)
+        levels = prefilter.mipmaps(
+            linear,
+            self._surfaces or None,
+            filter=settings.filter,
+            wrap=self._wrap,
+            bounds=self._bounds(linear),
+            levels=None if self._target is not None else settings.levels or None,
+            premultiplied=not self._picture.alpha_is_straight,
+            progress=lambda fraction: progress(0.9 * fraction),
+            threads=settings.threads,
+        )
+        if settings.levels > len(levels):
+            height, width = linear.shape[:2]
+            raise ValueError(
+                f"levels: found {settings.levels}; an image of {width} x {height} has 1 to "
+                f"{len(levels)}"
+            )
+        stored = [images.encoded(self._picture, level) for level in levels[1:]]
+        stored.insert(0, self._picture.stored)
+        if self._target is not None:
+            levels[0] = linear
+            self._staged = files.stage(self._target, self._picture, levels, stored, self._wrap)
+        self._levels = stored[1 : settings.levels or None]
+        if not progress(1.0):
+            self.discard()
+            raise prefilter.Cancelled("cancelled")
+
+    def write(self) -> Outcome:
+        """Puts the file into place and writes the level images.
+
+        Raises:
+            OSError: The file cannot be put into place; nothing was written then.
+        """
+        try:
+            if self._staged is not None:
+                self._staged.commit()
+        finally:
+            self.discard()
+        names: list[str] = []
+        if self._settings.use_images:
+            names = images.write_levels(self._picture, self._levels)
+        return Outcome(self._summary(names), names, str(self._target or ""), self.warnings)
+
+    def discard(self) -> None:
+        """Removes what `compute` left on disk, if it was not written into place."""
+        if self._staged is not None:
+            self._staged.discard()
+            self._staged = None
+
+    def _choose_wrap(self, extensions: Sequence[str]) -> tuple[str, str]:
+        wrap = self._settings.wrap
+        if wrap == "auto":
+            wrap = "repeat"
+            if extensions:
+                wrap = _WRAP_OF_EXTENSION[extensions[0]]
+                if len(extensions) > 1 or extensions[0] == "MIRROR":
+                    self.warnings.append(
+                        f"Image Texture nodes extend the image by {', '.join(extensions)}; "
+                        f"filtered as '{wrap}'"
+                    )
+        wrap_v = self._settings.wrap_v
+        return wrap, wrap if wrap_v == "same" else wrap_v
+
+    def _bounds(self, linear: FloatArray) -> tuple[float | None, float | None] | None:
+        if self._settings.bounds != "auto":
+            return _LIMITS[self._settings.bounds]
+        low = 0.0 if linear.min() >= 0.0 else None
+        high = 1.0 if not self._picture.is_float and linear.max() <= 1.0 else None
+        return low, high
+
+    def _summary(self, names: Sequence[str]) -> str:
+        parts = [f"Baked '{self.image_name}' with {FILTERS[self._settings.filter].label}"]
+        if self._surfaces:
+            parts.append(f"over {_count(self._objects, 'object')}")
+        results = []
+        if names:
+            results.append(_count(names, "level image"))
+        if self._target is not None:
+            results.append(f"'{self._target}'")
+        parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
+        return " ".join(parts)
+
+
+def bake(
+    image: bpy.types.Image,
+    objects: Sequence[bpy.types.Object],
+    settings: Settings,
+    depsgraph: bpy.types.Depsgraph,
+    *,
+    all_faces: bool = False,
+    progress: Progress = lambda _: True,
+) -> Outcome:
+    """Bakes on the calling thread; see `Bake` for the steps, the arguments and what they raise."""
+    job = Bake.read(image, objects, settings, depsgraph, all_faces=all_faces)
+    job.compute(progress)
+    return job.write()
+
+
+def _no_surface(
+    image: bpy.types.Image, objects: Iterable[bpy.types.Object], problems: Sequence[str]
+) -> str:
+    start = f"image '{image.name}': no surface to bake for"
+    if problems:
+        return f"{start}; {'; '.join(problems)}"
+    found = ", ".join(f"'{obj.name}' ({obj.type.lower()})" for obj in objects)
+    if not found:
+        return f"{start}; no object is selected"
+    return f"{start}; no material on a face of a mesh uses it, among {found}"
+
+
+def _count(things: Sequence[str], noun: str) -> str:
+    return f"{len(things)} {noun}{'' if len(things) == 1 else 's'}"

@@ -1,0 +1,134 @@
+"""Mip-mapped texture files, staged beside their target and renamed into place.
+
+* OpenEXR: scene-linear, associated alpha, 16-bit floats unless 32 are asked for.
+* TIFF (.tif, .tiff, .tx): a byte image stays 8-bit and in its colour space, a float image is
+  written as scene-linear 32-bit floats; associated alpha, as texture readers expect.
+
+A file always holds every level down to 1 x 1, in tiles of 64 x 64.
+"""
+
+import os
+import secrets
+import stat
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from . import images, openimageio
+from .images import FloatArray, Picture
+
+_FORMATS = {".exr": "openexr", ".tif": "tiff", ".tiff": "tiff", ".tx": "tiff"}
+_WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
+_WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+
+
+@dataclass(frozen=True)
+class StagedFile:
+    """A finished file under a temporary name, in the folder of its target."""
+
+    temporary: Path
+    target: Path
+
+    def commit(self) -> None:
+        """Renames the file into place."""
+        os.replace(self.temporary, self.target)
+
+    def discard(self) -> None:
+        """Removes the temporary file, if it is still there."""
+        self.temporary.unlink(missing_ok=True)
+
+
+def check_target(path: str) -> Path:
+    """Returns the absolute path of a texture file that can be written.
+
+    Raises:
+        ValueError: The name does not end in a known extension.
+        OSError: The folder is missing, or the file or its folder is read-only.
+    """
+    target = Path(path).absolute()
+    if target.suffix.lower() not in _FORMATS:
+        raise ValueError(
+            f"file '{path}': found extension '{target.suffix}'; allowed are {', '.join(_FORMATS)}"
+        )
+    if not target.parent.is_dir():
+        raise OSError(f"file '{path}': there is no folder '{target.parent}'")
+    if target.is_dir():
+        raise OSError(f"file '{path}' is a folder")
+    check_writable(target)
+    return target
+
+
+def check_writable(path: Path) -> None:
+    """Raises OSError if a file or its folder is read-only.
+
+    Root may write what has no write bits; a path without them is left alone all the same.
+    """
+    if path.exists() and not _is_writable(path):
+        raise OSError(f"file '{path}' is read-only")
+    if not _is_writable(path.parent):
+        raise OSError(f"file '{path}': its folder is read-only")
+
+
+def stage(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    wrap: tuple[str, str],
+    *,
+    half: bool = True,
+) -> StagedFile:
+    """Writes a mip-mapped file beside its target.
+
+    Args:
+        target: A path from `check_target`.
+        picture: Where the levels come from.
+        linear_levels: Every level, scene-linear, row 0 at the bottom.
+        stored_levels: The same levels in the encoding of the picture.
+        wrap: Wrap modes in u and v.
+        half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    file_format = _FORMATS[target.suffix.lower()]
+    keep_bytes = file_format == "tiff" and not picture.is_float
+    levels = stored_levels if keep_bytes else linear_levels
+    float_type = "half" if file_format == "openexr" and half else "float"
+    name = f".{target.stem}.{secrets.token_hex(4)}{target.suffix}"
+    staged = StagedFile(target.with_name(name), target)
+    try:
+        openimageio.write_texture(
+            str(staged.temporary),
+            [_file_pixels(picture, level) for level in levels],
+            file_format=file_format,
+            pixel_type="uint8" if keep_bytes else float_type,
+            color_space=_color_space(picture, keep_bytes),
+            wrap_modes=",".join(_WRAP_MODES[mode] for mode in wrap),
+            has_alpha=picture.alpha_is_coverage,
+        )
+    except BaseException:
+        staged.discard()
+        raise
+    return staged
+
+
+def _file_pixels(picture: Picture, level: FloatArray) -> FloatArray:
+    """Returns a level with associated alpha and rows from the top."""
+    if picture.alpha_is_straight:
+        level = np.concatenate([level[..., :3] * level[..., 3:], level[..., 3:]], axis=2)
+    return np.ascontiguousarray(level[::-1])
+
+
+def _color_space(picture: Picture, keep_bytes: bool) -> str:
+    if picture.is_data:
+        return "raw"
+    if keep_bytes and picture.encoding is not images.Encoding.NONE:
+        return picture.colorspace
+    return "scene_linear"
+
+
+def _is_writable(path: Path) -> bool:
+    return os.access(path, os.W_OK) and bool(path.stat().st_mode & _WRITE_BITS)

@@ -1,0 +1,165 @@
+"""Where a material samples an image: which UV map, moved how, extended how."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import bpy
+from mathutils import Euler, Matrix
+
+Groups = tuple[bpy.types.Node, ...]
+
+
+@dataclass(frozen=True)
+class ImageUse:
+    """One way in which a material samples an image.
+
+    Attributes:
+        uv_map: The name of the UV map; empty for the active render UV map.
+        transform: The rows of the 2 x 3 matrix that takes (u, v, 1) to texture coordinates.
+        extension: What the Image Texture node does outside of the image.
+    """
+
+    uv_map: str
+    transform: tuple[tuple[float, float, float], tuple[float, float, float]]
+    extension: str
+
+
+class _NotUv(Exception):
+    """The coordinates come from something else than a UV map; the message says from what."""
+
+
+def image_uses(
+    material: bpy.types.Material, image: bpy.types.Image
+) -> tuple[list[ImageUse], list[str]]:
+    """Finds the Image Texture nodes of a material that show an image.
+
+    Node groups, reroutes, muted nodes and Mapping nodes are followed. A node needs no connection to
+    the output: a texture that is yet to be used counts.
+
+    Returns:
+        The different uses, and a warning for each node whose coordinates are no UV map.
+    """
+    uses: list[ImageUse] = []
+    warnings: list[str] = []
+    if not material.use_nodes or material.node_tree is None:
+        return uses, warnings
+    for node, groups in _image_nodes(material.node_tree, ()):
+        if node.image != image:
+            continue
+        try:
+            if node.projection != "FLAT":
+                raise _NotUv(f"has the projection {node.projection}")
+            use = _use(node, groups)
+        except _NotUv as reason:
+            warnings.append(f"material '{material.name}': node '{node.name}' skipped, it {reason}")
+        else:
+            if use not in uses:
+                uses.append(use)
+    return uses, warnings
+
+
+def images_of(material: bpy.types.Material) -> list[bpy.types.Image]:
+    """Returns the images of a material's Image Texture nodes, each once."""
+    if not material.use_nodes or material.node_tree is None:
+        return []
+    nodes = _image_nodes(material.node_tree, ())
+    return list(dict.fromkeys(node.image for node, _ in nodes))
+
+
+def _image_nodes(
+    tree: bpy.types.NodeTree, groups: Groups
+) -> Iterator[tuple[bpy.types.Node, Groups]]:
+    for node in tree.nodes:
+        if node.mute:
+            continue
+        if node.type == "TEX_IMAGE" and node.image is not None:
+            yield node, groups
+        elif node.type == "GROUP" and node.node_tree is not None:
+            yield from _image_nodes(node.node_tree, (*groups, node))
+
+
+def _use(node: bpy.types.Node, groups: Groups) -> ImageUse:
+    uv_map, matrix = _trace(node.inputs["Vector"], groups)
+    rows = tuple((row[0], row[1], row[3]) for row in matrix[:2])
+    return ImageUse(uv_map, rows, node.extension)
+
+
+def _trace(socket: bpy.types.NodeSocket, groups: Groups) -> tuple[str, Matrix]:
+    """Follows an input socket back to a UV map, gathering the mappings on the way."""
+    matrix = Matrix.Identity(4)
+    while True:
+        link = _link_into(socket)
+        if link is None:
+            if socket.node.type == "TEX_IMAGE":
+                return "", matrix
+            raise _NotUv(f"gets no coordinates: '{socket.node.name}' has no {socket.name} input")
+        node, source = link.from_node, link.from_socket
+        if node.mute:
+            socket = _bypassed(node, source)
+        elif node.type == "REROUTE":
+            socket = node.inputs[0]
+        elif node.type == "MAPPING":
+            matrix = matrix @ _mapping_matrix(node)
+            socket = node.inputs["Vector"]
+        elif node.type == "GROUP" and node.node_tree is not None:
+            groups = (*groups, node)
+            socket = _group_output(node, source.identifier)
+        elif node.type == "GROUP_INPUT" and groups:
+            socket = _socket(groups[-1].inputs, source.identifier)
+            groups = groups[:-1]
+        else:
+            return _uv_map(node, source), matrix
+
+
+def _link_into(socket: bpy.types.NodeSocket) -> bpy.types.NodeLink | None:
+    return next((link for link in socket.links if not link.is_muted), None)
+
+
+def _socket(sockets: bpy.types.bpy_prop_collection, identifier: str) -> bpy.types.NodeSocket:
+    return next(socket for socket in sockets if socket.identifier == identifier)
+
+
+def _bypassed(node: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
+    for link in node.internal_links:
+        if link.to_socket == output:
+            return link.from_socket
+    raise _NotUv(f"gets its coordinates from the muted node '{node.name}'")
+
+
+def _group_output(group: bpy.types.Node, identifier: str) -> bpy.types.NodeSocket:
+    for node in group.node_tree.nodes:
+        if node.type == "GROUP_OUTPUT" and node.is_active_output:
+            return _socket(node.inputs, identifier)
+    raise _NotUv(f"gets its coordinates from the group '{group.name}', which has no output")
+
+
+def _uv_map(node: bpy.types.Node, source: bpy.types.NodeSocket) -> str:
+    if node.type == "TEX_COORD" and source.identifier == "UV" and not node.from_instancer:
+        return ""
+    if node.type == "UVMAP" and not node.from_instancer:
+        return node.uv_map
+    if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY" and node.attribute_name:
+        return node.attribute_name
+    raise _NotUv(
+        f"gets its coordinates from '{node.name}' ({source.name}), where a UV map is needed"
+    )
+
+
+def _mapping_matrix(node: bpy.types.Node) -> Matrix:
+    values = {}
+    for name in ("Location", "Rotation", "Scale"):
+        if name in node.inputs and _link_into(node.inputs[name]) is not None:
+            raise _NotUv(f"has a '{node.name}' node whose {name} is not a constant")
+        values[name] = node.inputs[name].default_value[:] if name in node.inputs else (0, 0, 0)
+    turned = Euler(values["Rotation"], "XYZ").to_matrix().to_4x4() @ Matrix.Diagonal(
+        (*values["Scale"], 1.0)
+    )
+    moved = Matrix.Translation(values["Location"]) @ turned
+    if node.vector_type == "POINT":
+        return moved
+    if node.vector_type == "VECTOR":
+        return turned
+    if node.vector_type == "TEXTURE" and moved.determinant() != 0.0:
+        return moved.inverted()
+    found = "of scale 0" if node.vector_type == "TEXTURE" else f"of type {node.vector_type}"
+    raise _NotUv(f"has a '{node.name}' node {found}")

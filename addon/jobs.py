@@ -1,0 +1,60 @@
+"""Long work off the main thread: progress, cancel, result."""
+
+import threading
+from collections.abc import Callable
+from typing import Generic, TypeVar
+
+T = TypeVar("T")
+
+
+class Job(Generic[T]):
+    """Runs a callable in a thread.
+
+    The callable gets a function that it calls with its progress in [0, 1], and that returns False
+    once it should stop. It must not touch Blender's data.
+    """
+
+    def __init__(self, work: Callable[[Callable[[float], bool]], T]) -> None:
+        """Starts the thread.
+
+        Args:
+            work: What to run.
+        """
+        self._work = work
+        self._progress = 0.0
+        self._cancelled = threading.Event()
+        self._result: T | None = None
+        self._error: BaseException | None = None
+        self._thread = threading.Thread(target=self._run, name="prefilter job")
+        self._thread.start()
+
+    @property
+    def progress(self) -> float:
+        """How much is done, in [0, 1]."""
+        return self._progress
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the callable has returned or raised."""
+        return not self._thread.is_alive()
+
+    def cancel(self) -> None:
+        """Asks the callable to stop; it does so at its next progress call."""
+        self._cancelled.set()
+
+    def result(self) -> T:
+        """Waits for the callable, and returns what it returned or raises what it raised."""
+        self._thread.join()
+        if self._error is not None:
+            raise self._error
+        return self._result
+
+    def _run(self) -> None:
+        try:
+            self._result = self._work(self._advance)
+        except BaseException as error:  # Handed on by result().
+            self._error = error
+
+    def _advance(self, fraction: float) -> bool:
+        self._progress = fraction
+        return not self._cancelled.is_set()

@@ -1,0 +1,404 @@
+# shellcheck shell=bash
+# Functions shared by the programs in scripts/. Source it; it does nothing by itself but set paths.
+#
+# Environment variables, all optional:
+#   PREFILTER_CACHE           folder for what is downloaded or made outside of the checkout
+#                             (default: ${XDG_CACHE_HOME:-$HOME/.cache}/prefilter)
+#   PREFILTER_BLENDER         the Blender to use; else `blender` on PATH if it is 4.2 or later; else the
+#                             one of a Debian 13 root that is made in the cache folder
+#   PREFILTER_MIRROR          Debian mirror for that root (default: that of the host's own packages)
+
+set -euo pipefail
+{ true <&0; } 2>/dev/null || exec </dev/null
+
+source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+build_dir=$source_dir/build
+cache_dir=${PREFILTER_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/prefilter}
+root_dir=$cache_dir/trixie
+headers_dir=$cache_dir/headers
+log_dir=$cache_dir/logs
+
+caller_path=${PATH:-}
+export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin:$caller_path
+
+host_packages=(cmake ninja-build g++ libgtest-dev python3-dev pybind11-dev python3-numpy python3-pytest)
+# Debian's Blender comes without OpenImageIO's Python module, without fonts and without a screen.
+blender_packages=(python3-openimageio openimageio-tools python3-numpy python3-scipy python3-pytest
+  python3-pil fonts-dejavu-core xvfb xauth)
+root_packages=(blender "${blender_packages[@]}" python3-dev pybind11-dev ca-certificates)
+
+note() { printf 'prefilter: %s\n' "$*" >&2; }
+fail() { note "$*"; exit 1; }
+
+# lock FILE: waits until no other process holds it, and holds it until `unlock` or the shell's end.
+lock() {
+  mkdir -p "$(dirname "$1")"
+  exec {lock_fd}>"$1"
+  flock --timeout 2 "$lock_fd" && return
+  note "waiting for another run to finish ($1)"
+  flock "$lock_fd"
+}
+
+unlock() { exec {lock_fd}>&-; }
+
+# progress LOG: keeps standard input in LOG and shows now and then where it is.
+progress() {
+  local line='' began=$SECONDS shown=$SECONDS status
+  : >"$1"
+  while true; do
+    if IFS= read -r -t 5 line; then
+      printf '%s\n' "$line" >>"$1"
+    else
+      status=$?
+      ((status > 128)) || break
+    fi
+    if [[ $line == E:* ]] || ((SECONDS - shown >= 5)); then
+      printf '  %4d s  %.100s\n' $((SECONDS - began)) "$line" >&2
+      shown=$SECONDS
+    fi
+  done
+}
+
+# logged LOG COMMAND...: runs a command with its progress; on failure shows the end of its log.
+logged() {
+  local log=$log_dir/$1
+  shift
+  mkdir -p "$log_dir"
+  "$@" </dev/null 2>&1 | progress "$log" && return
+  tail -n 40 "$log" >&2
+  fail "failed: $1 ... (the whole log: $log)"
+}
+
+# missing_packages [--root ROOT] PACKAGE...: prints those that are not installed.
+missing_packages() {
+  local where=() package
+  if [[ $1 == --root ]]; then
+    where=(--admindir "$2/var/lib/dpkg")
+    shift 2
+  fi
+  local -A installed=()
+  while read -r package _; do
+    installed[$package]=1
+  done < <(dpkg-query "${where[@]}" -W -f '${Package} ${db:Status-Status}\n' "$@" 2>/dev/null |
+    grep ' installed$')
+  for package in "$@"; do
+    [[ -n ${installed[$package]:-} ]] || printf '%s\n' "$package"
+  done
+}
+
+ensure_packages() {
+  local missing
+  mapfile -t missing < <(missing_packages "$@")
+  ((${#missing[@]})) || return 0
+  if ((EUID != 0)); then
+    note "packages are missing; as root, run:"
+    printf '  apt-get install --no-install-recommends %s\n' "${missing[*]}" >&2
+    exit 1
+  fi
+  note "installing ${missing[*]}"
+  export DEBIAN_FRONTEND=noninteractive
+  apt-get -q -o DPkg::Lock::Timeout=600 update </dev/null >/dev/null 2>&1 ||
+    note "apt-get update had errors; going on with the lists there are"
+  logged apt.log apt-get -q -y --no-install-recommends -o DPkg::Lock::Timeout=600 install "${missing[@]}"
+}
+
+# choose_blender: sets blender_kind (host or root), and for a host's Blender blender_file and blender_tag.
+choose_blender() {
+  local wanted=${PREFILTER_BLENDER:-} key
+  blender_kind=root
+  blender_file=${wanted:-$(PATH=$caller_path type -P blender || true)}
+  [[ -n $blender_file ]] || return 0
+  [[ -x $blender_file ]] || fail "PREFILTER_BLENDER: no program at $blender_file"
+  blender_file=$(realpath --no-symlinks "$blender_file")
+
+  key=$(stat --dereference --format '%n %s %Y' "$blender_file" | sha256sum | cut -c 1-16)
+  local known=$cache_dir/blender-$key
+  if [[ ! -e $known ]]; then
+    mkdir -p "$cache_dir"
+    "$blender_file" --background --factory-startup --python-exit-code 1 --python-expr '
+import bpy, sys
+print("PREFILTER", *bpy.app.version[:2], "cp%d%d" % sys.version_info[:2])' </dev/null 2>&1 |
+      sed -n 's/^PREFILTER //p' >"$known.$$" || fail "$blender_file does not run"
+    mv "$known.$$" "$known"
+  fi
+  local major minor
+  read -r major minor blender_tag <"$known" || fail "$blender_file does not tell its version"
+  if ((major > 4 || (major == 4 && minor >= 2))); then
+    blender_kind=host
+  elif [[ -n $wanted ]]; then
+    fail "PREFILTER_BLENDER: $blender_file is Blender $major.$minor; 4.2 or later is needed"
+  else
+    note "$blender_file is Blender $major.$minor; 4.2 or later is needed, so a Debian root's is used"
+  fi
+}
+
+debian_mirror() {
+  local uri=${PREFILTER_MIRROR:-}
+  [[ -n $uri ]] ||
+    uri=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 2>/dev/null |
+      grep -E -m 1 '^https?://.*/debian/?$' || true)
+  printf '%s\n' "${uri:-http://deb.debian.org/debian}"
+}
+
+# remove_root FOLDER: deletes a Debian root, unless something is mounted in it.
+remove_root() {
+  [[ -e $1 ]] || return 0
+  local folder
+  folder=$(realpath "$1")
+  if awk -v folder="$folder" '$5 == folder || index($5, folder "/") == 1 { found = 1 }
+                              END { exit !found }' /proc/self/mountinfo; then
+    fail "something is mounted in $folder (see /proc/self/mountinfo): unmount it, then try again"
+  fi
+  rm -rf --one-file-system "$folder"
+}
+
+make_root() {
+  local mirror
+  mirror=$(debian_mirror)
+  note "making a Debian 13 root with Blender in $root_dir from $mirror (360 MB to fetch, about 2 minutes)"
+  remove_root "$root_dir.new"
+  logged root.log mmdebstrap --verbose --variant=minbase \
+    --include="$(IFS=,; printf '%s' "${root_packages[*]}")" \
+    --aptopt='Acquire::Languages "none"' --aptopt='APT::Install-Recommends "false"' \
+    --dpkgopt=force-unsafe-io \
+    --dpkgopt='path-exclude=/usr/share/doc/*' --dpkgopt='path-exclude=/usr/share/man/*' \
+    --dpkgopt='path-exclude=/usr/share/info/*' --dpkgopt='path-exclude=/usr/share/locale/*' \
+    trixie "$root_dir.new" "$mirror"
+  ln -sf ../proc/self/mounts "$root_dir.new/etc/mtab"
+  rm -f "$root_dir.new/etc/resolv.conf"
+  touch "$root_dir.new/etc/resolv.conf" "$root_dir.new/etc/hosts"
+  mv "$root_dir.new" "$root_dir"
+}
+
+ensure_root() {
+  local stamp=$root_dir/.prefilter-packages missing
+  ! cmp --silent "$stamp" <(printf '%s\n' "${root_packages[@]}") || return 0
+  ((EUID == 0)) ||
+    fail "no Blender 4.2 or later on PATH: install one, set PREFILTER_BLENDER, or run this as root"
+  ensure_packages mmdebstrap mount
+  if [[ -e $root_dir ]]; then
+    mapfile -t missing < <(missing_packages --root "$root_dir" "${root_packages[@]}")
+    if ((${#missing[@]})); then
+      note "installing ${missing[*]} in $root_dir"
+      logged root-install.log exec_in_root sh -c '
+        export DEBIAN_FRONTEND=noninteractive
+        apt-get -q update && apt-get -q -y install "$@" && apt-get -q clean' _ "${missing[@]}"
+    fi
+  else
+    make_root
+  fi
+  printf '%s\n' "${root_packages[@]}" >"$stamp"
+}
+
+# exec_in_root COMMAND...: becomes a command in the Debian root, with the host's folders at their places.
+exec_in_root() {
+  exec unshare --mount --propagation unchanged -- \
+    "$source_dir/scripts/enter_root" "$root_dir" "$source_dir" "$@"
+}
+
+# The host's compiler builds for the root's Python too: it needs the headers, and no library.
+ensure_root_headers() {
+  local python version arch new=$headers_dir.new
+  python=$(compgen -G "$root_dir/usr/include/python3.*/Python.h" | head -n 1) ||
+    fail "$root_dir has no Python headers: remove it and run scripts/setup"
+  python=$(dirname "$python")
+  version=${python##*/python3.}
+  blender_tag=cp3$version
+  ! cmp --silent "$headers_dir/.stamp" "$root_dir/.prefilter-packages" || return 0
+  arch=$(uname -m)-linux-gnu
+  rm -rf "$new"
+  mkdir -p "$new/$blender_tag/$arch" "$new/pybind11-include"
+  cp -RLp "$python/." "$new/$blender_tag/"
+  cp -RLp "$root_dir/usr/include/$arch/python3.$version" "$new/$blender_tag/$arch/"
+  cp -RLp "$root_dir/usr/include/pybind11" "$new/pybind11-include/"
+  cp "$root_dir/.prefilter-packages" "$new/.stamp"
+  rm -rf "$headers_dir"
+  mv "$new" "$headers_dir"
+}
+
+# find_headers: sets python_headers to TAG=FOLDER;... and pybind11_include, as CMake wants them.
+find_headers() {
+  local folder tag
+  local -A found=()
+  for folder in /usr/include/python3.* "$headers_dir"/cp3*; do
+    [[ -e $folder/Python.h ]] || continue
+    tag=${folder##*/}
+    tag=${tag/#python3./cp3}
+    if ((${tag#cp3} >= 11)) && [[ -z ${found[$tag]:-} ]]; then
+      found[$tag]=$folder
+    fi
+  done
+  python_tags=()
+  python_headers=
+  while read -r tag; do
+    python_tags+=("$tag")
+    python_headers+="${python_headers:+;}$tag=${found[$tag]}"
+  done < <(printf '%s\n' "${!found[@]}" | sort)
+  [[ -n ${found[$blender_tag]:-} ]] ||
+    fail "Blender's Python is 3.${blender_tag#cp3}, and its headers are missing: install python3.${blender_tag#cp3}-dev"
+  pybind11_include=/usr/include
+  [[ ! -e $headers_dir/pybind11-include ]] || pybind11_include=$headers_dir/pybind11-include
+}
+
+# setup: installs or makes what is missing, and sets blender_kind, blender_tag, host_tag, python_tags,
+# python_headers and pybind11_include.
+setup() {
+  lock "$cache_dir/.lock"
+  choose_blender
+  ensure_packages "${host_packages[@]}"
+  if [[ $blender_kind == root ]]; then
+    ensure_root
+    ensure_root_headers
+  elif [[ $(realpath "$blender_file") == /usr/bin/* ]]; then
+    ensure_packages "${blender_packages[@]}"
+  fi
+  find_headers
+  host_tag=$(/usr/bin/python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+  unlock
+}
+
+# configured FOLDER NAME=VALUE...: whether that build folder was configured with these.
+configured() {
+  local folder=$1 option values
+  shift
+  [[ -e $folder/build.ninja && -e $folder/CMakeCache.txt ]] || return 1
+  values=$(sed -E 's/^([A-Za-z0-9_]+):[A-Z]+=/\1=/' "$folder/CMakeCache.txt")
+  for option in "$@"; do
+    [[ $'\n'$values$'\n' == *$'\n'"$option"$'\n'* ]] || return 1
+  done
+}
+
+# configure PRESET NAME=VALUE...: runs cmake where the build folder is not configured so.
+configure() {
+  local preset=$1 folder=$build_dir/$1
+  shift
+  ! configured "$folder" "CMAKE_HOME_DIRECTORY=$source_dir" "$@" || return 0
+  note "configuring build/$preset"
+  mkdir -p "$folder"
+  if ! (cd "$source_dir" && cmake --fresh --preset "$preset" "${@/#/-D}") </dev/null >"$folder/.configured" 2>&1; then
+    cat "$folder/.configured" >&2
+    fail "cmake failed"
+  fi
+}
+
+# compile PRESET TARGET...: runs ninja; prints, on standard error, only when there is work.
+compile() {
+  local preset=$1
+  shift
+  NINJA_STATUS='[%f/%t %e s] ' ninja -C "$build_dir/$preset" "$@" </dev/null 2>&1 |
+    sed --unbuffered -e '/^ninja: \(no work to do\|Entering directory\)/d' -e '/^-- /d' \
+      -e '/Re-checking globbed directories/d' >&2
+}
+
+configure_release() {
+  configure release "PREFILTER_PYTHON_HEADERS=$python_headers" \
+    "PREFILTER_PYBIND11_INCLUDE=$pybind11_include"
+}
+
+# build_packages: brings the Python package of every Python up to date.
+build_packages() {
+  lock "$build_dir/.lock"
+  configure_release
+  compile release "${python_tags[@]/#/package_}"
+  unlock
+}
+
+# exec_with_blender COMMAND...: becomes a command that has that Blender on PATH and the package importable.
+exec_with_blender() {
+  if [[ $blender_kind == root ]]; then
+    export PYTHONPATH=$build_dir/release/python/$blender_tag
+    exec_in_root "$@"
+  fi
+  local shim=$build_dir/blender-shim
+  mkdir -p "$shim"
+  [[ $(readlink "$shim/blender") == "$blender_file" ]] || ln -sfn "$blender_file" "$shim/blender"
+  exec env PATH="$shim:/usr/local/bin:/usr/bin:/bin:$caller_path" \
+    PYTHONPATH="$build_dir/release/python/$host_tag${PYTHONPATH:+:$PYTHONPATH}" "$@"
+}
+
+version() {
+  local manifest cmake
+  manifest=$(sed -n 's/^version *= *"\([^"]*\)".*/\1/p' "$source_dir/blender_manifest.toml")
+  cmake=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' "$source_dir/CMakeLists.txt")
+  [[ -n $manifest && $manifest == "$cmake" ]] ||
+    fail "blender_manifest.toml has version '$manifest', CMakeLists.txt '$cmake': they must be equal"
+  printf '%s\n' "$manifest"
+}
+
+# fingerprint: a hash of everything that goes into the extension.
+fingerprint() {
+  (
+    cd "$source_dir"
+    find addon blender_manifest.toml LICENSE scripts/make_wheel.py scripts/lib.sh \
+      "${python_tags[@]/#/build/release/python/}" -name __pycache__ -prune -o -type f -print0 |
+      sort -z | xargs -0 sha256sum | sha256sum | cut -d ' ' -f 1
+  )
+}
+
+# package_extension: makes build/prefilter-<version>.zip where its contents are new. Packages must be built.
+package_extension() {
+  lock "$build_dir/.lock"
+  local version mark tag stage=$build_dir/extension wheels
+  version=$(version)
+  extension_zip=$build_dir/prefilter-$version.zip
+  mark=$(fingerprint)
+  if [[ -e $extension_zip && $(cat "$build_dir/.packaged" 2>/dev/null) == "$mark" ]]; then
+    unlock
+    return
+  fi
+  note "packaging the extension"
+  rm -rf "$stage" "$build_dir/wheels"
+  mkdir -p "$stage/wheels"
+  for tag in "${python_tags[@]}"; do
+    /usr/bin/python3 "$source_dir/scripts/make_wheel.py" --package "$build_dir/release/python/$tag/prefilter" \
+      --tag "$tag" --version "$version" --license "$source_dir/LICENSE" --output "$build_dir/wheels" >&2
+  done
+  cp "$build_dir/wheels"/*.whl "$stage/wheels/"
+  cp -R "$source_dir/addon/." "$stage/"
+  find "$stage" -name __pycache__ -prune -exec rm -rf {} +
+  cp "$source_dir/LICENSE" "$stage/"
+  wheels=$(cd "$stage" && printf '"./%s", ' wheels/*.whl)
+  awk -v wheels="wheels = [${wheels%, }]" '/^\[/ && !done { print wheels "\n"; done = 1 } { print }
+    END { if (!done) print wheels }' "$source_dir/blender_manifest.toml" >"$stage/blender_manifest.toml"
+  blender_command extension build --source-dir "$stage" --output-filepath "$extension_zip.new.zip"
+  blender_command extension validate "$extension_zip.new.zip"
+  mv "$extension_zip.new.zip" "$extension_zip"
+  printf '%s\n' "$mark" >"$build_dir/.packaged"
+  unlock
+}
+
+# blender_command ARGUMENT...: `blender --command`, with factory settings; its output is shown if it fails.
+blender_command() {
+  local log
+  log=$(mktemp "$build_dir/blender-command.XXXXXX")
+  if ! (exec_with_blender blender --background --factory-startup --command "$@") </dev/null >"$log" 2>&1; then
+    cat "$log" >&2
+    rm -f "$log"
+    fail "blender --command $1 $2 failed"
+  fi
+  rm -f "$log"
+}
+
+# install_extension RESOURCES: installs and enables the packaged extension, as a user would, in a folder for
+# BLENDER_USER_RESOURCES. What was installed there goes first: Blender keeps a wheel whose name it knows.
+install_extension() {
+  rm -rf "$1/extensions"
+  mkdir -p "$1"
+  BLENDER_USER_RESOURCES=$1 blender_command extension install-file -r user_default -e "$extension_zip"
+}
+
+# ensure_extension: packages the extension and installs it in build/blender/<tag>, where its contents are
+# new; then Blender is to use that folder, unless the caller has set BLENDER_USER_RESOURCES.
+ensure_extension() {
+  [[ -z ${BLENDER_USER_RESOURCES:-} ]] || return 0
+  package_extension
+  local resources=$build_dir/blender/$blender_tag
+  lock "$build_dir/.lock"
+  if [[ $(cat "$resources/.installed" 2>/dev/null) != "$(cat "$build_dir/.packaged")" ]]; then
+    note "installing the extension in $resources"
+    install_extension "$resources"
+    cp "$build_dir/.packaged" "$resources/.installed"
+  fi
+  unlock
+  export BLENDER_USER_RESOURCES=$resources
+}

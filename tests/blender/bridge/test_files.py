@@ -1,0 +1,127 @@
+"""Texture files, read back by OpenImageIO."""
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+import scenes
+
+
+def bake(addon, tmp_path, file_name, values, **options):
+    """Bakes with a box over no surface, and returns the file's path."""
+    made = scenes.image("Paint", values, **options)
+    path = tmp_path / file_name
+    settings = addon("bake").Settings(filter="box", use_images=False, filepath=str(path))
+    addon("bake").bake(made, [], settings, scenes.depsgraph())
+    return path
+
+
+def read_levels(path):
+    """Returns the levels of a file, rows from the bottom, with their specs."""
+    reader = oiio.ImageInput.open(str(path))
+    levels, specs = [], []
+    while reader.seek_subimage(0, len(levels)):
+        spec = reader.spec()
+        pixels = reader.read_image(0, len(levels), 0, spec.nchannels, "float")
+        levels.append(np.asarray(pixels).reshape(spec.height, spec.width, -1)[::-1])
+        specs.append(oiio.ImageSpec(spec))
+    assert not reader.seek_subimage(1, 0)
+    reader.close()
+    return levels, specs
+
+
+@pytest.mark.parametrize("file_name", ["out.exr", "out.tif", "out.TX"])
+def test_every_level_in_tiles(addon, tmp_path, file_name):
+    path = bake(addon, tmp_path, file_name, scenes.noise(32, 128))
+    levels, specs = read_levels(path)
+    sizes = [level.shape for level in levels]
+    assert sizes == [(max(1, 32 >> i), 128 >> i, 3) for i in range(8)]
+    assert {(spec.tile_width, spec.tile_height) for spec in specs} == {(64, 64)}
+    assert specs[0].get_string_attribute("textureformat") == "Plain Texture"
+    assert specs[0].get_string_attribute("wrapmodes") == "periodic,periodic"
+    assert str(specs[0].format) == ("half" if file_name == "out.exr" else "uint8")
+
+
+def test_tiff_keeps_encoded_bytes(addon, tmp_path):
+    values = scenes.noise(16, 16)
+    levels, specs = read_levels(bake(addon, tmp_path, "out.tif", values))
+    assert specs[0].get_string_attribute("oiio:ColorSpace") == "sRGB"
+    np.testing.assert_allclose(levels[0], values[..., :3], atol=1e-6)
+    linear = scenes.halved(scenes.to_linear(values[..., :3]))
+    np.testing.assert_allclose(levels[1], scenes.to_srgb(linear), atol=0.51 / 255)
+
+
+def test_exr_is_scene_linear(addon, tmp_path):
+    values = scenes.noise(16, 16)
+    levels, _ = read_levels(bake(addon, tmp_path, "out.exr", values))
+    linear = scenes.to_linear(values[..., :3])
+    np.testing.assert_allclose(levels[0], linear, rtol=1e-3, atol=1e-6)
+    np.testing.assert_allclose(levels[2], scenes.halved(scenes.halved(linear)), rtol=1e-3)
+
+
+def test_straight_alpha_becomes_associated(addon, tmp_path):
+    values = scenes.noise(8, 8, alpha=True)
+    levels, _ = read_levels(bake(addon, tmp_path, "out.exr", values))
+    associated = np.concatenate(
+        [scenes.to_linear(values[..., :3]) * values[..., 3:], values[..., 3:]], axis=2
+    )
+    np.testing.assert_allclose(levels[0], associated, rtol=1e-3, atol=1e-6)
+    np.testing.assert_allclose(levels[1], scenes.halved(associated), rtol=2e-3, atol=1e-5)
+    levels, _ = read_levels(bake(addon, tmp_path, "out.tif", values))
+    np.testing.assert_allclose(levels[0][..., :3], values[..., :3] * values[..., 3:], atol=0.003)
+
+
+def test_independent_channels_stay_as_they_are(addon, tmp_path):
+    values = 3 * scenes.noise(8, 8, alpha=True)
+    options = {"is_float": True, "alpha_mode": "CHANNEL_PACKED"}
+    levels, _ = read_levels(bake(addon, tmp_path, "out.exr", values, **options))
+    np.testing.assert_allclose(levels[0], values, rtol=1e-3)
+    np.testing.assert_allclose(levels[1], scenes.halved(values), rtol=1e-3)
+
+
+def test_float_image_as_tiff(addon, tmp_path):
+    values = 5 * scenes.noise(8, 8)
+    values[..., 3] = 1
+    levels, specs = read_levels(bake(addon, tmp_path, "out.tif", values, is_float=True))
+    assert str(specs[0].format) == "float"
+    np.testing.assert_allclose(levels[1], scenes.halved(values[..., :3]), rtol=1e-5)
+
+
+def test_texture_cache_finds_the_levels(addon, tmp_path):
+    path = bake(addon, tmp_path, "out.exr", scenes.noise(64, 64))
+    buffer = oiio.ImageBuf(str(path), 0, 3)
+    assert (buffer.spec().width, buffer.spec().height) == (8, 8)
+
+
+def test_nothing_is_left_beside_the_file(addon, tmp_path):
+    bake(addon, tmp_path, "out.exr", scenes.noise(8, 8))
+    bake(addon, tmp_path, "out.exr", scenes.noise(8, 8))
+    assert [path.name for path in tmp_path.iterdir()] == ["out.exr"]
+
+
+def test_missing_module_says_what_to_install(addon, tmp_path, monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "OpenImageIO", None)
+    with pytest.raises(OSError, match="python3-openimageio"):
+        bake(addon, tmp_path, "out.exr", scenes.noise(8, 8))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_targets_that_cannot_be_written(addon, tmp_path):
+    check = addon("bridge.files").check_target
+    with pytest.raises(ValueError, match=r"'\.png'.*\.exr"):
+        check(str(tmp_path / "out.png"))
+    with pytest.raises(OSError, match="no folder"):
+        check(str(tmp_path / "none" / "out.exr"))
+    (tmp_path / "folder.exr").mkdir()
+    with pytest.raises(OSError, match="is a folder"):
+        check(str(tmp_path / "folder.exr"))
+    kept = tmp_path / "kept.exr"
+    kept.write_bytes(b"kept")
+    kept.chmod(0o444)
+    with pytest.raises(OSError, match=r"kept\.exr.*read-only"):
+        check(str(kept))
+    tmp_path.chmod(0o555)
+    try:
+        with pytest.raises(OSError, match="folder is read-only"):
+            check(str(tmp_path / "out.exr"))
+    finally:
+        tmp_path.chmod(0o755)

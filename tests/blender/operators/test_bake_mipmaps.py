@@ -1,0 +1,113 @@
+"""The operator, as scripts call it."""
+
+import bpy
+import numpy as np
+import pytest
+import scenes
+
+
+def bake(**options):
+    return bpy.ops.prefilter.bake_mipmaps(**options)
+
+
+def test_bakes_by_name():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    assert bake(image="Paint") == {"FINISHED"}
+    assert tuple(bpy.data.images["Paint.mip3"].size) == (1, 1)
+    assert bpy.data.images["Paint.mip1"].packed_file is not None
+
+
+def test_invoke_in_the_background_executes():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    assert bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Paint") == {"FINISHED"}
+    assert "Paint.mip3" in bpy.data.images
+
+
+def test_says_what_it_did(capfd):
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    bake(image="Paint", levels=3)
+    assert (
+        "Baked 'Paint' with PAM Bilinear over 1 object into 2 level images"
+        in capfd.readouterr().out
+    )
+
+
+def test_warns_of_what_it_left_out(capfd):
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    bare = scenes.textured_quad(image, "NoMap")
+    bare.data.uv_layers.remove(bare.data.uv_layers[0])
+    assert bake(image="Paint") == {"FINISHED"}
+    assert "Warning: object 'NoMap' has no UV map" in capfd.readouterr().out
+
+
+def test_only_selected_objects_count():
+    values = np.zeros((4, 4, 4), np.float32)
+    values[:, :2] = (1, 0, 0, 1)
+    values[:, 2:] = (0, 0, 1, 1)
+    image = scenes.image("Flag", values, colorspace="Non-Color")
+    material = scenes.material("Cloth", image)
+    left = scenes.quads("Left", [((0, 0), (0.5, 0), (0.5, 1), (0, 1))], select=True)
+    right = scenes.quads("Right", [((0.5, 0), (1, 0), (1, 1), (0.5, 1))], select=False)
+    for obj in (left, right):
+        obj.data.materials.append(material)
+    bake(image="Flag", filter="pam-box", wrap="clamp")
+    np.testing.assert_allclose(scenes.pixels("Flag.mip2")[0, 0], (1, 0, 0, 1), atol=0.003)
+
+
+def test_object_in_edit_mode_counts():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bake(image="Paint") == {"FINISHED"}
+
+
+def test_file_beside_the_blend(tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    bake(image="Paint", use_images=False, filepath="//paint.exr")
+    assert (tmp_path / "paint.exr").exists()
+    assert "Paint.mip1" not in bpy.data.images
+
+
+def test_poll_without_images():
+    assert not bpy.ops.prefilter.bake_mipmaps.poll()
+    with pytest.raises(RuntimeError, match="no image in this file"):
+        bake(image="Paint")
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({}, "image: no name is given"),
+        ({"image": "Pain"}, r"no image named 'Pain'.*'Paint'"),
+        ({"image": "Paint", "filepath": "/tmp/out.png"}, r"'\.png'"),
+        ({"image": "Paint", "use_images": False}, "nothing to write"),
+        ({"image": "Paint", "levels": 9}, "levels"),
+        ({"image": "Paint"}, None),
+    ],
+)
+def test_failures_are_reports(options, message):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(4, 4)))
+    before = {image.name for image in bpy.data.images}
+    if message is None:
+        bpy.ops.object.select_all(action="DESELECT")
+        message = "no object is selected"
+    with pytest.raises(RuntimeError, match=message) as caught:
+        bake(**options)
+    assert "Traceback" not in str(caught.value)
+    assert {image.name for image in bpy.data.images} == before
+
+
+def test_library_refusals_are_reports():
+    quad = scenes.textured_quad(scenes.image("Paint", scenes.noise(4, 4)))
+    quad.data.vertices[0].co.x = float("nan")
+    with pytest.raises(RuntimeError, match=r"object 'Quad': .*positions"):
+        bake(image="Paint")
+    quad.data.vertices[0].co.x = 0
+    quad.data.uv_layers[0].uv[0].vector.x = float("nan")
+    with pytest.raises(RuntimeError, match=r"object 'Quad': .*uvs"):
+        bake(image="Paint")

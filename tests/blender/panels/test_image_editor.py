@@ -1,0 +1,70 @@
+"""The panel and the modal operator, in a window that nobody sees."""
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import bpy
+import pytest
+
+SESSION = Path(__file__).with_name("window_session.py")
+
+
+@pytest.fixture
+def display():
+    """Runs an X server without a screen, and returns its name."""
+    if shutil.which("Xvfb") is None:
+        pytest.skip("there is no Xvfb")
+    reading, writing = os.pipe()
+    server = subprocess.Popen(
+        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
+        pass_fds=[writing],
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as answer:
+            number = answer.readline().strip()
+        if not number:
+            pytest.skip("Xvfb does not start")
+        yield f":{number}"
+    finally:
+        server.terminate()
+        server.wait()
+
+
+def test_panel_and_modal_bake(display, tmp_path):
+    result = tmp_path / "result.json"
+    session = subprocess.run(
+        [
+            bpy.app.binary_path,
+            "--factory-startup",
+            "--enable-event-simulate",
+            "--window-geometry",
+            *("0", "0", "1280", "800"),
+            "--python",
+            SESSION,
+            "--",
+            result,
+        ],
+        env={**os.environ, "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    output = session.stdout + session.stderr
+    assert session.returncode == 0, output
+    assert "Traceback" not in output
+    found = json.loads(result.read_text())
+    assert found["tab"] == "Prefilter"
+    assert not found["polls_without_image"]
+    assert found["polls_with_image"]
+    assert found["started"] == ["RUNNING_MODAL"]
+    assert not found["polls_while_running"]
+    assert found["after_bake"] == ["Big", "Paint", "Paint.mip1", "Paint.mip2", "Paint.mip3"]
+    assert found["after_cancel"] == found["after_bake"]
+    assert found["polls_in_next_file"]
+    assert found["in_next_file"] == ["Next"]

@@ -1,0 +1,121 @@
+"""Runs in a Blender with a window: draws the panel, and bakes through the modal operator.
+
+One bake runs to its end, one is cancelled by Esc, and one by loading another file.
+
+Usage: blender --factory-startup --enable-event-simulate --python window_session.py -- RESULT.json
+"""
+
+import json
+import os
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import addon_utils
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import scenes
+
+RESULT = Path(sys.argv[sys.argv.index("--") + 1])
+SECONDS_PER_STEP = 0.3
+MAX_WAITS = 200
+
+
+def session() -> Iterator[None]:
+    """Yields whenever Blender should draw and handle events before going on."""
+    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
+    image = scenes.image("Paint", scenes.noise(512, 512))
+    scenes.textured_quad(image)
+    scenes.textured_quad(scenes.image("Big", scenes.noise(1024, 1024)), "Big")
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    area.type = "IMAGE_EDITOR"
+    area.spaces.active.show_region_ui = True
+    yield
+
+    override = {"window": window, "area": area}
+    with bpy.context.temp_override(**override):
+        polls_without_image = bpy.ops.prefilter.bake_mipmaps.poll()
+    area.spaces.active.image = image
+    sidebar = next(region for region in area.regions if region.type == "UI")
+    sidebar.active_panel_category = "Prefilter"
+    yield
+    yield
+    tab = sidebar.active_panel_category
+
+    with bpy.context.temp_override(**override):
+        bpy.ops.wm.call_menu(name="IMAGE_MT_image")
+    yield
+    window.event_simulate(type="ESC", value="PRESS")
+    yield
+
+    with bpy.context.temp_override(**override):
+        polls_with_image = bpy.ops.prefilter.bake_mipmaps.poll()
+        started = bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", levels=4)
+        polls_while_running = bpy.ops.prefilter.bake_mipmaps.poll()
+    yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
+    after_bake = image_names()
+
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
+    window.event_simulate(type="ESC", value="PRESS")
+    yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
+    after_cancel = image_names()
+
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
+    bpy.ops.wm.read_homefile(use_empty=True)
+    yield
+    scenes.image("Next", scenes.noise(2, 2))
+    yield
+    RESULT.write_text(
+        json.dumps(
+            {
+                "polls_without_image": polls_without_image,
+                "polls_with_image": polls_with_image,
+                "started": list(started),
+                "tab": tab,
+                "polls_while_running": polls_while_running,
+                "after_bake": after_bake,
+                "after_cancel": after_cancel,
+                "polls_in_next_file": bpy.ops.prefilter.bake_mipmaps.poll(),
+                "in_next_file": image_names(),
+            }
+        )
+    )
+
+
+def until(condition: Callable[[], bool]) -> Iterator[None]:
+    """Yields until a condition holds."""
+    for _ in range(MAX_WAITS):
+        yield
+        if condition():
+            return
+    raise TimeoutError(f"waited {MAX_WAITS} times for {condition}")
+
+
+def image_names() -> list[str]:
+    """Returns the names of the images that have pixels."""
+    return sorted(image.name for image in bpy.data.images if image.has_data)
+
+
+steps = session()
+
+
+def step() -> float:
+    """Runs the session up to its next wait; ends Blender after the last."""
+    try:
+        next(steps)
+    except StopIteration:
+        os._exit(0)
+    except BaseException:
+        traceback.print_exc()
+        os._exit(1)
+    return SECONDS_PER_STEP
+
+
+bpy.context.preferences.view.show_splash = False
+bpy.app.timers.register(step, first_interval=1.0, persistent=True)

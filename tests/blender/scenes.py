@@ -1,0 +1,129 @@
+"""Small scenes made in code."""
+
+from collections.abc import Sequence
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float32]
+
+UNIT_SQUARE = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+
+
+def noise(height: int, width: int, *, alpha: bool = False, seed: int = 1) -> Array:
+    """Returns random RGBA values that a byte holds exactly."""
+    values = np.random.default_rng(seed).integers(0, 256, (height, width, 4))
+    if not alpha:
+        values[..., 3] = 255
+    return (values / 255).astype(np.float32)
+
+
+def image(
+    name: str,
+    pixels: Array,
+    *,
+    is_float: bool = False,
+    colorspace: str | None = None,
+    alpha_mode: str = "STRAIGHT",
+) -> bpy.types.Image:
+    """Makes a packed image datablock of RGBA pixels, row 0 at the bottom."""
+    height, width = pixels.shape[:2]
+    made = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
+    if colorspace is not None:
+        made.colorspace_settings.name = colorspace
+    made.alpha_mode = alpha_mode
+    made.pixels.foreach_set(np.ascontiguousarray(pixels, np.float32).ravel())
+    made.update()
+    made.pack()
+    return made
+
+
+def pixels(name: str) -> Array:
+    """Returns the pixels of an image datablock as Blender keeps them."""
+    found = bpy.data.images[name]
+    values = np.empty(len(found.pixels), np.float32)
+    found.pixels.foreach_get(values)
+    return values.reshape(found.size[1], found.size[0], -1)
+
+
+def to_linear(encoded: Array) -> Array:
+    """Decodes sRGB."""
+    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+
+
+def to_srgb(linear: Array) -> Array:
+    """Encodes sRGB."""
+    return np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+
+
+def halved(values: Array) -> Array:
+    """Returns the means of 2 x 2 blocks."""
+    return (values[::2, ::2] + values[1::2, ::2] + values[::2, 1::2] + values[1::2, 1::2]) / 4
+
+
+def image_node(tree: bpy.types.NodeTree, picture: bpy.types.Image) -> bpy.types.Node:
+    """Adds an Image Texture node."""
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = picture
+    return node
+
+
+def material(name: str, picture: bpy.types.Image) -> bpy.types.Material:
+    """Makes a material that shows an image in the active render UV map."""
+    made = bpy.data.materials.new(name)
+    made.use_nodes = True
+    image_node(made.node_tree, picture)
+    return made
+
+
+def quads(
+    name: str,
+    uvs: Sequence[Sequence[tuple[float, float]]] = (UNIT_SQUARE,),
+    *,
+    sizes: Sequence[float] = (),
+    select: bool = True,
+) -> bpy.types.Object:
+    """Makes an object of separate squares, side by side in the plane z = 0.
+
+    Args:
+        name: The name of the object and of its mesh.
+        uvs: The four UVs of each square.
+        sizes: The sides of the squares; 1 if not given.
+        select: Whether to select the object.
+    """
+    sizes = sizes or [1.0] * len(uvs)
+    vertices, left = [], 0.0
+    for size in sizes:
+        vertices += [(left + size * x, size * y, 0.0) for x, y in UNIT_SQUARE]
+        left += size
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(vertices, [], [range(4 * i, 4 * i + 4) for i in range(len(uvs))])
+    add_uv_map(mesh, "UVMap", uvs)
+    made = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(made)
+    made.select_set(select)
+    bpy.context.view_layer.objects.active = made
+    return made
+
+
+def add_uv_map(
+    mesh: bpy.types.Mesh, name: str, uvs: Sequence[Sequence[tuple[float, float]]]
+) -> None:
+    """Adds a UV map to a mesh of squares."""
+    layer = mesh.uv_layers.new(name=name)
+    layer.uv.foreach_set("vector", np.array(uvs, np.float32).ravel())
+
+
+def textured_quad(
+    picture: bpy.types.Image, name: str = "Quad", *, select: bool = True
+) -> bpy.types.Object:
+    """Makes one square that shows the whole image."""
+    made = quads(name, select=select)
+    made.data.materials.append(material(f"{name} material", picture))
+    return made
+
+
+def depsgraph() -> bpy.types.Depsgraph:
+    """Returns the evaluated dependency graph."""
+    return bpy.context.evaluated_depsgraph_get()

@@ -1,0 +1,134 @@
+"""The command, in a Blender of its own."""
+
+import subprocess
+
+import bpy
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+import scenes
+
+ARGUMENTS = ["--background", "--command", "prefilter"]
+
+
+def run(*arguments, cwd=None):
+    return subprocess.run(
+        [bpy.app.binary_path, *ARGUMENTS, *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        cwd=cwd,
+        check=False,
+    )
+
+
+def assert_fails(result, *words, status=1):
+    assert result.returncode == status, result.stderr
+    assert "Traceback" not in result.stdout + result.stderr
+    last = result.stderr.strip().splitlines()[-1]
+    assert "error: " in last
+    for word in words:
+        assert word in last
+
+
+@pytest.fixture
+def blend(tmp_path):
+    """Saves a .blend file with one textured square."""
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(16, 16)))
+    path = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+@pytest.fixture
+def obj_and_picture(tmp_path):
+    """Writes an .obj file without materials, and a picture."""
+    (tmp_path / "quad.obj").write_text(
+        "o Quad\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+        "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
+    )
+    spec = oiio.ImageSpec(16, 8, 3, "uint8")
+    writer = oiio.ImageOutput.create(str(tmp_path / "paint.png"))
+    assert writer.open(str(tmp_path / "paint.png"), spec)
+    assert writer.write_image(scenes.noise(8, 16)[::-1, :, :3].copy())
+    writer.close()
+    return tmp_path / "quad.obj", tmp_path / "paint.png"
+
+
+def test_help():
+    result = run("bake", "--help")
+    assert result.returncode == 0
+    assert result.stdout.startswith("usage: blender --background --command prefilter bake")
+    for word in ("--object", "--image", "--output", "--save", "pam-bilinear", "lanczos3-covered"):
+        assert word in result.stdout
+    assert "bake" in run("--help").stdout
+
+
+def test_blend_saved_in_place(blend):
+    result = run("bake", blend, "--save")
+    assert result.returncode == 0, result.stderr
+    assert "4 level images" in result.stdout
+    assert "100 %" in result.stderr
+    bpy.ops.wm.open_mainfile(filepath=str(blend))
+    assert tuple(bpy.data.images["Paint.mip1"].size) == (8, 8)
+
+
+def test_blend_to_file_leaves_the_blend(blend, tmp_path):
+    before = blend.read_bytes()
+    result = run("bake", blend.name, "--output", "out.tif", "--filter", "box", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert blend.read_bytes() == before
+    level = oiio.ImageBuf(str(tmp_path / "out.tif"), 0, 1).get_pixels("float")[::-1]
+    linear = scenes.halved(scenes.to_linear(scenes.noise(16, 16)[..., :3]))
+    np.testing.assert_allclose(level, scenes.to_srgb(linear), atol=0.51 / 255)
+
+
+def test_obj_with_a_picture(obj_and_picture, tmp_path):
+    obj, picture = obj_and_picture
+    result = run("bake", obj, "--image", picture, "--output", tmp_path / "out.exr")
+    assert result.returncode == 0, result.stderr
+    assert "over 1 object" in result.stdout
+    buffer = oiio.ImageBuf(str(tmp_path / "out.exr"), 0, 1)
+    assert (buffer.spec().width, buffer.spec().height) == (8, 4)
+
+
+def test_gltf(tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
+    material = bpy.data.materials["Quad material"]
+    nodes = material.node_tree.nodes
+    texture = next(node for node in nodes if node.type == "TEX_IMAGE")
+    shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+    material.node_tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    path = tmp_path / "quad.glb"
+    bpy.ops.export_scene.gltf(filepath=str(path))
+    result = run("bake", path, "--output", tmp_path / "out.exr")
+    assert result.returncode == 0, result.stderr
+    assert (tmp_path / "out.exr").exists()
+
+
+def test_wrong_arguments_exit_with_2(blend, obj_and_picture):
+    assert_fails(run("bake"), "FILE", status=2)
+    assert_fails(run("bake", blend), "--output", "--save", status=2)
+    assert_fails(run("bake", "scene.txt", "--save"), "scene.txt", ".blend", status=2)
+    assert_fails(run("bake", obj_and_picture[0], "--save"), "--save", "quad.obj", status=2)
+    assert_fails(run("bake", blend, "--save", "--filter", "best"), "best", status=2)
+    assert_fails(run("bake", blend, "--save", "--levels", "-1"), "-1", status=2)
+
+
+def test_failures_exit_with_1(blend, obj_and_picture, tmp_path):
+    obj, _ = obj_and_picture
+    target = tmp_path / "out.exr"
+    assert_fails(run("bake", tmp_path / "none.blend", "--save"), "none.blend")
+    assert_fails(run("bake", blend, "--save", "--image", "Pain"), "'Pain'", "'Paint'")
+    assert_fails(run("bake", blend, "--save", "--object", "Qua"), "'Qua'", "'Quad'")
+    assert_fails(run("bake", blend, "--save", "--levels", "9"), "levels", "9")
+    assert_fails(run("bake", obj, "--output", target), "--image", "none")
+    assert not target.exists()
+    assert (tmp_path / "scene.blend").exists()
+
+
+def test_read_only_blend_is_left_alone(blend):
+    before = blend.read_bytes()
+    blend.chmod(0o444)
+    assert_fails(run("bake", blend, "--save"), "scene.blend", "read-only")
+    assert blend.read_bytes() == before
