@@ -36,7 +36,7 @@ class BilinearSystem {
 
   struct SolveOptions {
     std::array<ValueRange, C> ranges;
-    // Largest step of a texel in the last sweep, against the largest value of its channel.
+    // Stops when no texel moves by more than this, against the largest value of its channel.
     double tolerance = 1e-5;
     int max_sweeps = 300;
     int threads = 0;
@@ -68,8 +68,11 @@ class BilinearSystem {
   void add_pair(int x, int y, int dx, int dy, float value);
   std::ptrdiff_t at(int x, int y) const { return static_cast<std::ptrdiff_t>(y) * stride_ + x; }
   void pull_to_means();
-  Values sweep_row(int y, const SolveOptions& options, bool measure);
-  int row_colours() const;
+  // The row below (step -1) or above (1), or the row of zeros where there is none.
+  int row_beside(int y, int step) const;
+  // One step of every texel of a row; true where a channel moved by more than its tolerance.
+  bool relax_row(int y, const SolveOptions& options, const Values& tolerance);
+  Values step_tolerance(const SolveOptions& options) const;
 
   int width_;
   int height_;
