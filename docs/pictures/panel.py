@@ -1,0 +1,103 @@
+"""Takes a picture of the Prefilter tab in a Blender window that nobody sees.
+
+usage: python3 panel.py TARGET.png        (outside of Blender: starts Xvfb and Blender)
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+
+WIDTH, HEIGHT = 1280, 720
+READY = "prefilter: the window is ready"
+
+
+def main(target: Path) -> None:
+    """Runs Blender on this file, and saves what its window shows."""
+    with tempfile.TemporaryDirectory() as folder:
+        reading, writing = os.pipe()
+        screen = ["-screen", "0", f"{WIDTH}x{HEIGHT}x24", "-fbdir", folder]
+        server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(writing), "-nolisten", "tcp", *screen], pass_fds=[writing]
+        )
+        os.close(writing)
+        with os.fdopen(reading) as answer:
+            display = f":{answer.readline().strip()}"
+        blender = subprocess.Popen(
+            ["blender", "--window-geometry", "0", "0", str(WIDTH), str(HEIGHT)]
+            + ["--python", __file__],
+            env={**os.environ, "DISPLAY": display},
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+        )
+        try:
+            if not any(READY in line for line in blender.stdout):
+                raise SystemExit("Blender ended before its window was ready")
+            time.sleep(2.0)
+            pixels = framebuffer(Path(folder) / "Xvfb_screen0")
+        finally:
+            blender.kill()
+            server.terminate()
+            blender.wait()
+            server.wait()
+    if not oiio.ImageBuf(np.ascontiguousarray(pixels)).write(str(target)):
+        raise SystemExit(f"cannot write {target}")
+
+
+def framebuffer(path: Path) -> np.ndarray:
+    """The screen as (height, width, 3) bytes, from X's window dump format (XWDFile.h)."""
+    dump = path.read_bytes()
+    header = np.frombuffer(dump, ">u4", 25)
+    size, width, height, bytes_per_line, colours = header[[0, 4, 5, 12, 19]]
+    start = size + 12 * colours
+    rows = np.frombuffer(dump, np.uint8, height * bytes_per_line, start)
+    pixels = rows.reshape(height, -1)[:, : 4 * width].reshape(height, width, 4)
+    return pixels[..., 2::-1]
+
+
+def show_panel() -> None:
+    """Inside Blender: the demo's texture in the Image editor, with the tab open."""
+    import bpy
+
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+    import demo_scene
+
+    bpy.context.preferences.view.show_splash = False
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    obj = demo_scene.add_monkey()
+    image = demo_scene.new_image(demo_scene.paint(demo_scene.read_model(obj)))
+    demo_scene.add_material(obj, image)
+    obj.select_set(True)
+
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    area.type = "IMAGE_EDITOR"
+    area.spaces.active.image = image
+    area.spaces.active.show_region_ui = True
+
+    def open_tab() -> float | None:
+        sidebar = next(region for region in area.regions if region.type == "UI")
+        if sidebar.active_panel_category == "UNSUPPORTED":  # Until it is drawn for the first time.
+            return 0.5
+        sidebar.active_panel_category = "Prefilter"
+        region = next(region for region in area.regions if region.type == "WINDOW")
+        with bpy.context.temp_override(window=window, area=area, region=region):
+            bpy.ops.image.view_all(fit_view=True)
+        area.tag_redraw()
+        bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
+        return None
+
+    bpy.app.timers.register(open_tab, first_interval=2.0)
+
+
+if "bpy" in sys.modules:
+    show_panel()
+else:
+    main(Path(sys.argv[1]))

@@ -1,0 +1,20 @@
+"""Writes pictures as small PNG files of at most 256 colours.
+
+usage: python3 shrink.py FOLDER PICTURE.png...
+"""
+
+import sys
+from pathlib import Path
+
+from PIL import Image
+
+WIDTH = 1400
+
+folder = Path(sys.argv[1])
+for name in sys.argv[2:]:
+    picture = Image.open(name).convert("RGB")
+    if picture.width > WIDTH:
+        height = round(picture.height * WIDTH / picture.width)
+        picture = picture.resize((WIDTH, height), Image.Resampling.LANCZOS)
+    small = picture.quantize(256, dither=Image.Dither.FLOYDSTEINBERG)
+    small.save(folder / Path(name).name, optimize=True)
