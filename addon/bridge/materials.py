@@ -24,7 +24,7 @@ class ImageUse:
     extension: str
 
 
-class _NotUv(Exception):
+class _NotUvError(Exception):
     """The coordinates come from something else than a UV map; the message says from what."""
 
 
@@ -48,9 +48,9 @@ def image_uses(
             continue
         try:
             if node.projection != "FLAT":
-                raise _NotUv(f"has the projection {node.projection}")
+                raise _NotUvError(f"has the projection {node.projection}")
             use = _use(node, groups)
-        except _NotUv as reason:
+        except _NotUvError as reason:
             warnings.append(f"material '{material.name}': node '{node.name}' skipped, it {reason}")
         else:
             if use not in uses:
@@ -92,7 +92,9 @@ def _trace(socket: bpy.types.NodeSocket, groups: Groups) -> tuple[str, Matrix]:
         if link is None:
             if socket.node.type == "TEX_IMAGE":
                 return "", matrix
-            raise _NotUv(f"gets no coordinates: '{socket.node.name}' has no {socket.name} input")
+            raise _NotUvError(
+                f"gets no coordinates: '{socket.node.name}' has no {socket.name} input"
+            )
         node, source = link.from_node, link.from_socket
         if node.mute:
             socket = _bypassed(node, source)
@@ -123,14 +125,14 @@ def _bypassed(node: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.N
     for link in node.internal_links:
         if link.to_socket == output:
             return link.from_socket
-    raise _NotUv(f"gets its coordinates from the muted node '{node.name}'")
+    raise _NotUvError(f"gets its coordinates from the muted node '{node.name}'")
 
 
 def _group_output(group: bpy.types.Node, identifier: str) -> bpy.types.NodeSocket:
     for node in group.node_tree.nodes:
         if node.type == "GROUP_OUTPUT" and node.is_active_output:
             return _socket(node.inputs, identifier)
-    raise _NotUv(f"gets its coordinates from the group '{group.name}', which has no output")
+    raise _NotUvError(f"gets its coordinates from the group '{group.name}', which has no output")
 
 
 def _uv_map(node: bpy.types.Node, source: bpy.types.NodeSocket) -> str:
@@ -140,7 +142,7 @@ def _uv_map(node: bpy.types.Node, source: bpy.types.NodeSocket) -> str:
         return node.uv_map
     if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY" and node.attribute_name:
         return node.attribute_name
-    raise _NotUv(
+    raise _NotUvError(
         f"gets its coordinates from '{node.name}' ({source.name}), where a UV map is needed"
     )
 
@@ -149,7 +151,7 @@ def _mapping_matrix(node: bpy.types.Node) -> Matrix:
     values = {}
     for name in ("Location", "Rotation", "Scale"):
         if name in node.inputs and _link_into(node.inputs[name]) is not None:
-            raise _NotUv(f"has a '{node.name}' node whose {name} is not a constant")
+            raise _NotUvError(f"has a '{node.name}' node whose {name} is not a constant")
         values[name] = node.inputs[name].default_value[:] if name in node.inputs else (0, 0, 0)
     turned = Euler(values["Rotation"], "XYZ").to_matrix().to_4x4() @ Matrix.Diagonal(
         (*values["Scale"], 1.0)
@@ -162,4 +164,4 @@ def _mapping_matrix(node: bpy.types.Node) -> Matrix:
     if node.vector_type == "TEXTURE" and moved.determinant() != 0.0:
         return moved.inverted()
     found = "of scale 0" if node.vector_type == "TEXTURE" else f"of type {node.vector_type}"
-    raise _NotUv(f"has a '{node.name}' node {found}")
+    raise _NotUvError(f"has a '{node.name}' node {found}")

@@ -29,8 +29,13 @@ def main(target: Path) -> None:
         with os.fdopen(reading) as answer:
             display = f":{answer.readline().strip()}"
         blender = subprocess.Popen(
-            ["blender", "--window-geometry", "0", "0", str(WIDTH), str(HEIGHT)]
-            + ["--python", __file__],
+            [
+                "blender",
+                "--window-geometry",
+                *("0", "0", str(WIDTH), str(HEIGHT)),
+                "--python",
+                __file__,
+            ],
             env={**os.environ, "DISPLAY": display},
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
