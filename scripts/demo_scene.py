@@ -2,9 +2,9 @@
 
 Usage: blender --background --python scripts/demo_scene.py -- FOLDER
 
-The extension has to be installed and enabled. Writes FOLDER/comparison.png (the model with its full
-texture, and with one level of each filter) and FOLDER/levels.png (the levels), and prints how far
-each level is from the full texture over the surface.
+The extension has to be installed and enabled. Writes FOLDER/level3.png to level5.png (the model with
+its full texture, and with that level of each filter) and FOLDER/levels.png (the levels), and prints
+how far each level is from the full texture over the surface.
 """
 
 import math
@@ -26,7 +26,7 @@ Array = NDArray[np.float32]
 IMAGE = "Paint"
 TEXTURE_SIZE = 1024
 MARGIN = 1.5  # Of paint around a chart, in texels.
-SHOWN_LEVEL = 4
+SHOWN_LEVELS = (3, 4, 5)
 SHEET_LEVELS = range(1, 8)
 FILTERS = {"box": "Box", "lanczos3": "Lanczos 3", "pam-bilinear": "PAM bilinear"}
 
@@ -57,7 +57,7 @@ class Model:
 
 
 def main(folder: Path) -> None:
-    """Makes both pictures."""
+    """Makes the pictures."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=False)
     obj = add_monkey()
     model = read_model(obj)
@@ -67,19 +67,22 @@ def main(folder: Path) -> None:
     set_up_render()
 
     print("rendering it with the full texture", flush=True)
-    panels = [("Full texture", f"{TEXTURE_SIZE} x {TEXTURE_SIZE}", render(folder))]
+    full = ("Full texture", f"{TEXTURE_SIZE} x {TEXTURE_SIZE}", render(folder))
+    panels = {level: [full] for level in SHOWN_LEVELS}
     levels, errors = {}, {}
     for name, label in FILTERS.items():
         shown.image = image
         bpy.ops.prefilter.bake_mipmaps(image=IMAGE, filter=name)
         levels[name] = read_levels()
         errors[name] = surface_errors(model, levels[name])
-        print(f"rendering it with level {SHOWN_LEVEL} of {label}", flush=True)
-        shown.image = bpy.data.images[f"{IMAGE}.mip{SHOWN_LEVEL}"]
-        note = f"surface error {errors[name][SHOWN_LEVEL - 1]:.3f}"
-        panels.append((f"{label}, level {SHOWN_LEVEL}", note, render(folder)))
+        print(f"rendering it with levels of {label}", flush=True)
+        for level in SHOWN_LEVELS:
+            shown.image = bpy.data.images[f"{IMAGE}.mip{level}"]
+            note = f"surface error {errors[name][level - 1]:.3f}"
+            panels[level].append((f"{label}, level {level}", note, render(folder)))
     print_table(errors)
-    save(comparison(panels), folder / "comparison.png")
+    for level in SHOWN_LEVELS:
+        save(comparison(panels[level]), folder / f"level{level}.png")
     save(contact_sheet(levels), folder / "levels.png")
 
 
