@@ -3,8 +3,8 @@
 Usage: blender --background --python scripts/demo_scene.py -- FOLDER
 
 The extension has to be installed and enabled. Writes FOLDER/level3.png to level5.png (the model
-with its full texture, and with that level of each filter) and FOLDER/levels.png (the levels), and prints
-how far each level is from the full texture over the surface.
+with its full texture, and with that level of each filter) and FOLDER/levels.png (the levels), and
+prints how far each level is from the full texture over the surface.
 """
 
 import math
