@@ -57,6 +57,7 @@ void parallel_team(int threads, const std::function<void(Team&)>& body) {
   }
   std::barrier<> barrier(threads);
   std::vector<std::jthread> helpers;
+  helpers.reserve(static_cast<std::size_t>(threads));
   for (int rank = 1; rank < threads; ++rank) {
     helpers.emplace_back([&, rank] {
       Team member(rank, threads, &barrier);

@@ -97,9 +97,9 @@ Image filter_columns(const ImageView& source, int factor, Kernel kernel, Wrap mo
 Image downsample(const ImageView& source, int factor_x, int factor_y, Kernel kernel, WrapModes wrap,
                  const Progress& progress, int threads) {
   assert(source.width % factor_x == 0 && source.height % factor_y == 0);
-  const Image rows = factor_x == 1 ? Image(source)
-                                   : filter_rows(source, factor_x, kernel, wrap.u,
-                                                 progress.part(0.0, 0.7), threads);
+  Image rows = factor_x == 1 ? Image(source)
+                             : filter_rows(source, factor_x, kernel, wrap.u,
+                                           progress.part(0.0, 0.7), threads);
   if (factor_y == 1) return rows;
   return filter_columns(rows.view(), factor_y, kernel, wrap.v, progress.part(0.7, 1.0), threads);
 }

@@ -219,6 +219,7 @@ std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const Ima
         readable(levels[k], "levels: level " + std::to_string(k), surfaces, wrap, threads));
   }
   std::vector<ImageView> views;
+  views.reserve(copies.size());
   for (const Image& copy : copies) views.push_back(copy.view());
   const TexelTriangles triangles =
       map_to_texels(surfaces, image.width, image.height, wrap, MassOf::kArea);

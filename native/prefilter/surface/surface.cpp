@@ -13,8 +13,10 @@ void check_finite(const double* values, std::size_t rows, std::size_t columns,
                   const std::string& what, const std::string& row_name) {
   for (std::size_t i = 0; i < rows * columns; ++i) {
     if (!std::isfinite(values[i])) {
-      throw_invalid(what + ": " + row_name + " " + std::to_string(i / columns) + " holds " +
-                    std::to_string(values[i]) + "; all values must be finite");
+      std::string message = what;
+      message += ": " + row_name + " " + std::to_string(i / columns) + " holds ";
+      message += std::to_string(values[i]) + "; all values must be finite";
+      throw_invalid(message);
     }
   }
 }
