@@ -98,7 +98,7 @@ void BilinearSystem<C>::add_dual_cell(const CellMoments<C>& moments, int column,
         return static_cast<float>(j == 0 ? low_x - high_x : high_x);
       };
       weights_[texel] += tent(moments.weight, 3);
-      for (int c = 0; c < C; ++c) right_side_[texel][c] += tent(moments.image[c], 2);
+      for (int c = 0; c < C; ++c) right_side_[texel].v[c] += tent(moments.image[c], 2);
     }
     if (x[0] >= 0 && x[1] >= 0) add_pair(x[0], y[j], dx, 0, product(2 * j, 1));
   }
@@ -138,14 +138,14 @@ void BilinearSystem<C>::pull_to_means() {
   }
   const double pull = used > 0 ? kPull * sum / static_cast<double>(used) : 0.0;
   inverse_.assign(stencils_.size(), 0.0F);
-  texels_.assign(stencils_.size(), Values{});
+  texels_.assign(stencils_.size(), LaneValues{});
   for (std::size_t j = 0; j < stencils_.size(); ++j) {
     if (!(stencils_[j].centre > 0.0F) || !(weights_[j] > 0.0F)) continue;
     inverse_[j] = static_cast<float>(1.0 / (stencils_[j].centre + pull));
     for (int c = 0; c < C; ++c) {
-      const double mean = static_cast<double>(right_side_[j][c]) / weights_[j];
-      texels_[j][c] = static_cast<float>(mean);
-      right_side_[j][c] = static_cast<float>(right_side_[j][c] + pull * mean);
+      const double mean = static_cast<double>(right_side_[j].v[c]) / weights_[j];
+      texels_[j].v[c] = static_cast<float>(mean);
+      right_side_[j].v[c] += static_cast<float>(pull * mean);
     }
   }
 }
@@ -158,38 +158,42 @@ int BilinearSystem<C>::row_beside(int y, int step) const {
 }
 
 template <int C>
-bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, const Values& tolerance) {
+bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, Lanes tolerance) {
   // A little over-relaxation saves a sweep in six; more than 1.3 costs sweeps again.
   constexpr float kRelaxation = 1.15F;
   const int south_row = row_beside(y, -1);
   const int north_row = row_beside(y, 1);
   const Stencil* here = stencils_.data() + at(0, y);
   const Stencil* south = stencils_.data() + at(0, south_row);
-  Values* values = texels_.data() + at(0, y);
-  const Values* south_values = texels_.data() + at(0, south_row);
-  const Values* north_values = texels_.data() + at(0, north_row);
-  const Values* right_side = right_side_.data() + at(0, y);
+  LaneValues* values = texels_.data() + at(0, y);
+  const LaneValues* south_values = texels_.data() + at(0, south_row);
+  const LaneValues* north_values = texels_.data() + at(0, north_row);
+  const LaneValues* right_side = right_side_.data() + at(0, y);
   const float* inverse = inverse_.data() + at(0, y);
 
-  Values largest_step{};
+  Lanes low{};
+  Lanes high{};
+  for (int c = 0; c < C; ++c) {
+    low[c] = options.ranges[c].low;
+    high[c] = options.ranges[c].high;
+  }
+
+  Lanes largest_step{};
   const auto relax = [&](int x, int west, int east) {
-    for (int c = 0; c < C; ++c) {
-      const float old = values[x][c];
-      float sum = right_side[x][c];
-      sum -= here[x].east * values[east][c];
-      sum -= here[x].north * north_values[x][c];
-      sum -= south[x].north * south_values[x][c];
-      sum -= here[x].north_east * north_values[east][c];
-      sum -= south[west].north_east * south_values[west][c];
-      sum -= here[x].north_west * north_values[west][c];
-      sum -= south[east].north_west * south_values[east][c];
-      sum -= here[west].east * values[west][c];
-      float next = old + kRelaxation * (sum * inverse[x] - old);
-      next = std::max(next, options.ranges[c].low);
-      next = std::min(next, options.ranges[c].high);
-      values[x][c] = next;
-      largest_step[c] = std::max(largest_step[c], std::abs(next - old));
-    }
+    const Lanes old = values[x].v;
+    Lanes sum = right_side[x].v;
+    sum -= here[x].east * values[east].v;
+    sum -= here[x].north * north_values[x].v;
+    sum -= south[x].north * south_values[x].v;
+    sum -= here[x].north_east * north_values[east].v;
+    sum -= south[west].north_east * south_values[west].v;
+    sum -= here[x].north_west * north_values[west].v;
+    sum -= south[east].north_west * south_values[east].v;
+    sum -= here[west].east * values[west].v;
+    const Lanes free = old + kRelaxation * (sum * inverse[x] - old);
+    const Lanes next = lane_min(lane_max(free, low), high);
+    values[x].v = next;
+    largest_step = lane_max(largest_step, lane_max(next - old, old - next));
   };
   const bool repeat = wrap_.u == Wrap::kRepeat;
   const int pad = width_;
@@ -206,19 +210,16 @@ bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, const Valu
 }
 
 template <int C>
-auto BilinearSystem<C>::step_tolerance(const SolveOptions& options) const -> Values {
-  Values tolerance{};
-  for (const Values& texel : texels_) {
-    for (int c = 0; c < C; ++c) tolerance[c] = std::max(tolerance[c], std::abs(texel[c]));
-  }
-  for (float& value : tolerance) value *= static_cast<float>(options.tolerance);
-  return tolerance;
+Lanes BilinearSystem<C>::step_tolerance(const SolveOptions& options) const {
+  Lanes largest{};
+  for (const LaneValues& texel : texels_) largest = lane_max(largest, lane_max(texel.v, -texel.v));
+  return largest * static_cast<float>(options.tolerance);
 }
 
 template <int C>
 auto BilinearSystem<C>::solve(const SolveOptions& options, const Progress& progress) -> Solution {
   pull_to_means();
-  const Values tolerance = step_tolerance(options);
+  const Lanes tolerance = step_tolerance(options);
 
   // A row is relaxed while it or a row beside it still moves; the slot past the last row is for a
   // row that is not there. Rows of one colour, 0 and 1 in turn, are not beside each other, so they
@@ -269,7 +270,7 @@ auto BilinearSystem<C>::solve(const SolveOptions& options, const Progress& progr
       const std::ptrdiff_t j = at(x, y);
       const bool used = inverse_[j] > 0.0F;
       solution.used[static_cast<std::size_t>(y) * width_ + x] = used ? 1 : 0;
-      for (int c = 0; c < C && used; ++c) solution.image.texel(x, y)[c] = texels_[j][c];
+      for (int c = 0; c < C && used; ++c) solution.image.texel(x, y)[c] = texels_[j].v[c];
     }
   }
   return solution;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
+#include "prefilter/base/lanes.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/mipmap/moment_sweep.h"
@@ -62,7 +63,6 @@ class BilinearSystem {
     float north_east = 0.0F;
     float north_west = 0.0F;
   };
-  using Values = std::array<float, C>;
 
   void add_dual_cell(const CellMoments<C>& moments, int column, int row);
   void add_pair(int x, int y, int dx, int dy, float value);
@@ -71,8 +71,8 @@ class BilinearSystem {
   // The row below (step -1) or above (1), or the row of zeros where there is none.
   int row_beside(int y, int step) const;
   // One step of every texel of a row; true where a channel moved by more than its tolerance.
-  bool relax_row(int y, const SolveOptions& options, const Values& tolerance);
-  Values step_tolerance(const SolveOptions& options) const;
+  bool relax_row(int y, const SolveOptions& options, Lanes tolerance);
+  Lanes step_tolerance(const SolveOptions& options) const;
 
   int width_;
   int height_;
@@ -81,10 +81,10 @@ class BilinearSystem {
   // are what texels at the edge of a clamped or bordered level have as neighbours.
   int stride_;
   std::vector<Stencil> stencils_;
-  std::vector<Values> right_side_;
+  std::vector<LaneValues> right_side_;
   std::vector<float> weights_;  // integrals of b_j
   std::vector<float> inverse_;  // of the diagonal; 0 where a texel is not read
-  std::vector<Values> texels_;
+  std::vector<LaneValues> texels_;
 };
 
 }  // namespace prefilter

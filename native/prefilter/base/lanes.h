@@ -1,0 +1,19 @@
+// Up to four channels, added and multiplied together by the processor.
+#pragma once
+
+#include "prefilter/base/image.h"
+
+namespace prefilter {
+
+/// A float for each of kMaxChannels channels; the ones that an image lacks are along for the ride.
+using Lanes [[gnu::vector_size(kMaxChannels * sizeof(float))]] = float;
+
+inline Lanes lane_max(Lanes a, Lanes b) { return a > b ? a : b; }
+inline Lanes lane_min(Lanes a, Lanes b) { return a < b ? a : b; }
+
+/// A vector of the processor where a template argument is needed.
+struct LaneValues {
+  Lanes v{};
+};
+
+}  // namespace prefilter
