@@ -47,6 +47,8 @@ def test_surface(positions, triangles, uvs, message):
         (np.zeros((16, 16), np.float32), r"image: shape \(16, 16\); \(height, width, channels\)"),
         (np.zeros((0, 16, 3), np.float32), "image: .* no pixels"),
         (np.zeros((16, 16, 0), np.float32), "image: .* no pixels"),
+        ([[1.0], [1.0, 2.0]], "image: found no array"),
+        (np.full((16, 16, 3), 1e300), "image: the texel in row 0, column 0 holds inf"),
         (np.zeros((16, 16, 3), np.uint8), "image: dtype uint8; float32 or float64"),
         (None, "image: dtype object"),
         (changed(IMAGE, (3, 5, 1), np.nan), "image: the texel in row 3, column 5 holds nan in ch"),
@@ -76,6 +78,15 @@ def test_image(image, message, filter):
         ({"levels": 10**30}, "levels: "),
         ({"threads": -1}, "threads: -1"),
         ({"threads": 1.5}, "threads: 1.5"),
+        ({"filter": 3}, "filter: 3; a name"),
+        ({"filter": "\ud800"}, r"filter: '\?' is not one of"),
+        ({"wrap": None}, "wrap: None; one name, or a pair"),
+        ({"wrap": 5}, "wrap: 5"),
+        ({"bounds": 5}, "bounds: 5; a pair"),
+        ({"bounds": ("a", "b")}, r"bounds: .*pair \(low, high\) of numbers"),
+        ({"bounds": (1j, None)}, "bounds: "),
+        ({"progress": 5}, "progress: 5; a callable"),
+        ({"surface": 5}, "surface: a int; a Surface or a list"),
         ({"surface": None}, "surface: none was given"),
         ({"surface": []}, "surface: none was given"),
         ({"surface": [3]}, "surface: holds a int"),
@@ -102,6 +113,9 @@ def test_repeated_tiles_are_limited():
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
+        ({"levels": None}, "levels: a NoneType; a list"),
+        ({"mip_values": "a"}, "mip_values: numbers"),
+        ({"mip_values": [1j]}, "mip_values: numbers"),
         ({"levels": []}, "levels: 0 were given, .* has 1 to 5"),
         ({"levels": [IMAGE] * 6}, "levels: 6 were given"),
         ({"levels": [IMAGE, IMAGE]}, "levels: level 1 has 16 x 16 texels of 3 channels; 8 x 8"),
@@ -134,6 +148,11 @@ def test_float32_and_strided_arrays_are_accepted():
     found = prefilter.mipmaps(strided, surface)
     expected = prefilter.mipmaps(IMAGE, surface)
     assert all(np.array_equal(a, b) for a, b in zip(found, expected, strict=True))
+
+
+def test_more_threads_than_there_are_is_no_error():
+    for threads in (50, 2**31, 2**70):
+        assert len(prefilter.mipmaps(IMAGE, MESH.surface, threads=threads)) == 5
 
 
 def test_inputs_are_left_alone():

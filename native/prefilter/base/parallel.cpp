@@ -9,7 +9,7 @@
 
 namespace prefilter {
 namespace {
-constexpr int kMaxThreads = 256;
+constexpr int kMaxThreads = 64;
 }
 
 int resolve_threads(int threads) {

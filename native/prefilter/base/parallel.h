@@ -10,7 +10,7 @@
 
 namespace prefilter {
 
-/// The number of threads that an argument asks for: itself (256 at the most), or for 0 one per
+/// The number of threads that an argument asks for: itself (64 at the most), or for 0 one per
 /// processor.
 int resolve_threads(int threads);
 

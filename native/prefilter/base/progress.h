@@ -20,14 +20,15 @@ class Progress {
   /// The share [from, to] of this one's range.
   Progress part(double from, double to) const;
 
-  /// Tells the callback, at most every 30 ms and always at 1. Throws Error(kCancelled) where it
-  /// answers false.
+  /// Tells the callback, at most every 30 ms and always at 1; what it is told never falls. Throws
+  /// Error(kCancelled) where it answers false.
   void report(double fraction) const;
 
  private:
   struct State {
     Callback callback;
     std::chrono::steady_clock::time_point last;
+    double highest = 0.0;
   };
   std::shared_ptr<State> state_;
   double from_ = 0.0;

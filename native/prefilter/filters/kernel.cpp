@@ -52,7 +52,7 @@ Taps downsampling_taps(Kernel kernel, int factor) {
     values.push_back(kernel_value(kernel, (i + 0.5 - centre) / factor));
     sum += values.back();
   }
-  for (const double value : values) taps.weights.push_back(static_cast<float>(value / sum));
+  for (const double value : values) taps.weights.push_back(value / sum);
   return taps;
 }
 

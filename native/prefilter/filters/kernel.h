@@ -20,7 +20,7 @@ double kernel_value(Kernel kernel, double x);
 /// The weights with which source texels first, first + 1, ... make up one target texel.
 struct Taps {
   int first = 0;
-  std::vector<float> weights;  // sum to 1
+  std::vector<double> weights;  // sum to 1
 };
 
 /// Taps of target texel 0 where every target texel is made of `factor` source texels: the kernel at

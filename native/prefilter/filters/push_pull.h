@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
+#include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter {
@@ -13,6 +14,7 @@ namespace prefilter {
 /// pyramid, and each hole is pushed the coarser level's bilinear value. Texels of positive weight
 /// keep theirs. Nothing is changed where no texel has weight. Values at holes are not read, and may
 /// be anything. `weights` has one number, 0 or more, a texel.
-void fill_holes(const std::vector<float>& weights, WrapModes wrap, int channels, Image* image);
+void fill_holes(const std::vector<float>& weights, WrapModes wrap, int channels,
+                const Progress& progress, int threads, Image* image);
 
 }  // namespace prefilter

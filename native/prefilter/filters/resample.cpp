@@ -30,11 +30,11 @@ void filter_row(const float* padded, int before, const Taps& taps, int factor, i
   for (int j = 0; j < target_size; ++j) {
     const float* source =
         padded + static_cast<std::ptrdiff_t>(before + taps.first + j * factor) * C;
-    float sum[C] = {};
+    double sum[C] = {};
     for (int k = 0; k < count; ++k) {
       for (int c = 0; c < C; ++c) sum[c] += taps.weights[k] * source[k * C + c];
     }
-    for (int c = 0; c < C; ++c) target[j * C + c] = sum[c];
+    for (int c = 0; c < C; ++c) target[j * C + c] = static_cast<float>(sum[c]);
   }
 }
 
@@ -79,15 +79,18 @@ Image filter_columns(const ImageView& source, int factor, Kernel kernel, Wrap mo
   const std::ptrdiff_t row_values = static_cast<std::ptrdiff_t>(source.width) * source.channels;
   Image target(source.width, target_height, source.channels);
   parallel_for(target_height, threads, progress, [&](std::int64_t j) {
-    float* row = target.texel(0, static_cast<int>(j));
+    std::vector<double> sums(static_cast<std::size_t>(row_values));
     for (std::size_t k = 0; k < taps.weights.size(); ++k) {
       const int y = wrap_index(taps.first + static_cast<int>(j) * factor + static_cast<int>(k),
                                source.height, mode);
       if (y < 0) continue;
       const float* from = source.texel(0, y);
-      const float weight = taps.weights[k];
-      for (std::ptrdiff_t i = 0; i < row_values; ++i) row[i] += weight * from[i];
+      const double weight = taps.weights[k];
+      for (std::ptrdiff_t i = 0; i < row_values; ++i) sums[i] += weight * from[i];
     }
+    float* row = target.texel(0, static_cast<int>(j));
+    std::transform(sums.begin(), sums.end(), row,
+                   [](double sum) { return static_cast<float>(sum); });
   });
   return target;
 }

@@ -34,9 +34,9 @@ class MassSink final : public CellSink {
 
 std::vector<float> texel_masses(const TexelTriangles& triangles, const Progress& progress,
                                 int threads) {
-  const Tiles tiles(triangles);
+  const Tiles tiles(triangles, progress.part(0.0, 0.3));
   std::vector<float> masses(static_cast<std::size_t>(triangles.width) * triangles.height);
-  parallel_for(tiles.count(), threads, progress, [&](std::int64_t tile) {
+  parallel_for(tiles.count(), threads, progress.part(0.3, 1.0), [&](std::int64_t tile) {
     const CellWindow window = tiles.window(tile);
     MassSink sink(window, triangles.uniform_density);
     for (const std::uint32_t* k = tiles.begin(tile); k != tiles.end(tile); ++k) {
@@ -55,7 +55,8 @@ std::vector<unsigned char> touched_texels(const std::vector<const Surface*>& sur
                                           int height, WrapModes wrap, const Progress& progress,
                                           int threads) {
   const std::vector<float> masses = texel_masses(
-      map_to_texels(surfaces, width, height, wrap, MassOf::kPresence), progress, threads);
+      map_to_texels(surfaces, width, height, wrap, MassOf::kPresence, progress.part(0.0, 0.3)),
+      progress.part(0.3, 1.0), threads);
   std::vector<unsigned char> touched(masses.size());
   for (std::size_t i = 0; i < masses.size(); ++i) touched[i] = masses[i] > 0.0F ? 1 : 0;
   return touched;
@@ -66,7 +67,8 @@ std::vector<unsigned char> looked_up_texels(const std::vector<const Surface*>& s
                                             int threads) {
   // A half-texel cell is read through the two texels beside it along each axis.
   const std::vector<float> halves = texel_masses(
-      map_to_texels(surfaces, 2 * width, 2 * height, wrap, MassOf::kArea), progress, threads);
+      map_to_texels(surfaces, 2 * width, 2 * height, wrap, MassOf::kArea, progress.part(0.0, 0.3)),
+      progress.part(0.3, 1.0), threads);
   std::vector<unsigned char> read(static_cast<std::size_t>(width) * height);
   for (int hy = 0; hy < 2 * height; ++hy) {
     for (int hx = 0; hx < 2 * width; ++hx) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/finite.h"
 #include "prefilter/mipmap/coverage.h"
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/mipmaps.h"
@@ -181,28 +182,27 @@ void check(const std::vector<ImageView>& levels, const ImageView& image,
   }
 }
 
-// The image or a level with the texels that no lookup reads set to 0, where any value is not
-// finite.
-Image readable(const ImageView& view, const std::string& name,
-               const std::vector<const Surface*>& surfaces, WrapModes wrap, int threads) {
-  Image copy(view);
-  if (std::all_of(copy.data.begin(), copy.data.end(), [](float v) { return std::isfinite(v); })) {
-    return copy;
-  }
+// The view; where a value is not finite, that of a copy in `owner` with the texels that no lookup
+// reads set to 0.
+ImageView readable(const ImageView& view, const std::string& name,
+                   const std::vector<const Surface*>& surfaces, WrapModes wrap,
+                   const Progress& progress, int threads, Image* owner) {
+  if (all_finite(view, progress.part(0.0, 0.5), threads)) return view;
   const std::vector<unsigned char> read =
-      looked_up_texels(surfaces, view.width, view.height, wrap, Progress(), threads);
-  for (std::size_t i = 0; i < copy.data.size(); ++i) {
-    if (std::isfinite(copy.data[i])) continue;
+      looked_up_texels(surfaces, view.width, view.height, wrap, progress.part(0.5, 1.0), threads);
+  *owner = Image(view);
+  for (std::size_t i = 0; i < owner->data.size(); ++i) {
+    float& value = owner->data[i];
+    if (std::isfinite(value)) continue;
     const std::size_t texel = i / static_cast<std::size_t>(view.channels);
     if (read[texel] != 0) {
       throw_invalid(name + ": the texel in row " + std::to_string(texel / view.width) +
                     ", column " + std::to_string(texel % view.width) + " holds " +
-                    std::to_string(copy.data[i]) +
-                    "; texels that the surface reads must be finite");
+                    std::to_string(value) + "; texels that the surface reads must be finite");
     }
-    copy.data[i] = 0.0F;
+    value = 0.0F;
   }
-  return copy;
+  return owner->view();
 }
 
 }  // namespace
@@ -212,19 +212,19 @@ std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const Ima
                                  const std::vector<double>& mip_values, WrapModes wrap,
                                  const Progress& progress, int threads) {
   check(levels, image, surfaces, mip_values);
-  const Image readable_image = readable(image, "image", surfaces, wrap, threads);
-  std::vector<Image> copies;
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    copies.push_back(
-        readable(levels[k], "levels: level " + std::to_string(k), surfaces, wrap, threads));
-  }
+  std::vector<Image> owners(levels.size() + 1);
+  const ImageView readable_image =
+      readable(image, "image", surfaces, wrap, progress.part(0.0, 0.05), threads, &owners.back());
   std::vector<ImageView> views;
-  views.reserve(copies.size());
-  for (const Image& copy : copies) views.push_back(copy.view());
-  const TexelTriangles triangles =
-      map_to_texels(surfaces, image.width, image.height, wrap, MassOf::kArea);
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    views.push_back(readable(levels[k], "levels: level " + std::to_string(k), surfaces, wrap,
+                             progress.part(0.05, 0.1), threads, &owners[k]));
+  }
+  const TexelTriangles triangles = map_to_texels(surfaces, image.width, image.height, wrap,
+                                                 MassOf::kArea, progress.part(0.1, 0.15));
   const auto run = [&]<int C>() {
-    return measure<C>(views, readable_image.view(), triangles, mip_values, wrap, progress, threads);
+    return measure<C>(views, readable_image, triangles, mip_values, wrap, progress.part(0.15, 1.0),
+                      threads);
   };
   switch (image.channels) {
     case 1:

@@ -10,6 +10,8 @@
 #include <memory>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/finite.h"
+#include "prefilter/base/parallel.h"
 #include "prefilter/filters/push_pull.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/coverage.h"
@@ -71,11 +73,6 @@ Kernel kernel_of(MipmapFilter filter) {
   }
 }
 
-bool all_finite(const ImageView& image) {
-  return std::all_of(image.data, image.data + image.value_count(),
-                     [](float value) { return std::isfinite(value); });
-}
-
 class Builder {
  public:
   Builder(const ImageView& image, const std::vector<const Surface*>& surfaces,
@@ -115,7 +112,7 @@ class Builder {
       covered_ = touched_texels(surfaces_, image_.width, image_.height, options_.wrap,
                                 options_.progress.part(0.0, 0.1), options_.threads);
     }
-    if (all_finite(image_)) return;
+    if (all_finite(image_, options_.progress.part(0.1, 0.11), options_.threads)) return;
     const std::vector<unsigned char> read = read_texels();
     Image& copy = own_copy();
     for (std::size_t i = 0; i < read.size(); ++i) {
@@ -134,21 +131,21 @@ class Builder {
   }
 
   std::vector<unsigned char> read_texels() const {
-    const Progress silent;
+    const Progress progress = options_.progress.part(0.11, 0.15);
     switch (reads_of(options_.filter)) {
       case Reads::kAll:
         break;
       case Reads::kTouched:
         return covered_;
       case Reads::kWeighted: {
-        const std::vector<float> masses =
-            texel_masses(mapped(MassOf::kArea), silent, options_.threads);
+        const std::vector<float> masses = texel_masses(mapped(progress.part(0.0, 0.3)),
+                                                       progress.part(0.3, 1.0), options_.threads);
         std::vector<unsigned char> read(masses.size());
         for (std::size_t i = 0; i < masses.size(); ++i) read[i] = masses[i] > 0.0F ? 1 : 0;
         return read;
       }
       case Reads::kLookedUp:
-        return looked_up_texels(surfaces_, image_.width, image_.height, options_.wrap, silent,
+        return looked_up_texels(surfaces_, image_.width, image_.height, options_.wrap, progress,
                                 options_.threads);
     }
     return std::vector<unsigned char>(image_.texel_count(), 1);
@@ -164,21 +161,25 @@ class Builder {
 
   void premultiply() {
     Image& copy = own_copy();
-    for (std::size_t i = 0; i < copy.data.size(); i += 4) {
-      const float alpha = copy.data[i + 3];
-      for (int c = 0; c < 3; ++c) copy.data[i + c] *= alpha;
-    }
+    parallel_for(copy.height, options_.threads, options_.progress.part(0.15, 0.16),
+                 [&](std::int64_t y) {
+                   float* texel = copy.texel(0, static_cast<int>(y));
+                   for (int x = 0; x < copy.width; ++x, texel += 4) {
+                     for (int c = 0; c < 3; ++c) texel[c] *= texel[3];
+                   }
+                 });
   }
 
-  TexelTriangles mapped(MassOf mass_of) const {
-    return map_to_texels(surfaces_, image_.width, image_.height, options_.wrap, mass_of);
+  TexelTriangles mapped(const Progress& progress) const {
+    return map_to_texels(surfaces_, image_.width, image_.height, options_.wrap, MassOf::kArea,
+                         progress);
   }
 
   int width(int level) const { return level_size(image_.width, level); }
   int height(int level) const { return level_size(image_.height, level); }
 
   std::vector<Image> texture_space_levels() const {
-    const Progress progress = options_.progress.part(0.1, 0.95);
+    const Progress progress = options_.progress.part(0.16, 0.97);
     const Kernel kernel = kernel_of(options_.filter);
     std::vector<Image> levels;
     for (int level = 1; level < level_count_; ++level) {
@@ -194,41 +195,62 @@ class Builder {
   }
 
   std::vector<Image> pam_box_levels() const {
+    const Progress& progress = options_.progress;
     std::vector<float> masses =
-        texel_masses(mapped(MassOf::kArea), options_.progress.part(0.0, 0.7), options_.threads);
+        texel_masses(mapped(progress.part(0.16, 0.2)), progress.part(0.2, 0.6), options_.threads);
     // Sums of mass times colour, halved level by level along with the masses.
-    Image sums(image_);
-    for (std::size_t i = 0; i < sums.data.size(); ++i) {
-      sums.data[i] *= masses[i / static_cast<std::size_t>(image_.channels)];
-    }
+    Image sums(image_.width, image_.height, image_.channels);
+    for_each_texel(&sums, progress.part(0.6, 0.65), [&](std::size_t i, float* sum) {
+      const float* colour = image_.data + i * static_cast<std::size_t>(image_.channels);
+      for (int c = 0; c < image_.channels; ++c) sum[c] = masses[i] * colour[c];
+    });
     std::vector<Image> levels;
+    double from = 0.65;
     for (int level = 1; level < level_count_; ++level) {
-      halve(width(level), height(level), &sums, &masses);
-      Image means = sums;
-      for (std::size_t i = 0; i < means.data.size(); ++i) {
-        const float mass = masses[i / static_cast<std::size_t>(image_.channels)];
-        means.data[i] = mass > 0.0F ? means.data[i] / mass : 0.0F;
-      }
-      fill_holes(masses, options_.wrap, image_.channels, &means);
+      const Progress part = progress.part(from, from + 0.75 * (0.97 - from));
+      from += 0.75 * (0.97 - from);
+      halve(width(level), height(level), part.part(0.0, 0.4), &sums, &masses);
+      Image means(sums.width, sums.height, sums.channels);
+      for_each_texel(&means, part.part(0.4, 0.6), [&](std::size_t i, float* mean) {
+        const float* sum = sums.data.data() + i * static_cast<std::size_t>(sums.channels);
+        for (int c = 0; c < sums.channels && masses[i] > 0.0F; ++c) mean[c] = sum[c] / masses[i];
+      });
+      fill_holes(masses, options_.wrap, image_.channels, part.part(0.6, 1.0), options_.threads,
+                 &means);
       levels.push_back(std::move(means));
     }
     return levels;
   }
 
-  static void halve(int width, int height, Image* sums, std::vector<float>* masses) {
+  // Calls use(index, texel) for every texel, rows in parallel.
+  template <typename Use>
+  void for_each_texel(Image* image, const Progress& progress, const Use& use) const {
+    parallel_for(image->height, options_.threads, progress, [&](std::int64_t y) {
+      float* texel = image->texel(0, static_cast<int>(y));
+      const std::size_t first = static_cast<std::size_t>(y) * image->width;
+      for (int x = 0; x < image->width; ++x, texel += image->channels) use(first + x, texel);
+    });
+  }
+
+  void halve(int width, int height, const Progress& progress, Image* sums,
+             std::vector<float>* masses) const {
     Image half(width, height, sums->channels);
     std::vector<float> half_masses(static_cast<std::size_t>(width) * height);
     const int step_x = sums->width / width;
     const int step_y = sums->height / height;
-    for (int y = 0; y < sums->height; ++y) {
-      for (int x = 0; x < sums->width; ++x) {
-        const float* from = sums->texel(x, y);
-        float* to = half.texel(x / step_x, y / step_y);
-        for (int c = 0; c < sums->channels; ++c) to[c] += from[c];
-        half_masses[static_cast<std::size_t>(y / step_y) * width + x / step_x] +=
-            (*masses)[static_cast<std::size_t>(y) * sums->width + x];
+    parallel_for(height, options_.threads, progress, [&](std::int64_t row) {
+      const int half_y = static_cast<int>(row);
+      float* row_masses = half_masses.data() + static_cast<std::ptrdiff_t>(half_y) * width;
+      for (int y = half_y * step_y; y < (half_y + 1) * step_y; ++y) {
+        const float* from = sums->texel(0, y);
+        const float* mass = masses->data() + static_cast<std::ptrdiff_t>(y) * sums->width;
+        for (int x = 0; x < sums->width; ++x, from += sums->channels) {
+          float* to = half.texel(x / step_x, half_y);
+          for (int c = 0; c < sums->channels; ++c) to[c] += from[c];
+          row_masses[x / step_x] += mass[x];
+        }
       }
-    }
+    });
     *sums = std::move(half);
     *masses = std::move(half_masses);
   }
@@ -255,9 +277,9 @@ class Builder {
     }
     if (systems.empty()) return {};
     sweep_moments<C>(
-        mapped(MassOf::kArea), image_, options_.wrap,
+        mapped(options_.progress.part(0.16, 0.2)), image_, options_.wrap,
         {.first_level = 1, .last_level = level_count_ - 1, .threads = options_.threads},
-        options_.progress.part(0.0, 0.5),
+        options_.progress.part(0.2, 0.5),
         [&](const MomentBlock<C>& block) { systems[block.level - 1]->add(block); });
 
     typename BilinearSystem<C>::SolveOptions solve;
@@ -267,12 +289,13 @@ class Builder {
     double from = 0.5;
     for (std::unique_ptr<BilinearSystem<C>>& system : systems) {
       // A level has a quarter of the texels of the one before.
-      const double to = from + 0.75 * (0.99 - from);
-      auto solution = system->solve(solve, options_.progress.part(from, to));
+      const double to = from + 0.75 * (0.97 - from);
+      const Progress part = options_.progress.part(from, to);
+      auto solution = system->solve(solve, part.part(0.0, 0.8));
       system.reset();
       from = to;
       const std::vector<float> weights(solution.used.begin(), solution.used.end());
-      fill_holes(weights, options_.wrap, C, &solution.image);
+      fill_holes(weights, options_.wrap, C, part.part(0.8, 1.0), options_.threads, &solution.image);
       levels.push_back(std::move(solution.image));
     }
     return levels;
@@ -294,20 +317,24 @@ class Builder {
   void finish(Image* level) const {
     if (straight_alpha_) unpremultiply(level);
     const ValueRange range = bounds();
-    for (float& value : level->data) value = std::min(std::max(value, range.low), range.high);
+    for_each_texel(level, options_.progress.part(0.98, 0.99), [&](std::size_t, float* texel) {
+      for (int c = 0; c < level->channels; ++c) {
+        texel[c] = std::min(std::max(texel[c], range.low), range.high);
+      }
+    });
   }
 
   void unpremultiply(Image* level) const {
     // Below this, a colour would be mostly rounding.
     constexpr float kLeastAlpha = 1e-5F;
     std::vector<float> weights(level->view().texel_count());
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      float* texel = level->data.data() + 4 * i;
+    for_each_texel(level, options_.progress.part(0.97, 0.98), [&](std::size_t i, float* texel) {
       texel[3] = std::clamp(texel[3], 0.0F, 1.0F);
       weights[i] = texel[3] > kLeastAlpha ? texel[3] : 0.0F;
       for (int c = 0; c < 3; ++c) texel[c] = weights[i] > 0.0F ? texel[c] / texel[3] : 0.0F;
-    }
-    fill_holes(weights, options_.wrap, 3, level);
+    });
+    fill_holes(weights, options_.wrap, 3, options_.progress.part(0.97, 0.98), options_.threads,
+               level);
   }
 
   const ImageView& original_;

@@ -242,21 +242,22 @@ class Sweep {
   using Visit = std::function<void(const MomentBlock<C>&)>;
 
   Sweep(const TexelTriangles& triangles, const ImageView& image, WrapModes wrap,
-        const SweepOptions& options, const Visit& visit)
+        const SweepOptions& options, const Progress& progress, const Visit& visit)
       : triangles_(triangles),
         image_(image),
         wrap_(wrap),
         options_(options),
         visit_(visit),
-        tiles_(triangles) {
+        progress_(progress),
+        tiles_(triangles, progress.part(0.0, 0.1)) {
     if (options_.last_level > kTileLevels) {
       coarse_grid_ = grid(image.width, image.height, kTileLevels + 1);
       coarse_.resize(static_cast<std::size_t>(coarse_grid_.width) * coarse_grid_.height);
     }
   }
 
-  void run(const Progress& progress) {
-    tiles_.for_each_apart(options_.threads, progress, [this](std::int64_t tile) {
+  void run() {
+    tiles_.for_each_apart(options_.threads, progress_.part(0.1, 1.0), [this](std::int64_t tile) {
       std::unique_ptr<Workspace<C>> workspace = pool_.take();
       sweep_tile(tile, workspace.get());
       pool_.give_back(std::move(workspace));
@@ -383,6 +384,7 @@ class Sweep {
   WrapModes wrap_;
   SweepOptions options_;
   const Visit& visit_;
+  const Progress& progress_;
   Tiles tiles_;
   WorkspacePool<C> pool_;
   Grid coarse_grid_;
@@ -403,7 +405,7 @@ void sweep_moments(const TexelTriangles& triangles, const ImageView& image, Wrap
                    const std::function<void(const MomentBlock<C>&)>& visit) {
   assert(image.channels == C);
   assert(options.last_level < full_level_count(image.width, image.height));
-  Sweep<C>(triangles, image, wrap, options, visit).run(progress);
+  Sweep<C>(triangles, image, wrap, options, progress, visit).run();
 }
 
 template void sweep_moments<1>(const TexelTriangles&, const ImageView&, WrapModes,

@@ -159,7 +159,7 @@ class Mapper final : public CellSink {
 }  // namespace
 
 TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int width, int height,
-                             WrapModes wrap, MassOf mass_of) {
+                             WrapModes wrap, MassOf mass_of, const Progress& progress) {
   double total_area = 0.0;
   std::size_t count = 0;
   for (const Surface* surface : surfaces) {
@@ -182,6 +182,7 @@ TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int wi
       if (!(triangle.mass > 0.0)) continue;
       for (int i = 0; i < 3; ++i) triangle.corners[i] = {surface.uvs[k][i].u, surface.uvs[k][i].v};
       mapper.add(triangle, s, k);
+      progress.report(static_cast<double>(k) / static_cast<double>(surface.triangle_count()));
     }
   }
   out.total_mass = out.uniform_mass();

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/moments/triangle_cells.h"
 #include "prefilter/surface/surface.h"
@@ -32,6 +33,6 @@ enum class MassOf {
 /// and taken modulo (repeat), clamped to the square's edge, or dropped there (border), as a lookup
 /// would be. Throws Error where a triangle spans more than 2^20 tiles.
 TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int width, int height,
-                             WrapModes wrap, MassOf mass_of);
+                             WrapModes wrap, MassOf mass_of, const Progress& progress);
 
 }  // namespace prefilter

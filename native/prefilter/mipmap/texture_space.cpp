@@ -47,8 +47,8 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
   };
   Image sums = reduce(masked, kernel, 0.0, 0.4);
   Image weights = reduce(mask, kernel, 0.4, 0.5);
-  const Image box_sums = reduce(masked, Kernel::kBox, 0.5, 0.9);
-  const Image box_weights = reduce(mask, Kernel::kBox, 0.9, 1.0);
+  const Image box_sums = reduce(masked, Kernel::kBox, 0.5, 0.8);
+  const Image box_weights = reduce(mask, Kernel::kBox, 0.8, 0.9);
   for (std::size_t i = 0; i < weights.data.size(); ++i) {
     const bool box = weights.data[i] < kLeastWeight;
     const float weight = box ? box_weights.data[i] : weights.data[i];
@@ -57,7 +57,7 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
       sums.data[at] = (box ? box_sums : sums).data[at] / weight;
     }
   }
-  fill_holes(box_weights.data, wrap, image.channels, &sums);
+  fill_holes(box_weights.data, wrap, image.channels, progress.part(0.9, 1.0), threads, &sums);
   return sums;
 }
 

@@ -32,22 +32,28 @@ int colour(int i, int count) { return count > 1 && count % 2 == 1 && i == count 
 
 }  // namespace
 
-Tiles::Tiles(const TexelTriangles& triangles)
+Tiles::Tiles(const TexelTriangles& triangles, const Progress& progress)
     : width_(triangles.width),
       height_(triangles.height),
       columns_((triangles.width + kSize - 1) / kSize),
       rows_((triangles.height + kSize - 1) / kSize) {
   starts_.assign(static_cast<std::size_t>(count()) + 1, 0);
-  for (const MassTriangle& triangle : triangles.triangles) {
-    for_each_tile(triangle, columns_, rows_, [&](std::int64_t tile) { ++starts_[tile + 1]; });
+  const auto size = triangles.triangles.size();
+  const Progress counting = progress.part(0.0, 0.5);
+  for (std::size_t k = 0; k < size; ++k) {
+    for_each_tile(triangles.triangles[k], columns_, rows_,
+                  [&](std::int64_t tile) { ++starts_[tile + 1]; });
+    counting.report(static_cast<double>(k) / static_cast<double>(size));
   }
   for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
   members_.resize(static_cast<std::size_t>(starts_.back()));
   std::vector<std::int64_t> next(starts_.begin(), starts_.end() - 1);
-  for (std::size_t k = 0; k < triangles.triangles.size(); ++k) {
+  const Progress filling = progress.part(0.5, 1.0);
+  for (std::size_t k = 0; k < size; ++k) {
     for_each_tile(triangles.triangles[k], columns_, rows_, [&](std::int64_t tile) {
       members_[next[tile]++] = static_cast<std::uint32_t>(k);
     });
+    filling.report(static_cast<double>(k) / static_cast<double>(size));
   }
 }
 

@@ -6,6 +6,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+# What the native module takes as an int; larger counts mean the same to it.
+_LARGEST_INT = 2**30
+
 FloatArray: TypeAlias = npt.NDArray[np.float32] | npt.NDArray[np.float64]
 
 
@@ -17,16 +20,17 @@ def as_floats(
     `shape` gives the length of each axis, or a name where any length will do.
     Raises ValueError where the shape differs or the values are not floating-point numbers.
     """
-    found = np.asarray(array)
+    found = _as_array(name, array)
     if found.dtype not in (np.float32, np.float64):
         raise ValueError(f"{name}: dtype {found.dtype}; float32 or float64 is needed")
     check_shape(name, found, shape)
-    return np.ascontiguousarray(found, dtype)
+    with np.errstate(over="ignore"):  # What is too large becomes infinite, and is refused as that.
+        return np.ascontiguousarray(found, dtype)
 
 
 def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
     """The array as C-contiguous int64. Raises ValueError where it holds no integers."""
-    found = np.asarray(array)
+    found = _as_array(name, array)
     if not np.issubdtype(found.dtype, np.integer):
         raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
     check_shape(name, found, shape)
@@ -58,4 +62,11 @@ def as_threads(threads: int) -> int:
         raise ValueError(
             f"threads: {threads!r}; a whole number is needed, 0 meaning all processors"
         )
-    return int(threads)
+    return min(int(threads), _LARGEST_INT)
+
+
+def _as_array(name: str, array: npt.ArrayLike) -> np.ndarray:
+    try:
+        return np.asarray(array)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: found no array: {error}") from error

@@ -63,13 +63,13 @@ def mipmaps(
     return _native.mipmaps(
         as_image("image", image),
         _surfaces(surface),
-        str(filter),
+        _name("filter", filter),
         _wrap(wrap),
         low,
         high,
         _level_count(levels),
         bool(premultiplied),
-        progress,
+        _progress(progress),
         as_threads(threads),
     )
 
@@ -107,14 +107,19 @@ def mipmap_error(
         ValueError: An argument is out of range, or a texel that the surface reads is not finite.
         Cancelled: The progress callback returned False.
     """
-    values = np.asarray(mip_values, np.float64)
+    try:
+        values = np.asarray(mip_values, np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"mip_values: numbers are needed: {error}") from error
+    if not isinstance(levels, Sequence):
+        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
     errors = _native.mipmap_error(
         [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)],
         as_image("image", image),
         _surfaces(surface),
         values.ravel().tolist(),
         _wrap(wrap),
-        progress,
+        _progress(progress),
         as_threads(threads),
     )
     return np.array(errors).reshape(values.shape)
@@ -123,26 +128,46 @@ def mipmap_error(
 def _surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
     if surface is None:
         return []
-    surfaces = [surface] if isinstance(surface, Surface) else list(surface)
+    surfaces = [surface] if isinstance(surface, Surface) else surface
+    if not isinstance(surfaces, Sequence):
+        raise ValueError(f"surface: a {type(surface).__name__}; a Surface or a list is needed")
     for found in surfaces:
         if not isinstance(found, Surface):
             raise ValueError(f"surface: holds a {type(found).__name__}; a Surface is needed")
-    return surfaces
+    return list(surfaces)
+
+
+def _name(argument: str, name: object) -> str:
+    if not isinstance(name, str):
+        raise ValueError(f"{argument}: {name!r}; a name is needed")
+    return name.encode(errors="replace").decode()
 
 
 def _wrap(wrap: Wrap) -> tuple[str, str]:
-    pair = (wrap, wrap) if isinstance(wrap, str) else tuple(wrap)
-    if len(pair) != 2 or not all(isinstance(mode, str) for mode in pair):
+    pair = (wrap, wrap) if isinstance(wrap, str) else wrap
+    if not _is_pair(pair) or not all(isinstance(mode, str) for mode in pair):
         raise ValueError(f"wrap: {wrap!r}; one name, or a pair of names for u and v, is needed")
-    return pair
+    return _name("wrap", pair[0]), _name("wrap", pair[1])
 
 
 def _bounds(bounds: Bounds | None) -> Bounds:
-    pair = (None, None) if bounds is None else tuple(bounds)
-    if len(pair) != 2:
-        raise ValueError(f"bounds: {bounds!r}; a pair (low, high) or None is needed")
+    pair = (None, None) if bounds is None else bounds
+    if not _is_pair(pair) or not all(
+        limit is None or isinstance(limit, int | float | np.number) for limit in pair
+    ):
+        raise ValueError(f"bounds: {bounds!r}; a pair (low, high) of numbers or None is needed")
     low, high = pair
     return (None if low is None else float(low), None if high is None else float(high))
+
+
+def _is_pair(value: object) -> bool:
+    return isinstance(value, Sequence | np.ndarray) and len(value) == 2
+
+
+def _progress(progress: ProgressCallback | None) -> ProgressCallback | None:
+    if progress is not None and not callable(progress):
+        raise ValueError(f"progress: {progress!r}; a callable of one number is needed, or None")
+    return progress
 
 
 def _level_count(levels: int | None) -> int:

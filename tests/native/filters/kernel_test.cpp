@@ -25,9 +25,9 @@ TEST(DownsamplingTaps, SumToOneAndAreSymmetric) {
   for (const Kernel kernel : kKernels) {
     for (const int factor : {1, 2, 3, 4, 16, 64}) {
       const Taps taps = downsampling_taps(kernel, factor);
-      EXPECT_NEAR(std::accumulate(taps.weights.begin(), taps.weights.end(), 0.0), 1.0, 1e-6);
+      EXPECT_NEAR(std::accumulate(taps.weights.begin(), taps.weights.end(), 0.0), 1.0, 1e-14);
       for (std::size_t i = 0; i < taps.weights.size(); ++i) {
-        EXPECT_NEAR(taps.weights[i], taps.weights[taps.weights.size() - 1 - i], 1e-7);
+        EXPECT_NEAR(taps.weights[i], taps.weights[taps.weights.size() - 1 - i], 1e-15);
       }
       // Symmetric about the middle of the first target texel.
       EXPECT_EQ(2 * taps.first + static_cast<int>(taps.weights.size()), factor);
@@ -38,7 +38,7 @@ TEST(DownsamplingTaps, SumToOneAndAreSymmetric) {
 TEST(DownsamplingTaps, OfABoxAreItsTexels) {
   const Taps taps = downsampling_taps(Kernel::kBox, 4);
   EXPECT_EQ(taps.first, 0);
-  EXPECT_EQ(taps.weights, (std::vector<float>{0.25F, 0.25F, 0.25F, 0.25F}));
+  EXPECT_EQ(taps.weights, (std::vector<double>{0.25, 0.25, 0.25, 0.25}));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ TEST(FillHoles, KeepsTexelsWithWeightAndFillsTheRest) {
       image.texel(0, height / 2)[0] = 0.25F;
       image.texel(0, height / 2)[1] = -4.0F;
       weights[static_cast<std::size_t>(height / 2) * width] = 0.001F;
-      fill_holes(weights, {}, 2, &image);
+      fill_holes(weights, {}, 2, Progress(), 2, &image);
       for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) {
           EXPECT_NEAR(image.texel(x, y)[0], 0.25F, 1e-6);
@@ -35,7 +35,7 @@ TEST(FillHoles, StaysBetweenTheValuesAround) {
     image.texel(15, y)[0] = 3.0F;
     weights[16 * y] = weights[16 * y + 15] = 1.0F;
   }
-  fill_holes(weights, {}, 1, &image);
+  fill_holes(weights, {}, 1, Progress(), 2, &image);
   for (int x = 1; x < 16; ++x) {
     EXPECT_GE(image.texel(x, 8)[0], image.texel(x - 1, 8)[0]);
     EXPECT_LE(image.texel(x, 8)[0], 3.0F);
@@ -44,7 +44,7 @@ TEST(FillHoles, StaysBetweenTheValuesAround) {
 
 TEST(FillHoles, LeavesAnImageWithoutAnyWeight) {
   Image image(4, 4, 1, 7.0F);
-  fill_holes(std::vector<float>(16, 0.0F), {}, 1, &image);
+  fill_holes(std::vector<float>(16, 0.0F), {}, 1, Progress(), 1, &image);
   for (const float value : image.data) EXPECT_EQ(value, 7.0F);
 }
 
@@ -53,7 +53,7 @@ TEST(FillHoles, LeavesFurtherChannels) {
   std::vector<float> weights(16, 0.0F);
   weights[0] = 1.0F;
   image.texel(0, 0)[0] = 1.0F;
-  fill_holes(weights, {}, 1, &image);
+  fill_holes(weights, {}, 1, Progress(), 2, &image);
   EXPECT_EQ(image.texel(3, 3)[0], 1.0F);
   EXPECT_EQ(image.texel(3, 3)[1], 5.0F);
 }

@@ -1,0 +1,18 @@
+// How much memory a piece of work takes at its peak. Linux only; elsewhere it reads 0.
+#pragma once
+
+namespace prefilter::bench {
+
+/// Measures from its construction on. One at a time: it resets the process's own mark.
+class PeakMemory {
+ public:
+  PeakMemory();
+
+  /// The most that has been resident since, beyond what was resident at the start [MiB].
+  double added() const;
+
+ private:
+  double start_;
+};
+
+}  // namespace prefilter::bench

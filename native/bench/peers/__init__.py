@@ -1,0 +1,55 @@
+"""What the benchmarks run, each behind one interface: our own work, and the same by others.
+
+One file a peer; to add one, write a class with the members of `Peer`. Nothing here imports numpy or
+holds pixels: a program inherits the peak memory of what started it, so that has to stay small.
+"""
+
+import os
+import subprocess
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """One run.
+
+    Attributes:
+        seconds: Wall time.
+        peak_mib: The most memory that was resident [MiB], of the whole process.
+        start_mib: What was resident already when the clock was started.
+    """
+
+    seconds: float
+    peak_mib: float
+    start_mib: float = 0.0
+
+
+class Peer(Protocol):
+    """Work that can be measured again and again."""
+
+    name: str
+
+    def measure(self) -> Measurement:
+        """Does the work once, in a new process.
+
+        Raises:
+            OSError: The program is missing or failed.
+        """
+        ...
+
+
+def run(command: Sequence[str]) -> tuple[float, float, str]:
+    """Runs a program; returns its wall time [s], its peak memory [MiB] and what it printed."""
+    began = time.perf_counter()
+    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
+    with process.stdout as stream:
+        printed = stream.read()
+    _, status, usage = os.wait4(process.pid, 0)
+    seconds = time.perf_counter() - began
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode != 0:
+        raise OSError(f"'{' '.join(command)}' ended with status {process.returncode}: {printed}")
+    return seconds, usage.ru_maxrss / 1024, printed

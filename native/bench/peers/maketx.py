@@ -1,0 +1,24 @@
+"""OpenImageIO's maketx: a picture file to a mip-mapped file, all in the clock."""
+
+from pathlib import Path
+
+from . import Measurement, run
+
+
+class Maketx:
+    """The program as a user runs it, with its defaults but for the filter and the threads."""
+
+    def __init__(self, picture: Path, folder: Path, *, filter: str, threads: int) -> None:
+        """Reads `picture` and writes into `folder`, anew each time."""
+        self.name = f"maketx --filter {filter}"
+        self._target = folder / f"{filter}.tx"
+        self._command = ["maketx", "--threads", str(threads), "--filter", filter]
+        self._command += ["-o", str(self._target), str(picture)]
+
+    def measure(self) -> Measurement:
+        """See `Peer`."""
+        self._target.unlink(missing_ok=True)
+        seconds, peak, _ = run(self._command)
+        if not self._target.exists():
+            raise OSError(f"maketx wrote no '{self._target}'")
+        return Measurement(seconds, peak)
