@@ -34,8 +34,20 @@ Wrap wrap_mode(const std::string& name) {
   throw_invalid("wrap: '" + name + "' is not one of clamp, repeat, border");
 }
 
+namespace {
+bool is_finalizing() {
+#if PY_VERSION_HEX >= 0x030D0000
+  return Py_IsFinalizing() != 0;
+#else
+  return _Py_IsFinalizing() != 0;
+#endif
+}
+}  // namespace
+
 Progress to_progress(const py::object& callback) {
   return Progress([callback = py::handle(callback)](double fraction) {
+    // An interpreter that is going away ends any thread that asks for its lock.
+    if (is_finalizing()) return false;
     const py::gil_scoped_acquire locked;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (callback.is_none()) return true;
@@ -48,13 +60,15 @@ Progress to_progress(const py::object& callback) {
 PYBIND11_MODULE(_native, m) {
   using prefilter::Error;
   using prefilter::ErrorCode;
-  static py::exception<Error> cancelled(m, "Cancelled");
+  // Never destroyed: at exit there may be no interpreter left to destroy it with.
+  static auto* const cancelled = new py::exception<Error>(m, "Cancelled");
+  cancelled->attr("__module__") = "prefilter";
   py::register_exception_translator([](std::exception_ptr pointer) {
     try {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kCancelled) {
-        PyErr_SetString(cancelled.ptr(), error.what());
+        PyErr_SetString(cancelled->ptr(), error.what());
       } else {
         PyErr_SetString(PyExc_ValueError, error.what());
       }

@@ -4,13 +4,29 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace prefilter {
 namespace {
 constexpr int kMaxThreads = 64;
+
+// Up to `count` threads, each running body(rank) with ranks from 1; fewer where the system has no
+// more.
+template <typename Body>
+std::vector<std::jthread> start_helpers(int count, const Body& body) {
+  std::vector<std::jthread> helpers;
+  helpers.reserve(static_cast<std::size_t>(std::max(count, 0)));
+  try {
+    for (int rank = 1; rank <= count; ++rank) helpers.emplace_back(body, rank);
+  } catch (const std::system_error&) {
+    // The work is shared among those that there are.
+  }
+  return helpers;
 }
+}  // namespace
 
 int resolve_threads(int threads) {
   if (threads > 0) return std::min(threads, kMaxThreads);
@@ -42,8 +58,8 @@ void parallel_for(std::int64_t count, int threads, const Progress& progress,
   const auto helper_count =
       static_cast<int>(std::min<std::int64_t>(resolve_threads(threads), count)) - 1;
   {
-    std::vector<std::jthread> helpers;
-    for (int i = 0; i < helper_count; ++i) helpers.emplace_back(work, false);
+    const std::vector<std::jthread> helpers =
+        start_helpers(helper_count, [&](int) { work(false); });
     work(true);
   }
   if (failure) std::rethrow_exception(failure);
@@ -55,16 +71,19 @@ void parallel_team(int threads, const std::function<void(Team&)>& body) {
     body(alone);
     return;
   }
-  std::barrier<> barrier(threads);
-  std::vector<std::jthread> helpers;
-  helpers.reserve(static_cast<std::size_t>(threads));
-  for (int rank = 1; rank < threads; ++rank) {
-    helpers.emplace_back([&, rank] {
-      Team member(rank, threads, &barrier);
-      body(member);
-    });
-  }
-  Team member(0, threads, &barrier);
+  // The barrier is made once it is known how many threads there are; until then they wait.
+  std::optional<std::barrier<>> barrier;
+  std::atomic<int> size{0};
+  const std::vector<std::jthread> helpers = start_helpers(threads - 1, [&](int rank) {
+    size.wait(0);
+    Team member(rank, size, &*barrier);
+    body(member);
+  });
+  const int found = static_cast<int>(helpers.size()) + 1;
+  barrier.emplace(found);
+  size.store(found);
+  size.notify_all();
+  Team member(0, found, &*barrier);
   body(member);
 }
 

@@ -39,8 +39,8 @@ class Team {
   std::barrier<>* barrier_;
 };
 
-/// Runs body on `threads` threads at once. The body must not throw, and all members must reach the
-/// same calls of wait_for_all.
+/// Runs body on `threads` threads at once, or on as many as the system has. The body must not
+/// throw, and all members must reach the same calls of wait_for_all.
 void parallel_team(int threads, const std::function<void(Team&)>& body);
 
 }  // namespace prefilter

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <limits>
 
 #include "prefilter/base/parallel.h"
 
@@ -158,7 +159,7 @@ int BilinearSystem<C>::row_beside(int y, int step) const {
 }
 
 template <int C>
-bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, Lanes tolerance) {
+bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, Lanes typical) {
   // A little over-relaxation saves a sweep in six; more than 1.3 costs sweeps again.
   constexpr float kRelaxation = 1.15F;
   const int south_row = row_beside(y, -1);
@@ -171,14 +172,17 @@ bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, Lanes tole
   const LaneValues* right_side = right_side_.data() + at(0, y);
   const float* inverse = inverse_.data() + at(0, y);
 
+  // Open ranges are as wide as floats go, and not infinite: times an alpha of 0 they are 0.
+  constexpr float kWidest = std::numeric_limits<float>::max();
   Lanes low{};
   Lanes high{};
   for (int c = 0; c < C; ++c) {
-    low[c] = options.ranges[c].low;
-    high[c] = options.ranges[c].high;
+    low[c] = std::max(options.ranges[c].low, -kWidest);
+    high[c] = std::min(options.ranges[c].high, kWidest);
   }
+  const auto tolerance = static_cast<float>(options.tolerance);
 
-  Lanes largest_step{};
+  Lanes excess{};
   const auto relax = [&](int x, int west, int east) {
     const Lanes old = values[x].v;
     Lanes sum = right_side[x].v;
@@ -191,9 +195,15 @@ bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, Lanes tole
     sum -= south[east].north_west * south_values[east].v;
     sum -= here[west].east * values[west].v;
     const Lanes free = old + kRelaxation * (sum * inverse[x] - old);
-    const Lanes next = lane_min(lane_max(free, low), high);
+    Lanes scale = Lanes{} + 1.0F;
+    if (options.ranges_times_alpha) {
+      scale = Lanes{} + std::clamp(free[3], low[3], high[3]);
+      scale[3] = 1.0F;
+    }
+    const Lanes next = lane_min(lane_max(free, low * scale), high * scale);
     values[x].v = next;
-    largest_step = lane_max(largest_step, lane_max(next - old, old - next));
+    const Lanes step = lane_max(next - old, old - next);
+    excess = lane_max(excess, step - tolerance * lane_max(typical, lane_max(next, -next)));
   };
   const bool repeat = wrap_.u == Wrap::kRepeat;
   const int pad = width_;
@@ -205,21 +215,38 @@ bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, Lanes tole
     relax(width_ - 1, width_ - 2, repeat ? 0 : pad);
   }
   bool moved = false;
-  for (int c = 0; c < C; ++c) moved = moved || largest_step[c] > tolerance[c];
+  for (int c = 0; c < C; ++c) moved = moved || excess[c] > 0.0F;
   return moved;
 }
 
 template <int C>
-Lanes BilinearSystem<C>::step_tolerance(const SolveOptions& options) const {
-  Lanes largest{};
-  for (const LaneValues& texel : texels_) largest = lane_max(largest, lane_max(texel.v, -texel.v));
-  return largest * static_cast<float>(options.tolerance);
+Lanes BilinearSystem<C>::typical_values() const {
+  std::array<std::vector<float>, C> row_means;
+  for (int y = 0; y < height_; ++y) {
+    Lanes sum{};
+    float used = 0.0F;
+    for (std::ptrdiff_t j = at(0, y); j < at(width_, y); ++j) {
+      if (!(inverse_[j] > 0.0F)) continue;
+      sum += lane_max(texels_[j].v, -texels_[j].v);
+      used += 1.0F;
+    }
+    for (int c = 0; c < C && used > 0.0F; ++c) row_means[c].push_back(sum[c] / used);
+  }
+  Lanes typical{};
+  for (int c = 0; c < C; ++c) {
+    std::vector<float>& means = row_means[c];
+    if (means.empty()) continue;
+    const auto middle = means.begin() + static_cast<std::ptrdiff_t>(means.size() / 2);
+    std::nth_element(means.begin(), middle, means.end());
+    typical[c] = *middle;
+  }
+  return typical;
 }
 
 template <int C>
 auto BilinearSystem<C>::solve(const SolveOptions& options, const Progress& progress) -> Solution {
   pull_to_means();
-  const Lanes tolerance = step_tolerance(options);
+  const Lanes typical = typical_values();
 
   // A row is relaxed while it or a row beside it still moves; the slot past the last row is for a
   // row that is not there. Rows of one colour, 0 and 1 in turn, are not beside each other, so they
@@ -229,7 +256,7 @@ auto BilinearSystem<C>::solve(const SolveOptions& options, const Progress& progr
   moves[height_] = 0;
   const auto relax = [&](int y) {
     if (moves[y] == 0 && moves[row_beside(y, -1)] == 0 && moves[row_beside(y, 1)] == 0) return;
-    moves[y] = relax_row(y, options, tolerance) ? 1 : 0;
+    moves[y] = relax_row(y, options, typical) ? 1 : 0;
   };
   const bool odd_ring = wrap_.v == Wrap::kRepeat && height_ > 1 && height_ % 2 == 1;
   const std::int64_t rows_of_colour[2] = {(height_ + 1) / 2 - (odd_ring ? 1 : 0), height_ / 2};

@@ -37,7 +37,10 @@ class BilinearSystem {
 
   struct SolveOptions {
     std::array<ValueRange, C> ranges;
-    // Stops when no texel moves by more than this, against the largest value of its channel.
+    // Whether the ranges of the first three channels are multiplied by a texel's fourth, its alpha.
+    bool ranges_times_alpha = false;
+    // Stops when no texel moves by more than this, against its own value or a typical one of its
+    // channel, whichever is larger.
     double tolerance = 1e-5;
     int max_sweeps = 300;
     int threads = 0;
@@ -70,9 +73,11 @@ class BilinearSystem {
   void pull_to_means();
   // The row below (step -1) or above (1), or the row of zeros where there is none.
   int row_beside(int y, int step) const;
-  // One step of every texel of a row; true where a channel moved by more than its tolerance.
-  bool relax_row(int y, const SolveOptions& options, Lanes tolerance);
-  Lanes step_tolerance(const SolveOptions& options) const;
+  // One step of every texel of a row; true where a channel moved by more than the tolerance.
+  bool relax_row(int y, const SolveOptions& options, Lanes typical);
+  // A typical value of each channel: the median over rows of the mean magnitude of the texels in
+  // use.
+  Lanes typical_values() const;
 
   int width_;
   int height_;

@@ -9,7 +9,8 @@
 #include <string>
 
 #include "prefilter/base/error.h"
-#include "prefilter/base/finite.h"
+#include "prefilter/base/filterable.h"
+#include "prefilter/base/text.h"
 #include "prefilter/mipmap/coverage.h"
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/mipmaps.h"
@@ -141,6 +142,7 @@ std::vector<double> measure(const std::vector<ImageView>& levels, const ImageVie
     }
   }
 
+  progress.report(1.0);
   std::vector<double> errors;
   for (const double mip_value : mip_values) {
     const double value = std::clamp(mip_value, 0.0, static_cast<double>(level_count - 1));
@@ -187,18 +189,18 @@ void check(const std::vector<ImageView>& levels, const ImageView& image,
 ImageView readable(const ImageView& view, const std::string& name,
                    const std::vector<const Surface*>& surfaces, WrapModes wrap,
                    const Progress& progress, int threads, Image* owner) {
-  if (all_finite(view, progress.part(0.0, 0.5), threads)) return view;
+  if (all_filterable(view, progress.part(0.0, 0.5), threads)) return view;
   const std::vector<unsigned char> read =
       looked_up_texels(surfaces, view.width, view.height, wrap, progress.part(0.5, 1.0), threads);
   *owner = Image(view);
   for (std::size_t i = 0; i < owner->data.size(); ++i) {
     float& value = owner->data[i];
-    if (std::isfinite(value)) continue;
+    if (is_filterable(value)) continue;
     const std::size_t texel = i / static_cast<std::size_t>(view.channels);
     if (read[texel] != 0) {
       throw_invalid(name + ": the texel in row " + std::to_string(texel / view.width) +
-                    ", column " + std::to_string(texel % view.width) + " holds " +
-                    std::to_string(value) + "; texels that the surface reads must be finite");
+                    ", column " + std::to_string(texel % view.width) + " holds " + to_text(value) +
+                    "; texels that the surface reads must be finite, and at most 1e30");
     }
     value = 0.0F;
   }
@@ -222,6 +224,7 @@ std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const Ima
   }
   const TexelTriangles triangles = map_to_texels(surfaces, image.width, image.height, wrap,
                                                  MassOf::kArea, progress.part(0.1, 0.15));
+  check_mapped(triangles);
   const auto run = [&]<int C>() {
     return measure<C>(views, readable_image, triangles, mip_values, wrap, progress.part(0.15, 1.0),
                       threads);

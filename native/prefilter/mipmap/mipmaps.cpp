@@ -4,14 +4,16 @@
 #include "prefilter/mipmap/mipmaps.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
 
 #include "prefilter/base/error.h"
-#include "prefilter/base/finite.h"
+#include "prefilter/base/filterable.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/base/text.h"
 #include "prefilter/filters/push_pull.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/coverage.h"
@@ -73,6 +75,12 @@ Kernel kernel_of(MipmapFilter filter) {
   }
 }
 
+[[noreturn]] void throw_outside() {
+  throw_invalid(
+      "surface: none of it lies inside of the image, and with the wrap mode border only what "
+      "does counts; use clamp or repeat, or move the uvs");
+}
+
 class Builder {
  public:
   Builder(const ImageView& image, const std::vector<const Surface*>& surfaces,
@@ -80,7 +88,7 @@ class Builder {
       : original_(image), surfaces_(surfaces), options_(options), image_(image) {
     level_count_ =
         options.levels > 0 ? options.levels : full_level_count(image.width, image.height);
-    straight_alpha_ = image.channels == 4 && !options.premultiplied;
+    straight_alpha_ = image.channels == 4 && !options.premultiplied && !opaque(image);
   }
 
   std::vector<Image> run() {
@@ -106,24 +114,32 @@ class Builder {
   }
 
  private:
+  static bool opaque(const ImageView& image) {
+    for (std::size_t i = 3; i < image.value_count(); i += 4) {
+      if (image.data[i] != 1.0F) return false;
+    }
+    return true;
+  }
+
   // Refuses a texel that counts and is not finite; one that does not count becomes 0.
   void check_texels() {
     if (reads_of(options_.filter) == Reads::kTouched) {
       covered_ = touched_texels(surfaces_, image_.width, image_.height, options_.wrap,
                                 options_.progress.part(0.0, 0.1), options_.threads);
+      if (std::find(covered_.begin(), covered_.end(), 1) == covered_.end()) throw_outside();
     }
-    if (all_finite(image_, options_.progress.part(0.1, 0.11), options_.threads)) return;
+    if (all_filterable(image_, options_.progress.part(0.1, 0.11), options_.threads)) return;
     const std::vector<unsigned char> read = read_texels();
     Image& copy = own_copy();
     for (std::size_t i = 0; i < read.size(); ++i) {
       float* texel = copy.data.data() + i * static_cast<std::size_t>(image_.channels);
       for (int c = 0; c < image_.channels; ++c) {
-        if (std::isfinite(texel[c])) continue;
+        if (is_filterable(texel[c])) continue;
         if (read[i] != 0) {
           const auto width = static_cast<std::size_t>(image_.width);
           throw_invalid("image: the texel in row " + std::to_string(i / width) + ", column " +
-                        std::to_string(i % width) + " holds " + std::to_string(texel[c]) +
-                        " in channel " + std::to_string(c) + "; texels that count must be finite");
+                        std::to_string(i % width) + " holds " + to_text(texel[c]) + " in channel " +
+                        std::to_string(c) + "; texels that count must be finite, and at most 1e30");
         }
         texel[c] = 0.0F;
       }
@@ -159,20 +175,39 @@ class Builder {
     return copy_;
   }
 
+  // Multiplies colours by alpha, and notes the range of the colours that are seen at all.
   void premultiply() {
     Image& copy = own_copy();
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    std::vector<std::array<ValueRange, 3>> rows(static_cast<std::size_t>(copy.height));
     parallel_for(copy.height, options_.threads, options_.progress.part(0.15, 0.16),
                  [&](std::int64_t y) {
+                   std::array<ValueRange, 3>& seen = rows[y];
+                   seen.fill({kInfinity, -kInfinity});
                    float* texel = copy.texel(0, static_cast<int>(y));
                    for (int x = 0; x < copy.width; ++x, texel += 4) {
-                     for (int c = 0; c < 3; ++c) texel[c] *= texel[3];
+                     texel[3] = std::clamp(texel[3], 0.0F, 1.0F);
+                     for (int c = 0; c < 3; ++c) {
+                       if (texel[3] > 0.0F) seen[c] = widened(seen[c], {texel[c], texel[c]});
+                       texel[c] *= texel[3];
+                     }
                    }
                  });
+    colours_.fill({kInfinity, -kInfinity});
+    for (const std::array<ValueRange, 3>& row : rows) {
+      for (int c = 0; c < 3; ++c) colours_[c] = widened(colours_[c], row[c]);
+    }
+  }
+
+  static ValueRange widened(const ValueRange& a, const ValueRange& b) {
+    return {std::min(a.low, b.low), std::max(a.high, b.high)};
   }
 
   TexelTriangles mapped(const Progress& progress) const {
-    return map_to_texels(surfaces_, image_.width, image_.height, options_.wrap, MassOf::kArea,
-                         progress);
+    TexelTriangles triangles = map_to_texels(surfaces_, image_.width, image_.height, options_.wrap,
+                                             MassOf::kArea, progress);
+    check_mapped(triangles);
+    return triangles;
   }
 
   int width(int level) const { return level_size(image_.width, level); }
@@ -283,7 +318,8 @@ class Builder {
         [&](const MomentBlock<C>& block) { systems[block.level - 1]->add(block); });
 
     typename BilinearSystem<C>::SolveOptions solve;
-    for (int c = 0; c < C; ++c) solve.ranges[c] = filtered_range(c);
+    for (int c = 0; c < C; ++c) solve.ranges[c] = solved_range(c);
+    solve.ranges_times_alpha = straight_alpha_;
     solve.threads = options_.threads;
     std::vector<Image> levels;
     double from = 0.5;
@@ -306,12 +342,17 @@ class Builder {
     return {options_.bounds.low.value_or(-kInfinity), options_.bounds.high.value_or(kInfinity)};
   }
 
-  // What a channel may be while it is filtered: a colour within the bounds times an alpha in [0,
-  // 1].
-  ValueRange filtered_range(int channel) const {
+  // What a channel may be while it is solved for. With straight alpha, a colour that is seen lies
+  // within the bounds and within the image's own range: it is the quotient of two solutions, and
+  // where little is covered a small error of either would make it anything.
+  ValueRange solved_range(int channel) const {
     if (!straight_alpha_) return bounds();
     if (channel == 3) return {0.0F, 1.0F};
-    return {std::min(bounds().low, 0.0F), std::max(bounds().high, 0.0F)};
+    const ValueRange limits = bounds();
+    const ValueRange& own = colours_[channel];
+    if (!(own.low <= own.high)) return {0.0F, 0.0F};
+    return {std::clamp(own.low, limits.low, limits.high),
+            std::clamp(own.high, limits.low, limits.high)};
   }
 
   void finish(Image* level) const {
@@ -325,13 +366,17 @@ class Builder {
   }
 
   void unpremultiply(Image* level) const {
-    // Below this, a colour would be mostly rounding.
-    constexpr float kLeastAlpha = 1e-5F;
+    // What is covered less than this cannot be seen, and its colour is mostly rounding.
+    constexpr float kLeastAlpha = 1e-3F;
     std::vector<float> weights(level->view().texel_count());
     for_each_texel(level, options_.progress.part(0.97, 0.98), [&](std::size_t i, float* texel) {
-      texel[3] = std::clamp(texel[3], 0.0F, 1.0F);
-      weights[i] = texel[3] > kLeastAlpha ? texel[3] : 0.0F;
-      for (int c = 0; c < 3; ++c) texel[c] = weights[i] > 0.0F ? texel[c] / texel[3] : 0.0F;
+      const float alpha = texel[3];
+      weights[i] = alpha > kLeastAlpha ? alpha : 0.0F;
+      for (int c = 0; c < 3; ++c) {
+        const float colour = weights[i] > 0.0F ? texel[c] / alpha : 0.0F;
+        texel[c] = std::min(std::max(colour, colours_[c].low), colours_[c].high);
+      }
+      texel[3] = std::clamp(alpha, 0.0F, 1.0F);
     });
     fill_holes(weights, options_.wrap, 3, options_.progress.part(0.97, 0.98), options_.threads,
                level);
@@ -345,6 +390,7 @@ class Builder {
   std::vector<unsigned char> covered_;
   int level_count_ = 0;
   bool straight_alpha_ = false;
+  std::array<ValueRange, 3> colours_{};  // of texels with alpha, before they are multiplied by it
 };
 
 void check_options(const ImageView& image, const std::vector<const Surface*>& surfaces,
@@ -356,12 +402,13 @@ void check_options(const ImageView& image, const std::vector<const Surface*>& su
                   " texels has 1 to " + std::to_string(full));
   }
   const Bounds& bounds = options.bounds;
-  if ((bounds.low && std::isnan(*bounds.low)) || (bounds.high && std::isnan(*bounds.high)) ||
-      (bounds.low && bounds.high && *bounds.low > *bounds.high)) {
-    throw_invalid("bounds: the low bound is " +
-                  (bounds.low ? std::to_string(*bounds.low) : "open") + " and the high bound is " +
-                  (bounds.high ? std::to_string(*bounds.high) : "open") +
-                  "; low must not be above high");
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const float low = bounds.low.value_or(-kInfinity);
+  const float high = bounds.high.value_or(kInfinity);
+  if (!(low <= high) || low == kInfinity || high == -kInfinity) {
+    throw_invalid("bounds: the low bound is " + (bounds.low ? to_text(*bounds.low) : "open") +
+                  " and the high bound is " + (bounds.high ? to_text(*bounds.high) : "open") +
+                  "; numbers are needed, and low must not be above high");
   }
   if (options.threads < 0) {
     throw_invalid("threads: " + std::to_string(options.threads) +
@@ -404,9 +451,13 @@ void check_surface_area(const std::vector<const Surface*>& surfaces) {
   double area = 0.0;
   for (const Surface* surface : surfaces) area += surface->total_area();
   if (!(area > 0.0) || !std::isfinite(area)) {
-    throw_invalid("surface: the triangles have an area of " + std::to_string(area) +
+    throw_invalid("surface: the triangles have an area of " + to_text(area) +
                   " in all; a positive, finite one is needed");
   }
+}
+
+void check_mapped(const TexelTriangles& triangles) {
+  if (!(triangles.total_mass > 0.0)) throw_outside();
 }
 
 std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,

@@ -8,6 +8,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
+#include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/surface/surface.h"
 
 namespace prefilter {
@@ -38,8 +39,9 @@ struct MipmapOptions {
   Bounds bounds;
   // How many levels to return, with level 0; 0 = down to 1 x 1.
   int levels = 0;
-  // False: the fourth of four channels is coverage and the others are not multiplied by it yet.
-  // They are multiplied, filtered and divided again. True: every channel is filtered as it stands.
+  // False: the fourth of four channels is coverage, in [0, 1], and the others are not multiplied by
+  // it yet. They are multiplied, filtered and divided again. True: every channel is filtered as it
+  // stands.
   bool premultiplied = false;
   int threads = 0;  // 0 = all processors
   Progress progress;
@@ -53,14 +55,18 @@ struct MipmapOptions {
 /// the levels they are filled by push-pull.
 ///
 /// Throws Error where a side is no power of two or less than 2, channels are not 1 to 4, levels or
-/// bounds are out of range, a filter that needs a surface gets none, no triangle has an area, or a
-/// texel that counts is not finite; and, from the progress callback, when cancelled.
+/// bounds are out of range, a filter that needs a surface gets none or none that lies inside of the
+/// image, no triangle has an area, or a texel that counts is not finite or beyond 1e30; and, from
+/// the progress callback, when cancelled.
 std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
                            const MipmapOptions& options);
 
 /// Throws Error unless the image has 1 to 4 channels and sides that are powers of two of at
 /// least 2.
 void check_mipmap_image(const ImageView& image);
+
+/// Throws Error unless some of the surface lies inside of the image.
+void check_mapped(const TexelTriangles& triangles);
 
 /// Throws Error unless the surfaces have a positive, finite area in all.
 void check_surface_area(const std::vector<const Surface*>& surfaces);

@@ -5,11 +5,14 @@
 #include <string>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/text.h"
 
 namespace prefilter {
 namespace {
 
 constexpr double kMaxTiles = 1 << 20;
+// Farther out, what lies inside of the image could not be told from rounding.
+constexpr double kMaxReach = 1 << 30;
 
 struct Extent {
   double low, high;
@@ -35,14 +38,15 @@ class Mapper final : public CellSink {
       return;
     }
     const double tiles = tile_count(u, wrap_.u) * tile_count(v, wrap_.v);
-    const double reach = std::max(repeated_reach(u, wrap_.u), repeated_reach(v, wrap_.v));
-    if (tiles > kMaxTiles || reach > kMaxTiles) {
-      throw_invalid("surface " + std::to_string(surface_index) + ", uvs: triangle " +
-                    std::to_string(triangle_index) + " spans u from " + std::to_string(u.low) +
-                    " to " + std::to_string(u.high) + " and v from " + std::to_string(v.low) +
-                    " to " + std::to_string(v.high) +
-                    "; a repeated texture may be met in at most 2^20 tiles, and no farther than "
-                    "2^20 tiles from the origin");
+    const double repeated = std::max(repeated_reach(u, wrap_.u), repeated_reach(v, wrap_.v));
+    const double reach = std::max({-u.low, u.high, -v.low, v.high});
+    if (tiles > kMaxTiles || repeated > kMaxTiles || reach > kMaxReach) {
+      throw_invalid(
+          "surface " + std::to_string(surface_index) + ", uvs: triangle " +
+          std::to_string(triangle_index) + " spans u from " + to_text(u.low) + " to " +
+          to_text(u.high) + " and v from " + to_text(v.low) + " to " + to_text(v.high) +
+          "; a repeated texture may be met in at most 2^20 tiles, up to 2^20 tiles from the "
+          "origin, and any other up to 2^30");
     }
     if (wrap_.u == Wrap::kRepeat && wrap_.v == Wrap::kRepeat) {
       const CellSpan columns = cell_span(u.low, u.high);

@@ -31,7 +31,9 @@ enum class MassOf {
 
 /// Carries surfaces into texel space. Triangles that leave the unit square are cut at tile lines
 /// and taken modulo (repeat), clamped to the square's edge, or dropped there (border), as a lookup
-/// would be. Throws Error where a triangle spans more than 2^20 tiles.
+/// would be.
+/// Throws Error where a triangle spans more than 2^20 tiles of a repeated texture, or lies farther
+/// out than 2^20 (repeat) or 2^30 tiles.
 TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int width, int height,
                              WrapModes wrap, MassOf mass_of, const Progress& progress);
 

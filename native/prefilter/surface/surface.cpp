@@ -5,6 +5,7 @@
 #include <string>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/text.h"
 
 namespace prefilter {
 namespace {
@@ -15,7 +16,7 @@ void check_finite(const double* values, std::size_t rows, std::size_t columns,
     if (!std::isfinite(values[i])) {
       std::string message = what;
       message += ": " + row_name + " " + std::to_string(i / columns) + " holds ";
-      message += std::to_string(values[i]) + "; all values must be finite";
+      message += to_text(values[i]) + "; all values must be finite";
       throw_invalid(message);
     }
   }

@@ -69,7 +69,9 @@ TEST(MapToTexels, RefusesTooManyTiles) {
   EXPECT_THROW(map(huge, Wrap::kRepeat, Wrap::kRepeat), Error);
   const Surface far = testing::one_triangle({{{1e12, 0}, {1e12, 1}, {1e12, 2}}});
   EXPECT_THROW(map(far, Wrap::kRepeat, Wrap::kClamp), Error);
-  EXPECT_NO_THROW(map(far, Wrap::kClamp, Wrap::kClamp));
+  EXPECT_THROW(map(far, Wrap::kClamp, Wrap::kClamp), Error);
+  const Surface away = testing::one_triangle({{{1e6, 0}, {1e9, 1}, {1e9, 2}}});
+  EXPECT_NO_THROW(map(away, Wrap::kClamp, Wrap::kClamp));
 }
 
 TEST(Coverage, KnowsTouchedTexelsWithoutArea) {

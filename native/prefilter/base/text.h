@@ -1,0 +1,16 @@
+// Numbers in messages.
+#pragma once
+
+#include <cstdio>
+#include <string>
+
+namespace prefilter {
+
+/// A number in as few characters as tell it: 0.25, 1e-09, nan.
+inline std::string to_text(double value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%g", value);
+  return buffer;
+}
+
+}  // namespace prefilter
