@@ -137,12 +137,15 @@ def test_whole_tiles_weigh_as_much_as_their_parts():
             assert np.abs(a - b).max() < 1e-4
 
 
-@pytest.mark.parametrize("paint", [np.nan, np.inf, -1e30, 1e30])
+@pytest.mark.parametrize("paint", [np.nan, np.inf, -1e30, 1e30, 1.0])
+@pytest.mark.parametrize("kind", ["colours", "alpha", "opaque"])
 @pytest.mark.parametrize("filter", COVERED + PAM)
-def test_unused_texels_have_no_influence_at_all(filter, paint):
+def test_unused_texels_have_no_influence_at_all(filter, kind, paint):
     charts = [square((0.1, 0.15), (0.43, 0.4)), square((0.6, 0.55), (0.8, 0.95), area=0.2)]
     mesh = join(*charts, soup([[(0.2, 0.7), (0.4, 0.9), (0.3, 0.8)]]))
-    image = random_image(7, 64, 64, 3)
+    image = random_image(7, 64, 64, 3 if kind == "colours" else 4) * np.float32(0.8)
+    if kind == "opaque":
+        image[..., 3] = 1
     uvs, _ = surface_samples(mesh, 400)
     used = np.zeros((64, 64), bool)
     taps, shares = bilinear_taps(uvs, 64, 64, CLAMP)
@@ -228,7 +231,7 @@ def test_straight_alpha_weighs_colours():
     painted = image.copy()
     painted[hidden, :3] = (1, 0, 1)
     seen = image[~hidden, :3].min(axis=0), image[~hidden, :3].max(axis=0)
-    mesh = random_soup(12, 10)
+    mesh = join(random_soup(12, 10), square())
     for filter in ALL:
         levels = prefilter.mipmaps(image, mesh.surface, filter=filter)
         others = prefilter.mipmaps(painted, mesh.surface, filter=filter)

@@ -88,12 +88,11 @@ class Builder {
       : original_(image), surfaces_(surfaces), options_(options), image_(image) {
     level_count_ =
         options.levels > 0 ? options.levels : full_level_count(image.width, image.height);
-    straight_alpha_ = image.channels == 4 && !options.premultiplied && !opaque(image);
   }
 
   std::vector<Image> run() {
     check_texels();
-    if (straight_alpha_) premultiply();
+    if (image_.channels == 4 && !options_.premultiplied) premultiply();
     std::vector<Image> levels;
     switch (reads_of(options_.filter)) {
       case Reads::kAll:
@@ -114,13 +113,6 @@ class Builder {
   }
 
  private:
-  static bool opaque(const ImageView& image) {
-    for (std::size_t i = 3; i < image.value_count(); i += 4) {
-      if (image.data[i] != 1.0F) return false;
-    }
-    return true;
-  }
-
   // Refuses a texel that counts and is not finite; one that does not count becomes 0.
   void check_texels() {
     if (reads_of(options_.filter) == Reads::kTouched) {
@@ -175,27 +167,38 @@ class Builder {
     return copy_;
   }
 
-  // Multiplies colours by alpha, and notes the range of the colours that are seen at all.
+  // Multiplies colours by alpha, and notes the range of the colours that are seen at all, unless
+  // every texel that counts is opaque.
   void premultiply() {
+    const auto opaque = [this](std::size_t i) { return image_.data[4 * i + 3] == 1.0F; };
+    std::size_t i = 0;
+    while (i < image_.texel_count() && opaque(i)) ++i;
+    if (i == image_.texel_count()) return;
+    const std::vector<unsigned char> read = read_texels();
+    while (i < read.size() && (read[i] == 0 || opaque(i))) ++i;
+    if (i == read.size()) return;
+
+    straight_alpha_ = true;
     Image& copy = own_copy();
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    constexpr ValueRange kNothing = {kInfinity, -kInfinity};
     std::vector<std::array<ValueRange, 3>> rows(static_cast<std::size_t>(copy.height));
-    parallel_for(copy.height, options_.threads, options_.progress.part(0.15, 0.16),
-                 [&](std::int64_t y) {
-                   std::array<ValueRange, 3>& seen = rows[y];
-                   seen.fill({kInfinity, -kInfinity});
-                   float* texel = copy.texel(0, static_cast<int>(y));
-                   for (int x = 0; x < copy.width; ++x, texel += 4) {
-                     texel[3] = std::clamp(texel[3], 0.0F, 1.0F);
-                     for (int c = 0; c < 3; ++c) {
-                       if (texel[3] > 0.0F) seen[c] = widened(seen[c], {texel[c], texel[c]});
-                       texel[c] *= texel[3];
-                     }
-                   }
-                 });
-    colours_.fill({kInfinity, -kInfinity});
+    for (std::array<ValueRange, 3>& row : rows) row.fill(kNothing);
+    const auto width = static_cast<std::size_t>(copy.width);
+    for_each_texel(&copy, options_.progress.part(0.15, 0.16), [&](std::size_t at, float* texel) {
+      texel[3] = std::clamp(texel[3], 0.0F, 1.0F);
+      for (int c = 0; c < 3; ++c) {
+        ValueRange& seen = rows[at / width][c];
+        if (texel[3] > 0.0F && read[at] != 0) seen = widened(seen, {texel[c], texel[c]});
+        texel[c] *= texel[3];
+      }
+    });
+    colours_.fill(kNothing);
     for (const std::array<ValueRange, 3>& row : rows) {
       for (int c = 0; c < 3; ++c) colours_[c] = widened(colours_[c], row[c]);
+    }
+    for (ValueRange& own : colours_) {
+      if (!(own.low <= own.high)) own = {0.0F, 0.0F};
     }
   }
 
@@ -350,7 +353,6 @@ class Builder {
     if (channel == 3) return {0.0F, 1.0F};
     const ValueRange limits = bounds();
     const ValueRange& own = colours_[channel];
-    if (!(own.low <= own.high)) return {0.0F, 0.0F};
     return {std::clamp(own.low, limits.low, limits.high),
             std::clamp(own.high, limits.low, limits.high)};
   }
