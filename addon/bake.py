@@ -3,16 +3,20 @@
 The operator and the command are two ways to call this.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+import re
+from collections.abc import Callable, Iterable, Sequence, Sized
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 import prefilter
 
 from .bridge import files, images, meshes
 from .bridge.images import FloatArray, Picture
+from .wording import listed
 
 FAILURES = (ValueError, OSError, MemoryError)
 """What a bake raises for a reason that the user can act on."""
@@ -63,6 +67,7 @@ BOUNDS = {
     "none": Choice("None", "Values may leave the range of the image"),
 }
 
+_FILTERED = 0.9  # What the progress is once the levels are filtered.
 _LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
 _WRAP_OF_EXTENSION = {
     "REPEAT": "repeat",
@@ -159,6 +164,7 @@ class Bake:
         if target is None and not settings.use_images:
             raise ValueError("nothing to write: neither level images nor a file are asked for")
         picture = images.read(image)
+        _check_levels(picture, settings.levels)
         found = meshes.image_surfaces(objects, image, depsgraph, all_faces=all_faces)
         if not found.surfaces and settings.filter not in TEXTURE_SPACE_FILTERS:
             raise ValueError(_no_surface(image, objects, found.problems))
@@ -178,48 +184,57 @@ class Bake:
             OSError: The file cannot be written.
         """
         settings = self._settings
-        linear = images.scene_linear(self._picture)
-        levels = prefilter.mipmaps(
-            linear,
-            self._surfaces or None,
-            filter=settings.filter,
-            wrap=self._wrap,
-            bounds=self._bounds(linear),
-            levels=None if self._target is not None else settings.levels or None,
-            premultiplied=not self._picture.alpha_is_straight,
-            progress=lambda fraction: progress(0.9 * fraction),
-            threads=settings.threads,
-        )
-        if settings.levels > len(levels):
-            height, width = linear.shape[:2]
-            raise ValueError(
-                f"levels: found {settings.levels}; an image of {width} x {height} has 1 to "
-                f"{len(levels)}"
+        linear = images.scene_linear(self._picture, partial(_go_on, progress, 0.0))
+        try:
+            levels = prefilter.mipmaps(
+                linear,
+                self._surfaces or None,
+                filter=settings.filter,
+                wrap=self._wrap,
+                bounds=self._bounds(linear),
+                levels=None if self._target is not None else settings.levels or None,
+                premultiplied=not self._picture.alpha_is_straight,
+                progress=lambda fraction: progress(_FILTERED * fraction),
+                threads=settings.threads,
             )
-        stored = [images.encoded(self._picture, level) for level in levels[1:]]
+        except ValueError as error:
+            raise ValueError(_naming_objects(str(error), self._objects)) from error
+        check = partial(_go_on, progress, _FILTERED)
+        stored = [images.encoded(self._picture, level, check) for level in levels[1:]]
         stored.insert(0, self._picture.stored)
         if self._target is not None:
             levels[0] = linear
-            self._staged = files.stage(self._target, self._picture, levels, stored, self._wrap)
+            self._staged = files.stage(
+                self._target, self._picture, levels, stored, self._wrap, check
+            )
         self._levels = stored[1 : settings.levels or None]
-        if not progress(1.0):
+        try:
+            _go_on(progress, 1.0)
+        except BaseException:
             self.discard()
-            raise prefilter.Cancelled("cancelled")
+            raise
 
     def write(self) -> Outcome:
         """Puts the file into place and writes the level images.
 
         Raises:
-            OSError: The file cannot be put into place; nothing was written then.
+            OSError: The file cannot be put into place, or an image cannot be made; nothing was
+                written then.
         """
+        levels = self._levels if self._settings.use_images else []
         try:
-            if self._staged is not None:
-                self._staged.commit()
+            staged_levels = images.stage_levels(self._picture, levels)
+            try:
+                if self._staged is not None:
+                    self._staged.commit()
+            except BaseException:
+                staged_levels.discard()
+                raise
         finally:
             self.discard()
-        names: list[str] = []
-        if self._settings.use_images:
-            names = images.write_levels(self._picture, self._levels)
+        names = staged_levels.commit()
+        if any(name != f"{self.image_name}.mip{i}" for i, name in enumerate(names, start=1)):
+            self.warnings.append(f"the level images are named {listed(names)}")
         return Outcome(self._summary(names), names, str(self._target or ""), self.warnings)
 
     def discard(self) -> None:
@@ -245,14 +260,16 @@ class Bake:
     def _bounds(self, linear: FloatArray) -> tuple[float | None, float | None] | None:
         if self._settings.bounds != "auto":
             return _LIMITS[self._settings.bounds]
-        low = 0.0 if linear.min() >= 0.0 else None
-        high = 1.0 if not self._picture.is_float and linear.max() <= 1.0 else None
+        finite = np.isfinite(linear)
+        low = 0.0 if linear.min(where=finite, initial=0.0) >= 0.0 else None
+        within_one = linear.max(where=finite, initial=0.0) <= 1.0
+        high = 1.0 if not self._picture.is_float and within_one else None
         return low, high
 
     def _summary(self, names: Sequence[str]) -> str:
         parts = [f"Baked '{self.image_name}' with {FILTERS[self._settings.filter].label}"]
         if self._surfaces:
-            parts.append(f"over {_count(self._objects, 'object')}")
+            parts.append(f"over {_count(set(self._objects), 'object')}")
         results = []
         if names:
             results.append(_count(names, "level image"))
@@ -277,6 +294,30 @@ def bake(
     return job.write()
 
 
+def _check_levels(picture: Picture, levels: int) -> None:
+    height, width = picture.stored.shape[:2]
+    full = max(width, height).bit_length()
+    if levels > full:
+        raise ValueError(f"levels: found {levels}; an image of {width} x {height} has 1 to {full}")
+
+
+def _go_on(progress: Progress, fraction: float) -> None:
+    if not progress(fraction):
+        raise prefilter.Cancelled("cancelled")
+
+
+def _naming_objects(message: str, objects: Sequence[str]) -> str:
+    """Returns a message of the library, with objects in the place of its surfaces."""
+    one = re.match(r"surface (\d+)\b", message)
+    if one and int(one[1]) < len(objects):
+        return f"object '{objects[int(one[1])]}'{message[one.end() :]}"
+    if message.startswith("surface:") and objects:
+        names = list(dict.fromkeys(objects))
+        noun = "object" if len(names) == 1 else "objects"
+        return f"{noun} {listed(names)}: {message.removeprefix('surface:').lstrip()}"
+    return message
+
+
 def _no_surface(
     image: bpy.types.Image, objects: Iterable[bpy.types.Object], problems: Sequence[str]
 ) -> str:
@@ -289,5 +330,5 @@ def _no_surface(
     return f"{start}; no material on a face of a mesh uses it, among {found}"
 
 
-def _count(things: Sequence[str], noun: str) -> str:
+def _count(things: Sized, noun: str) -> str:
     return f"{len(things)} {noun}{'' if len(things) == 1 else 's'}"

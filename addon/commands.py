@@ -12,6 +12,7 @@ import bpy
 from . import bake
 from .bake import Choice
 from .bridge import files, images, meshes
+from .wording import listed
 
 _PROGRAM = "blender --background --command prefilter"
 
@@ -217,8 +218,9 @@ def _chosen(objects: list[bpy.types.Object], names: Sequence[str]) -> list[bpy.t
     by_name = {obj.name: obj for obj in objects}
     for name in names:
         if name not in by_name:
-            known = ", ".join(f"'{known}'" for known in by_name)
-            raise ValueError(f"--object: found no mesh named '{name}'; the file has {known}")
+            raise ValueError(
+                f"--object: found no mesh named '{name}'; the file has {listed(by_name)}"
+            )
     return [by_name[name] for name in names] if names else objects
 
 
@@ -238,7 +240,7 @@ def _only_image(objects: Sequence[bpy.types.Object]) -> bpy.types.Image:
     used = meshes.images_of_objects(objects)
     if len(used) == 1:
         return used[0]
-    found = ", ".join(f"'{image.name}'" for image in used) or "none"
+    found = listed(image.name for image in used) or "none"
     raise ValueError(f"--image: needed, as the meshes use {found}")
 
 

@@ -9,6 +9,7 @@ A file always holds every level down to 1 x 1, in tiles of 64 x 64.
 
 import os
 import secrets
+import shutil
 import stat
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,7 +33,9 @@ class StagedFile:
     target: Path
 
     def commit(self) -> None:
-        """Renames the file into place."""
+        """Renames the file into place; it gets the mode of a file that it replaces."""
+        if self.target.exists():
+            shutil.copymode(self.target, self.temporary)
         os.replace(self.temporary, self.target)
 
     def discard(self) -> None:
@@ -41,13 +44,13 @@ class StagedFile:
 
 
 def check_target(path: str) -> Path:
-    """Returns the absolute path of a texture file that can be written.
+    """Returns the absolute path of a texture file that can be written, symbolic links resolved.
 
     Raises:
         ValueError: The name does not end in a known extension.
         OSError: The folder is missing, or the file or its folder is read-only.
     """
-    target = Path(path).absolute()
+    target = Path(os.path.realpath(path))
     if target.suffix.lower() not in _FORMATS:
         raise ValueError(
             f"file '{path}': found extension '{target.suffix}'; allowed are {', '.join(_FORMATS)}"
@@ -77,6 +80,7 @@ def stage(
     linear_levels: Sequence[FloatArray],
     stored_levels: Sequence[FloatArray],
     wrap: tuple[str, str],
+    check: openimageio.Check,
     *,
     half: bool = True,
 ) -> StagedFile:
@@ -88,6 +92,7 @@ def stage(
         linear_levels: Every level, scene-linear, row 0 at the bottom.
         stored_levels: The same levels in the encoding of the picture.
         wrap: Wrap modes in u and v.
+        check: Called before each level.
         half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
 
     Raises:
@@ -97,17 +102,18 @@ def stage(
     keep_bytes = file_format == "tiff" and not picture.is_float
     levels = stored_levels if keep_bytes else linear_levels
     float_type = "half" if file_format == "openexr" and half else "float"
-    name = f".{target.stem}.{secrets.token_hex(4)}{target.suffix}"
+    name = f".prefilter-{secrets.token_hex(4)}{target.suffix}"
     staged = StagedFile(target.with_name(name), target)
     try:
         openimageio.write_texture(
-            str(staged.temporary),
+            staged.temporary,
             [_file_pixels(picture, level) for level in levels],
             file_format=file_format,
             pixel_type="uint8" if keep_bytes else float_type,
             color_space=_color_space(picture, keep_bytes),
             wrap_modes=",".join(_WRAP_MODES[mode] for mode in wrap),
             has_alpha=picture.alpha_is_coverage,
+            check=check,
         )
     except BaseException:
         staged.discard()

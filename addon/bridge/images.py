@@ -10,7 +10,9 @@ Alpha is coverage unless the alpha mode is Channel Packed or None or the colour 
 the four channels are independent.
 """
 
+import hashlib
 import os
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -20,7 +22,9 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
+from ..wording import listed
 from . import openimageio
+from .openimageio import Check
 
 FloatArray = NDArray[np.float32]
 
@@ -36,7 +40,10 @@ _KIND_OF_TYPE = {
     "COMPOSITING": "a compositor result",
 }
 _LINEAR_REC709_NAMES = frozenset({"Linear", "Linear Rec.709"})
-_MAX_NAME_BYTES = 63
+# Blender's limit is 63 bytes; this leaves room for the .001 of a name that is taken.
+_MAX_NAME_BYTES = 59
+_HASH_DIGITS = 8
+_SOURCE_KEY = "prefilter_level_of"
 
 
 class Encoding(Enum):
@@ -53,6 +60,7 @@ class Picture:
 
     Attributes:
         name: The datablock's name.
+        full_name: The name, and the file that the datablock is linked from.
         stored: (height, width, 3 or 4) values as Blender keeps them, row 0 at the bottom. An alpha
             that is 1 everywhere is left out.
         is_float: Whether the datablock holds floats instead of bytes.
@@ -65,6 +73,7 @@ class Picture:
     """
 
     name: str
+    full_name: str
     stored: FloatArray
     is_float: bool
     encoding: Encoding
@@ -94,7 +103,7 @@ def find(name: str) -> bpy.types.Image:
     """
     image = bpy.data.images.get(name)
     if image is None:
-        known = ", ".join(f"'{other.name}'" for other in bpy.data.images) or "no image"
+        known = listed(other.name for other in bpy.data.images) or "no image"
         raise ValueError(f"image: found no image named '{name}'; this file has {known}")
     return image
 
@@ -111,8 +120,7 @@ def read(image: bpy.types.Image) -> Picture:
     width, height = image.size
     count = len(image.pixels)
     if width == 0 or height == 0 or count == 0:
-        path = f" (file '{image.filepath}')" if image.filepath else ""
-        raise ValueError(f"image '{image.name}': found no pixels{path}; is its file missing?")
+        raise ValueError(f"image '{image.name}': {_why_empty(image)}")
     pixels = np.empty(count, np.float32)
     image.pixels.foreach_get(pixels)
     stored = pixels.reshape(height, width, count // (width * height))
@@ -122,6 +130,7 @@ def read(image: bpy.types.Image) -> Picture:
     linear_space = _scene_linear_name()
     return Picture(
         name=image.name,
+        full_name=image.name_full,
         stored=stored,
         is_float=image.is_float,
         encoding=_encoding(image, linear_space),
@@ -133,32 +142,76 @@ def read(image: bpy.types.Image) -> Picture:
     )
 
 
-def scene_linear(picture: Picture) -> FloatArray:
+def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:
     """Returns the picture's values as light, with alpha as it is stored.
+
+    Args:
+        picture: The picture.
+        check: Called between the parts of a conversion that takes long.
 
     Raises:
         ValueError: The colour space cannot be decoded.
         OSError: It needs OpenImageIO's Python module, which is missing.
     """
-    return _convert(picture, picture.stored, decode=True)
+    return _convert(picture, picture.stored, check, decode=True)
 
 
-def encoded(picture: Picture, linear: FloatArray) -> FloatArray:
+def encoded(picture: Picture, linear: FloatArray, check: Check = lambda: None) -> FloatArray:
     """Returns scene-linear values as `picture` stores them: the inverse of `scene_linear`.
+
+    Args:
+        picture: What says how.
+        linear: The values.
+        check: Called between the parts of a conversion that takes long.
 
     Raises:
         ValueError: The colour space cannot be encoded.
         OSError: It needs OpenImageIO's Python module, which is missing.
     """
-    return _convert(picture, linear, decode=False)
+    return _convert(picture, linear, check, decode=False)
 
 
-def write_levels(picture: Picture, levels: Sequence[FloatArray]) -> list[str]:
-    """Writes levels 1 and up as packed image datablocks named `<image>.mip1`, `<image>.mip2` ...
+@dataclass(frozen=True)
+class StagedLevels:
+    """Level images that are finished, and replace none yet.
 
-    An image that already has such a name is updated in place, so that materials that show it stay
-    linked. Deeper levels of an earlier bake are left as they are. Every image keeps a fake user, as
-    Blender saves no unused datablock.
+    Attributes:
+        picture: Level 0.
+        images: Levels 1, 2, ...
+    """
+
+    picture: Picture
+    images: list[bpy.types.Image]
+
+    def commit(self) -> list[str]:
+        """Gives the images their names, and puts each in the place of that of an earlier bake.
+
+        Returns:
+            The names of the images. One that belongs to another image gets a number behind it.
+        """
+        for number, image in enumerate(self.images, start=1):
+            name = level_name(self.picture.name, number)
+            earlier = _earlier_level(name, self.picture)
+            image[_SOURCE_KEY] = self.picture.full_name
+            if earlier is not None:
+                earlier.user_remap(image)
+                bpy.data.images.remove(earlier)
+            image.name = name
+        return [image.name for image in self.images]
+
+    def discard(self) -> None:
+        """Removes the images."""
+        for image in self.images:
+            bpy.data.images.remove(image)
+        self.images.clear()
+
+
+def stage_levels(picture: Picture, levels: Sequence[FloatArray]) -> StagedLevels:
+    """Makes packed image datablocks of levels, to be named `<image>.mip1`, `<image>.mip2` ...
+
+    An image of an earlier bake is replaced, so that materials that showed it show the new one.
+    Deeper levels of an earlier bake are left as they are. Every image keeps a fake user, as Blender
+    saves no unused datablock.
 
     A byte level has the picture's colour space, and straight alpha where the picture's is
     Premultiplied. A float level is scene-linear (or data, like the picture), with associated alpha.
@@ -169,33 +222,51 @@ def write_levels(picture: Picture, levels: Sequence[FloatArray]) -> list[str]:
         picture: Level 0.
         levels: Levels 1, 2, ... in the encoding of `picture.stored`.
 
-    Returns:
-        The names of the images.
+    Raises:
+        OSError: A level cannot be made; no image is left behind.
     """
-    if not picture.is_float:
-        colorspace = picture.colorspace
-        alpha_mode = "STRAIGHT" if picture.alpha_mode == "PREMUL" else picture.alpha_mode
-    else:
-        colorspace = picture.colorspace if picture.is_data else picture.linear_space
-        alpha_mode = "PREMUL" if picture.alpha_mode == "STRAIGHT" else picture.alpha_mode
-    names = []
-    for number, level in enumerate(levels, start=1):
-        height, width = level.shape[:2]
-        image = _level_image(level_name(picture.name, number), width, height, picture.is_float)
-        image.colorspace_settings.name = colorspace
-        image.alpha_mode = alpha_mode
-        image.pixels.foreach_set(_with_alpha(level).ravel())
-        image.update()
-        image.pack()
-        names.append(image.name)
-    return names
+    staged = StagedLevels(picture, [])
+    try:
+        for number, level in enumerate(levels, start=1):
+            height, width = level.shape[:2]
+            image = bpy.data.images.new(
+                level_name(picture.name, number),
+                width,
+                height,
+                alpha=True,
+                float_buffer=picture.is_float,
+            )
+            staged.images.append(image)
+            _fill_level(image, picture, level)
+    except RuntimeError as error:
+        staged.discard()
+        raise OSError(f"image '{picture.name}': cannot make level {number}: {error}") from error
+    except BaseException:
+        staged.discard()
+        raise
+    return staged
 
 
 def level_name(image_name: str, number: int) -> str:
-    """Returns the name of the image that holds a level; the base is cut to fit Blender's limit."""
+    """Returns the name of the image that holds a level.
+
+    A base that is too long is cut, and gets a hash of what it was.
+    """
     suffix = f".mip{number}"
-    base = image_name.encode()[: _MAX_NAME_BYTES - len(suffix)].decode(errors="ignore")
-    return base + suffix
+    base = image_name.encode()
+    if len(base) + len(suffix) <= _MAX_NAME_BYTES:
+        return image_name + suffix
+    suffix = f"~{hashlib.sha256(base).hexdigest()[:_HASH_DIGITS]}{suffix}"
+    return base[: _MAX_NAME_BYTES - len(suffix)].decode(errors="ignore") + suffix
+
+
+def _why_empty(image: bpy.types.Image) -> str:
+    if not image.filepath:
+        return "found no pixels"
+    path = bpy.path.abspath(image.filepath, library=image.library)
+    if os.path.isfile(path):
+        return f"found no pixels; its file '{path}' cannot be read as a picture"
+    return f"found no pixels (file '{image.filepath}'); is its file missing?"
 
 
 def _encoding(image: bpy.types.Image, linear_space: str) -> Encoding:
@@ -207,7 +278,7 @@ def _encoding(image: bpy.types.Image, linear_space: str) -> Encoding:
     return Encoding.OCIO
 
 
-def _convert(picture: Picture, pixels: FloatArray, *, decode: bool) -> FloatArray:
+def _convert(picture: Picture, pixels: FloatArray, check: Check, *, decode: bool) -> FloatArray:
     if picture.encoding is Encoding.NONE:
         return pixels
     if picture.encoding is Encoding.SRGB:
@@ -216,7 +287,7 @@ def _convert(picture: Picture, pixels: FloatArray, *, decode: bool) -> FloatArra
     source, target = spaces if decode else reversed(spaces)
     colors = np.ascontiguousarray(pixels[..., :3])
     try:
-        converted = openimageio.color_convert(colors, source, target, picture.ocio_config)
+        converted = openimageio.color_convert(colors, source, target, picture.ocio_config, check)
     except ValueError as error:
         raise ValueError(
             f"image '{picture.name}': cannot convert its colour space '{picture.colorspace}': "
@@ -241,16 +312,31 @@ def _scene_linear_name() -> str:
         bpy.data.images.remove(probe)
 
 
-def _level_image(name: str, width: int, height: int, is_float: bool) -> bpy.types.Image:
-    image = next((i for i in bpy.data.images if i.name == name and i.library is None), None)
-    if image is None:
-        image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
-    image.source = "GENERATED"
-    image.generated_width = width
-    image.generated_height = height
-    image.use_generated_float = is_float
+def _fill_level(image: bpy.types.Image, picture: Picture, level: FloatArray) -> None:
+    if not picture.is_float:
+        image.colorspace_settings.name = picture.colorspace
+        image.alpha_mode = "STRAIGHT" if picture.alpha_mode == "PREMUL" else picture.alpha_mode
+    else:
+        space = picture.colorspace if picture.is_data else picture.linear_space
+        image.colorspace_settings.name = space
+        image.alpha_mode = "PREMUL" if picture.alpha_mode == "STRAIGHT" else picture.alpha_mode
     image.use_fake_user = True
-    return image
+    image.pixels.foreach_set(_with_alpha(level).ravel())
+    image.update()
+    image.pack()
+
+
+def _earlier_level(name: str, picture: Picture) -> bpy.types.Image | None:
+    """Returns the image of that name, or of that name and a number, that a bake made before."""
+    form = re.compile(re.escape(name) + r"(\.\d{3,})?")
+    found = [
+        image
+        for image in bpy.data.images
+        if image.library is None
+        and form.fullmatch(image.name)
+        and image.get(_SOURCE_KEY) == picture.full_name
+    ]
+    return min(found, key=lambda image: image.name, default=None)
 
 
 def _with_alpha(pixels: FloatArray) -> FloatArray:

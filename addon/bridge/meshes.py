@@ -21,7 +21,7 @@ class ImageSurfaces:
 
     Attributes:
         surfaces: One for each object and each way in which its materials sample the image.
-        objects: The names of the objects that they come from.
+        objects: The name of the object that each surface comes from.
         extensions: What the Image Texture nodes do outside of the image, most common first.
         problems: What was left out and why.
     """
@@ -115,8 +115,7 @@ def _add_object(
                 continue
             found.surfaces.append(_surface(obj.name, triangles, chosen, layer, use))
             found.extensions.append(use.extension)
-            if obj.name not in found.objects:
-                found.objects.append(obj.name)
+            found.objects.append(obj.name)
 
 
 @contextmanager

@@ -4,8 +4,9 @@ Official Blender builds carry it. A second copy of the library inside Blender's 
 source of crashes, so the add-on brings none.
 """
 
+import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -16,6 +17,13 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float32]
 
 TILE_SIZE = 64
+
+Check = Callable[[], None]
+"""Called between the steps of long work; raises to end it."""
+
+_PIXELS_A_BAND = 1 << 20
+_PATH_SEPARATOR = ";"
+_PLACEHOLDER = "%"
 
 
 def module() -> ModuleType:
@@ -34,23 +42,38 @@ def module() -> ModuleType:
     return OpenImageIO
 
 
-def color_convert(colors: FloatArray, source: str, target: str, config: str) -> FloatArray:
+def color_convert(
+    colors: FloatArray, source: str, target: str, config: str, check: Check
+) -> FloatArray:
     """Converts (h, w, 3) colours between two spaces of an OpenColorIO configuration.
+
+    Args:
+        colors: The colours.
+        source: The space that they are in.
+        target: The space to convert them to.
+        config: Path of the configuration.
+        check: Called between bands of rows.
 
     Raises:
         ValueError: A space is unknown to the configuration, or it cannot be read.
     """
     oiio = module()
-    result = oiio.ImageBufAlgo.colorconvert(
-        oiio.ImageBuf(colors), source, target, unpremult=False, colorconfig=config
-    )
-    if result.has_error:
-        raise ValueError(f"{result.geterror()} (configuration '{config}')")
-    return result.get_pixels("float")
+    converted = np.empty_like(colors)
+    rows = max(1, _PIXELS_A_BAND // colors.shape[1])
+    for start in range(0, len(colors), rows):
+        check()
+        band = slice(start, start + rows)
+        result = oiio.ImageBufAlgo.colorconvert(
+            oiio.ImageBuf(colors[band]), source, target, unpremult=False, colorconfig=config
+        )
+        if result.has_error:
+            raise ValueError(f"{result.geterror()} (configuration '{config}')")
+        converted[band] = result.get_pixels("float")
+    return converted
 
 
 def write_texture(
-    path: str,
+    path: Path,
     levels: Sequence[FloatArray],
     *,
     file_format: str,
@@ -58,6 +81,7 @@ def write_texture(
     color_space: str,
     wrap_modes: str,
     has_alpha: bool,
+    check: Check,
 ) -> None:
     """Writes levels, rows from the top, as a tiled mip-mapped texture.
 
@@ -66,26 +90,27 @@ def write_texture(
     the writer is destroyed, and the Python object does not own it.
 
     Args:
-        path: The file; replaced where it exists.
+        path: The file; replaced where it exists. A failure may leave a part of it.
         levels: (h, w, c) arrays from the full size down to 1 x 1.
         file_format: "openexr" or "tiff".
         pixel_type: "uint8", "half" or "float".
         color_space: What to say in `oiio:ColorSpace`.
         wrap_modes: What to say in `wrapmodes`, such as "periodic,clamp".
         has_alpha: Whether a fourth channel is alpha, or one more independent channel.
+        check: Called before each level.
 
     Raises:
         OSError: The file cannot be written.
     """
     oiio = module()
-    with tempfile.TemporaryDirectory(prefix="prefilter-") as folder:
+    with tempfile.TemporaryDirectory(prefix="prefilter-", dir=_work_folder(path)) as folder:
         level_files = []
         for number, level in enumerate(levels[1:], start=1):
+            check()
             level_file = str(Path(folder) / f"{number}.tif")
-            buffer = _buffer(level, has_alpha)
-            if not buffer.write(level_file):
-                raise OSError(f"cannot write level {number} to '{level_file}': {buffer.geterror()}")
+            _write_level(level_file, _buffer(level, has_alpha), number)
             level_files.append(level_file)
+        check()
 
         config = oiio.ImageSpec()
         config.set_format(pixel_type)
@@ -95,11 +120,38 @@ def write_texture(
         config.attribute("oiio:ColorSpace", color_space)
         config.attribute("wrapmodes", wrap_modes)
         config.attribute("maketx:fileformatname", file_format)
-        config.attribute("maketx:mipimages", ";".join(level_files))
+        config.attribute("maketx:mipimages", _PATH_SEPARATOR.join(level_files))
 
         full = _buffer(levels[0], has_alpha)
-        if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, path, config):
-            raise OSError(f"cannot write '{path}': {oiio.geterror()}")
+        made = str(Path(folder) / f"texture{path.suffix}")
+        if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, made, config):
+            raise OSError(f"cannot write '{made}': {oiio.geterror()}")
+        shutil.move(made, path)
+
+
+def _work_folder(path: Path) -> str:
+    """Returns a folder for temporary files whose path the texture maker does not misread.
+
+    It gets the paths of all levels in one string, and puts digits for the '%' in a path.
+    """
+    folders = (tempfile.gettempdir(), str(path.parent))
+    for folder in folders:
+        if _PATH_SEPARATOR not in folder and _PLACEHOLDER not in folder:
+            return folder
+    found = " and ".join(f"'{folder}'" for folder in folders)
+    raise OSError(
+        f"no folder for temporary files: found {found}, and one without ';' and '%' is needed"
+    )
+
+
+def _write_level(path: str, buffer: Any, number: int) -> None:
+    """Writes a level and opens it again: the texture maker aborts the process if it cannot."""
+    if not buffer.write(path):
+        raise OSError(f"cannot write level {number} to '{path}': {buffer.geterror()}")
+    reader = module().ImageInput.open(path)
+    if reader is None:
+        raise OSError(f"cannot read level {number} back from '{path}': {module().geterror()}")
+    reader.close()
 
 
 def _buffer(pixels: FloatArray, has_alpha: bool) -> Any:

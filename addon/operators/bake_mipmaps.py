@@ -71,11 +71,11 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
             self._bake = self._read(context)
         except bake.FAILURES as error:
             return self._fail(error)
+        self._job = Job(self._bake.compute)
+        PREFILTER_OT_bake_mipmaps._running = True
         manager = context.window_manager
         manager.progress_begin(0, 100)
         self._timer = manager.event_timer_add(_TICK_SECONDS, window=context.window)
-        self._job = Job(self._bake.compute)
-        PREFILTER_OT_bake_mipmaps._running = True
         manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -109,14 +109,15 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """Stops the thread when Blender ends the operator, such as for another file."""
         self._job.cancel()
-        self._leave(context)
         try:
             self._job.result()
         except prefilter.Cancelled:
-            return
+            pass
         except bake.FAILURES as error:
             self.report({"WARNING"}, str(error))
-        self._bake.discard()
+        finally:
+            self._bake.discard()
+            self._leave(context)
 
     def _read(self, context: bpy.types.Context) -> bake.Bake:
         if self.image:
@@ -144,4 +145,5 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
         PREFILTER_OT_bake_mipmaps._running = False
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)

@@ -166,6 +166,17 @@ def test_bounds(bake, calls, is_float, low, colorspace, bounds, expected):
     assert calls[0]["bounds"] == expected
 
 
+def test_values_that_are_not_finite_leave_the_bounds(bake, calls):
+    values = scenes.noise(4, 4)
+    values[0, 0, 0] = float("nan")
+    values[0, 0, 1] = -float("inf")
+    image = scenes.image("Light", values, is_float=True)
+    half = scenes.quads("Half", [((0, 0.6), (1, 0.6), (1, 0.9), (0, 0.9))])
+    half.data.materials.append(scenes.material("Cloth", image))
+    bake(image, [half], filter="pam-box", wrap="clamp", levels=2)
+    assert calls[0]["bounds"] == (0, None)
+
+
 def test_levels_limit_the_images_and_not_the_file(bake, tmp_path):
     path = tmp_path / "out.exr"
     image = scenes.image("Paint", scenes.noise(16, 16))
@@ -177,11 +188,12 @@ def test_levels_limit_the_images_and_not_the_file(bake, tmp_path):
 
 
 @pytest.mark.parametrize("filepath", ["", "out.exr"])
-def test_too_many_levels(bake, tmp_path, filepath):
+def test_too_many_levels(bake, calls, tmp_path, filepath):
     image = scenes.image("Paint", scenes.noise(16, 16))
     filepath = filepath and str(tmp_path / filepath)
     with pytest.raises(ValueError, match=r"levels.*6"):
         bake(image, filter="box", levels=6, filepath=filepath)
+    assert calls == []
     assert list(tmp_path.iterdir()) == []
 
 
@@ -219,6 +231,30 @@ def test_failures_name_what_was_found(bake):
     quad.data.uv_layers.remove(quad.data.uv_layers[0])
     with pytest.raises(ValueError, match="'Quad' has no UV map"):
         bake(image, [quad])
+
+
+def test_failures_of_the_library_name_the_object(bake):
+    image = scenes.image("Paint", scenes.noise(4, 4))
+    good, bad = (scenes.textured_quad(image, name) for name in ("Good", "Bad"))
+    bad.data.uv_layers[0].uv[0].vector.x = 1e7
+    with pytest.raises(ValueError, match=r"^object 'Bad', uvs: triangle 0"):
+        bake(image, [good, bad])
+    bad.scale = (0, 0, 0)
+    bad.data.uv_layers[0].uv[0].vector.x = 0
+    bpy.context.view_layer.update()
+    assert "2 objects" in bake(image, [good, bad]).summary
+    with pytest.raises(ValueError, match=r"^object 'Bad': .* area"):
+        bake(image, [bad])
+
+
+def test_names_that_are_taken_are_told(bake):
+    image = scenes.image("Paint", scenes.noise(4, 4))
+    scenes.image("Paint.mip2", scenes.noise(4, 4))
+    outcome = bake(image, filter="box")
+    assert outcome.images == ["Paint.mip1", "Paint.mip2.001"]
+    (warning,) = outcome.warnings
+    assert "'Paint.mip1', 'Paint.mip2.001'" in warning
+    assert bake(image, filter="box").images == outcome.images
 
 
 def snapshot(tmp_path):
@@ -260,6 +296,47 @@ def test_failure_while_writing_leaves_everything_as_it_was(bake, addon, tmp_path
         bake(image, filter="box", filepath=str(path))
     assert snapshot(tmp_path) == changed
     assert changed[1] == before[1]
+
+
+def test_failure_of_an_image_leaves_everything_as_it_was(bake, addon, tmp_path, monkeypatch):
+    path = tmp_path / "out.exr"
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    bake(image, filter="box", filepath=str(path), levels=3)
+    image.pixels.foreach_set(scenes.noise(8, 8, seed=9).ravel())
+    before = snapshot(tmp_path)
+    original = addon("bridge.images")._fill_level
+
+    def fill(made, picture, level):
+        if level.shape[0] == 1:
+            raise MemoryError("no room")
+        original(made, picture, level)
+
+    monkeypatch.setattr(addon("bridge.images"), "_fill_level", fill)
+    with pytest.raises(MemoryError, match="no room"):
+        bake(image, filter="box", filepath=str(path))
+    assert snapshot(tmp_path) == before
+
+
+def test_cancel_between_level_files(bake, addon, tmp_path, monkeypatch):
+    module = addon("bridge.openimageio")
+    written = []
+    original = module._write_level
+
+    def write_level(path, buffer, number):
+        written.append(number)
+        original(path, buffer, number)
+
+    monkeypatch.setattr(module, "_write_level", write_level)
+    image = scenes.image("Paint", scenes.noise(16, 16))
+    with pytest.raises(prefilter.Cancelled):
+        bake(
+            image,
+            filter="box",
+            filepath=str(tmp_path / "out.exr"),
+            progress=lambda _: len(written) < 2,
+        )
+    assert written == [1, 2]
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("stop_at", [0.0, 1.0])

@@ -127,6 +127,12 @@ def test_failures_exit_with_1(blend, obj_and_picture, tmp_path):
     assert (tmp_path / "scene.blend").exists()
 
 
+def test_more_threads_than_there_are(blend):
+    result = run("bake", blend, "--save", "--filter", "box", "--threads", "3000000000")
+    assert "Traceback" not in result.stdout + result.stderr
+    assert result.returncode == 0, result.stderr
+
+
 def test_read_only_blend_is_left_alone(blend):
     before = blend.read_bytes()
     blend.chmod(0o444)

@@ -1,5 +1,7 @@
 """Texture files, read back by OpenImageIO."""
 
+import tempfile
+
 import numpy as np
 import OpenImageIO as oiio
 import pytest
@@ -84,6 +86,64 @@ def test_float_image_as_tiff(addon, tmp_path):
     levels, specs = read_levels(bake(addon, tmp_path, "out.tif", values, is_float=True))
     assert str(specs[0].format) == "float"
     np.testing.assert_allclose(levels[1], scenes.halved(values[..., :3]), rtol=1e-5)
+
+
+def use_for_temporary_files(folder, monkeypatch):
+    """Makes a folder and lets it be that of temporary files."""
+    folder.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(folder))
+
+
+@pytest.mark.parametrize("name", ["a;b", "a%%b"])
+def test_odd_folder_of_temporary_files(addon, tmp_path, monkeypatch, name):
+    use_for_temporary_files(tmp_path / name, monkeypatch)
+    levels, _ = read_levels(bake(addon, tmp_path, "out;%.exr", scenes.noise(8, 8)))
+    assert len(levels) == 4
+    assert sorted(path.name for path in tmp_path.rglob("*")) == [name, "out;%.exr"]
+
+
+@pytest.mark.parametrize("name", ["a;b", "a%%b"])
+def test_odd_folder_of_the_file(addon, tmp_path, monkeypatch, name):
+    folder = tmp_path / name
+    folder.mkdir()
+    levels, _ = read_levels(bake(addon, folder, "out.exr", scenes.noise(8, 8)))
+    assert len(levels) == 4
+    use_for_temporary_files(tmp_path / f"next {name}", monkeypatch)
+    with pytest.raises(OSError, match=rf"'.*next {name}' and '.*{name}'.*without ';'"):
+        bake(addon, folder, "next.exr", scenes.noise(8, 8))
+    assert [path.name for path in folder.iterdir()] == ["out.exr"]
+
+
+def test_level_file_that_cannot_be_read(addon, tmp_path, monkeypatch):
+    module = addon("bridge.openimageio")
+
+    class Lost:
+        def write(self, path):
+            return True
+
+    original = module._buffer
+    monkeypatch.setattr(
+        module,
+        "_buffer",
+        lambda level, alpha: Lost() if level.size == 3 else original(level, alpha),
+    )
+    with pytest.raises(OSError, match=r"cannot read level 3 back from '.*3\.tif'"):
+        bake(addon, tmp_path, "out.exr", scenes.noise(8, 8))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_link_and_mode_are_kept(addon, tmp_path):
+    (tmp_path / "real").mkdir()
+    real = tmp_path / "real" / "out.exr"
+    real.write_bytes(b"before")
+    real.chmod(0o600)
+    link = tmp_path / "link.exr"
+    link.symlink_to("real/out.exr")
+    bake(addon, tmp_path, "link.exr", scenes.noise(8, 8))
+    assert link.is_symlink()
+    assert len(read_levels(real)[0]) == 4
+    assert real.stat().st_mode & 0o777 == 0o600
+    assert [path.name for path in real.parent.iterdir()] == ["out.exr"]
 
 
 def test_texture_cache_finds_the_levels(addon, tmp_path):

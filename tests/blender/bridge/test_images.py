@@ -11,6 +11,10 @@ def read(addon, made):
     return addon("bridge.images").read(made)
 
 
+def write_levels(addon, made, levels):
+    return addon("bridge.images").stage_levels(read(addon, made), levels).commit()
+
+
 @pytest.mark.parametrize(
     "colorspace", ["sRGB", "Non-Color", "Linear Rec.709", "ACEScg", "Rec.1886"]
 )
@@ -48,6 +52,17 @@ def test_other_spaces_are_decoded_as_blender_does(addon, tmp_path):
         made = scenes.image("Paint", scenes.noise(4, 4), colorspace=space)
         linear = addon("bridge.images").scene_linear(read(addon, made))
         np.testing.assert_allclose(linear, scenes.pixels(loaded.name)[..., :3], atol=1e-4)
+
+
+def test_conversion_in_bands(addon, monkeypatch):
+    images = addon("bridge.images")
+    picture = read(addon, scenes.image("Paint", scenes.noise(10, 4), colorspace="ACEScg"))
+    whole = images.scene_linear(picture)
+    monkeypatch.setattr(addon("bridge.openimageio"), "_PIXELS_A_BAND", 12)
+    checks = []
+    banded = images.scene_linear(picture, lambda: checks.append(None))
+    np.testing.assert_array_equal(banded, whole)
+    assert len(checks) == 4
 
 
 def test_unknown_space_is_named(addon):
@@ -114,6 +129,14 @@ def test_missing_file(addon):
         read(addon, made)
 
 
+def test_corrupt_file(addon, tmp_path):
+    path = tmp_path / "corrupt.png"
+    path.write_bytes(b"no picture")
+    loaded = bpy.data.images.load(str(path))
+    with pytest.raises(ValueError, match=r"corrupt\.png' cannot be read"):
+        read(addon, loaded)
+
+
 @pytest.mark.parametrize(
     ("source", "kind"), [("TILED", "UDIM"), ("MOVIE", "movie"), ("SEQUENCE", "sequence")]
 )
@@ -143,6 +166,13 @@ def test_unknown_name_lists_what_there_is(addon):
         addon("bridge.images").find("Pain")
 
 
+def test_unknown_name_lists_only_some(addon):
+    for number in range(9):
+        scenes.image(f"Paint {number}", scenes.noise(2, 2))
+    with pytest.raises(ValueError, match=r"'Paint 4' and 4 more$"):
+        addon("bridge.images").find("Pain")
+
+
 LEVEL_CASES = [
     (False, "STRAIGHT", "sRGB"),
     (False, "PREMUL", "sRGB"),
@@ -165,7 +195,7 @@ def test_levels_survive_saving(addon, tmp_path, is_float, alpha_mode, colorspace
         colorspace=colorspace,
     )
     levels = [scenes.noise(4, 2, alpha=True, seed=2), scenes.noise(2, 1, alpha=True, seed=3)]
-    names = addon("bridge.images").write_levels(read(addon, made), levels)
+    names = write_levels(addon, made, levels)
     assert names == ["Paint.mip1", "Paint.mip2"]
     path = str(tmp_path / "saved.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
@@ -180,15 +210,14 @@ def test_levels_survive_saving(addon, tmp_path, is_float, alpha_mode, colorspace
 
 
 def test_levels_are_updated_in_place(addon):
-    images = addon("bridge.images")
     made = scenes.image("Paint", scenes.noise(8, 8))
-    images.write_levels(read(addon, made), [scenes.noise(4, 4), scenes.noise(2, 2)])
+    write_levels(addon, made, [scenes.noise(4, 4), scenes.noise(2, 2)])
     shown = scenes.material("Shows level", bpy.data.images["Paint.mip1"])
     count = len(bpy.data.images)
     bpy.data.images.remove(made)
     wider = scenes.image("Paint", scenes.noise(2, 16), is_float=True)
     level = scenes.noise(1, 8, seed=5)
-    images.write_levels(read(addon, wider), [level])
+    write_levels(addon, wider, [level])
     assert len(bpy.data.images) == count
     node = next(node for node in shown.node_tree.nodes if node.type == "TEX_IMAGE")
     assert node.image == bpy.data.images["Paint.mip1"]
@@ -197,8 +226,42 @@ def test_levels_are_updated_in_place(addon):
     assert tuple(bpy.data.images["Paint.mip2"].size) == (2, 2)
 
 
+@pytest.mark.parametrize("count", [54, 55, 63])
+def test_long_names_stay_distinct(addon, count):
+    twins = [scenes.image("x" * (count - 1) + end, scenes.noise(2, 2)) for end in "ab"]
+    for _ in range(2):
+        names = [write_levels(addon, twin, [scenes.noise(1, 1)])[0] for twin in twins]
+        assert len(set(names)) == 2
+        assert all(name.endswith(".mip1") for name in names)
+        assert all(name in bpy.data.images for name in names)
+    assert len(bpy.data.images) == 4
+
+
+def test_an_image_of_the_user_keeps_its_pixels(addon):
+    made = scenes.image("Paint", scenes.noise(4, 4))
+    scenes.image("Paint.mip1", scenes.noise(2, 2, seed=7))
+    for seed in (2, 3):
+        levels = [scenes.noise(2, 2, seed=seed), scenes.noise(1, 1, seed=seed)]
+        assert write_levels(addon, made, levels) == ["Paint.mip1.001", "Paint.mip2"]
+        np.testing.assert_allclose(scenes.pixels("Paint.mip1.001"), levels[0], atol=1e-6)
+    np.testing.assert_allclose(scenes.pixels("Paint.mip1"), scenes.noise(2, 2, seed=7), atol=1e-6)
+    assert len(bpy.data.images) == 4
+
+
+def test_failure_while_staging_leaves_no_image(addon, monkeypatch):
+    made = scenes.image("Paint", scenes.noise(4, 4))
+
+    def no_packing(image, picture, level):
+        raise RuntimeError("no packing")
+
+    monkeypatch.setattr(addon("bridge.images"), "_fill_level", no_packing)
+    with pytest.raises(OSError, match="'Paint': cannot make level 1"):
+        write_levels(addon, made, [scenes.noise(2, 2)])
+    assert [image.name for image in bpy.data.images] == ["Paint"]
+
+
 def test_long_names_keep_their_suffix(addon):
     made = scenes.image("ä" * 30, scenes.noise(2, 2))
-    names = addon("bridge.images").write_levels(read(addon, made), [scenes.noise(1, 1)])
+    names = write_levels(addon, made, [scenes.noise(1, 1)])
     assert names[0].endswith(".mip1")
     assert names[0] in bpy.data.images

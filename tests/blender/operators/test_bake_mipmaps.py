@@ -1,5 +1,7 @@
 """The operator, as scripts call it."""
 
+from types import SimpleNamespace
+
 import bpy
 import numpy as np
 import pytest
@@ -111,3 +113,43 @@ def test_library_refusals_are_reports():
     quad.data.uv_layers[0].uv[0].vector.x = float("nan")
     with pytest.raises(RuntimeError, match=r"object 'Quad': .*uvs"):
         bake(image="Paint")
+
+
+@pytest.fixture
+def quitting():
+    """Returns a context as Blender has it when it quits, and the names of what was called on it."""
+    calls = []
+    manager = SimpleNamespace(
+        event_timer_remove=lambda timer: calls.append("timer"),
+        progress_end=lambda: calls.append("progress"),
+    )
+    return SimpleNamespace(window_manager=manager, workspace=None), calls
+
+
+def test_quitting_leaves_nothing(addon, quitting):
+    module = addon("operators.bake_mipmaps")
+    operator_class = module.PREFILTER_OT_bake_mipmaps
+    context, calls = quitting
+    operator = SimpleNamespace(
+        _timer=None,
+        _job=addon("jobs").Job(lambda progress: None),
+        _bake=SimpleNamespace(discard=lambda: calls.append("discard")),
+    )
+    operator._leave = lambda context: operator_class._leave(operator, context)
+    operator_class.cancel(operator, context)
+    assert calls == ["discard", "timer", "progress"]
+
+
+def test_thread_that_does_not_start_leaves_nothing(addon, monkeypatch):
+    module = addon("operators.bake_mipmaps")
+
+    def no_job(work):
+        raise RuntimeError("no thread")
+
+    monkeypatch.setattr(module, "Job", no_job)
+    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
+    operator_class = module.PREFILTER_OT_bake_mipmaps
+    operator = SimpleNamespace(_read=lambda context: SimpleNamespace(compute=None))
+    with pytest.raises(RuntimeError, match="no thread"):
+        operator_class.invoke(operator, SimpleNamespace(window_manager=None), None)
+    assert not operator_class._running

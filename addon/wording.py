@@ -1,0 +1,12 @@
+"""Words that several messages share."""
+
+from collections.abc import Iterable
+
+_MOST_LISTED = 5
+
+
+def listed(names: Iterable[str]) -> str:
+    """Returns quoted names with commas between them; of many, the first and how many follow."""
+    quoted = [f"'{name}'" for name in names]
+    more = len(quoted) - _MOST_LISTED
+    return ", ".join(quoted[:_MOST_LISTED]) + (f" and {more} more" if more > 0 else "")
