@@ -5,7 +5,6 @@
 #include <exception>
 #include <mutex>
 #include <optional>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -21,8 +20,8 @@ std::vector<std::jthread> start_helpers(int count, const Body& body) {
   helpers.reserve(static_cast<std::size_t>(std::max(count, 0)));
   try {
     for (int rank = 1; rank <= count; ++rank) helpers.emplace_back(body, rank);
-  } catch (const std::system_error&) {
-    // The work is shared among those that there are.
+  } catch (const std::exception&) {
+    // No thread or no memory for one: the work is shared among those that there are.
   }
   return helpers;
 }

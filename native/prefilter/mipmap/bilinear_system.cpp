@@ -160,7 +160,7 @@ int BilinearSystem<C>::row_beside(int y, int step) const {
 
 template <int C>
 bool BilinearSystem<C>::relax_row(int y, const SolveOptions& options, Lanes typical) {
-  // A little over-relaxation saves a sweep in six; more than 1.3 costs sweeps again.
+  // A little over-relaxation saves sweeps; from about 1.3 on it costs some.
   constexpr float kRelaxation = 1.15F;
   const int south_row = row_beside(y, -1);
   const int north_row = row_beside(y, 1);
