@@ -1,5 +1,6 @@
 #include "prefilter/surface/surface.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
@@ -44,6 +45,11 @@ Surface make_surface(const MeshArrays& mesh) {
   Surface surface;
   surface.uvs.resize(mesh.triangle_count);
   surface.areas.resize(mesh.triangle_count);
+  surface.triangles.resize(mesh.triangle_count);
+  surface.positions.resize(mesh.vertex_count);
+  for (std::size_t i = 0; i < mesh.vertex_count; ++i) {
+    std::copy_n(mesh.positions + 3 * i, 3, surface.positions[i].data());
+  }
   for (std::size_t k = 0; k < mesh.triangle_count; ++k) {
     const std::int64_t* vertices = mesh.triangles + 3 * k;
     for (int corner = 0; corner < 3; ++corner) {
@@ -54,6 +60,7 @@ Surface make_surface(const MeshArrays& mesh) {
                       std::to_string(mesh.vertex_count) + " vertices (0 to " +
                       std::to_string(static_cast<std::int64_t>(mesh.vertex_count) - 1) + ")");
       }
+      surface.triangles[k][corner] = static_cast<std::int32_t>(vertex);
       const double* uv = mesh.uvs + 6 * k + 2 * corner;
       surface.uvs[k][corner] = {uv[0], uv[1]};
     }

@@ -16,8 +16,10 @@ struct TextureCoordinate {
 /// What filtering needs of a surface: where each triangle lies in the texture, and its area in
 /// space.
 struct Surface {
-  std::vector<std::array<TextureCoordinate, 3>> uvs;  // per triangle and corner; any tile
-  std::vector<double> areas;                          // per triangle, in squared units of space
+  std::vector<std::array<TextureCoordinate, 3>> uvs;   // per triangle and corner; any tile
+  std::vector<double> areas;                           // per triangle, in squared units of space
+  std::vector<std::array<double, 3>> positions;        // per vertex
+  std::vector<std::array<std::int32_t, 3>> triangles;  // per triangle, its vertices
 
   std::size_t triangle_count() const { return areas.size(); }
   double total_area() const;
