@@ -3,6 +3,7 @@
 #include "convert.h"
 #include "prefilter/mipmap/mipmap_error.h"
 #include "prefilter/mipmap/mipmaps.h"
+#include "prefilter/mipmap/texture_use.h"
 
 namespace py = pybind11;
 
@@ -54,6 +55,32 @@ std::vector<double> bound_mipmap_error(const std::vector<Array<float>>& levels,
   return mipmap_error(views, image, surfaces, mip_values, modes, reporter, threads);
 }
 
+Array<float> bound_texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
+                                 const WrapNames& wrap, const py::object& progress, int threads) {
+  const WrapModes modes = wrap_modes(wrap);
+  const Progress reporter = to_progress(progress);
+  Image weights;
+  {
+    const py::gil_scoped_release unlocked;
+    weights = texel_weights(surfaces, width, height, modes, reporter, threads);
+  }
+  return to_array(std::move(weights));
+}
+
+Array<float> bound_fill_unused(const Array<float>& array,
+                               const std::vector<const Surface*>& surfaces, const WrapNames& wrap,
+                               const py::object& progress, int threads) {
+  const ImageView image = view_of(array);
+  const WrapModes modes = wrap_modes(wrap);
+  const Progress reporter = to_progress(progress);
+  Image filled;
+  {
+    const py::gil_scoped_release unlocked;
+    filled = fill_unused(image, surfaces, modes, reporter, threads);
+  }
+  return to_array(std::move(filled));
+}
+
 }  // namespace
 
 void bind_mipmap(py::module_& m) {
@@ -63,6 +90,10 @@ void bind_mipmap(py::module_& m) {
   m.def("mipmap_error", &bound_mipmap_error, py::arg("levels"), py::arg("image"),
         py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("progress"),
         py::arg("threads"));
+  m.def("texel_weights", &bound_texel_weights, py::arg("surfaces"), py::arg("width"),
+        py::arg("height"), py::arg("wrap"), py::arg("progress"), py::arg("threads"));
+  m.def("fill_unused", &bound_fill_unused, py::arg("image"), py::arg("surfaces"), py::arg("wrap"),
+        py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -75,12 +75,6 @@ Kernel kernel_of(MipmapFilter filter) {
   }
 }
 
-[[noreturn]] void throw_outside() {
-  throw_invalid(
-      "surface: none of it lies inside of the image, and with the wrap mode border only what "
-      "does counts; use clamp or repeat, or move the uvs");
-}
-
 class Builder {
  public:
   Builder(const ImageView& image, const std::vector<const Surface*>& surfaces,
@@ -456,6 +450,12 @@ void check_surface_area(const std::vector<const Surface*>& surfaces) {
     throw_invalid("surface: the triangles have an area of " + to_text(area) +
                   " in all; a positive, finite one is needed");
   }
+}
+
+void throw_outside() {
+  throw_invalid(
+      "surface: none of it lies inside of the image, and with the wrap mode border only what "
+      "does counts; use clamp or repeat, or move the uvs");
 }
 
 void check_mapped(const TexelTriangles& triangles) {

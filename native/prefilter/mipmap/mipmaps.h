@@ -65,6 +65,9 @@ std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surfa
 /// least 2.
 void check_mipmap_image(const ImageView& image);
 
+/// Throws Error: none of the surface lies inside of the image.
+[[noreturn]] void throw_outside();
+
 /// Throws Error unless some of the surface lies inside of the image.
 void check_mapped(const TexelTriangles& triangles);
 

@@ -9,7 +9,17 @@ from ._native import Cancelled
 from .color import to_linear, to_srgb
 from .mipmap import mipmap_error, mipmaps
 from .surface import Surface
+from .texture_use import fill_unused, texel_weights
 
 __version__ = "0.1.0"
 
-__all__ = ["Cancelled", "Surface", "mipmap_error", "mipmaps", "to_linear", "to_srgb"]
+__all__ = [
+    "Cancelled",
+    "Surface",
+    "fill_unused",
+    "mipmap_error",
+    "mipmaps",
+    "texel_weights",
+    "to_linear",
+    "to_srgb",
+]

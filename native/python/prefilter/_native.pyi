@@ -3,7 +3,7 @@
 import numpy as np
 import numpy.typing as npt
 
-from .mipmap import ProgressCallback
+from .arguments import ProgressCallback
 
 class Cancelled(Exception): ...  # noqa: N818
 
@@ -42,3 +42,18 @@ def mipmap_error(
     progress: ProgressCallback | None,
     threads: int,
 ) -> list[float]: ...
+def texel_weights(
+    surfaces: list[Surface],
+    width: int,
+    height: int,
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
+def fill_unused(
+    image: npt.NDArray[np.float32],
+    surfaces: list[Surface],
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...

@@ -1,17 +1,24 @@
 """Mipmaps of a texture on a surface (chapter 7)."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from .arguments import (
+    Bounds,
+    ProgressCallback,
+    Wrap,
+    as_bounds,
+    as_level_count,
+    as_name,
+    as_progress,
+    as_surfaces,
+    as_wrap,
+)
 from .arrays import FloatArray, as_image, as_threads
 from .surface import Surface
-
-ProgressCallback = Callable[[float], bool | None]
-Wrap = str | tuple[str, str]
-Bounds = tuple[float | None, float | None]
 
 
 def mipmaps(
@@ -59,17 +66,17 @@ def mipmaps(
         ValueError: An argument is out of range, or a texel that counts is not finite.
         Cancelled: The progress callback returned False.
     """
-    low, high = _bounds(bounds)
+    low, high = as_bounds(bounds)
     return _native.mipmaps(
         as_image("image", image),
-        _surfaces(surface),
-        _name("filter", filter),
-        _wrap(wrap),
+        as_surfaces(surface),
+        as_name("filter", filter),
+        as_wrap(wrap),
         low,
         high,
-        _level_count(levels),
+        as_level_count(levels),
         bool(premultiplied),
-        _progress(progress),
+        as_progress(progress),
         as_threads(threads),
     )
 
@@ -116,64 +123,10 @@ def mipmap_error(
     errors = _native.mipmap_error(
         [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)],
         as_image("image", image),
-        _surfaces(surface),
+        as_surfaces(surface),
         values.ravel().tolist(),
-        _wrap(wrap),
-        _progress(progress),
+        as_wrap(wrap),
+        as_progress(progress),
         as_threads(threads),
     )
     return np.array(errors).reshape(values.shape)
-
-
-def _surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
-    if surface is None:
-        return []
-    surfaces = [surface] if isinstance(surface, Surface) else surface
-    if not isinstance(surfaces, Sequence):
-        raise ValueError(f"surface: a {type(surface).__name__}; a Surface or a list is needed")
-    for found in surfaces:
-        if not isinstance(found, Surface):
-            raise ValueError(f"surface: holds a {type(found).__name__}; a Surface is needed")
-    return list(surfaces)
-
-
-def _name(argument: str, name: object) -> str:
-    if not isinstance(name, str):
-        raise ValueError(f"{argument}: {name!r}; a name is needed")
-    return name.encode(errors="replace").decode()
-
-
-def _wrap(wrap: Wrap) -> tuple[str, str]:
-    pair = (wrap, wrap) if isinstance(wrap, str) else wrap
-    if not _is_pair(pair) or not all(isinstance(mode, str) for mode in pair):
-        raise ValueError(f"wrap: {wrap!r}; one name, or a pair of names for u and v, is needed")
-    return _name("wrap", pair[0]), _name("wrap", pair[1])
-
-
-def _bounds(bounds: Bounds | None) -> Bounds:
-    pair = (None, None) if bounds is None else bounds
-    if not _is_pair(pair) or not all(
-        limit is None or isinstance(limit, int | float | np.number) for limit in pair
-    ):
-        raise ValueError(f"bounds: {bounds!r}; a pair (low, high) of numbers or None is needed")
-    low, high = pair
-    return (None if low is None else float(low), None if high is None else float(high))
-
-
-def _is_pair(value: object) -> bool:
-    return isinstance(value, Sequence | np.ndarray) and len(value) == 2
-
-
-def _progress(progress: ProgressCallback | None) -> ProgressCallback | None:
-    if progress is not None and not callable(progress):
-        raise ValueError(f"progress: {progress!r}; a callable of one number is needed, or None")
-    return progress
-
-
-def _level_count(levels: int | None) -> int:
-    if levels is None:
-        return 0
-    if isinstance(levels, bool) or not isinstance(levels, int | np.integer) or levels < 1:
-        raise ValueError(f"levels: {levels!r}; a whole number of at least 1 is needed, or None")
-    # More than any image has, yet an int for the native module, whose message knows the image.
-    return min(int(levels), 2**30)

@@ -1,0 +1,49 @@
+#include "prefilter/mipmap/texture_use.h"
+
+#include <algorithm>
+#include <string>
+
+#include "prefilter/base/error.h"
+#include "prefilter/filters/push_pull.h"
+#include "prefilter/mipmap/coverage.h"
+#include "prefilter/mipmap/mipmaps.h"
+#include "prefilter/mipmap/texel_triangles.h"
+
+namespace prefilter {
+namespace {
+
+void check(const std::vector<const Surface*>& surfaces, int width, int height) {
+  if (width < 1 || height < 1) {
+    throw_invalid("width, height: " + std::to_string(width) + " x " + std::to_string(height) +
+                  " texels; at least 1 x 1 is needed");
+  }
+  if (surfaces.empty()) throw_invalid("surface: none was given; at least one is needed");
+  check_surface_area(surfaces);
+}
+
+}  // namespace
+
+Image texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
+                    WrapModes wrap, const Progress& progress, int threads) {
+  check(surfaces, width, height);
+  const TexelTriangles triangles =
+      map_to_texels(surfaces, width, height, wrap, MassOf::kArea, progress.part(0.0, 0.2));
+  check_mapped(triangles);
+  Image weights(width, height, 1);
+  weights.data = texel_masses(triangles, progress.part(0.2, 1.0), threads);
+  return weights;
+}
+
+Image fill_unused(const ImageView& image, const std::vector<const Surface*>& surfaces,
+                  WrapModes wrap, const Progress& progress, int threads) {
+  check(surfaces, image.width, image.height);
+  const std::vector<unsigned char> read =
+      looked_up_texels(surfaces, image.width, image.height, wrap, progress.part(0.0, 0.6), threads);
+  if (std::find(read.begin(), read.end(), 1) == read.end()) throw_outside();
+  const std::vector<float> weights(read.begin(), read.end());
+  Image filled(image);
+  fill_holes(weights, wrap, image.channels, progress.part(0.6, 1.0), threads, &filled);
+  return filled;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,71 @@
+"""Arguments that several functions take, checked once, here at the border."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from .surface import Surface
+
+ProgressCallback = Callable[[float], bool | None]
+Wrap = str | tuple[str, str]
+Bounds = tuple[float | None, float | None]
+
+
+def as_surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
+    if surface is None:
+        return []
+    surfaces = [surface] if isinstance(surface, Surface) else surface
+    if not isinstance(surfaces, Sequence):
+        raise ValueError(f"surface: a {type(surface).__name__}; a Surface or a list is needed")
+    for found in surfaces:
+        if not isinstance(found, Surface):
+            raise ValueError(f"surface: holds a {type(found).__name__}; a Surface is needed")
+    return list(surfaces)
+
+
+def as_name(argument: str, name: object) -> str:
+    if not isinstance(name, str):
+        raise ValueError(f"{argument}: {name!r}; a name is needed")
+    return name.encode(errors="replace").decode()
+
+
+def as_wrap(wrap: Wrap) -> tuple[str, str]:
+    pair = (wrap, wrap) if isinstance(wrap, str) else wrap
+    if not _is_pair(pair) or not all(isinstance(mode, str) for mode in pair):
+        raise ValueError(f"wrap: {wrap!r}; one name, or a pair of names for u and v, is needed")
+    return as_name("wrap", pair[0]), as_name("wrap", pair[1])
+
+
+def as_bounds(bounds: Bounds | None) -> Bounds:
+    pair = (None, None) if bounds is None else bounds
+    if not _is_pair(pair) or not all(
+        limit is None or isinstance(limit, int | float | np.number) for limit in pair
+    ):
+        raise ValueError(f"bounds: {bounds!r}; a pair (low, high) of numbers or None is needed")
+    low, high = pair
+    return (None if low is None else float(low), None if high is None else float(high))
+
+
+def _is_pair(value: object) -> bool:
+    return isinstance(value, Sequence | np.ndarray) and len(value) == 2
+
+
+def as_progress(progress: ProgressCallback | None) -> ProgressCallback | None:
+    if progress is not None and not callable(progress):
+        raise ValueError(f"progress: {progress!r}; a callable of one number is needed, or None")
+    return progress
+
+
+def as_level_count(levels: int | None) -> int:
+    if levels is None:
+        return 0
+    if isinstance(levels, bool) or not isinstance(levels, int | np.integer) or levels < 1:
+        raise ValueError(f"levels: {levels!r}; a whole number of at least 1 is needed, or None")
+    # More than any image has, yet an int for the native module, whose message knows the image.
+    return min(int(levels), 2**30)
+
+
+def as_size(argument: str, size: int) -> int:
+    if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= 2**20:
+        raise ValueError(f"{argument}: {size!r}; a whole number from 1 to {2**20} is needed")
+    return int(size)

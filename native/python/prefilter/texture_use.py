@@ -1,0 +1,85 @@
+"""What a surface uses of its texture."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from .arguments import ProgressCallback, Wrap, as_progress, as_size, as_surfaces, as_wrap
+from .arrays import as_image, as_threads
+from .surface import Surface
+
+
+def texel_weights(
+    surface: Surface | Sequence[Surface],
+    width: int,
+    height: int,
+    *,
+    wrap: Wrap = "clamp",
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[np.float32]:
+    """How much of the surface lies in each texel: what "pam-box" weights texels by (equation 7.1).
+
+    Args:
+        surface: One surface, or several that share the image.
+        width: Texels along u.
+        height: Texels along v.
+        wrap: As for `mipmaps`.
+        progress: As for `mipmaps`.
+        threads: As for `mipmaps`.
+
+    Returns:
+        (height, width) shares of the area, row 0 at v = 0, scaled so that an even use of the whole
+        image gives 1; exactly 0 in a texel that holds none.
+
+    Raises:
+        ValueError: An argument is out of range.
+        Cancelled: The progress callback returned False.
+    """
+    return _native.texel_weights(
+        as_surfaces(surface),
+        as_size("width", width),
+        as_size("height", height),
+        as_wrap(wrap),
+        as_progress(progress),
+        as_threads(threads),
+    )[:, :, 0]
+
+
+def fill_unused(
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface],
+    *,
+    wrap: Wrap = "clamp",
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[np.float32]:
+    """The image with the texels that no bilinear lookup on the surface reads filled.
+
+    They are filled from what is around the others, out to the image's edge (push-pull: Gortler et
+    al., "The Lumigraph", 1996, section 3.4). Renders of the surface at level 0 do not change;
+    texture compressors and readers that filter wider no longer see the background.
+
+    Args:
+        image: (height, width, 1 to 4 channels).
+        surface: One surface, or several that share the image.
+        wrap: As for `mipmaps`.
+        progress: As for `mipmaps`.
+        threads: As for `mipmaps`.
+
+    Returns:
+        The image, float32.
+
+    Raises:
+        ValueError: An argument is out of range.
+        Cancelled: The progress callback returned False.
+    """
+    return _native.fill_unused(
+        as_image("image", image),
+        as_surfaces(surface),
+        as_wrap(wrap),
+        as_progress(progress),
+        as_threads(threads),
+    )

@@ -1,0 +1,106 @@
+"""What a surface uses of its texture, against sampling and lookups written here."""
+
+import numpy as np
+import prefilter
+import pytest
+import scenes
+
+WIDTH, HEIGHT = 12, 7
+
+
+def test_weights_of_an_even_square_are_one() -> None:
+    weights = prefilter.texel_weights(scenes.square().surface, WIDTH, HEIGHT)
+    assert weights.shape == (HEIGHT, WIDTH)
+    np.testing.assert_allclose(weights, 1.0, rtol=1e-6)
+
+
+def test_weights_are_the_share_of_area_in_each_texel() -> None:
+    mesh = scenes.random_soup(3, 5)
+    random = np.random.default_rng(0)
+    count = 400_000
+    pick = random.choice(len(mesh.areas), count, p=mesh.areas / mesh.areas.sum())
+    a, b = np.sort(random.random((2, count)), axis=0)
+    corners = np.stack([a, b - a, 1 - b], axis=1)
+    uv = np.einsum("nk,nkd->nd", corners, mesh.uvs[pick])
+    hits, _, _ = np.histogram2d(uv[:, 1], uv[:, 0], bins=(HEIGHT, WIDTH), range=((0, 1), (0, 1)))
+    expected = hits / count * WIDTH * HEIGHT
+    error = 5 * np.sqrt(np.maximum(hits, 1)) / count * WIDTH * HEIGHT
+    weights = prefilter.texel_weights(mesh.surface, WIDTH, HEIGHT)
+    assert (np.abs(weights - expected) <= error).all()
+    assert weights.mean() == pytest.approx(1.0, rel=1e-5)
+
+
+def test_texels_without_area_have_no_weight() -> None:
+    weights = prefilter.texel_weights(scenes.square((0, 0), (0.5, 1)).surface, 4, 2)
+    np.testing.assert_allclose(weights, [[2, 2, 0, 0], [2, 2, 0, 0]])
+    assert (weights[:, 2:] == 0).all()
+
+
+def test_fill_keeps_what_lookups_read_and_hides_the_rest() -> None:
+    image = np.full((8, 8, 3), 9.0, np.float32)
+    image[:, :5] = np.random.default_rng(1).random((8, 5, 3))
+    surface = scenes.square((0.0, 0.0), (0.5, 1.0)).surface
+    filled = prefilter.fill_unused(image, surface)
+    # Texel 4 is half a texel beyond the chart, so lookups at its edge read it.
+    np.testing.assert_array_equal(filled[:, :5], image[:, :5])
+    used = image[:, :5]
+    assert (filled >= used.min((0, 1))).all()
+    assert (filled <= used.max((0, 1))).all()
+
+
+def test_fill_does_not_read_what_it_replaces() -> None:
+    image = np.full((8, 8, 1), np.nan, np.float32)
+    image[:, :5] = 0.25
+    filled = prefilter.fill_unused(image, scenes.square((0.0, 0.0), (0.5, 1.0)).surface)
+    np.testing.assert_allclose(filled, 0.25)
+
+
+def test_fill_changes_nothing_where_all_is_used() -> None:
+    image = np.random.default_rng(2).random((5, 9, 4), np.float32)
+    np.testing.assert_array_equal(prefilter.fill_unused(image, scenes.square().surface), image)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_results_do_not_depend_on_threads(threads: int) -> None:
+    surface = scenes.random_soup(5, 40).surface
+    image = np.random.default_rng(4).random((70, 90, 2), np.float32)
+    one = prefilter.texel_weights(surface, 90, 70, threads=1)
+    np.testing.assert_array_equal(prefilter.texel_weights(surface, 90, 70, threads=threads), one)
+    one = prefilter.fill_unused(image, surface, threads=1)
+    np.testing.assert_array_equal(prefilter.fill_unused(image, surface, threads=threads), one)
+
+
+def test_progress_is_reported_and_can_cancel() -> None:
+    surface = scenes.square().surface
+    seen: list[float] = []
+    prefilter.texel_weights(surface, 64, 64, progress=seen.append)
+    assert seen
+    assert seen == sorted(seen)
+    for call in (
+        lambda: prefilter.texel_weights(surface, 64, 64, progress=lambda _: False),
+        lambda: prefilter.fill_unused(np.ones((64, 64, 1)), surface, progress=lambda _: False),
+    ):
+        with pytest.raises(prefilter.Cancelled):
+            call()
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "named"), [(0, 4, "width"), (4, -1, "height"), (2.5, 4, "width")]
+)
+def test_sizes_that_are_none_are_refused(width: int, height: int, named: str) -> None:
+    with pytest.raises(ValueError, match=named):
+        prefilter.texel_weights(scenes.square().surface, width, height)
+
+
+def test_surfaces_that_lie_nowhere_are_refused() -> None:
+    flat = scenes.soup(np.zeros((1, 3, 2)), np.zeros(1)).surface
+    away = scenes.square((2.0, 2.0), (3.0, 3.0)).surface
+    image = np.ones((4, 4, 1), np.float32)
+    with pytest.raises(ValueError, match="area of 0"):
+        prefilter.texel_weights(flat, 4, 4)
+    with pytest.raises(ValueError, match="surface: none of it"):
+        prefilter.texel_weights(away, 4, 4, wrap="border")
+    with pytest.raises(ValueError, match="surface: none of it"):
+        prefilter.fill_unused(image, away, wrap="border")
+    with pytest.raises(ValueError, match="surface: none was given"):
+        prefilter.fill_unused(image, [])
