@@ -1,7 +1,9 @@
 #include "prefilter/filters/kernel.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 namespace prefilter {
 namespace {
@@ -39,19 +41,27 @@ double kernel_value(Kernel kernel, double x) {
   return 0.0;
 }
 
-Taps downsampling_taps(Kernel kernel, int factor) {
-  // Target texel 0 has its centre at factor / 2 in source texels, source texel i at i + 1/2.
-  const double centre = 0.5 * factor;
-  const double reach = kernel_radius(kernel) * factor;
-  Taps taps;
-  taps.first = static_cast<int>(std::ceil(centre - reach - 0.5));
-  const int last = static_cast<int>(std::floor(centre + reach - 0.5));
+Taps downsampling_taps(Kernel kernel, double scale, int target) {
+  const double centre = (target + 0.5) * scale;
+  const double reach = kernel_radius(kernel) * scale;
   std::vector<double> values;
-  double sum = 0.0;
-  for (int i = taps.first; i <= last; ++i) {
-    values.push_back(kernel_value(kernel, (i + 0.5 - centre) / factor));
-    sum += values.back();
+  Taps taps;
+  if (kernel == Kernel::kBox) {
+    // Scales are ratios of whole numbers: an edge this close to a texel's is the texel's.
+    constexpr double kOnEdge = 1e-9;
+    taps.first = static_cast<int>(std::floor(centre - reach + kOnEdge));
+    const int end = static_cast<int>(std::ceil(centre + reach - kOnEdge));
+    for (int i = taps.first; i < end; ++i) {
+      values.push_back(std::min(i + 1.0, centre + reach) - std::max<double>(i, centre - reach));
+    }
+  } else {
+    taps.first = static_cast<int>(std::ceil(centre - reach - 0.5));
+    const int last = static_cast<int>(std::floor(centre + reach - 0.5));
+    for (int i = taps.first; i <= last; ++i) {
+      values.push_back(kernel_value(kernel, (i + 0.5 - centre) / scale));
+    }
   }
+  const double sum = std::accumulate(values.begin(), values.end(), 0.0);
   for (const double value : values) taps.weights.push_back(value / sum);
   return taps;
 }

@@ -23,8 +23,8 @@ struct Taps {
   std::vector<double> weights;  // sum to 1
 };
 
-/// Taps of target texel 0 where every target texel is made of `factor` source texels: the kernel at
-/// the source texels' centres. Those of texel j start at first + j * factor.
-Taps downsampling_taps(Kernel kernel, int factor);
+/// Taps of target texel `target` where a target texel is as wide as `scale` source texels, 1 or
+/// more: the kernel at the source texels' centres; for the box, what it covers of each.
+Taps downsampling_taps(Kernel kernel, double scale, int target);
 
 }  // namespace prefilter

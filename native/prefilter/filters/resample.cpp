@@ -23,29 +23,33 @@ void pad_row(const float* row, int size, int channels, Wrap mode, int before, in
   }
 }
 
+std::vector<Taps> all_taps(Kernel kernel, int source_size, int target_size) {
+  const double scale = static_cast<double>(source_size) / target_size;
+  std::vector<Taps> taps;
+  for (int j = 0; j < target_size; ++j) taps.push_back(downsampling_taps(kernel, scale, j));
+  return taps;
+}
+
 template <int C>
-void filter_row(const float* padded, int before, const Taps& taps, int factor, int target_size,
-                float* target) {
-  const auto count = static_cast<int>(taps.weights.size());
-  for (int j = 0; j < target_size; ++j) {
-    const float* source =
-        padded + static_cast<std::ptrdiff_t>(before + taps.first + j * factor) * C;
+void filter_row(const float* padded, int before, const std::vector<Taps>& taps, float* target) {
+  for (const Taps& texel : taps) {
+    const float* source = padded + static_cast<std::ptrdiff_t>(before + texel.first) * C;
     double sum[C] = {};
-    for (int k = 0; k < count; ++k) {
-      for (int c = 0; c < C; ++c) sum[c] += taps.weights[k] * source[k * C + c];
+    for (const double weight : texel.weights) {
+      for (int c = 0; c < C; ++c) sum[c] += weight * source[c];
+      source += C;
     }
-    for (int c = 0; c < C; ++c) target[j * C + c] = static_cast<float>(sum[c]);
+    for (int c = 0; c < C; ++c) *target++ = static_cast<float>(sum[c]);
   }
 }
 
-Image filter_rows(const ImageView& source, int factor, Kernel kernel, Wrap mode,
+Image filter_rows(const ImageView& source, int width, Kernel kernel, Wrap mode,
                   const Progress& progress, int threads) {
-  const Taps taps = downsampling_taps(kernel, factor);
-  const int target_width = source.width / factor;
-  const int before = std::max(0, -taps.first);
-  const int end = taps.first + (target_width - 1) * factor + static_cast<int>(taps.weights.size());
+  const std::vector<Taps> taps = all_taps(kernel, source.width, width);
+  const int end = taps.back().first + static_cast<int>(taps.back().weights.size());
+  const int before = std::max(0, -taps.front().first);
   const int after = std::max(0, end - source.width);
-  Image target(target_width, source.height, source.channels);
+  Image target(width, source.height, source.channels);
   constexpr int kRows = 16;
   parallel_for((source.height + kRows - 1) / kRows, threads, progress, [&](std::int64_t band) {
     std::vector<float> padded;
@@ -55,16 +59,16 @@ Image filter_rows(const ImageView& source, int factor, Kernel kernel, Wrap mode,
       float* row = target.texel(0, y);
       switch (source.channels) {
         case 1:
-          filter_row<1>(padded.data(), before, taps, factor, target_width, row);
+          filter_row<1>(padded.data(), before, taps, row);
           break;
         case 2:
-          filter_row<2>(padded.data(), before, taps, factor, target_width, row);
+          filter_row<2>(padded.data(), before, taps, row);
           break;
         case 3:
-          filter_row<3>(padded.data(), before, taps, factor, target_width, row);
+          filter_row<3>(padded.data(), before, taps, row);
           break;
         default:
-          filter_row<4>(padded.data(), before, taps, factor, target_width, row);
+          filter_row<4>(padded.data(), before, taps, row);
           break;
       }
     }
@@ -72,20 +76,18 @@ Image filter_rows(const ImageView& source, int factor, Kernel kernel, Wrap mode,
   return target;
 }
 
-Image filter_columns(const ImageView& source, int factor, Kernel kernel, Wrap mode,
+Image filter_columns(const ImageView& source, int height, Kernel kernel, Wrap mode,
                      const Progress& progress, int threads) {
-  const Taps taps = downsampling_taps(kernel, factor);
-  const int target_height = source.height / factor;
+  const std::vector<Taps> taps = all_taps(kernel, source.height, height);
   const std::ptrdiff_t row_values = static_cast<std::ptrdiff_t>(source.width) * source.channels;
-  Image target(source.width, target_height, source.channels);
-  parallel_for(target_height, threads, progress, [&](std::int64_t j) {
+  Image target(source.width, height, source.channels);
+  parallel_for(height, threads, progress, [&](std::int64_t j) {
     std::vector<double> sums(static_cast<std::size_t>(row_values));
-    for (std::size_t k = 0; k < taps.weights.size(); ++k) {
-      const int y = wrap_index(taps.first + static_cast<int>(j) * factor + static_cast<int>(k),
-                               source.height, mode);
-      if (y < 0) continue;
-      const float* from = source.texel(0, y);
-      const double weight = taps.weights[k];
+    int y = taps[j].first;
+    for (const double weight : taps[j].weights) {
+      const int row = wrap_index(y++, source.height, mode);
+      if (row < 0) continue;
+      const float* from = source.texel(0, row);
       for (std::ptrdiff_t i = 0; i < row_values; ++i) sums[i] += weight * from[i];
     }
     float* row = target.texel(0, static_cast<int>(j));
@@ -97,14 +99,14 @@ Image filter_columns(const ImageView& source, int factor, Kernel kernel, Wrap mo
 
 }  // namespace
 
-Image downsample(const ImageView& source, int factor_x, int factor_y, Kernel kernel, WrapModes wrap,
+Image downsample(const ImageView& source, int width, int height, Kernel kernel, WrapModes wrap,
                  const Progress& progress, int threads) {
-  assert(source.width % factor_x == 0 && source.height % factor_y == 0);
-  Image rows = factor_x == 1 ? Image(source)
-                             : filter_rows(source, factor_x, kernel, wrap.u,
-                                           progress.part(0.0, 0.7), threads);
-  if (factor_y == 1) return rows;
-  return filter_columns(rows.view(), factor_y, kernel, wrap.v, progress.part(0.7, 1.0), threads);
+  assert(width <= source.width && height <= source.height);
+  Image rows = width == source.width
+                   ? Image(source)
+                   : filter_rows(source, width, kernel, wrap.u, progress.part(0.0, 0.7), threads);
+  if (height == source.height) return rows;
+  return filter_columns(rows.view(), height, kernel, wrap.v, progress.part(0.7, 1.0), threads);
 }
 
 }  // namespace prefilter

@@ -1,4 +1,4 @@
-// Downsampling by whole factors with a separable kernel.
+// Downsampling with a separable kernel.
 #pragma once
 
 #include "prefilter/base/image.h"
@@ -8,10 +8,9 @@
 
 namespace prefilter {
 
-/// The image of width / factor_x by height / factor_y texels, each the kernel-weighted mean of the
-/// source around it. What lies outside of the source is as the wrap mode says. The factors divide
-/// the sides.
-Image downsample(const ImageView& source, int factor_x, int factor_y, Kernel kernel, WrapModes wrap,
+/// The image of width x height texels, no more than the source's, each the kernel-weighted mean of
+/// the source around it. What lies outside of the source is as the wrap mode says.
+Image downsample(const ImageView& source, int width, int height, Kernel kernel, WrapModes wrap,
                  const Progress& progress, int threads);
 
 }  // namespace prefilter

@@ -28,9 +28,6 @@ void tent_products(const double* moments, int stride, double* products) {
   products[2] = m2;
 }
 
-// The low end of the dual cell that a half-texel cell lies in.
-int dual_cell(int half_cell) { return (half_cell + 1) / 2 - 1; }
-
 }  // namespace
 
 template <int C>
@@ -44,26 +41,30 @@ BilinearSystem<C>::BilinearSystem(int width, int height, WrapModes wrap)
 
 template <int C>
 void BilinearSystem<C>::add(const MomentBlock<C>& block) {
-  const int last_column = dual_cell(block.x0 + block.width - 1);
-  const int last_row = dual_cell(block.y0 + block.height - 1);
-  for (int row = dual_cell(block.y0); row <= last_row; ++row) {
-    const int y_begin = std::max(2 * row + 1 - block.y0, 0);
-    const int y_end = std::min(2 * row + 3 - block.y0, block.height);
-    for (int column = dual_cell(block.x0); column <= last_column; ++column) {
-      const int x_begin = std::max(2 * column + 1 - block.x0, 0);
-      const int x_end = std::min(2 * column + 3 - block.x0, block.width);
+  const CellPlace* x_places = block.x_places(block.level);
+  const CellPlace* y_places = block.y_places(block.level);
+  const auto run_end = [](const CellPlace* places, int begin, int end) {
+    int i = begin + 1;
+    while (i < end && places[i].texel == places[begin].texel) ++i;
+    return i;
+  };
+  for (int y_begin = 0; y_begin < block.height;) {
+    const int y_end = run_end(y_places, y_begin, block.height);
+    for (int x_begin = 0; x_begin < block.width;) {
+      const int x_end = run_end(x_places, x_begin, block.width);
       CellMoments<C> moments;
       for (int y = y_begin; y < y_end; ++y) {
         for (int x = x_begin; x < x_end; ++x) {
           const CellMoments<C>& cell = block.at(x, y);
-          if (cell.empty()) continue;
-          // Odd cells are the low half: a dual cell starts at a texel's centre.
-          add_child(cell, (block.x0 + x) % 2 == 1 ? Half::kLow : Half::kHigh,
-                    (block.y0 + y) % 2 == 1 ? Half::kLow : Half::kHigh, &moments);
+          if (!cell.empty())
+            add_child(cell, x_places[x].placement, y_places[y].placement, &moments);
         }
       }
-      if (!moments.empty()) add_dual_cell(moments, column, row);
+      if (!moments.empty())
+        add_dual_cell(moments, x_places[x_begin].texel, y_places[y_begin].texel);
+      x_begin = x_end;
     }
+    y_begin = y_end;
   }
 }
 

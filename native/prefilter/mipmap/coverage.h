@@ -13,6 +13,12 @@ namespace prefilter {
 std::vector<float> texel_masses(const TexelTriangles& triangles, const Progress& progress,
                                 int threads);
 
+/// The surface's mass in the cells between lines along both axes, row by row; whole numbers from 0
+/// to the image's sides are among the lines.
+std::vector<float> cell_masses(const TexelTriangles& triangles, const std::vector<double>& x_lines,
+                               const std::vector<double>& y_lines, const Progress& progress,
+                               int threads);
+
 /// 1 for each texel that any triangle touches, whatever its area, else 0.
 std::vector<unsigned char> touched_texels(const std::vector<const Surface*>& surfaces, int width,
                                           int height, WrapModes wrap, const Progress& progress,

@@ -22,32 +22,18 @@ namespace {
 // A bilinear polynomial p00 + p10 x + p01 y + p11 x y at [2 * b + a].
 using Bilinear = std::array<double, 4>;
 
-// A level's bilinear interpolant on a cell of a grid with `cells` cells to the level's texel.
+// A level's bilinear interpolant on a cell.
 template <int C>
-std::array<Bilinear, C> interpolant(const ImageView& level, WrapModes wrap, int cell_x, int cell_y,
-                                    int cells_x, int cells_y) {
-  // The cell's low corner, and its size, in texels from the centre of texel (column, row).
-  const auto place = [](int cell, int cells, int* texel, double* offset, double* size) {
-    *size = 1.0 / cells;
-    const double from_centre = (cell + 0.5) / cells - 0.5;
-    *texel = static_cast<int>(std::floor(from_centre));
-    *offset = static_cast<double>(cell) / cells - 0.5 - *texel;
-  };
-  int column = 0;
-  int row = 0;
-  double x = 0.0;
-  double y = 0.0;
-  double size_x = 0.0;
-  double size_y = 0.0;
-  place(cell_x, cells_x, &column, &x, &size_x);
-  place(cell_y, cells_y, &row, &y, &size_y);
-
+std::array<Bilinear, C> interpolant(const ImageView& level, WrapModes wrap, const CellPlace& in_x,
+                                    const CellPlace& in_y) {
   const float* corners[4];
   for (int k = 0; k < 4; ++k) {
-    const int i = wrap_index(column + k % 2, level.width, wrap.u);
-    const int j = wrap_index(row + k / 2, level.height, wrap.v);
+    const int i = wrap_index(in_x.texel + k % 2, level.width, wrap.u);
+    const int j = wrap_index(in_y.texel + k / 2, level.height, wrap.v);
     corners[k] = i < 0 || j < 0 ? nullptr : level.texel(i, j);
   }
+  const auto [x, size_x] = in_x.placement;
+  const auto [y, size_y] = in_y.placement;
   std::array<Bilinear, C> result;
   for (int c = 0; c < C; ++c) {
     double v[4];
@@ -99,18 +85,19 @@ std::vector<double> measure(const std::vector<ImageView>& levels, const ImageVie
         const ImageView& level = levels[block.level];
         const bool has_next = block.level + 1 < level_count;
         const ImageView& next = levels[has_next ? block.level + 1 : block.level];
+        const CellPlace* x_places = block.x_places(block.level);
+        const CellPlace* y_places = block.y_places(block.level);
+        const CellPlace* next_x_places = block.x_places(block.level + (has_next ? 1 : 0));
+        const CellPlace* next_y_places = block.y_places(block.level + (has_next ? 1 : 0));
         Integrals& sums = parts[block.index * level_count + block.level];
         for (int y = 0; y < block.height; ++y) {
           for (int x = 0; x < block.width; ++x) {
             const CellMoments<C>& cell = block.at(x, y);
             if (cell.empty()) continue;
-            const int cx = block.x0 + x;
-            const int cy = block.y0 + y;
-            const auto here = interpolant<C>(level, wrap, cx, cy, 2, 2);
-            const auto coarse = interpolant<C>(next, wrap, cx, cy, 2 * level.width / next.width,
-                                               2 * level.height / next.height);
+            const auto here = interpolant<C>(level, wrap, x_places[x], y_places[y]);
+            const auto coarse = interpolant<C>(next, wrap, next_x_places[x], next_y_places[y]);
             if (block.level == 0) {
-              const auto source = interpolant<C>(image, wrap, cx, cy, 2, 2);
+              const auto source = interpolant<C>(image, wrap, x_places[x], y_places[y]);
               for (int c = 0; c < C; ++c) {
                 image_parts[block.index] += integral_of_product(source[c], source[c], cell.weight);
               }

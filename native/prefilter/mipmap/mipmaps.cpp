@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "prefilter/filters/push_pull.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/coverage.h"
+#include "prefilter/mipmap/level_grid.h"
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/moment_sweep.h"
 #include "prefilter/mipmap/texel_triangles.h"
@@ -228,28 +228,40 @@ class Builder {
 
   std::vector<Image> pam_box_levels() const {
     const Progress& progress = options_.progress;
-    std::vector<float> masses =
-        texel_masses(mapped(progress.part(0.16, 0.2)), progress.part(0.2, 0.6), options_.threads);
-    // Sums of mass times colour, halved level by level along with the masses.
-    Image sums(image_.width, image_.height, image_.channels);
-    for_each_texel(&sums, progress.part(0.6, 0.65), [&](std::size_t i, float* sum) {
-      const float* colour = image_.data + i * static_cast<std::size_t>(image_.channels);
-      for (int c = 0; c < image_.channels; ++c) sum[c] = masses[i] * colour[c];
-    });
+    const AxisTexels columns(image_.width, level_count_);
+    const AxisTexels rows(image_.height, level_count_);
+    MassSums sums{Image(columns.cell_count(0), rows.cell_count(0), image_.channels),
+                  cell_masses(mapped(progress.part(0.16, 0.2)), columns.lines(0), rows.lines(0),
+                              progress.part(0.2, 0.6), options_.threads)};
+    parallel_for(sums.image.height, options_.threads, progress.part(0.6, 0.65),
+                 [&](std::int64_t y) {
+                   float* sum = sums.image.texel(0, static_cast<int>(y));
+                   const float* mass = sums.masses.data() + y * sums.image.width;
+                   for (const int x : columns.texels(0)) {
+                     const float* colour = image_.texel(x, rows.texels(0)[y]);
+                     for (int c = 0; c < image_.channels; ++c) *sum++ = *mass * colour[c];
+                     ++mass;
+                   }
+                 });
     std::vector<Image> levels;
     double from = 0.65;
     for (int level = 1; level < level_count_; ++level) {
       const Progress part = progress.part(from, from + 0.75 * (0.97 - from));
       from += 0.75 * (0.97 - from);
-      halve(width(level), height(level), part.part(0.0, 0.4), &sums, &masses);
-      Image means(sums.width, sums.height, sums.channels);
-      for_each_texel(&means, part.part(0.4, 0.6), [&](std::size_t i, float* mean) {
-        const float* sum = sums.data.data() + i * static_cast<std::size_t>(sums.channels);
-        for (int c = 0; c < sums.channels && masses[i] > 0.0F; ++c) mean[c] = sum[c] / masses[i];
+      sums = gathered(sums, columns.parents(level - 1), columns.cell_count(level),
+                      rows.parents(level - 1), rows.cell_count(level), part.part(0.0, 0.3));
+      const bool nested =
+          columns.cell_count(level) == width(level) && rows.cell_count(level) == height(level);
+      MassSums texels = nested ? sums
+                               : gathered(sums, columns.texels(level), width(level),
+                                          rows.texels(level), height(level), part.part(0.3, 0.5));
+      for_each_texel(&texels.image, part.part(0.5, 0.6), [&](std::size_t i, float* sum) {
+        const float mass = texels.masses[i];
+        for (int c = 0; c < image_.channels; ++c) sum[c] = mass > 0.0F ? sum[c] / mass : 0.0F;
       });
-      fill_holes(masses, options_.wrap, image_.channels, part.part(0.6, 1.0), options_.threads,
-                 &means);
-      levels.push_back(std::move(means));
+      fill_holes(texels.masses, options_.wrap, image_.channels, part.part(0.6, 1.0),
+                 options_.threads, &texels.image);
+      levels.push_back(std::move(texels.image));
     }
     return levels;
   }
@@ -264,27 +276,33 @@ class Builder {
     });
   }
 
-  void halve(int width, int height, const Progress& progress, Image* sums,
-             std::vector<float>* masses) const {
-    Image half(width, height, sums->channels);
-    std::vector<float> half_masses(static_cast<std::size_t>(width) * height);
-    const int step_x = sums->width / width;
-    const int step_y = sums->height / height;
+  // Sums of mass times colour, and of mass, cell by cell.
+  struct MassSums {
+    Image image;
+    std::vector<float> masses;
+  };
+
+  // The sums over blocks of cells: those of column x go to column `to_columns[x]` of `width`, and
+  // the same for rows. Both rise.
+  MassSums gathered(const MassSums& from, const std::vector<int>& to_columns, int width,
+                    const std::vector<int>& to_rows, int height, const Progress& progress) const {
+    const int channels = from.image.channels;
+    MassSums to{Image(width, height, channels),
+                std::vector<float>(static_cast<std::size_t>(width) * height)};
     parallel_for(height, options_.threads, progress, [&](std::int64_t row) {
-      const int half_y = static_cast<int>(row);
-      float* row_masses = half_masses.data() + static_cast<std::ptrdiff_t>(half_y) * width;
-      for (int y = half_y * step_y; y < (half_y + 1) * step_y; ++y) {
-        const float* from = sums->texel(0, y);
-        const float* mass = masses->data() + static_cast<std::ptrdiff_t>(y) * sums->width;
-        for (int x = 0; x < sums->width; ++x, from += sums->channels) {
-          float* to = half.texel(x / step_x, half_y);
-          for (int c = 0; c < sums->channels; ++c) to[c] += from[c];
-          row_masses[x / step_x] += mass[x];
+      const auto [first, last] = std::equal_range(to_rows.begin(), to_rows.end(), row);
+      float* row_masses = to.masses.data() + row * width;
+      float* row_sums = to.image.texel(0, static_cast<int>(row));
+      for (auto y = first - to_rows.begin(); y < last - to_rows.begin(); ++y) {
+        const float* sum = from.image.texel(0, static_cast<int>(y));
+        const float* mass = from.masses.data() + y * from.image.width;
+        for (const int column : to_columns) {
+          for (int c = 0; c < channels; ++c) row_sums[column * channels + c] += *sum++;
+          row_masses[column] += *mass++;
         }
       }
     });
-    *sums = std::move(half);
-    *masses = std::move(half_masses);
+    return to;
   }
 
   std::vector<Image> pam_bilinear_levels() const {
@@ -431,15 +449,8 @@ MipmapFilter mipmap_filter(const std::string& name) {
 }
 
 void check_mipmap_image(const ImageView& image) {
-  const auto fits = [](int side) {
-    return side >= 2 && std::has_single_bit(static_cast<unsigned>(side));
-  };
   if (image.channels < 1 || image.channels > kMaxChannels) {
     throw_invalid("image: " + std::to_string(image.channels) + " channels; 1 to 4 are allowed");
-  }
-  if (!fits(image.width) || !fits(image.height)) {
-    throw_invalid("image: " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                  " texels; both sides must be powers of two, and at least 2");
   }
 }
 

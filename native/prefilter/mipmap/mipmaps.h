@@ -47,22 +47,21 @@ struct MipmapOptions {
   Progress progress;
 };
 
-/// Levels of an image: 0 is the image itself, each other half as wide and high (never less than 1).
+/// Levels of an image: 0 is the image itself, each other half as wide and high, rounded down, and
+/// never less than 1.
 ///
 /// A level of kPamBilinear minimises the integral over the surface of the squared difference
 /// between the bilinear lookups of the level and of the image, subject to the bounds. Levels of the
 /// other filters are clipped to them. Texels that the surface does not read have no influence; in
 /// the levels they are filled by push-pull.
 ///
-/// Throws Error where a side is no power of two or less than 2, channels are not 1 to 4, levels or
-/// bounds are out of range, a filter that needs a surface gets none or none that lies inside of the
-/// image, no triangle has an area, or a texel that counts is not finite or beyond 1e30; and, from
-/// the progress callback, when cancelled.
+/// Throws Error where channels are not 1 to 4, levels or bounds are out of range, a filter that
+/// needs a surface gets none or none that lies inside of the image, no triangle has an area, or a
+/// texel that counts is not finite or beyond 1e30; and, from the progress callback, when cancelled.
 std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
                            const MipmapOptions& options);
 
-/// Throws Error unless the image has 1 to 4 channels and sides that are powers of two of at
-/// least 2.
+/// Throws Error unless the image has 1 to 4 channels.
 void check_mipmap_image(const ImageView& image);
 
 /// Throws Error: none of the surface lies inside of the image.

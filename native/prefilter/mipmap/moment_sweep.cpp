@@ -1,115 +1,137 @@
-// Sections 7.2 and 7.3: closed-form integrals over triangles cut to the half-texel grid. Where a
-// texel lies inside of one triangle the integrals of the image are a fixed 3 x 3 stencil.
+// Sections 7.2 and 7.3: closed-form integrals over triangles cut to the finest cells. Where a texel
+// lies inside of one triangle the integrals of the image are a fixed 3 x 3 stencil.
 #include "prefilter/mipmap/moment_sweep.h"
 
 #include <array>
-#include <bit>
 #include <cassert>
+#include <cmath>
 #include <memory>
 #include <mutex>
 #include <vector>
 
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/tiles.h"
+#include "prefilter/moments/axis_parts.h"
 
 namespace prefilter {
 namespace {
 
-// A tile must be at least two texels wide at a level that it visits by itself: then tiles that are
-// not neighbours have no texel in common.
-constexpr int kTileLevels =
-    static_cast<int>(std::bit_width(static_cast<unsigned>(Tiles::kSize))) - 2;
-
-// How often an axis was halved by a level: an axis of one texel stays.
-int halvings(int size, int level) {
-  return std::min(level, static_cast<int>(std::bit_width(static_cast<unsigned>(size))) - 1);
+// The last level that tiles visit by themselves. Tiles of one pass are a tile apart: they have no
+// texel in common if a texel is at most half a tile wide.
+int last_tile_level(int width, int height) {
+  const auto fits = [](int size, int level) {
+    return 2 * size <= Tiles::kSize * level_size(size, level);
+  };
+  constexpr int kMost = 4;  // where sides are powers of two
+  int level = 1;
+  while (level < kMost && fits(width, level + 1) && fits(height, level + 1)) ++level;
+  return level;
 }
 
-int half_cells(int size, int image_size, int level) {
-  return 2 * size >> halvings(image_size, level);
-}
-
-struct Grid {
+// Cells [x0, x0 + width) x [y0, y0 + height) of a level.
+struct CellRange {
+  int x0 = 0;
+  int y0 = 0;
   int width = 0;
   int height = 0;
+
+  std::size_t count() const { return static_cast<std::size_t>(width) * height; }
 };
 
-Half half_of(int child, bool halved) {
-  if (!halved) return Half::kWhole;
-  return child % 2 == 0 ? Half::kLow : Half::kHigh;
-}
-
-// The cells of the next level from those of this one.
-template <int C>
-void nest(const CellMoments<C>* fine, Grid fine_grid, Grid coarse_grid, CellMoments<C>* coarse) {
-  std::fill(coarse, coarse + static_cast<std::ptrdiff_t>(coarse_grid.width) * coarse_grid.height,
-            CellMoments<C>{});
-  const bool halves_x = coarse_grid.width < fine_grid.width;
-  const bool halves_y = coarse_grid.height < fine_grid.height;
-  for (int y = 0; y < fine_grid.height; ++y) {
-    CellMoments<C>* row =
-        coarse + static_cast<std::ptrdiff_t>(halves_y ? y / 2 : y) * coarse_grid.width;
-    for (int x = 0; x < fine_grid.width; ++x, ++fine) {
-      if (fine->empty()) continue;
-      add_child(*fine, half_of(x, halves_x), half_of(y, halves_y), row + (halves_x ? x / 2 : x));
-    }
-  }
-}
-
-// The surface's measure on the half-texel cells of one tile.
+// The surface's measure on the cells of level 0 in one tile.
 class TileMeasure final : public CellSink {
  public:
-  static constexpr int kSide = 2 * Tiles::kSize;
-
-  TileMeasure() : uniform_(kSide * kSide), pieces_(kSide * kSide), has_pieces_(kSide * kSide) {}
-
-  void collect(const TexelTriangles& source, const Tiles& tiles, std::int64_t tile) {
-    for (const int cell : touched_) {
-      pieces_[cell] = {};
-      has_pieces_[cell] = 0;
+  void collect(const TexelTriangles& source, const Tiles& tiles, std::int64_t tile,
+               const AxisCells& x_cells, const AxisCells& y_cells, const CellRange& range) {
+    if (range.count() != pieces_.size() || range.width != range_.width) {
+      pieces_.assign(range.count(), {});
+      has_pieces_.assign(range.count(), 0);
+    } else {
+      for (const int cell : touched_) {
+        pieces_[cell] = {};
+        has_pieces_[cell] = 0;
+      }
     }
     touched_.clear();
-    std::fill(uniform_.begin(), uniform_.end(), 0.25 * source.uniform_density);
+    // In half-texel units a uniform density is mass by a quarter of a texel.
+    uniform_.assign(range.count(), 0.25 * source.uniform_density);
+    range_ = range;
 
     const CellWindow texels = tiles.window(tile);
-    x0_ = 2 * texels.x0;
-    y0_ = 2 * texels.y0;
-    const CellWindow window{x0_, y0_, 2 * texels.x1, 2 * texels.y1};
+    window_ = {2 * texels.x0, 2 * texels.y0, 2 * texels.x1, 2 * texels.y1};
+    x_parts_ = AxisParts(x_cells.lines(0), range.x0, range.x0 + range.width, 2.0);
+    y_parts_ = AxisParts(y_cells.lines(0), range.y0, range.y0 + range.height, 2.0);
     for (const std::uint32_t* k = tiles.begin(tile); k != tiles.end(tile); ++k) {
       MassTriangle triangle = source.triangles[*k];
       for (Point2& corner : triangle.corners) {
         corner.x *= 2.0;
         corner.y *= 2.0;
       }
-      cut_to_cells(triangle, window, this);
+      cut_to_cells(triangle, window_, this);
     }
   }
 
-  static int cell(int x, int y) { return y * kSide + x; }
+  int cell(int x, int y) const { return y * range_.width + x; }
   bool has_pieces(int cell) const { return has_pieces_[cell] != 0; }
+  // Mass by squared half texel of what covers the cell evenly.
   double uniform(int cell) const { return uniform_[cell]; }
-  WeightMoments moments(int cell) const {
-    WeightMoments result = pieces_[cell];
-    for (int i = 0; i < 9; ++i) result[i] += uniform_[cell] * kUniformMoments[i];
+  WeightMoments moments(int x, int y) const {
+    const int at = cell(x, y);
+    WeightMoments result = pieces_[at];
+    const double mass = uniform_[at] * x_parts_.width(x) * y_parts_.width(y);
+    for (int i = 0; i < 9; ++i) result[i] += mass * kUniformMoments[i];
     return result;
   }
 
  private:
   void add_full(int y, int x0, int x1, double density) override {
-    for (int x = x0; x < x1; ++x) uniform_[cell(x - x0_, y - y0_)] += density;
+    const int rows_end = y_parts_.first_of(y - window_.y0 + 1);
+    const int columns_end = x_parts_.first_of(x1 - window_.x0);
+    for (int row = y_parts_.first_of(y - window_.y0); row < rows_end; ++row) {
+      for (int column = x_parts_.first_of(x0 - window_.x0); column < columns_end; ++column) {
+        uniform_[cell(column, row)] += density;
+      }
+    }
   }
+
   void add_piece(int x, int y, const CellPiece& piece) override {
-    const int at = cell(x - x0_, y - y0_);
+    const int in_x = x - window_.x0;
+    const int in_y = y - window_.y0;
+    if (x_parts_.parts_of(in_x) == 1 && y_parts_.parts_of(in_y) == 1) {
+      piece.add_moments(x, y, touch(x_parts_.first_of(in_x), y_parts_.first_of(in_y)));
+      return;
+    }
+    y_parts_.cut(piece, 1, in_y, [&](int row, const CellPiece& strip) {
+      x_parts_.cut(strip, 0, in_x,
+                   [&](int column, const CellPiece& part) { add_part(column, row, part); });
+    });
+  }
+
+  void add_part(int column, int row, CellPiece piece) {
+    if (!(piece.mass() > 0.0)) return;
+    // Areas stay as they are where (s, t) is the grid; positions go to the part's own coordinates.
+    for (int i = 0; i < piece.count; ++i) {
+      PieceCorner& corner = piece.corners[i];
+      corner.x = (corner.x - x_parts_.low(column)) / x_parts_.width(column);
+      corner.y = (corner.y - y_parts_.low(row)) / y_parts_.width(row);
+    }
+    piece.add_moments(0.0, 0.0, touch(column, row));
+  }
+
+  WeightMoments* touch(int column, int row) {
+    const int at = cell(column, row);
     if (has_pieces_[at] == 0) {
       has_pieces_[at] = 1;
       touched_.push_back(at);
     }
-    piece.add_moments(x, y, &pieces_[at]);
+    return &pieces_[at];
   }
 
-  int x0_ = 0;
-  int y0_ = 0;
-  std::vector<double> uniform_;  // mass of triangles that hold the whole cell
+  CellRange range_;
+  CellWindow window_;  // half texels
+  AxisParts x_parts_;
+  AxisParts y_parts_;
+  std::vector<double> uniform_;
   std::vector<WeightMoments> pieces_;
   std::vector<unsigned char> has_pieces_;
   std::vector<int> touched_;
@@ -172,32 +194,29 @@ void add_uniform_texel(const Patch<C>& patch, int x, int y, double density,
   }
 }
 
-// Moments of half-texel cell (hx, hy) of the tile, at level 0.
+// Moments of a cell of level 0 that lies at `in_x`, `in_y` among the texels of the image.
 template <int C>
-CellMoments<C> half_texel_moments(const TileMeasure& measure, const Patch<C>& patch, int hx,
-                                  int hy) {
+CellMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch, const CellWindow& texels,
+                            const CellPlace& in_x, const CellPlace& in_y) {
   CellMoments<C> moments;
-  moments.weight = measure.moments(TileMeasure::cell(hx, hy));
-  if (moments.empty()) return moments;
-  // The cell lies in the half of its texel beside column `column` and the next.
-  const bool high_x = hx % 2 == 0;
-  const bool high_y = hy % 2 == 0;
-  const int column = hx / 2 - (high_x ? 1 : 0);
-  const int row = hy / 2 - (high_y ? 1 : 0);
-  const WeightMoments& w = moments.weight;
+  moments.weight = w;
+  const int column = in_x.texel - texels.x0;
+  const int row = in_y.texel - texels.y0;
+  const double x = in_x.placement.offset;
+  const double y = in_y.placement.offset;
   for (int c = 0; c < C; ++c) {
     const double v00 = patch.at(column, row)[c];
     const double v10 = patch.at(column + 1, row)[c];
     const double v01 = patch.at(column, row + 1)[c];
     const double v11 = patch.at(column + 1, row + 1)[c];
-    // Bilinear in the cell's x and y: p00 + p10 x + p01 y + p11 x y.
-    const double dx = 0.5 * (v10 - v00);
-    const double dy = 0.5 * (v01 - v00);
-    const double p11 = 0.25 * (v11 - v10 - v01 + v00);
-    const double p10 = dx + (high_y ? p11 : 0.0);
-    const double p01 = dy + (high_x ? p11 : 0.0);
-    const double p00 =
-        v00 + (high_x ? dx : 0.0) + (high_y ? dy : 0.0) + (high_x && high_y ? p11 : 0.0);
+    // Bilinear in the cell's own coordinates: p00 + p10 x + p01 y + p11 x y.
+    const double slope_x = v10 - v00;
+    const double slope_y = v01 - v00;
+    const double twist = v11 - v10 - v01 + v00;
+    const double p00 = v00 + slope_x * x + slope_y * y + twist * x * y;
+    const double p10 = in_x.placement.scale * (slope_x + twist * y);
+    const double p01 = in_y.placement.scale * (slope_y + twist * x);
+    const double p11 = in_x.placement.scale * in_y.placement.scale * twist;
     for (int b = 0; b < 2; ++b) {
       for (int a = 0; a < 2; ++a) {
         const int i = 3 * b + a;
@@ -249,11 +268,13 @@ class Sweep {
         options_(options),
         visit_(visit),
         progress_(progress),
-        tiles_(triangles, progress.part(0.0, 0.1)) {
-    if (options_.last_level > kTileLevels) {
-      coarse_grid_ = grid(image.width, image.height, kTileLevels + 1);
-      coarse_.resize(static_cast<std::size_t>(coarse_grid_.width) * coarse_grid_.height);
-    }
+        tiles_(triangles, progress.part(0.0, 0.1)),
+        tile_levels_(last_tile_level(image.width, image.height)),
+        x_cells_(image.width, full_level_count(image.width, image.height), Tiles::kSize,
+                 tile_levels_ + 1),
+        y_cells_(image.height, full_level_count(image.width, image.height), Tiles::kSize,
+                 tile_levels_ + 1) {
+    if (options_.last_level > tile_levels_) coarse_.resize(whole(tile_levels_ + 1).count());
   }
 
   void run() {
@@ -266,48 +287,78 @@ class Sweep {
   }
 
  private:
-  Grid grid(int width, int height, int level) const {
-    return {half_cells(width, image_.width, level), half_cells(height, image_.height, level)};
+  CellRange whole(int level) const {
+    return {0, 0, x_cells_.cell_count(level), y_cells_.cell_count(level)};
+  }
+  CellRange within(const CellWindow& texels, int level) const {
+    const int x0 = x_cells_.cell_at(level, texels.x0);
+    const int y0 = y_cells_.cell_at(level, texels.y0);
+    return {x0, y0, x_cells_.cell_at(level, texels.x1) - x0,
+            y_cells_.cell_at(level, texels.y1) - y0};
   }
 
-  void visit(int level, const CellWindow& texels, const CellMoments<C>* cells,
+  void visit(int level, const CellRange& range, const CellMoments<C>* cells,
              std::int64_t index) const {
     if (level < options_.first_level || level > options_.last_level) return;
     MomentBlock<C> block;
     block.level = level;
-    block.x0 = half_cells(texels.x0, image_.width, level);
-    block.y0 = half_cells(texels.y0, image_.height, level);
-    block.width = half_cells(texels.x1 - texels.x0, image_.width, level);
-    block.height = half_cells(texels.y1 - texels.y0, image_.height, level);
+    block.x0 = range.x0;
+    block.y0 = range.y0;
+    block.width = range.width;
+    block.height = range.height;
     block.cells = cells;
+    block.x_cells = &x_cells_;
+    block.y_cells = &y_cells_;
     block.index = index;
     visit_(block);
+  }
+
+  // Adds the cells of a level to those of the next, which are `coarse_cells`.
+  void nest(int level, const CellRange& range, const CellMoments<C>* cells,
+            const CellRange& coarse_range, CellMoments<C>* coarse_cells) const {
+    const CellParent* x_parents = x_cells_.parents(level).data() + range.x0;
+    const CellParent* y_parents = y_cells_.parents(level).data() + range.y0;
+    for (int y = 0; y < range.height; ++y) {
+      CellMoments<C>* row =
+          coarse_cells +
+          static_cast<std::ptrdiff_t>(y_parents[y].cell - coarse_range.y0) * coarse_range.width -
+          coarse_range.x0;
+      for (int x = 0; x < range.width; ++x, ++cells) {
+        if (cells->empty()) continue;
+        add_child(*cells, x_parents[x].placement, y_parents[y].placement, row + x_parents[x].cell);
+      }
+    }
   }
 
   // The finest level that is visited, in cells[0]; returns which level that is.
   int start_tile(const CellWindow& texels, Workspace<C>* work) const {
     const TileMeasure& measure = work->measure;
-    const int width = texels.x1 - texels.x0;
-    const int height = texels.y1 - texels.y0;
     std::vector<CellMoments<C>>& cells = work->cells[0];
-    // A cell of level 1 is a texel only where both axes are halved.
-    if (options_.first_level == 0 || image_.width == 1 || image_.height == 1) {
-      cells.assign(static_cast<std::size_t>(4) * width * height, {});
-      for (int hy = 0; hy < 2 * height; ++hy) {
-        for (int hx = 0; hx < 2 * width; ++hx) {
-          cells[static_cast<std::size_t>(hy) * 2 * width + hx] =
-              half_texel_moments(measure, work->patch, hx, hy);
-        }
+    const CellRange range = within(texels, 0);
+    const CellPlace* x_places = x_cells_.places(0, 0).data() + range.x0;
+    const CellPlace* y_places = y_cells_.places(0, 0).data() + range.y0;
+    const auto moments = [&](int x, int y) {
+      const WeightMoments weight = measure.moments(x, y);
+      if (weight[0] == 0.0) return CellMoments<C>();
+      return cell_moments(weight, work->patch, texels, x_places[x], y_places[y]);
+    };
+    if (options_.first_level == 0 || !x_cells_.halves_evenly() || !y_cells_.halves_evenly()) {
+      cells.resize(range.count());
+      for (int y = 0; y < range.height; ++y) {
+        for (int x = 0; x < range.width; ++x) cells[measure.cell(x, y)] = moments(x, y);
       }
       return 0;
     }
+    const int width = texels.x1 - texels.x0;
+    const int height = texels.y1 - texels.y0;
     cells.assign(static_cast<std::size_t>(width) * height, {});
+    const Placement halves[2] = {{0.0, 0.5}, {0.5, 0.5}};
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         CellMoments<C>& texel = cells[static_cast<std::size_t>(y) * width + x];
-        const int quarters[4] = {
-            TileMeasure::cell(2 * x, 2 * y), TileMeasure::cell(2 * x + 1, 2 * y),
-            TileMeasure::cell(2 * x, 2 * y + 1), TileMeasure::cell(2 * x + 1, 2 * y + 1)};
+        const int quarters[4] = {measure.cell(2 * x, 2 * y), measure.cell(2 * x + 1, 2 * y),
+                                 measure.cell(2 * x, 2 * y + 1),
+                                 measure.cell(2 * x + 1, 2 * y + 1)};
         const double density = measure.uniform(quarters[0]);
         bool even = true;
         for (const int quarter : quarters) {
@@ -318,10 +369,8 @@ class Sweep {
           continue;
         }
         for (int k = 0; k < 4; ++k) {
-          const int hx = 2 * x + k % 2;
-          const int hy = 2 * y + k / 2;
-          const CellMoments<C> quarter = half_texel_moments(measure, work->patch, hx, hy);
-          if (!quarter.empty()) add_child(quarter, half_of(hx, true), half_of(hy, true), &texel);
+          const CellMoments<C> quarter = moments(2 * x + k % 2, 2 * y + k / 2);
+          if (!quarter.empty()) add_child(quarter, halves[k % 2], halves[k / 2], &texel);
         }
       }
     }
@@ -330,51 +379,36 @@ class Sweep {
 
   void sweep_tile(std::int64_t tile, Workspace<C>* work) {
     const CellWindow texels = tiles_.window(tile);
-    const int width = texels.x1 - texels.x0;
-    const int height = texels.y1 - texels.y0;
     if (tiles_.begin(tile) == tiles_.end(tile) && triangles_.uniform_density == 0.0) return;
-    work->measure.collect(triangles_, tiles_, tile);
+    work->measure.collect(triangles_, tiles_, tile, x_cells_, y_cells_, within(texels, 0));
     work->patch.load(image_, wrap_, texels);
 
     int level = start_tile(texels, work);
     int current = 0;
-    const int last = std::min(options_.last_level, kTileLevels);
-    visit(level, texels, work->cells[current].data(), tile);
+    const int last = std::min(options_.last_level, tile_levels_);
+    visit(level, within(texels, level), work->cells[current].data(), tile);
     while (level < last) {
-      const Grid fine = grid(width, height, level);
-      const Grid next = grid(width, height, level + 1);
-      work->cells[1 - current].resize(static_cast<std::size_t>(next.width) * next.height);
-      nest(work->cells[current].data(), fine, next, work->cells[1 - current].data());
+      const CellRange next = within(texels, level + 1);
+      std::vector<CellMoments<C>>& coarse = work->cells[1 - current];
+      coarse.assign(next.count(), {});
+      nest(level, within(texels, level), work->cells[current].data(), next, coarse.data());
       ++level;
       current = 1 - current;
-      visit(level, texels, work->cells[current].data(), tile);
+      visit(level, next, work->cells[current].data(), tile);
     }
-    if (!coarse_.empty()) store(texels, level, work->cells[current].data());
-  }
-
-  // Nests a tile's last level once more, into its place in the coarse grid.
-  void store(const CellWindow& texels, int level, const CellMoments<C>* cells) {
-    const Grid fine = grid(texels.x1 - texels.x0, texels.y1 - texels.y0, level);
-    const Grid next = grid(texels.x1 - texels.x0, texels.y1 - texels.y0, level + 1);
-    const Grid corner = grid(texels.x0, texels.y0, level + 1);
-    std::vector<CellMoments<C>> nested(static_cast<std::size_t>(next.width) * next.height);
-    nest(cells, fine, next, nested.data());
-    for (int y = 0; y < next.height; ++y) {
-      std::copy_n(nested.data() + static_cast<std::ptrdiff_t>(y) * next.width, next.width,
-                  coarse_.data() +
-                      static_cast<std::ptrdiff_t>(corner.height + y) * coarse_grid_.width +
-                      corner.width);
+    // Each cell of the coarse grid lies in one tile.
+    if (!coarse_.empty()) {
+      nest(level, within(texels, level), work->cells[current].data(), whole(level + 1),
+           coarse_.data());
     }
   }
 
   void sweep_coarse() {
-    const CellWindow whole{0, 0, image_.width, image_.height};
-    for (int level = kTileLevels + 1; level <= options_.last_level; ++level) {
-      visit(level, whole, coarse_.data(), tiles_.count());
-      const Grid fine = grid(image_.width, image_.height, level);
-      const Grid next = grid(image_.width, image_.height, level + 1);
-      std::vector<CellMoments<C>> nested(static_cast<std::size_t>(next.width) * next.height);
-      nest(coarse_.data(), fine, next, nested.data());
+    for (int level = tile_levels_ + 1; level <= options_.last_level; ++level) {
+      visit(level, whole(level), coarse_.data(), tiles_.count());
+      if (level == options_.last_level) break;
+      std::vector<CellMoments<C>> nested(whole(level + 1).count());
+      nest(level, whole(level), coarse_.data(), whole(level + 1), nested.data());
       coarse_ = std::move(nested);
     }
   }
@@ -386,9 +420,11 @@ class Sweep {
   const Visit& visit_;
   const Progress& progress_;
   Tiles tiles_;
+  int tile_levels_;
+  AxisCells x_cells_;
+  AxisCells y_cells_;
   WorkspacePool<C> pool_;
-  Grid coarse_grid_;
-  std::vector<CellMoments<C>> coarse_;  // half-texel cells of level kTileLevels + 1
+  std::vector<CellMoments<C>> coarse_;  // of level tile_levels_ + 1 and up
 };
 
 }  // namespace

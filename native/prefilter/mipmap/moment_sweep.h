@@ -1,24 +1,24 @@
 // The moment pyramid: one pass over the mesh that yields, for every level, the moments of the
 // surface and of the image on it.
 //
-// On the half-texel grid of level l every bilinear basis function of level l, and of every coarser
-// level, is one bilinear polynomial per cell (figure 7.4). A cell of that grid at level l + 1 is
-// four cells at level l, so its moments are a fixed combination of theirs: the mesh is cut once,
-// along the finest grid. The image is cut into tiles that fit a processor's cache; nothing of the
-// finest grids is kept.
+// On a cell of level l every bilinear basis function of level l, and of every coarser level, is one
+// bilinear polynomial (figure 7.4, and level_grid.h). A cell of level l + 1 is a block of cells of
+// level l, so its moments are a fixed combination of theirs: the mesh is cut once, along the finest
+// cells. The image is cut into tiles that fit a processor's cache; nothing of the finest cells is
+// kept.
 #pragma once
 
 #include <functional>
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/mipmap/level_grid.h"
 #include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/moments/cell_moments.h"
 
 namespace prefilter {
 
-/// The half-texel cells [x0, x0 + width) x [y0, y0 + height) of a level, which has 2 cells to a
-/// texel along each axis.
+/// The cells [x0, x0 + width) x [y0, y0 + height) of a level.
 template <int C>
 struct MomentBlock {
   int level = 0;
@@ -27,11 +27,17 @@ struct MomentBlock {
   int width = 0;
   int height = 0;
   const CellMoments<C>* cells = nullptr;  // row by row
-  std::int64_t index = 0;                 // which tile; the whole grid of a coarse level comes last
+  const AxisCells* x_cells = nullptr;
+  const AxisCells* y_cells = nullptr;
+  std::int64_t index = 0;  // which tile; the whole grid of a coarse level comes last
 
   const CellMoments<C>& at(int x, int y) const {
     return cells[static_cast<std::ptrdiff_t>(y) * width + x];
   }
+  /// Where the block's columns and rows of cells lie among the texels of a level, this one or the
+  /// next.
+  const CellPlace* x_places(int of) const { return x_cells->places(level, of).data() + x0; }
+  const CellPlace* y_places(int of) const { return y_cells->places(level, of).data() + y0; }
 };
 
 struct SweepOptions {
@@ -43,10 +49,10 @@ struct SweepOptions {
 /// How many different values MomentBlock::index takes.
 std::int64_t sweep_block_count(int width, int height);
 
-/// Visits every half-texel cell of the levels asked for, block by block. Blocks are visited at the
+/// Visits every cell of the levels asked for, block by block. Blocks are visited at the
 /// same time only where their cells, and the texels of their level beside these, are apart, and any
 /// two blocks that are not are visited in the same order whatever the number of threads. `image` is
-/// finite, has C channels and sides that are powers of two.
+/// finite and has C channels.
 template <int C>
 void sweep_moments(const TexelTriangles& triangles, const ImageView& image, WrapModes wrap,
                    const SweepOptions& options, const Progress& progress,

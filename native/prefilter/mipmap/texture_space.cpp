@@ -9,22 +9,12 @@ namespace {
 
 constexpr float kLeastWeight = 0.1F;
 
-struct Factors {
-  int x;
-  int y;
-};
-
-Factors factors_of(const ImageView& image, int level) {
-  return {image.width / level_size(image.width, level),
-          image.height / level_size(image.height, level)};
-}
-
 }  // namespace
 
 Image filter_level(const ImageView& image, int level, Kernel kernel, WrapModes wrap,
                    const Progress& progress, int threads) {
-  const Factors factor = factors_of(image, level);
-  return downsample(image, factor.x, factor.y, kernel, wrap, progress, threads);
+  return downsample(image, level_size(image.width, level), level_size(image.height, level), kernel,
+                    wrap, progress, threads);
 }
 
 Image filter_covered_level(const ImageView& image, const std::vector<unsigned char>& covered,
@@ -40,10 +30,10 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
       masked.data[at] = image.data[at];
     }
   }
-  const Factors factor = factors_of(image, level);
+  const int width = level_size(image.width, level);
+  const int height = level_size(image.height, level);
   const auto reduce = [&](const Image& source, Kernel with, double from, double to) {
-    return downsample(source.view(), factor.x, factor.y, with, wrap, progress.part(from, to),
-                      threads);
+    return downsample(source.view(), width, height, with, wrap, progress.part(from, to), threads);
   };
   Image sums = reduce(masked, kernel, 0.0, 0.4);
   Image weights = reduce(mask, kernel, 0.4, 0.5);

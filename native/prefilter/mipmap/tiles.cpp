@@ -25,10 +25,15 @@ void for_each_tile(const MassTriangle& triangle, int columns, int rows, const Us
   }
 }
 
-// Colours 0 and 1 in turn; the last of an odd number gets a colour of its own, since it is a
-// neighbour of the first around the edge.
-constexpr int kColours = 3;
-int colour(int i, int count) { return count > 1 && count % 2 == 1 && i == count - 1 ? 2 : i % 2; }
+// Colours 0 and 1 in turn. The last one is beside the first around the edge, and may be so narrow
+// that the one before it comes near the first too: they have colours of their own.
+constexpr int kColours = 4;
+int colour(int i, int count, int size) {
+  const bool narrow = size % Tiles::kSize != 0;
+  if (count > 1 && i == count - 1 && (narrow || count % 2 == 1)) return 2;
+  if (count > 2 && i == count - 2 && narrow) return 3;
+  return i % 2;
+}
 
 }  // namespace
 
@@ -69,9 +74,9 @@ void Tiles::for_each_apart(int threads, const Progress& progress,
   for (int pass = 0; pass < kColours * kColours; ++pass) {
     std::vector<std::int64_t> members;
     for (int row = 0; row < rows_; ++row) {
-      if (colour(row, rows_) != pass / kColours) continue;
+      if (colour(row, rows_, height_) != pass / kColours) continue;
       for (int column = 0; column < columns_; ++column) {
-        if (colour(column, columns_) != pass % kColours) continue;
+        if (colour(column, columns_, width_) != pass % kColours) continue;
         members.push_back(static_cast<std::int64_t>(row) * columns_ + column);
       }
     }

@@ -29,47 +29,46 @@ struct CellMoments {
   bool empty() const { return weight[0] == 0.0; }
 };
 
-/// Which half of the parent's side a child spans along one axis.
-enum class Half { kLow, kHigh, kWhole };
+/// Where a cell lies in another along one axis: the coordinate x in it is offset + scale * x there.
+struct Placement {
+  double offset = 0.0;
+  double scale = 1.0;
+};
 
 namespace internal {
 
-/// Moments along one axis in the parent's coordinate X from those in the child's x:
-/// X = (x + h) / 2 with h = 0 or 1 for a half, X = x for the whole.
+/// Moments along one axis in a parent's coordinate from those in the child's.
 template <int kDegrees>
-inline void lift(const double* child, int stride, Half half, double* parent) {
+inline void lift(const double* child, int stride, const Placement& place, double* parent) {
   const double m0 = child[0];
   const double m1 = child[stride];
-  if (half == Half::kWhole) {
-    parent[0] = m0;
-    parent[1] = m1;
-    if constexpr (kDegrees == 3) parent[2] = child[2 * stride];
-    return;
-  }
-  const double h = half == Half::kHigh ? 1.0 : 0.0;
   parent[0] = m0;
-  parent[1] = 0.5 * (m1 + h * m0);
-  if constexpr (kDegrees == 3) parent[2] = 0.25 * (child[2 * stride] + h * (2.0 * m1 + m0));
+  parent[1] = place.scale * m1 + place.offset * m0;
+  if constexpr (kDegrees == 3) {
+    parent[2] = place.scale * (place.scale * child[2 * stride] + 2.0 * place.offset * m1) +
+                place.offset * place.offset * m0;
+  }
 }
 
 }  // namespace internal
 
 /// Adds the moments of a child cell to its parent's.
 template <int C>
-void add_child(const CellMoments<C>& child, Half half_x, Half half_y, CellMoments<C>* parent) {
+void add_child(const CellMoments<C>& child, const Placement& in_x, const Placement& in_y,
+               CellMoments<C>* parent) {
   double rows[9];
-  for (int b = 0; b < 3; ++b) internal::lift<3>(&child.weight[3 * b], 1, half_x, rows + 3 * b);
+  for (int b = 0; b < 3; ++b) internal::lift<3>(&child.weight[3 * b], 1, in_x, rows + 3 * b);
   for (int a = 0; a < 3; ++a) {
     double column[3];
-    internal::lift<3>(rows + a, 3, half_y, column);
+    internal::lift<3>(rows + a, 3, in_y, column);
     for (int b = 0; b < 3; ++b) parent->weight[3 * b + a] += column[b];
   }
   for (int c = 0; c < C; ++c) {
     double lines[4];
-    for (int b = 0; b < 2; ++b) internal::lift<2>(&child.image[c][2 * b], 1, half_x, lines + 2 * b);
+    for (int b = 0; b < 2; ++b) internal::lift<2>(&child.image[c][2 * b], 1, in_x, lines + 2 * b);
     for (int a = 0; a < 2; ++a) {
       double column[2];
-      internal::lift<2>(lines + a, 2, half_y, column);
+      internal::lift<2>(lines + a, 2, in_y, column);
       for (int b = 0; b < 2; ++b) parent->image[c][2 * b + a] += column[b];
     }
   }

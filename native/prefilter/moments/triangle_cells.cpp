@@ -150,7 +150,7 @@ double CellPiece::mass() const {
   return 0.5 * doubled * mass_per_area;
 }
 
-void CellPiece::add_moments(int cell_x, int cell_y, WeightMoments* moments) const {
+void CellPiece::add_moments(double cell_x, double cell_y, WeightMoments* moments) const {
   WeightMoments sum{};
   for (int i = 2; i < count; ++i) {
     const PieceCorner& a = corners[0];

@@ -48,9 +48,9 @@ struct CellPiece {
   bool flat = false;           // its image has no area, and (s, t) is barycentric, not (x, y)
 
   double mass() const;
-  /// Adds the mass and moments of the piece in the coordinates of the cell whose low corner is
+  /// Adds the mass and moments of the piece in the coordinates of the unit cell whose low corner is
   /// given.
-  void add_moments(int cell_x, int cell_y, WeightMoments* moments) const;
+  void add_moments(double cell_x, double cell_y, WeightMoments* moments) const;
 };
 
 /// What a triangle leaves in the cells of a window.

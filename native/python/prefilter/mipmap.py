@@ -43,8 +43,7 @@ def mipmaps(
     "pam-" and "-covered" filters; they are filled from what is around them (push-pull).
 
     Args:
-        image: (height, width, 1 to 4 channels), scene-linear, row 0 at v = 0. Sides are powers of
-            two, at least 2.
+        image: (height, width, 1 to 4 channels), scene-linear, row 0 at v = 0. Any sides.
         surface: One surface, or several that share the image. Not needed for the plain filters.
         filter: One of the names above.
         wrap: What lookups read outside of the image: "clamp", "repeat" or "border" (zero, and
@@ -60,7 +59,7 @@ def mipmaps(
 
     Returns:
         The levels, float32 (height, width, channels), level 0 first; it is a copy of the image.
-        Each has half the sides of the one before, never less than 1.
+        Each has half the sides of the one before, rounded down, never less than 1.
 
     Raises:
         ValueError: An argument is out of range, or a texel that counts is not finite.

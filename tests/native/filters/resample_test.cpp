@@ -38,7 +38,8 @@ TEST(Downsample, MatchesItsDefinition) {
       for (const WrapModes wrap :
            {WrapModes{Wrap::kClamp, Wrap::kRepeat}, WrapModes{Wrap::kBorder, Wrap::kClamp}}) {
         for (const auto& [fx, fy] : {std::pair{2, 2}, std::pair{3, 8}, std::pair{1, 4}}) {
-          const Image target = downsample(source.view(), fx, fy, kernel, wrap, Progress(), 2);
+          const Image target =
+              downsample(source.view(), 24 / fx, 16 / fy, kernel, wrap, Progress(), 2);
           ASSERT_EQ(target.width, 24 / fx);
           ASSERT_EQ(target.height, 16 / fy);
           for (int y = 0; y < target.height; ++y) {

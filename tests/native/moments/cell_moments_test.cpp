@@ -22,18 +22,15 @@ CellMoments<2> point_mass(double x, double y) {
   return moments;
 }
 
-double in_parent(double x, Half half) {
-  if (half == Half::kWhole) return x;
-  return half == Half::kLow ? x / 2 : (x + 1) / 2;
-}
+double in_parent(double x, Placement place) { return place.offset + place.scale * x; }
 
 TEST(AddChild, MovesPointMassesToTheParent) {
-  const Half halves[] = {Half::kLow, Half::kHigh, Half::kWhole};
-  for (const Half half_x : halves) {
-    for (const Half half_y : halves) {
+  const Placement places[] = {{0.0, 0.5}, {0.5, 0.5}, {0.0, 1.0}, {0.125, 0.7}};
+  for (const Placement in_x : places) {
+    for (const Placement in_y : places) {
       CellMoments<2> parent;
-      add_child(point_mass(0.3, 0.8), half_x, half_y, &parent);
-      const CellMoments<2> expected = point_mass(in_parent(0.3, half_x), in_parent(0.8, half_y));
+      add_child(point_mass(0.3, 0.8), in_x, in_y, &parent);
+      const CellMoments<2> expected = point_mass(in_parent(0.3, in_x), in_parent(0.8, in_y));
       for (int i = 0; i < 9; ++i) EXPECT_NEAR(parent.weight[i], expected.weight[i], 1e-15);
       for (int c = 0; c < 2; ++c) {
         for (int i = 0; i < 4; ++i) EXPECT_NEAR(parent.image[c][i], expected.image[c][i], 1e-15);
@@ -42,12 +39,15 @@ TEST(AddChild, MovesPointMassesToTheParent) {
   }
 }
 
-TEST(AddChild, FourUniformQuartersMakeAUniformCell) {
-  CellMoments<1> quarter;
-  for (int i = 0; i < 9; ++i) quarter.weight[i] = 0.25 * kUniformMoments[i];
+TEST(AddChild, UniformPartsMakeAUniformCell) {
   CellMoments<1> parent;
-  for (const Half half_y : {Half::kLow, Half::kHigh}) {
-    for (const Half half_x : {Half::kLow, Half::kHigh}) add_child(quarter, half_x, half_y, &parent);
+  const Placement parts[] = {{0.0, 0.3}, {0.3, 0.7}};
+  for (const Placement in_y : parts) {
+    for (const Placement in_x : parts) {
+      CellMoments<1> part;
+      for (int i = 0; i < 9; ++i) part.weight[i] = in_x.scale * in_y.scale * kUniformMoments[i];
+      add_child(part, in_x, in_y, &parent);
+    }
   }
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(parent.weight[i], kUniformMoments[i], 1e-15);
 }
