@@ -332,7 +332,7 @@ class Builder {
         options_.progress.part(0.2, 0.5),
         [&](const MomentBlock<C>& block) { systems[block.level - 1]->add(block); });
 
-    typename BilinearSystem<C>::SolveOptions solve;
+    SolveOptions solve;
     for (int c = 0; c < C; ++c) solve.ranges[c] = solved_range(c);
     solve.ranges_times_alpha = straight_alpha_;
     solve.threads = options_.threads;
