@@ -21,7 +21,7 @@ void add_errors(benchmark::State& state, const std::vector<Image>& levels, const
   std::vector<ImageView> views;
   for (const Image& level : levels) views.push_back(level.view());
   const std::vector<double> errors =
-      mipmap_error(views, image.view(), {&surface}, {1.0, 3.0, 6.0}, {}, {}, 0);
+      mipmap_error(views, image.view(), {&surface}, {1.0, 3.0, 6.0}, {}, Reader::kLinear, {}, 0);
   state.counters["error1"] = errors[0];
   state.counters["error3"] = errors[1];
   state.counters["error6"] = errors[2];

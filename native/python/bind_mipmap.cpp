@@ -20,14 +20,15 @@ std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
                                         const std::vector<const Surface*>& surfaces,
                                         const std::string& filter, const WrapNames& wrap,
                                         std::optional<float> low, std::optional<float> high,
-                                        int levels, bool premultiplied, const py::object& progress,
-                                        int threads) {
+                                        int levels, bool premultiplied, const std::string& reader,
+                                        const py::object& progress, int threads) {
   MipmapOptions options;
   options.filter = mipmap_filter(filter);
   options.wrap = wrap_modes(wrap);
   options.bounds = {low, high};
   options.levels = levels;
   options.premultiplied = premultiplied;
+  options.reader = reader_of(reader);
   options.threads = threads;
   options.progress = to_progress(progress);
   const ImageView image = view_of(array);
@@ -45,14 +46,16 @@ std::vector<double> bound_mipmap_error(const std::vector<Array<float>>& levels,
                                        const Array<float>& array,
                                        const std::vector<const Surface*>& surfaces,
                                        const std::vector<double>& mip_values, const WrapNames& wrap,
-                                       const py::object& progress, int threads) {
+                                       const std::string& reader, const py::object& progress,
+                                       int threads) {
   std::vector<ImageView> views;
   for (const Array<float>& level : levels) views.push_back(view_of(level));
   const ImageView image = view_of(array);
   const WrapModes modes = wrap_modes(wrap);
+  const Reader reads = reader_of(reader);
   const Progress reporter = to_progress(progress);
   const py::gil_scoped_release unlocked;
-  return mipmap_error(views, image, surfaces, mip_values, modes, reporter, threads);
+  return mipmap_error(views, image, surfaces, mip_values, modes, reads, reporter, threads);
 }
 
 Array<float> bound_texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
@@ -86,10 +89,10 @@ Array<float> bound_fill_unused(const Array<float>& array,
 void bind_mipmap(py::module_& m) {
   m.def("mipmaps", &bound_mipmaps, py::arg("image"), py::arg("surfaces"), py::arg("filter"),
         py::arg("wrap"), py::arg("low"), py::arg("high"), py::arg("levels"),
-        py::arg("premultiplied"), py::arg("progress"), py::arg("threads"));
+        py::arg("premultiplied"), py::arg("reader"), py::arg("progress"), py::arg("threads"));
   m.def("mipmap_error", &bound_mipmap_error, py::arg("levels"), py::arg("image"),
-        py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("progress"),
-        py::arg("threads"));
+        py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("reader"),
+        py::arg("progress"), py::arg("threads"));
   m.def("texel_weights", &bound_texel_weights, py::arg("surfaces"), py::arg("width"),
         py::arg("height"), py::arg("wrap"), py::arg("progress"), py::arg("threads"));
   m.def("fill_unused", &bound_fill_unused, py::arg("image"), py::arg("surfaces"), py::arg("wrap"),

@@ -25,31 +25,9 @@ BilinearSystem<C>::BilinearSystem(int width, int height, WrapModes wrap)
 
 template <int C>
 void BilinearSystem<C>::add(const MomentBlock<C>& block) {
-  const CellPlace* x_places = block.x_places(block.level);
-  const CellPlace* y_places = block.y_places(block.level);
-  const auto run_end = [](const CellPlace* places, int begin, int end) {
-    int i = begin + 1;
-    while (i < end && places[i].texel == places[begin].texel) ++i;
-    return i;
-  };
-  for (int y_begin = 0; y_begin < block.height;) {
-    const int y_end = run_end(y_places, y_begin, block.height);
-    for (int x_begin = 0; x_begin < block.width;) {
-      const int x_end = run_end(x_places, x_begin, block.width);
-      CellMoments<C> moments;
-      for (int y = y_begin; y < y_end; ++y) {
-        for (int x = x_begin; x < x_end; ++x) {
-          const CellMoments<C>& cell = block.at(x, y);
-          if (!cell.empty())
-            add_child(cell, x_places[x].placement, y_places[y].placement, &moments);
-        }
-      }
-      if (!moments.empty())
-        add_dual_cell(moments, x_places[x_begin].texel, y_places[y_begin].texel);
-      x_begin = x_end;
-    }
-    y_begin = y_end;
-  }
+  for_each_dual_cell(block, [this](const CellMoments<C>& moments, int column, int row) {
+    add_dual_cell(moments, column, row);
+  });
 }
 
 template <int C>

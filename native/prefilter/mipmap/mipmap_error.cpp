@@ -11,10 +11,13 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/filterable.h"
 #include "prefilter/base/text.h"
+#include "prefilter/color/srgb_decoder.h"
+#include "prefilter/color/transfer.h"
 #include "prefilter/mipmap/coverage.h"
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/mipmaps.h"
 #include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/moments/four_point_rule.h"
 
 namespace prefilter {
 namespace {
@@ -143,6 +146,94 @@ std::vector<double> measure(const std::vector<ImageView>& levels, const ImageVie
   return errors;
 }
 
+// The same for a reader that decodes after the lookup: `levels` and `image` are encoded, and the
+// integrals are sums over FourPointRule in the finest cells.
+template <int C>
+std::vector<double> measure_decoded(const std::vector<ImageView>& levels, const ImageView& image,
+                                    const TexelTriangles& triangles,
+                                    const std::vector<double>& mip_values, WrapModes wrap,
+                                    const Progress& progress, int threads) {
+  const SrgbDecoder& decode = SrgbDecoder::instance();
+  struct Squares {
+    double here = 0.0;   // of L - I
+    double cross = 0.0;  // of (L - I) (M - L)
+    double step = 0.0;   // of M - L
+  };
+  const std::size_t level_count = levels.size();
+  const std::int64_t block_count = sweep_block_count(image.width, image.height);
+  std::vector<Squares> parts(static_cast<std::size_t>(block_count) * level_count);
+  const auto lookup = [&](const ImageView& level, double u, double v) {
+    const double x = u * level.width / image.width - 0.5;
+    const double y = v * level.height / image.height - 0.5;
+    const CellPlace in_x{static_cast<int>(std::floor(x)), {x - std::floor(x), 0.0}};
+    const CellPlace in_y{static_cast<int>(std::floor(y)), {y - std::floor(y), 0.0}};
+    const auto polynomials = interpolant<C>(level, wrap, in_x, in_y);
+    std::array<double, C> value;
+    for (int c = 0; c < C; ++c) {
+      value[c] = polynomials[c][0];
+      if (c < encoded_channels(C)) value[c] = decode(static_cast<float>(value[c])).value;
+    }
+    return value;
+  };
+
+  sweep_moments<C>(triangles, image, wrap, {.first_level = 0, .last_level = 0, .threads = threads},
+                   progress, [&](const MomentBlock<C>& block) {
+                     const std::vector<double>& x_lines = block.x_cells->lines(0);
+                     const std::vector<double>& y_lines = block.y_cells->lines(0);
+                     for (int y = 0; y < block.height; ++y) {
+                       for (int x = 0; x < block.width; ++x) {
+                         const CellMoments<C>& cell = block.at(x, y);
+                         if (cell.empty()) continue;
+                         const FourPointRule rule(cell.weight);
+                         const double left = x_lines[block.x0 + x];
+                         const double right = x_lines[block.x0 + x + 1];
+                         const double bottom = y_lines[block.y0 + y];
+                         const double top = y_lines[block.y0 + y + 1];
+                         for (int k = 0; k < 4; ++k) {
+                           const double u = left + rule.x(k) * (right - left);
+                           const double v = bottom + rule.y(k) * (top - bottom);
+                           const auto source = lookup(image, u, v);
+                           auto here = lookup(levels[0], u, v);
+                           for (std::size_t level = 0; level < level_count; ++level) {
+                             Squares& sums = parts[block.index * level_count + level];
+                             const auto next =
+                                 level + 1 < level_count ? lookup(levels[level + 1], u, v) : here;
+                             for (int c = 0; c < C; ++c) {
+                               const double off = here[c] - source[c];
+                               const double step = next[c] - here[c];
+                               sums.here += rule.weight(k) * off * off;
+                               sums.cross += rule.weight(k) * off * step;
+                               sums.step += rule.weight(k) * step * step;
+                             }
+                             here = next;
+                           }
+                         }
+                       }
+                     }
+                   });
+
+  std::vector<Squares> totals(level_count);
+  for (std::int64_t block = 0; block < block_count; ++block) {
+    for (std::size_t level = 0; level < level_count; ++level) {
+      const Squares& part = parts[block * level_count + level];
+      totals[level].here += part.here;
+      totals[level].cross += part.cross;
+      totals[level].step += part.step;
+    }
+  }
+  progress.report(1.0);
+  std::vector<double> errors;
+  for (const double mip_value : mip_values) {
+    const double value = std::clamp(mip_value, 0.0, static_cast<double>(level_count - 1));
+    const auto level = static_cast<std::size_t>(value);
+    const double f = value - static_cast<double>(level);
+    const Squares& sums = totals[level];
+    const double squared = sums.here + 2.0 * f * sums.cross + f * f * sums.step;
+    errors.push_back(std::sqrt(std::max(squared, 0.0) / (triangles.total_mass * C)));
+  }
+  return errors;
+}
+
 void check(const std::vector<ImageView>& levels, const ImageView& image,
            const std::vector<const Surface*>& surfaces, const std::vector<double>& mip_values) {
   check_mipmap_image(image);
@@ -199,7 +290,7 @@ ImageView readable(const ImageView& view, const std::string& name,
 std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const ImageView& image,
                                  const std::vector<const Surface*>& surfaces,
                                  const std::vector<double>& mip_values, WrapModes wrap,
-                                 const Progress& progress, int threads) {
+                                 Reader reader, const Progress& progress, int threads) {
   check(levels, image, surfaces, mip_values);
   std::vector<Image> owners(levels.size() + 1);
   const ImageView readable_image =
@@ -212,7 +303,17 @@ std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const Ima
   const TexelTriangles triangles = map_to_texels(surfaces, image.width, image.height, wrap,
                                                  MassOf::kArea, progress.part(0.1, 0.15));
   check_mapped(triangles);
+  std::vector<Image> encoded;
+  if (reader == Reader::kSrgbAfter) {
+    for (const ImageView& view : views) encoded.push_back(encode_srgb(view, threads));
+    encoded.push_back(encode_srgb(readable_image, threads));
+    for (std::size_t k = 0; k < views.size(); ++k) views[k] = encoded[k].view();
+  }
   const auto run = [&]<int C>() {
+    if (reader == Reader::kSrgbAfter) {
+      return measure_decoded<C>(views, encoded.back().view(), triangles, mip_values, wrap,
+                                progress.part(0.15, 1.0), threads);
+    }
     return measure<C>(views, readable_image, triangles, mip_values, wrap, progress.part(0.15, 1.0),
                       threads);
   };

@@ -13,9 +13,11 @@
 #include "prefilter/base/filterable.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/color/transfer.h"
 #include "prefilter/filters/push_pull.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/coverage.h"
+#include "prefilter/mipmap/encoded_fit.h"
 #include "prefilter/mipmap/level_grid.h"
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/moment_sweep.h"
@@ -320,36 +322,63 @@ class Builder {
 
   template <int C>
   std::vector<Image> solve_levels() const {
+    const bool encoded = options_.reader == Reader::kSrgbAfter;
     std::vector<std::unique_ptr<BilinearSystem<C>>> systems;
+    std::vector<std::unique_ptr<EncodedFit<C>>> fits;
     for (int level = 1; level < level_count_; ++level) {
       systems.push_back(
           std::make_unique<BilinearSystem<C>>(width(level), height(level), options_.wrap));
+      if (!encoded) continue;
+      fits.push_back(std::make_unique<EncodedFit<C>>(width(level), height(level), image_.width,
+                                                     image_.height, options_.wrap));
     }
     if (systems.empty()) return {};
-    sweep_moments<C>(
-        mapped(options_.progress.part(0.16, 0.2)), image_, options_.wrap,
-        {.first_level = 1, .last_level = level_count_ - 1, .threads = options_.threads},
-        options_.progress.part(0.2, 0.5),
-        [&](const MomentBlock<C>& block) { systems[block.level - 1]->add(block); });
+    const Image encoded_image = encoded ? encode_srgb(image_, options_.threads) : Image();
+    sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)),
+                     encoded ? encoded_image.view() : image_, options_.wrap,
+                     {.first_level = 1,
+                      .last_level = level_count_ - 1,
+                      .reader = options_.reader,
+                      .threads = options_.threads},
+                     options_.progress.part(0.2, encoded ? 0.3 : 0.5),
+                     [&](const MomentBlock<C>& block) {
+                       systems[block.level - 1]->add(block);
+                       if (encoded) fits[block.level - 1]->add(block);
+                     });
 
     SolveOptions solve;
     for (int c = 0; c < C; ++c) solve.ranges[c] = solved_range(c);
     solve.ranges_times_alpha = straight_alpha_;
     solve.threads = options_.threads;
     std::vector<Image> levels;
-    double from = 0.5;
-    for (std::unique_ptr<BilinearSystem<C>>& system : systems) {
+    double from = encoded ? 0.3 : 0.5;
+    for (int level = 1; level < level_count_; ++level) {
       // A level has a quarter of the texels of the one before.
       const double to = from + 0.75 * (0.97 - from);
       const Progress part = options_.progress.part(from, to);
-      auto solution = system->solve(solve, part.part(0.0, 0.8));
-      system.reset();
+      auto solution = systems[level - 1]->solve(solve, part.part(0.0, encoded ? 0.2 : 0.8));
+      systems[level - 1].reset();
+      if (encoded) {
+        fit_encoded(fits[level - 1].get(), solution.used, solve, part.part(0.2, 0.8),
+                    &solution.image);
+        fits[level - 1].reset();
+      }
       from = to;
       const std::vector<float> weights(solution.used.begin(), solution.used.end());
       fill_holes(weights, options_.wrap, C, part.part(0.8, 1.0), options_.threads, &solution.image);
       levels.push_back(std::move(solution.image));
     }
     return levels;
+  }
+
+  template <int C>
+  void fit_encoded(EncodedFit<C>* fit, const std::vector<unsigned char>& used, SolveOptions solve,
+                   const Progress& progress, Image* level) const {
+    for (int c = 0; c < encoded_channels(C); ++c) {
+      solve.ranges[c] = {linear_to_srgb(solve.ranges[c].low), linear_to_srgb(solve.ranges[c].high)};
+    }
+    const Image start = encode_srgb(level->view(), options_.threads);
+    *level = decode_srgb(fit->solve(start, used, solve, progress).view(), options_.threads);
   }
 
   ValueRange bounds() const {
@@ -446,6 +475,12 @@ MipmapFilter mipmap_filter(const std::string& name) {
     names += (names.empty() ? "" : ", ") + std::string(filter.name);
   }
   throw_invalid("filter: '" + name + "' is not one of " + names);
+}
+
+Reader reader_of(const std::string& name) {
+  if (name == "linear") return Reader::kLinear;
+  if (name == "srgb-after") return Reader::kSrgbAfter;
+  throw_invalid("reader: '" + name + "' is not one of linear, srgb-after");
 }
 
 void check_mipmap_image(const ImageView& image) {

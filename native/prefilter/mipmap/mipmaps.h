@@ -8,6 +8,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
+#include "prefilter/mipmap/reader.h"
 #include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/surface/surface.h"
 
@@ -23,6 +24,9 @@ enum class MipmapFilter {
   kPamBox,       // means over the surface: equation 7.1 with a box
   kPamBilinear,  // least squares for bilinear lookups, each level by itself: section 7.3
 };
+
+/// The reader of a public name: "linear" or "srgb-after". Throws Error for any other.
+Reader reader_of(const std::string& name);
 
 /// The filter of a public name such as "pam-bilinear". Throws Error for any other, naming all.
 MipmapFilter mipmap_filter(const std::string& name);
@@ -43,6 +47,8 @@ struct MipmapOptions {
   // it yet. They are multiplied, filtered and divided again. True: every channel is filtered as it
   // stands.
   bool premultiplied = false;
+  // Fitted to by kPamBilinear; the levels of the other filters are the same for all readers.
+  Reader reader = Reader::kLinear;
   int threads = 0;  // 0 = all processors
   Progress progress;
 };

@@ -9,9 +9,11 @@
 #include <mutex>
 #include <vector>
 
+#include "prefilter/color/srgb_decoder.h"
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/tiles.h"
 #include "prefilter/moments/axis_parts.h"
+#include "prefilter/moments/four_point_rule.h"
 
 namespace prefilter {
 namespace {
@@ -227,6 +229,38 @@ CellMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch, const
   return moments;
 }
 
+// The same of an image whose colours are encoded, and decoded after the lookup.
+template <int C>
+CellMoments<C> decoded_cell_moments(const WeightMoments& w, const Patch<C>& patch,
+                                    const CellWindow& texels, const CellPlace& in_x,
+                                    const CellPlace& in_y) {
+  const SrgbDecoder& decode = SrgbDecoder::instance();
+  CellMoments<C> moments;
+  moments.weight = w;
+  const FourPointRule rule(w);
+  const int column = in_x.texel - texels.x0;
+  const int row = in_y.texel - texels.y0;
+  for (int k = 0; k < 4; ++k) {
+    const double cell_x = rule.x(k);
+    const double cell_y = rule.y(k);
+    const double x = in_x.placement.offset + in_x.placement.scale * cell_x;
+    const double y = in_y.placement.offset + in_y.placement.scale * cell_y;
+    for (int c = 0; c < C; ++c) {
+      const double low = (1.0 - x) * patch.at(column, row)[c] + x * patch.at(column + 1, row)[c];
+      const double high =
+          (1.0 - x) * patch.at(column, row + 1)[c] + x * patch.at(column + 1, row + 1)[c];
+      double value = (1.0 - y) * low + y * high;
+      if (c < encoded_channels(C)) value = decode(static_cast<float>(value)).value;
+      value *= rule.weight(k);
+      moments.image[c][0] += value;
+      moments.image[c][1] += cell_x * value;
+      moments.image[c][2] += cell_y * value;
+      moments.image[c][3] += cell_x * cell_y * value;
+    }
+  }
+  return moments;
+}
+
 // Memory that one tile needs at a time.
 template <int C>
 struct Workspace {
@@ -337,10 +371,12 @@ class Sweep {
     const CellRange range = within(texels, 0);
     const CellPlace* x_places = x_cells_.places(0, 0).data() + range.x0;
     const CellPlace* y_places = y_cells_.places(0, 0).data() + range.y0;
+    const bool decoded = options_.reader == Reader::kSrgbAfter;
     const auto moments = [&](int x, int y) {
       const WeightMoments weight = measure.moments(x, y);
       if (weight[0] == 0.0) return CellMoments<C>();
-      return cell_moments(weight, work->patch, texels, x_places[x], y_places[y]);
+      return decoded ? decoded_cell_moments(weight, work->patch, texels, x_places[x], y_places[y])
+                     : cell_moments(weight, work->patch, texels, x_places[x], y_places[y]);
     };
     if (options_.first_level == 0 || !x_cells_.halves_evenly() || !y_cells_.halves_evenly()) {
       cells.resize(range.count());
@@ -360,7 +396,7 @@ class Sweep {
                                  measure.cell(2 * x, 2 * y + 1),
                                  measure.cell(2 * x + 1, 2 * y + 1)};
         const double density = measure.uniform(quarters[0]);
-        bool even = true;
+        bool even = !decoded;
         for (const int quarter : quarters) {
           even = even && !measure.has_pieces(quarter) && measure.uniform(quarter) == density;
         }

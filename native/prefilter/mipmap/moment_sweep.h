@@ -13,6 +13,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/mipmap/level_grid.h"
+#include "prefilter/mipmap/reader.h"
 #include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/moments/cell_moments.h"
 
@@ -40,9 +41,44 @@ struct MomentBlock {
   const CellPlace* y_places(int of) const { return y_cells->places(level, of).data() + y0; }
 };
 
+/// Calls use(moments, column, row) for each cell between the texel centres (column, row) and
+/// (column
+/// + 1, row + 1) of a block's level that some of the surface in the block lies in, with the moments
+/// of that part in the coordinates of this cell.
+template <int C, typename Use>
+void for_each_dual_cell(const MomentBlock<C>& block, const Use& use) {
+  const CellPlace* x_places = block.x_places(block.level);
+  const CellPlace* y_places = block.y_places(block.level);
+  const auto run_end = [](const CellPlace* places, int begin, int end) {
+    int i = begin + 1;
+    while (i < end && places[i].texel == places[begin].texel) ++i;
+    return i;
+  };
+  for (int y_begin = 0; y_begin < block.height;) {
+    const int y_end = run_end(y_places, y_begin, block.height);
+    for (int x_begin = 0; x_begin < block.width;) {
+      const int x_end = run_end(x_places, x_begin, block.width);
+      CellMoments<C> moments;
+      for (int y = y_begin; y < y_end; ++y) {
+        for (int x = x_begin; x < x_end; ++x) {
+          const CellMoments<C>& cell = block.at(x, y);
+          if (cell.empty()) continue;
+          add_child(cell, x_places[x].placement, y_places[y].placement, &moments);
+        }
+      }
+      if (!moments.empty()) use(moments, x_places[x_begin].texel, y_places[y_begin].texel);
+      x_begin = x_end;
+    }
+    y_begin = y_end;
+  }
+}
+
 struct SweepOptions {
   int first_level = 1;  // 0 or 1: the finest level that is visited
   int last_level = 1;
+  // With kSrgbAfter the colours of the image are encoded, and its moments are those of the decoded
+  // lookup: by FourPointRule in each of the finest cells.
+  Reader reader = Reader::kLinear;
   int threads = 0;
 };
 

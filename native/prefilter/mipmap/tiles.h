@@ -11,6 +11,11 @@
 
 namespace prefilter {
 
+/// Numbers of tiles along an axis, coloured so that those of one colour are a whole tile apart,
+/// even around the edge.
+inline constexpr int kTileColours = 4;
+int tile_colour(int tile, int count, int size);
+
 /// Tiles of up to kSize x kSize texels, in rows, with the triangles of each in the order of the
 /// mesh.
 class Tiles {

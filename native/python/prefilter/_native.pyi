@@ -30,6 +30,7 @@ def mipmaps(
     high: float | None,
     levels: int,
     premultiplied: bool,
+    reader: str,
     progress: ProgressCallback | None,
     threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
@@ -39,6 +40,7 @@ def mipmap_error(
     surfaces: list[Surface],
     mip_values: list[float],
     wrap: tuple[str, str],
+    reader: str,
     progress: ProgressCallback | None,
     threads: int,
 ) -> list[float]: ...

@@ -30,6 +30,7 @@ def mipmaps(
     bounds: Bounds | None = (0.0, 1.0),
     levels: int | None = None,
     premultiplied: bool = False,
+    reader: str = "linear",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> list[FloatArray]:
@@ -54,6 +55,11 @@ def mipmaps(
         premultiplied: Whether the colours of a 4-channel image are multiplied by alpha already, or
             its fourth channel is no coverage: then every channel is filtered as it stands.
             Otherwise they are multiplied for filtering and divided afterwards.
+        reader: What will look up the levels, for "pam-bilinear": "linear" decodes texels, then
+            filters (GPUs, and float textures everywhere); "srgb-after" filters sRGB-encoded texels,
+            then decodes (Cycles on 8-bit sRGB images). The image and the levels are scene-linear in
+            both cases, and what the image shows is defined by the reader too. The second is a
+            bounded Gauss-Newton fit, started from the first.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
@@ -75,6 +81,7 @@ def mipmaps(
         high,
         as_level_count(levels),
         bool(premultiplied),
+        as_name("reader", reader),
         as_progress(progress),
         as_threads(threads),
     )
@@ -87,6 +94,7 @@ def mipmap_error(
     mip_values: npt.ArrayLike,
     *,
     wrap: Wrap = "clamp",
+    reader: str = "linear",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> npt.NDArray[np.float64]:
@@ -103,6 +111,9 @@ def mipmap_error(
         mip_values: Numbers of any shape; 0 is the first level. Those below 0 or past the last level
             read the nearest one, as on a GPU.
         wrap: As for `mipmaps`.
+        reader: As for `mipmaps`: with "srgb-after" each bilinear lookup, also of the image, is of
+            encoded texels and decoded afterwards; the integrals are by quadrature in the cells of
+            the image then.
         progress: As for `mipmaps`.
         threads: As for `mipmaps`.
 
@@ -125,6 +136,7 @@ def mipmap_error(
         as_surfaces(surface),
         values.ravel().tolist(),
         as_wrap(wrap),
+        as_name("reader", reader),
         as_progress(progress),
         as_threads(threads),
     )

@@ -1,0 +1,207 @@
+// The reader's curve bends the least squares of section 7.3: its residual is decode(sum_j b_j t_j)
+// - I, with the Jacobian b_j decode'. Bounded Gauss-Newton; a round that makes a channel worse is
+// halved.
+#include "prefilter/mipmap/encoded_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/color/srgb_decoder.h"
+#include "prefilter/mipmap/tiles.h"
+#include "prefilter/moments/four_point_rule.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kMostRounds = 10;
+// Rounds end where none of the sums of squares falls by more than this share of what they have
+// fallen by in all.
+constexpr double kLeastGain = 1e-3;
+constexpr int kSweepsPerRound = 20;
+
+}  // namespace
+
+template <int C>
+EncodedFit<C>::EncodedFit(int width, int height, int image_width, int image_height, WrapModes wrap)
+    : wrap_(wrap),
+      image_height_(image_height),
+      tile_columns_((image_width + Tiles::kSize - 1) / Tiles::kSize),
+      tile_rows_((image_height + Tiles::kSize - 1) / Tiles::kSize),
+      system_(width, height, wrap),
+      cells_(static_cast<std::size_t>(sweep_block_count(image_width, image_height))) {}
+
+template <int C>
+void EncodedFit<C>::add(const MomentBlock<C>& block) {
+  std::vector<Cell>& cells = cells_[block.index];
+  for_each_dual_cell(block, [&](const CellMoments<C>& moments, int column, int row) {
+    const FourPointRule rule(moments.weight);
+    Cell cell;
+    cell.column = column;
+    cell.row = row;
+    for (int k = 0; k < 2; ++k) {
+      cell.x[k] = static_cast<float>(rule.x(k));
+      cell.y[k] = static_cast<float>(rule.y(2 * k));
+    }
+    cell.same = static_cast<float>(rule.same);
+    cell.opposite = static_cast<float>(rule.opposite);
+    for (int c = 0; c < kColours; ++c) {
+      const std::array<double, 4> integrals = rule.integrals(moments.image[c]);
+      for (int k = 0; k < 4; ++k) cell.image[k][c] = static_cast<float>(integrals[k]);
+    }
+    cells.push_back(cell);
+  });
+  cells.shrink_to_fit();
+}
+
+template <int C>
+auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> std::array<double, kColours> {
+  const SrgbDecoder& decode = SrgbDecoder::instance();
+  std::array<double, kColours> sums{};
+  for (const Cell& cell : cells) {
+    Lanes corners[4];
+    for (int k = 0; k < 4; ++k) {
+      const int x = wrap_index(cell.column + k % 2, system_.width(), wrap_.u);
+      const int y = wrap_index(cell.row + k / 2, system_.height(), wrap_.v);
+      corners[k] = x < 0 || y < 0 ? Lanes{} : system_.texel(system_.at(x, y)).v;
+    }
+    typename NinePointSystem<LaneValues>::TentProducts products{};
+    typename NinePointSystem<LaneValues>::TentIntegrals right{};
+    for (int k = 0; k < 4; ++k) {
+      const float x = cell.x[k % 2];
+      const float y = cell.y[k / 2];
+      const float tents[4] = {(1.0F - x) * (1.0F - y), x * (1.0F - y), (1.0F - x) * y, x * y};
+      const Lanes encoded = tents[0] * corners[0] + tents[1] * corners[1] + tents[2] * corners[2] +
+                            tents[3] * corners[3];
+      const float weight = k == 0 || k == 3 ? cell.same : cell.opposite;
+      Lanes squares{};
+      Lanes target{};
+      for (int c = 0; c < kColours; ++c) {
+        const auto [value, slope] = decode(encoded[c]);
+        const float image = cell.image[k][c];
+        squares[c] = weight * slope * slope;
+        target[c] = slope * (image - weight * value) + squares[c] * encoded[c];
+        sums[c] += static_cast<double>(value) * (weight * value - 2.0F * image);
+      }
+      const float along_x[3] = {(1.0F - x) * (1.0F - x), x * (1.0F - x), x * x};
+      const float along_y[3] = {(1.0F - y) * (1.0F - y), y * (1.0F - y), y * y};
+      for (int j = 0; j < 3; ++j) {
+        for (int i = 0; i < 3; ++i) products[3 * j + i].v += along_y[j] * along_x[i] * squares;
+      }
+      for (int i = 0; i < 4; ++i) right[i].v += tents[i] * target;
+    }
+    system_.add_cell(cell.column, cell.row, products, right);
+  }
+  return sums;
+}
+
+template <int C>
+auto EncodedFit<C>::assemble(int threads) -> std::array<double, kColours> {
+  system_.clear();
+  std::vector<std::array<double, kColours>> sums(cells_.size());
+  // Rows of tiles that are not beside each other share no texels.
+  for (int colour = 0; colour < kTileColours; ++colour) {
+    std::vector<int> rows;
+    for (int row = 0; row < tile_rows_; ++row) {
+      if (tile_colour(row, tile_rows_, image_height_) == colour) rows.push_back(row);
+    }
+    parallel_for(static_cast<std::int64_t>(rows.size()), threads, Progress(), [&](std::int64_t i) {
+      const std::size_t first = static_cast<std::size_t>(rows[i]) * tile_columns_;
+      for (std::size_t tile = first; tile < first + tile_columns_; ++tile) {
+        sums[tile] = assemble(cells_[tile]);
+      }
+    });
+  }
+  sums.back() = assemble(cells_.back());
+  std::array<double, kColours> total{};
+  for (const std::array<double, kColours>& sum : sums) {
+    for (int c = 0; c < kColours; ++c) total[c] += sum[c];
+  }
+  return total;
+}
+
+template <int C>
+Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>& used,
+                           const SolveOptions& options, const Progress& progress) {
+  const int width = system_.width();
+  const int height = system_.height();
+  const auto for_each_texel = [&](const auto& use) {
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) {
+        if (used[static_cast<std::size_t>(y) * width + x] == 0) continue;
+        use(system_.at(x, y), start.texel(x, y));
+      }
+    }
+  };
+  system_.make_texels();
+  for_each_texel([&](std::ptrdiff_t at, const float* texel) {
+    for (int c = 0; c < C; ++c) system_.texel(at).v[c] = texel[c];
+  });
+
+  SolveOptions round_options = options;
+  round_options.max_sweeps = kSweepsPerRound;
+  round_options.ranges_times_alpha = false;
+  std::vector<LaneValues> before(system_.size());
+  std::array<double, kColours> first{};
+  std::array<double, kColours> least{};
+  for (int round = 0; round < kMostRounds; ++round) {
+    const Progress part = progress.part(static_cast<double>(round) / kMostRounds,
+                                        static_cast<double>(round + 1) / kMostRounds);
+    std::array<double, kColours> sums = assemble(options.threads);
+    part.report(0.5);
+    if (round == 0) {
+      first = least = sums;
+    } else {
+      // Back half of the way, until no channel is worse than before.
+      constexpr int kMostHalvings = 5;
+      for (int halving = 0; halving <= kMostHalvings; ++halving) {
+        Lanes keep{};
+        bool worse = false;
+        for (int c = 0; c < kColours; ++c) {
+          if (!(sums[c] > least[c])) continue;
+          keep[c] = halving == kMostHalvings ? 1.0F : 0.5F;
+          worse = true;
+        }
+        if (!worse) break;
+        for (std::size_t i = 0; i < before.size(); ++i) {
+          LaneValues& texel = system_.texel(static_cast<std::ptrdiff_t>(i));
+          texel.v += keep * (before[i].v - texel.v);
+        }
+        sums = assemble(options.threads);
+      }
+      bool settled = true;
+      for (int c = 0; c < kColours; ++c) {
+        if (least[c] - sums[c] > kLeastGain * (first[c] - sums[c])) settled = false;
+        least[c] = std::min(least[c], sums[c]);
+      }
+      if (settled) break;
+    }
+
+    Lanes mean{};
+    float count = 0.0F;
+    for_each_texel([&](std::ptrdiff_t at, const float*) {
+      mean += system_.diagonal(at).v;
+      count += 1.0F;
+    });
+    const Lanes pull = static_cast<float>(kPull) / std::max(count, 1.0F) * mean;
+    for_each_texel([&](std::ptrdiff_t at, const float* texel) {
+      Lanes target{};
+      for (int c = 0; c < kColours; ++c) target[c] = texel[c];
+      system_.diagonal(at).v += pull;
+      system_.right_side(at).v += pull * target;
+    });
+    system_.invert_diagonal();
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      before[i] = system_.texel(static_cast<std::ptrdiff_t>(i));
+    }
+    system_.solve(round_options, part.part(0.5, 1.0));
+  }
+  return system_.take_image(C);
+}
+
+template class EncodedFit<1>;
+template class EncodedFit<2>;
+template class EncodedFit<3>;
+template class EncodedFit<4>;
+
+}  // namespace prefilter

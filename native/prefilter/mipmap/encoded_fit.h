@@ -1,0 +1,59 @@
+// The fit of one level for a reader that interpolates encoded texels and decodes the result.
+#pragma once
+
+#include <vector>
+
+#include "prefilter/base/image.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/base/wrap.h"
+#include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/mipmap/nine_point_system.h"
+
+namespace prefilter {
+
+/// Minimises, over the encoded texels t of a level and for each colour channel,
+///   integral over the surface of (decode(sum_j b_j t_j) - I)^2
+///     + kPull * m * sum_j (t_j - s_j)^2
+/// with b_j and m as for BilinearSystem, m scaled by the curve's slope, and s the start.
+/// Gauss-Newton with quadrature: each cell between texel centres is read at the four points of
+/// FourPointRule.
+template <int C>
+class EncodedFit {
+ public:
+  static constexpr double kPull = 1e-3;
+
+  /// For a level of width x height texels, of an image of image_width x image_height.
+  EncodedFit(int width, int height, int image_width, int image_height, WrapModes wrap);
+
+  /// Adds the cells of one block of this level. Blocks may be added at the same time.
+  void add(const MomentBlock<C>& block);
+
+  /// Improves on `start`, encoded texels within the ranges, which are encoded too. A fourth channel
+  /// stays as it is. `used` has 1 for each texel that the surface reads. Can be called once.
+  Image solve(const Image& start, const std::vector<unsigned char>& used,
+              const SolveOptions& options, const Progress& progress);
+
+ private:
+  static constexpr int kColours = C < 3 ? C : 3;
+
+  struct Cell {
+    int column, row;
+    float x[2], y[2];      // of the points, from the centre of texel (column, row)
+    float same, opposite;  // weights
+    std::array<std::array<float, kColours>, 4> image;  // integrals at the points
+  };
+
+  // Puts the Gauss-Newton system at the texels together; returns the sum of squares of each
+  // channel, less what does not depend on the texels.
+  std::array<double, kColours> assemble(int threads);
+  std::array<double, kColours> assemble(const std::vector<Cell>& cells);
+
+  WrapModes wrap_;
+  int image_height_;
+  int tile_columns_;
+  int tile_rows_;
+  NinePointSystem<LaneValues> system_;
+  std::vector<std::vector<Cell>> cells_;  // by block
+};
+
+}  // namespace prefilter

@@ -1,0 +1,14 @@
+// How a renderer gets from stored texels to a colour.
+#pragma once
+
+namespace prefilter {
+
+enum class Reader {
+  kLinear,     // decodes texels, then filters: GPUs, and float textures everywhere
+  kSrgbAfter,  // filters sRGB-encoded texels, then decodes: Cycles on 8-bit sRGB images
+};
+
+/// Channels of an image that are stored sRGB-encoded: its colours. A fourth channel is alpha.
+inline int encoded_channels(int channels) { return channels < 3 ? channels : 3; }
+
+}  // namespace prefilter
