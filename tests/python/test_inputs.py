@@ -52,7 +52,9 @@ def test_surface(positions, triangles, uvs, message):
         (changed(IMAGE, (0, 0, 2), np.inf), "image: the texel in row 0, column 0 holds inf"),
     ],
 )
-@pytest.mark.parametrize("filter", ["box", "lanczos3-covered", "pam-box", "pam-bilinear"])
+@pytest.mark.parametrize(
+    "filter", ["box", "lanczos3-covered", "pam-box", "pam-bilinear", "pam-trilinear"]
+)
 def test_image(image, message, filter):
     with pytest.raises(ValueError, match=message):
         prefilter.mipmaps(image, MESH.surface, filter=filter)

@@ -7,7 +7,7 @@ from scenes import bilinear_taps, join, random_image, random_soup, soup, square,
 
 PLAIN = ["box", "tent", "lanczos3"]
 COVERED = ["box-covered", "tent-covered", "lanczos3-covered"]
-PAM = ["pam-box", "pam-bilinear"]
+PAM = ["pam-box", "pam-bilinear", "pam-trilinear"]
 ALL = PLAIN + COVERED + PAM
 CLAMP = ("clamp", "clamp")
 
@@ -25,7 +25,9 @@ def test_a_constant_image_stays_constant(filter, wrap):
     image = np.full((32, 64, 4), (0.2, 0.4, 0.6, 1.0), np.float32)
     surface = random_soup(1, 5, -0.2, 1.2).surface
     for level in prefilter.mipmaps(image, surface, filter=filter, wrap=wrap):
-        assert np.abs(level - image[0, 0]).max() < 2e-6
+        # The blocks between levels add roundings of their own.
+        rounding = 5e-6 if filter == "pam-trilinear" else 2e-6
+        assert np.abs(level - image[0, 0]).max() < rounding
 
 
 @pytest.mark.parametrize("filter", ALL)

@@ -183,6 +183,95 @@ def test_levels_that_do_not_nest_solve_the_normal_equations_across_tiles(size):
         assert np.abs(oracle.gradient(levels[k])).max() < TOLERANCE, f"level {k}"
 
 
+def trilinear_gradient(levels, mesh, image, wrap, steps):
+    """Of half the integral over mip values and surface, over the diagonal, level by level.
+
+    Quadrature over the surface, and Simpson's rule over each interval of mip values, which is
+    exact for products of the levels' weights.
+    """
+    uvs, weights = surface_samples(mesh, steps)
+    kept = ~in_border(uvs, wrap)
+    uvs, weights = uvs[kept], weights[kept]
+    for axis, mode in enumerate(wrap):
+        if mode == "clamp":
+            uvs[:, axis] = np.clip(uvs[:, axis], 0, 1)
+    lookups = [bilinear(level, uvs, wrap) for level in levels]
+    source = bilinear(image, uvs, wrap)
+    pulls = [np.zeros_like(source) for _ in levels]
+    for k in range(len(levels) - 1):
+        for f, share in ((0.0, 1 / 6), (0.5, 4 / 6), (1.0, 1 / 6)):
+            residual = (1 - f) * lookups[k] + f * lookups[k + 1] - source
+            pulls[k] += share * (1 - f) * residual
+            pulls[k + 1] += share * f * residual
+    for level, pull in zip(levels[1:-1], pulls[1:-1], strict=True):
+        oracle = Oracle(mesh, image, level.shape[:2], wrap, steps)
+        taps, shares = bilinear_taps(uvs, *level.shape[:2], wrap)
+        gradient = np.stack(
+            [
+                sum(
+                    np.bincount(taps[:, i], weights * shares[:, i] * pull[:, c], len(oracle.used))
+                    for i in range(4)
+                )
+                for c in range(image.shape[2])
+            ],
+            1,
+        )
+        texels = level.reshape(-1, image.shape[2])
+        pulled = oracle.pulled - oracle.matrix
+        gradient += 2 / 3 * (pulled @ texels - (oracle.pulled_right - oracle.right))
+        diagonal = 2 / 3 * np.diag(oracle.pulled)[oracle.used]
+        scale = np.maximum(diagonal, 0.01 * diagonal.mean())
+        yield texels[oracle.used], gradient[oracle.used] / scale[:, None]
+
+
+@pytest.mark.parametrize(
+    ("size", "wrap"),
+    [
+        ((16, 8), ("clamp", "clamp")),
+        ((16, 16), ("repeat", "repeat")),
+        ((11, 13), ("clamp", "repeat")),
+        ((7, 12), ("repeat", "repeat")),
+        ((1, 21), ("clamp", "clamp")),
+        ((10, 18), ("border", "clamp")),
+    ],
+)
+def test_trilinear_levels_solve_the_normal_equations_together(size, wrap):
+    mesh = random_soup(3, 12, -0.2, 1.2)
+    image = random_image(1, *size, 2)
+    levels = prefilter.mipmaps(image, mesh.surface, filter="pam-trilinear", wrap=wrap, bounds=None)
+    assert [level.shape[:2] for level in levels] == halved(*size)
+    for _, gradient in trilinear_gradient(levels, mesh, image, wrap, 300):
+        assert np.abs(gradient).max() < TOLERANCE
+    if "border" not in wrap:  # There a lookup fades to 0 away from the only texel's centre.
+        mean = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=None)[-1]
+        np.testing.assert_allclose(levels[-1], mean, atol=1e-5)
+
+
+def test_bounded_trilinear_levels_meet_the_optimality_conditions():
+    mesh = random_soup(5, 10, -0.2, 1.2)
+    wrap = ("repeat", "repeat")
+    image = (random_image(2, 16, 16, 3) > 0.5).astype(np.float32)
+    levels = prefilter.mipmaps(image, mesh.surface, filter="pam-trilinear", wrap=wrap)
+    clipped = 0
+    for texels, gradient in trilinear_gradient(levels, mesh, image, wrap, 200):
+        low, high = texels <= 0.0, texels >= 1.0
+        clipped += int(low.sum() + high.sum())
+        assert (gradient[low] > -TOLERANCE).all()
+        assert (gradient[high] < TOLERANCE).all()
+        assert np.abs(gradient[~low & ~high]).max() < TOLERANCE
+    assert clipped > 10
+
+
+def test_fewer_trilinear_levels_are_the_first_of_all():
+    mesh = random_soup(6, 10)
+    image = random_image(3, 40, 24, 3)
+    whole = prefilter.mipmaps(image, mesh.surface, filter="pam-trilinear")
+    few = prefilter.mipmaps(image, mesh.surface, filter="pam-trilinear", levels=3)
+    assert len(few) == 3
+    for a, b in zip(few, whole, strict=False):
+        np.testing.assert_array_equal(a, b)
+
+
 @pytest.mark.parametrize("wrap", ["clamp", "repeat", "border"])
 @pytest.mark.parametrize("size", [(8, 16), (7, 13), (1, 9)])
 def test_pam_box_is_the_mean_over_the_surface(wrap, size):

@@ -7,7 +7,7 @@ import prefilter
 import pytest
 from scenes import random_image, random_soup, square
 
-FILTERS = ["lanczos3", "lanczos3-covered", "pam-box", "pam-bilinear"]
+FILTERS = ["lanczos3", "lanczos3-covered", "pam-box", "pam-bilinear", "pam-trilinear"]
 
 
 @pytest.mark.parametrize("filter", FILTERS)

@@ -58,7 +58,7 @@ void BilinearSystem<C>::add_dual_cell(const CellMoments<C>& moments, int column,
 }
 
 template <int C>
-void BilinearSystem<C>::pull_to_means() {
+std::vector<LaneValues> BilinearSystem<C>::prepare(float image_share) {
   double sum = 0.0;
   std::int64_t used = 0;
   const auto size = static_cast<std::ptrdiff_t>(system_.size());
@@ -69,6 +69,7 @@ void BilinearSystem<C>::pull_to_means() {
   }
   const double pull = used > 0 ? kPull * sum / static_cast<double>(used) : 0.0;
   system_.make_texels();
+  std::vector<LaneValues> right(system_.size());
   for (std::ptrdiff_t j = 0; j < size; ++j) {
     if (!(system_.diagonal(j) > 0.0F) || !(weights_[j] > 0.0F)) {
       system_.diagonal(j) = 0.0F;
@@ -78,18 +79,29 @@ void BilinearSystem<C>::pull_to_means() {
     for (int c = 0; c < C; ++c) {
       const double mean = static_cast<double>(system_.right_side(j).v[c]) / weights_[j];
       system_.texel(j).v[c] = static_cast<float>(mean);
-      system_.right_side(j).v[c] += static_cast<float>(pull * mean);
+      right[j].v[c] = image_share * system_.right_side(j).v[c] + static_cast<float>(pull * mean);
     }
   }
   std::vector<float>().swap(weights_);
+  system_.invert_diagonal();
+  return right;
 }
 
 template <int C>
 auto BilinearSystem<C>::solve(const SolveOptions& options, const Progress& progress) -> Solution {
-  pull_to_means();
-  system_.invert_diagonal();
+  {
+    std::vector<LaneValues> right = prepare(1.0F);
+    system_.swap_right_side(&right);
+  }
+  const int sweeps = system_.solve(options, progress);
+  Solution solution = take_solution();
+  solution.sweeps = sweeps;
+  return solution;
+}
+
+template <int C>
+auto BilinearSystem<C>::take_solution() -> Solution {
   Solution solution;
-  solution.sweeps = system_.solve(options, progress);
   for (int y = 0; y < system_.height(); ++y) {
     for (int x = 0; x < system_.width(); ++x) {
       solution.used.push_back(system_.is_part(system_.at(x, y)) ? 1 : 0);

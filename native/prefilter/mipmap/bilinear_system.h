@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
+#include "prefilter/base/lanes.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/mipmap/moment_sweep.h"
@@ -37,9 +38,15 @@ class BilinearSystem {
   /// Solves for all channels, within their ranges. Can be called once.
   Solution solve(const SolveOptions& options, const Progress& progress);
 
+  /// The steps of `solve`, for those who go on from there. `prepare` makes the system ready, with
+  /// texels at their means p_j, and returns its right side where that of the image counts
+  /// `image_share` times.
+  std::vector<LaneValues> prepare(float image_share);
+  NinePointSystem<float>& system() { return system_; }
+  Solution take_solution();
+
  private:
   void add_dual_cell(const CellMoments<C>& moments, int column, int row);
-  void pull_to_means();
 
   WrapModes wrap_;
   NinePointSystem<float> system_;

@@ -23,6 +23,7 @@
 #include "prefilter/mipmap/moment_sweep.h"
 #include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/mipmap/texture_space.h"
+#include "prefilter/mipmap/trilinear_system.h"
 
 namespace prefilter {
 namespace {
@@ -41,6 +42,7 @@ constexpr NamedFilter kFilters[] = {
     {"lanczos3-covered", MipmapFilter::kLanczos3Covered},
     {"pam-box", MipmapFilter::kPamBox},
     {"pam-bilinear", MipmapFilter::kPamBilinear},
+    {"pam-trilinear", MipmapFilter::kPamTrilinear},
 };
 
 // Which texels of the image a filter reads.
@@ -59,6 +61,7 @@ Reads reads_of(MipmapFilter filter) {
     case MipmapFilter::kPamBox:
       return Reads::kWeighted;
     case MipmapFilter::kPamBilinear:
+    case MipmapFilter::kPamTrilinear:
       return Reads::kLookedUp;
   }
   return Reads::kAll;
@@ -99,7 +102,7 @@ class Builder {
         levels = pam_box_levels();
         break;
       case Reads::kLookedUp:
-        levels = pam_bilinear_levels();
+        levels = fitted_levels();
         break;
     }
     for (Image& level : levels) finish(&level);
@@ -307,17 +310,56 @@ class Builder {
     return to;
   }
 
-  std::vector<Image> pam_bilinear_levels() const {
+  std::vector<Image> fitted_levels() const {
+    const auto fit = [this]<int C>() {
+      return options_.filter == MipmapFilter::kPamTrilinear ? solve_together<C>()
+                                                            : solve_levels<C>();
+    };
     switch (image_.channels) {
       case 1:
-        return solve_levels<1>();
+        return fit.operator()<1>();
       case 2:
-        return solve_levels<2>();
+        return fit.operator()<2>();
       case 3:
-        return solve_levels<3>();
+        return fit.operator()<3>();
       default:
-        return solve_levels<4>();
+        return fit.operator()<4>();
     }
+  }
+
+  // All levels there are are solved for, also where fewer are asked for.
+  template <int C>
+  std::vector<Image> solve_together() const {
+    if (level_count_ == 1) return {};
+    TrilinearSystem<C> system(image_.width, image_.height, options_.wrap);
+    sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)), image_, options_.wrap,
+                     {.first_level = 1,
+                      .last_level = full_level_count(image_.width, image_.height) - 1,
+                      .threads = options_.threads},
+                     options_.progress.part(0.2, 0.5),
+                     [&](const MomentBlock<C>& block) { system.add(block); });
+    auto solutions = system.solve(solve_options(), options_.progress.part(0.5, 0.95));
+    std::vector<Image> levels;
+    for (int level = 1; level < level_count_; ++level) {
+      levels.push_back(filled(std::move(solutions[level - 1].image), solutions[level - 1].used,
+                              options_.progress.part(0.95, 0.97)));
+    }
+    return levels;
+  }
+
+  SolveOptions solve_options() const {
+    SolveOptions solve;
+    for (int c = 0; c < image_.channels; ++c) solve.ranges[c] = solved_range(c);
+    solve.ranges_times_alpha = straight_alpha_;
+    solve.threads = options_.threads;
+    return solve;
+  }
+
+  Image filled(Image level, const std::vector<unsigned char>& used,
+               const Progress& progress) const {
+    const std::vector<float> weights(used.begin(), used.end());
+    fill_holes(weights, options_.wrap, image_.channels, progress, options_.threads, &level);
+    return level;
   }
 
   template <int C>
@@ -346,10 +388,7 @@ class Builder {
                        if (encoded) fits[block.level - 1]->add(block);
                      });
 
-    SolveOptions solve;
-    for (int c = 0; c < C; ++c) solve.ranges[c] = solved_range(c);
-    solve.ranges_times_alpha = straight_alpha_;
-    solve.threads = options_.threads;
+    const SolveOptions solve = solve_options();
     std::vector<Image> levels;
     double from = encoded ? 0.3 : 0.5;
     for (int level = 1; level < level_count_; ++level) {
@@ -364,9 +403,7 @@ class Builder {
         fits[level - 1].reset();
       }
       from = to;
-      const std::vector<float> weights(solution.used.begin(), solution.used.end());
-      fill_holes(weights, options_.wrap, C, part.part(0.8, 1.0), options_.threads, &solution.image);
-      levels.push_back(std::move(solution.image));
+      levels.push_back(filled(std::move(solution.image), solution.used, part.part(0.8, 1.0)));
     }
     return levels;
   }
@@ -456,6 +493,11 @@ void check_options(const ImageView& image, const std::vector<const Surface*>& su
   if (options.threads < 0) {
     throw_invalid("threads: " + std::to_string(options.threads) +
                   "; a positive number is needed, or 0 for all processors");
+  }
+  if (options.filter == MipmapFilter::kPamTrilinear && options.reader != Reader::kLinear) {
+    throw_invalid(
+        "reader: 'srgb-after' goes with pam-bilinear: such readers do not interpolate between "
+        "levels; use linear for pam-trilinear");
   }
   if (reads_of(options.filter) == Reads::kAll) return;
   if (surfaces.empty()) {

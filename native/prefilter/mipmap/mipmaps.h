@@ -21,8 +21,9 @@ enum class MipmapFilter {
   kBoxCovered,  // texture space: texels that no triangle touches are ignored
   kTentCovered,
   kLanczos3Covered,
-  kPamBox,       // means over the surface: equation 7.1 with a box
-  kPamBilinear,  // least squares for bilinear lookups, each level by itself: section 7.3
+  kPamBox,        // means over the surface: equation 7.1 with a box
+  kPamBilinear,   // least squares for bilinear lookups, each level by itself: section 7.3
+  kPamTrilinear,  // least squares for trilinear lookups, all levels together: section 7.3
 };
 
 /// The reader of a public name: "linear" or "srgb-after". Throws Error for any other.
@@ -57,9 +58,10 @@ struct MipmapOptions {
 /// never less than 1.
 ///
 /// A level of kPamBilinear minimises the integral over the surface of the squared difference
-/// between the bilinear lookups of the level and of the image, subject to the bounds. Levels of the
-/// other filters are clipped to them. Texels that the surface does not read have no influence; in
-/// the levels they are filled by push-pull.
+/// between the bilinear lookups of the level and of the image, subject to the bounds; those of
+/// kPamTrilinear the integral over all mip values too, of trilinear lookups, with the mean over the
+/// surface as the last level. Levels of the other filters are clipped to the bounds. Texels that
+/// the surface does not read have no influence; in the levels they are filled by push-pull.
 ///
 /// Throws Error where channels are not 1 to 4, levels or bounds are out of range, a filter that
 /// needs a surface gets none or none that lies inside of the image, no triangle has an area, or a

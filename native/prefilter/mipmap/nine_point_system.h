@@ -64,6 +64,8 @@ class NinePointSystem {
   void invert_diagonal();
   bool is_part(std::ptrdiff_t at) const;
 
+  void swap_right_side(std::vector<LaneValues>* right) { right_side_.swap(*right); }
+
   /// Allocates the texels, all 0.
   void make_texels() { texels_.assign(stencils_.size(), LaneValues{}); }
 

@@ -38,10 +38,12 @@ def mipmaps(
 
     "pam-bilinear" minimises, level by level, the integral over the surface of the squared
     difference between a bilinear lookup of the level and one of the image (section 7.3), within
-    the bounds. "pam-box" takes means over the surface (equation 7.1). The other filters work in
-    texture space: "box", "tent", "lanczos3", and with "-covered" behind them the same over texels
-    that some triangle touches. Texels that the surface does not read have no influence on the
-    "pam-" and "-covered" filters; they are filled from what is around them (push-pull).
+    the bounds. "pam-trilinear" does the same for all levels together and trilinear lookups,
+    averaged over all mip values; level 0 is the image and the last level, of 1 x 1 texel, its mean
+    over the surface. "pam-box" takes means over the surface (equation 7.1). The other filters work
+    in texture space: "box", "tent", "lanczos3", and with "-covered" behind them the same over
+    texels that some triangle touches. Texels that the surface does not read have no influence on
+    the "pam-" and "-covered" filters; they are filled from what is around them (push-pull).
 
     Args:
         image: (height, width, 1 to 4 channels), scene-linear, row 0 at v = 0. Any sides.
@@ -50,7 +52,7 @@ def mipmaps(
         wrap: What lookups read outside of the image: "clamp", "repeat" or "border" (zero, and
             surface outside of the unit square weighs nothing), or a pair of these for u and v.
         bounds: (low, high) that texels of the levels may take; either may be None, and None stands
-            for both. "pam-bilinear" solves under them, the other filters are clipped.
+            for both. "pam-bilinear" and "pam-trilinear" solve under them, the others are clipped.
         levels: How many levels to return, level 0 included; None = down to 1 x 1.
         premultiplied: Whether the colours of a 4-channel image are multiplied by alpha already, or
             its fourth channel is no coverage: then every channel is filtered as it stands.

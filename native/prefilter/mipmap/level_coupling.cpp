@@ -1,0 +1,137 @@
+#include "prefilter/mipmap/level_coupling.h"
+
+#include <cassert>
+#include <cmath>
+
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+namespace {
+
+// The integral over a cell of f g x^d for the linear functions f and g of its own coordinate, as
+// the coefficients of the moments 1, x and x^2.
+std::array<double, 3> product(const std::array<double, 2>& f, const std::array<double, 2>& g) {
+  return {f[0] * g[0], f[0] * g[1] + f[1] * g[0], f[1] * g[1]};
+}
+
+// The tents of the texels on the low and the high side of a cell, as constant and slope.
+std::array<std::array<double, 2>, 2> tents(const Placement& place) {
+  return {{{1.0 - place.offset, -place.scale}, {place.offset, place.scale}}};
+}
+
+constexpr int kRowsAtOnce = 32;
+
+}  // namespace
+
+int LevelCoupling::Axis::first(int texel) const {
+  // The texel's tent begins at the centre of the texel before.
+  const double begin = (texel - 0.5) * next_size / size - 0.5;
+  return static_cast<int>(std::floor(begin + 1e-9));
+}
+
+int LevelCoupling::Axis::slot(int low, int high, int next, int* texel) const {
+  const int unwrapped = low + high;
+  *texel = wrap_index(unwrapped, size, wrap);
+  return next - first(wrap == Wrap::kRepeat ? unwrapped : *texel);
+}
+
+LevelCoupling::LevelCoupling(int width, int height, int next_width, int next_height, WrapModes wrap)
+    : x_{width, next_width, wrap.u},
+      y_{height, next_height, wrap.v},
+      products_(static_cast<std::size_t>(width) * height) {}
+
+template <int C>
+void LevelCoupling::add(const MomentBlock<C>& block) {
+  const CellPlace* x_places = block.x_places(block.level);
+  const CellPlace* y_places = block.y_places(block.level);
+  const CellPlace* next_x_places = block.x_places(block.level + 1);
+  const CellPlace* next_y_places = block.y_places(block.level + 1);
+  for (int y = 0; y < block.height; ++y) {
+    const auto fine_y = tents(y_places[y].placement);
+    const auto coarse_y = tents(next_y_places[y].placement);
+    for (int x = 0; x < block.width; ++x) {
+      const CellMoments<C>& cell = block.at(x, y);
+      if (cell.empty()) continue;
+      const auto fine_x = tents(x_places[x].placement);
+      const auto coarse_x = tents(next_x_places[x].placement);
+      for (int k = 0; k < 4; ++k) {
+        // Rows of moments, summed over y for this pair of tents along y.
+        const std::array<double, 3> along_y = product(fine_y[k % 2], coarse_y[k / 2]);
+        double line[3];
+        for (int a = 0; a < 3; ++a) {
+          line[a] = along_y[0] * cell.weight[a] + along_y[1] * cell.weight[3 + a] +
+                    along_y[2] * cell.weight[6 + a];
+        }
+        int row = 0;
+        const int slot_y = y_.slot(y_places[y].texel, k % 2, next_y_places[y].texel + k / 2, &row);
+        if (row < 0) continue;
+        for (int i = 0; i < 4; ++i) {
+          int column = 0;
+          const int slot_x =
+              x_.slot(x_places[x].texel, i % 2, next_x_places[x].texel + i / 2, &column);
+          if (column < 0) continue;
+          assert(slot_x >= 0 && slot_x < 3 && slot_y >= 0 && slot_y < 3);
+          const std::array<double, 3> along_x = product(fine_x[i % 2], coarse_x[i / 2]);
+          const double value = along_x[0] * line[0] + along_x[1] * line[1] + along_x[2] * line[2];
+          products_[static_cast<std::size_t>(row) * x_.size + column][3 * slot_y + slot_x] +=
+              static_cast<float>(value);
+        }
+      }
+    }
+  }
+}
+
+void LevelCoupling::subtract_coarse(const NinePointSystem<float>& fine,
+                                    const NinePointSystem<float>& coarse, float scale, int threads,
+                                    std::vector<LaneValues>* sums) const {
+  parallel_for(y_.size, threads, Progress(), [&](std::int64_t row) {
+    const int y = static_cast<int>(row);
+    const std::array<float, 9>* products = products_.data() + row * x_.size;
+    for (int x = 0; x < x_.size; ++x, ++products) {
+      Lanes sum{};
+      for (int k = 0; k < 9; ++k) {
+        const float weight = (*products)[k];
+        if (weight == 0.0F) continue;
+        const int i = wrap_index(x_.first(x) + k % 3, x_.next_size, x_.wrap);
+        const int j = wrap_index(y_.first(y) + k / 3, y_.next_size, y_.wrap);
+        if (i >= 0 && j >= 0) sum += weight * coarse.texel(coarse.at(i, j)).v;
+      }
+      (*sums)[fine.at(x, y)].v -= scale * sum;
+    }
+  });
+}
+
+void LevelCoupling::subtract_fine(const NinePointSystem<float>& fine,
+                                  const NinePointSystem<float>& coarse, float scale, int threads,
+                                  std::vector<LaneValues>* sums) const {
+  // Each band of the next level's rows collects what comes to it, in the order of the finer rows.
+  const int bands = (y_.next_size + kRowsAtOnce - 1) / kRowsAtOnce;
+  parallel_for(bands, threads, Progress(), [&](std::int64_t band) {
+    const int begin = static_cast<int>(band) * kRowsAtOnce;
+    const int end = std::min(begin + kRowsAtOnce, y_.next_size);
+    for (int y = 0; y < y_.size; ++y) {
+      for (int slot_y = 0; slot_y < 3; ++slot_y) {
+        const int j = wrap_index(y_.first(y) + slot_y, y_.next_size, y_.wrap);
+        if (j < begin || j >= end) continue;
+        const std::array<float, 9>* products =
+            products_.data() + static_cast<std::ptrdiff_t>(y) * x_.size;
+        for (int x = 0; x < x_.size; ++x, ++products) {
+          for (int slot_x = 0; slot_x < 3; ++slot_x) {
+            const float weight = (*products)[3 * slot_y + slot_x];
+            if (weight == 0.0F) continue;
+            const int i = wrap_index(x_.first(x) + slot_x, x_.next_size, x_.wrap);
+            if (i < 0) continue;
+            (*sums)[coarse.at(i, j)].v -= scale * weight * fine.texel(fine.at(x, y)).v;
+          }
+        }
+      }
+    }
+  });
+}
+
+template void LevelCoupling::add<1>(const MomentBlock<1>&);
+template void LevelCoupling::add<2>(const MomentBlock<2>&);
+template void LevelCoupling::add<3>(const MomentBlock<3>&);
+template void LevelCoupling::add<4>(const MomentBlock<4>&);
+
+}  // namespace prefilter

@@ -1,0 +1,53 @@
+// How the bilinear basis functions of one level overlap those of the next.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "prefilter/base/progress.h"
+#include "prefilter/base/wrap.h"
+#include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/mipmap/nine_point_system.h"
+
+namespace prefilter {
+
+/// Integrals over the surface of b_j B_k, b_j a basis function of a level and B_k one of the next,
+/// coarser one. A texel of the level meets at most three texels of the next along each axis.
+class LevelCoupling {
+ public:
+  LevelCoupling(int width, int height, int next_width, int next_height, WrapModes wrap);
+
+  /// Adds the cells of one block of the finer level. Blocks that share texels must not be added at
+  /// the same time.
+  template <int C>
+  void add(const MomentBlock<C>& block);
+
+  /// sums_j -= scale * sum_k <b_j B_k> coarse_k, for every texel of the finer level; `sums` and the
+  /// systems' texels are in the order of NinePointSystem::at.
+  void subtract_coarse(const NinePointSystem<float>& fine, const NinePointSystem<float>& coarse,
+                       float scale, int threads, std::vector<LaneValues>* sums) const;
+  /// sums_k -= scale * sum_j <b_j B_k> fine_j.
+  void subtract_fine(const NinePointSystem<float>& fine, const NinePointSystem<float>& coarse,
+                     float scale, int threads, std::vector<LaneValues>* sums) const;
+
+ private:
+  // Along one axis: the texels of the next level that a texel meets.
+  struct Axis {
+    int size;
+    int next_size;
+    Wrap wrap;
+
+    // The first of the three, which may lie beyond the edge.
+    int first(int texel) const;
+    // Which of the three `next` is, for a cell above texel `low` of the level: `high` 0 for that
+    // texel and 1 for the one after. The texel itself, after wrapping, goes to `texel`; -1 for the
+    // border.
+    int slot(int low, int high, int next, int* texel) const;
+  };
+
+  Axis x_;
+  Axis y_;
+  std::vector<std::array<float, 9>> products_;  // row by row of the level, at [3 * y + x]
+};
+
+}  // namespace prefilter

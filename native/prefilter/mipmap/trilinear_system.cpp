@@ -1,0 +1,98 @@
+// Block Gauss-Seidel over the levels: the blocks beside the diagonal are at most half of it, so a
+// round takes the error down about fourfold, and each block is solved by a few sweeps from where it
+// is.
+#include "prefilter/mipmap/trilinear_system.h"
+
+#include <algorithm>
+
+#include "prefilter/mipmap/levels.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kMostRounds = 60;
+constexpr int kSweepsPerRound = 4;
+
+}  // namespace
+
+template <int C>
+TrilinearSystem<C>::TrilinearSystem(int width, int height, WrapModes wrap)
+    : last_level_(full_level_count(width, height) - 1) {
+  for (int level = 1; level <= last_level_; ++level) {
+    const int columns = level_size(width, level);
+    const int rows = level_size(height, level);
+    systems_.push_back(std::make_unique<BilinearSystem<C>>(columns, rows, wrap));
+    if (level == last_level_) break;
+    couplings_.emplace_back(columns, rows, level_size(width, level + 1),
+                            level_size(height, level + 1), wrap);
+  }
+}
+
+template <int C>
+void TrilinearSystem<C>::add(const MomentBlock<C>& block) {
+  systems_[block.level - 1]->add(block);
+  if (block.level < last_level_) {
+    couplings_[block.level - 1].add(block);
+    return;
+  }
+  // The last level is one block: an image of more than one tile has levels that tiles do not visit.
+  double mass = 0.0;
+  for (int y = 0; y < block.height; ++y) {
+    for (int x = 0; x < block.width; ++x) {
+      const CellMoments<C>& cell = block.at(x, y);
+      mass += cell.weight[0];
+      for (int c = 0; c < C; ++c) mean_[c] += cell.image[c][0];
+    }
+  }
+  for (double& mean : mean_) mean /= mass;
+}
+
+template <int C>
+auto TrilinearSystem<C>::solve(const SolveOptions& options, const Progress& progress)
+    -> std::vector<typename BilinearSystem<C>::Solution> {
+  std::vector<std::vector<LaneValues>> fixed;  // what the image puts on the right of each level
+  for (int level = 1; level <= last_level_; ++level) {
+    BilinearSystem<C>& system = *systems_[level - 1];
+    // The equations of a level are divided by 2/3. Of level 1, 1/6 A_1,0 times the image is known:
+    // it is 1/6 of its right side.
+    fixed.push_back(system.prepare(level == 1 ? 1.5F * 5.0F / 6.0F : 1.5F));
+  }
+  NinePointSystem<float>& last = systems_.back()->system();
+  for (int c = 0; c < C; ++c) {
+    last.texel(0).v[c] =
+        std::clamp(static_cast<float>(mean_[c]), options.ranges[c].low, options.ranges[c].high);
+  }
+
+  SolveOptions few = options;
+  few.max_sweeps = kSweepsPerRound;
+  bool settled = false;
+  for (int round = 0; round < kMostRounds && !settled; ++round) {
+    progress.report(static_cast<double>(round) / kMostRounds);
+    settled = true;
+    for (int level = 1; level < last_level_; ++level) {
+      NinePointSystem<float>& system = systems_[level - 1]->system();
+      std::vector<LaneValues> right = fixed[level - 1];
+      couplings_[level - 1].subtract_coarse(system, systems_[level]->system(), 0.25F,
+                                            options.threads, &right);
+      if (level > 1) {
+        couplings_[level - 2].subtract_fine(systems_[level - 2]->system(), system, 0.25F,
+                                            options.threads, &right);
+      }
+      system.swap_right_side(&right);
+      if (system.solve(few, Progress()) > 1) settled = false;
+    }
+  }
+
+  std::vector<typename BilinearSystem<C>::Solution> levels;
+  for (const std::unique_ptr<BilinearSystem<C>>& system : systems_) {
+    levels.push_back(system->take_solution());
+  }
+  return levels;
+}
+
+template class TrilinearSystem<1>;
+template class TrilinearSystem<2>;
+template class TrilinearSystem<3>;
+template class TrilinearSystem<4>;
+
+}  // namespace prefilter

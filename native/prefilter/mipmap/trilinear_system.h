@@ -1,0 +1,42 @@
+// The least-squares problem of all levels together, for trilinear lookups (section 7.3).
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "prefilter/base/image.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/base/wrap.h"
+#include "prefilter/mipmap/bilinear_system.h"
+#include "prefilter/mipmap/level_coupling.h"
+#include "prefilter/mipmap/moment_sweep.h"
+
+namespace prefilter {
+
+/// Minimises the integral over the mip values from 0 to the last level, and over the surface, of
+/// the squared difference between the trilinear lookup and the image. Level 0 is the image, the
+/// last one, of 1 x 1 texel, its mean over the surface; those between are solved for, with the pull
+/// of BilinearSystem. Over one interval the products of the two levels' weights integrate to 1/3,
+/// 1/6 and 1/3, so the normal matrix is block tridiagonal: 2/3 A_l,l on its diagonal and 1/6
+/// A_l,l+1 beside it.
+template <int C>
+class TrilinearSystem {
+ public:
+  TrilinearSystem(int width, int height, WrapModes wrap);
+
+  /// Adds the cells of one block of any level from 1 on. Blocks that share texels must not be added
+  /// at the same time.
+  void add(const MomentBlock<C>& block);
+
+  /// Levels 1 to the last, within the ranges. Can be called once.
+  std::vector<typename BilinearSystem<C>::Solution> solve(const SolveOptions& options,
+                                                          const Progress& progress);
+
+ private:
+  int last_level_;
+  std::vector<std::unique_ptr<BilinearSystem<C>>> systems_;  // of level l at [l - 1]
+  std::vector<LevelCoupling> couplings_;                     // of levels l and l + 1 at [l - 1]
+  std::array<double, C> mean_{};
+};
+
+}  // namespace prefilter
