@@ -3,6 +3,7 @@
 #include "convert.h"
 #include "prefilter/mipmap/mipmap_error.h"
 #include "prefilter/mipmap/mipmaps.h"
+#include "prefilter/mipmap/seams.h"
 #include "prefilter/mipmap/texture_use.h"
 
 namespace py = pybind11;
@@ -21,7 +22,8 @@ std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
                                         const std::string& filter, const WrapNames& wrap,
                                         std::optional<float> low, std::optional<float> high,
                                         int levels, bool premultiplied, const std::string& reader,
-                                        const py::object& progress, int threads) {
+                                        double seam_weight, const py::object& progress,
+                                        int threads) {
   MipmapOptions options;
   options.filter = mipmap_filter(filter);
   options.wrap = wrap_modes(wrap);
@@ -29,6 +31,7 @@ std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
   options.levels = levels;
   options.premultiplied = premultiplied;
   options.reader = reader_of(reader);
+  options.seam_weight = seam_weight;
   options.threads = threads;
   options.progress = to_progress(progress);
   const ImageView image = view_of(array);
@@ -56,6 +59,17 @@ std::vector<double> bound_mipmap_error(const std::vector<Array<float>>& levels,
   const Progress reporter = to_progress(progress);
   const py::gil_scoped_release unlocked;
   return mipmap_error(views, image, surfaces, mip_values, modes, reads, reporter, threads);
+}
+
+std::vector<double> bound_seam_contrast(const std::vector<Array<float>>& levels,
+                                        const std::vector<const Surface*>& surfaces,
+                                        const WrapNames& wrap, const py::object& progress) {
+  std::vector<ImageView> views;
+  for (const Array<float>& level : levels) views.push_back(view_of(level));
+  const WrapModes modes = wrap_modes(wrap);
+  const Progress reporter = to_progress(progress);
+  const py::gil_scoped_release unlocked;
+  return seam_contrast(views, surfaces, modes, reporter);
 }
 
 Array<float> bound_texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
@@ -89,10 +103,13 @@ Array<float> bound_fill_unused(const Array<float>& array,
 void bind_mipmap(py::module_& m) {
   m.def("mipmaps", &bound_mipmaps, py::arg("image"), py::arg("surfaces"), py::arg("filter"),
         py::arg("wrap"), py::arg("low"), py::arg("high"), py::arg("levels"),
-        py::arg("premultiplied"), py::arg("reader"), py::arg("progress"), py::arg("threads"));
+        py::arg("premultiplied"), py::arg("reader"), py::arg("seam_weight"), py::arg("progress"),
+        py::arg("threads"));
   m.def("mipmap_error", &bound_mipmap_error, py::arg("levels"), py::arg("image"),
         py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("reader"),
         py::arg("progress"), py::arg("threads"));
+  m.def("seam_contrast", &bound_seam_contrast, py::arg("levels"), py::arg("surfaces"),
+        py::arg("wrap"), py::arg("progress"));
   m.def("texel_weights", &bound_texel_weights, py::arg("surfaces"), py::arg("width"),
         py::arg("height"), py::arg("wrap"), py::arg("progress"), py::arg("threads"));
   m.def("fill_unused", &bound_fill_unused, py::arg("image"), py::arg("surfaces"), py::arg("wrap"),

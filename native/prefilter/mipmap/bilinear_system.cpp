@@ -58,6 +58,14 @@ void BilinearSystem<C>::add_dual_cell(const CellMoments<C>& moments, int column,
 }
 
 template <int C>
+void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double weight) {
+  links_.clear();
+  for (const SeamLink& link : links) {
+    links_.push_back(texel_link(link, system_, static_cast<float>(weight * link.strip_area)));
+  }
+}
+
+template <int C>
 std::vector<LaneValues> BilinearSystem<C>::prepare(float image_share) {
   double sum = 0.0;
   std::int64_t used = 0;
@@ -83,6 +91,7 @@ std::vector<LaneValues> BilinearSystem<C>::prepare(float image_share) {
     }
   }
   std::vector<float>().swap(weights_);
+  system_.add_links(std::move(links_));
   system_.invert_diagonal();
   return right;
 }

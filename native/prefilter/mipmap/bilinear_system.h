@@ -10,6 +10,7 @@
 #include "prefilter/base/wrap.h"
 #include "prefilter/mipmap/moment_sweep.h"
 #include "prefilter/mipmap/nine_point_system.h"
+#include "prefilter/mipmap/seams.h"
 
 namespace prefilter {
 
@@ -35,6 +36,10 @@ class BilinearSystem {
     int sweeps = 0;
   };
 
+  /// Adds, to what is minimised, `weight` times the square of each link, which counts its strip's
+  /// share of the surface's area as the integral does. To be called once all blocks are there.
+  void add_links(const std::vector<SeamLink>& links, double weight);
+
   /// Solves for all channels, within their ranges. Can be called once.
   Solution solve(const SolveOptions& options, const Progress& progress);
 
@@ -51,6 +56,7 @@ class BilinearSystem {
   WrapModes wrap_;
   NinePointSystem<float> system_;
   std::vector<float> weights_;  // integrals of b_j
+  std::vector<TexelLink> links_;
 };
 
 }  // namespace prefilter

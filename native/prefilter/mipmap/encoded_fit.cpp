@@ -55,9 +55,9 @@ void EncodedFit<C>::add(const MomentBlock<C>& block) {
 }
 
 template <int C>
-auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> std::array<double, kColours> {
+auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> Sums {
   const SrgbDecoder& decode = SrgbDecoder::instance();
-  std::array<double, kColours> sums{};
+  Sums sums;
   for (const Cell& cell : cells) {
     Lanes corners[4];
     for (int k = 0; k < 4; ++k) {
@@ -74,6 +74,7 @@ auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> std::array<doubl
       const Lanes encoded = tents[0] * corners[0] + tents[1] * corners[1] + tents[2] * corners[2] +
                             tents[3] * corners[3];
       const float weight = k == 0 || k == 3 ? cell.same : cell.opposite;
+      sums.mass += weight;
       Lanes squares{};
       Lanes target{};
       for (int c = 0; c < kColours; ++c) {
@@ -81,7 +82,8 @@ auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> std::array<doubl
         const float image = cell.image[k][c];
         squares[c] = weight * slope * slope;
         target[c] = slope * (image - weight * value) + squares[c] * encoded[c];
-        sums[c] += static_cast<double>(value) * (weight * value - 2.0F * image);
+        sums.squares[c] += static_cast<double>(value) * (weight * value - 2.0F * image);
+        sums.slopes[c] += squares[c];
       }
       const float along_x[3] = {(1.0F - x) * (1.0F - x), x * (1.0F - x), x * x};
       const float along_y[3] = {(1.0F - y) * (1.0F - y), y * (1.0F - y), y * y};
@@ -98,7 +100,7 @@ auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> std::array<doubl
 template <int C>
 auto EncodedFit<C>::assemble(int threads) -> std::array<double, kColours> {
   system_.clear();
-  std::vector<std::array<double, kColours>> sums(cells_.size());
+  std::vector<Sums> sums(cells_.size());
   // Rows of tiles that are not beside each other share no texels.
   for (int colour = 0; colour < kTileColours; ++colour) {
     std::vector<int> rows;
@@ -113,11 +115,38 @@ auto EncodedFit<C>::assemble(int threads) -> std::array<double, kColours> {
     });
   }
   sums.back() = assemble(cells_.back());
-  std::array<double, kColours> total{};
-  for (const std::array<double, kColours>& sum : sums) {
-    for (int c = 0; c < kColours; ++c) total[c] += sum[c];
+  Sums total;
+  for (const Sums& sum : sums) {
+    total.mass += sum.mass;
+    for (int c = 0; c < kColours; ++c) {
+      total.squares[c] += sum.squares[c];
+      total.slopes[c] += sum.slopes[c];
+    }
   }
-  return total;
+  // A difference of encoded values counts as the decoded one that the curve's mean slope makes of
+  // it: of the slopes at the start, so that all rounds minimise the same.
+  if (!links_scaled_) {
+    Lanes scale{};
+    for (int c = 0; c < kColours; ++c) scale[c] = static_cast<float>(total.slopes[c] / total.mass);
+    for (TexelLink& link : links_) link.weight.v *= scale;
+    links_scaled_ = true;
+  }
+  for (const TexelLink& link : links_) {
+    Lanes sum{};
+    for (int k = 0; k < link.count; ++k) sum += link.shares[k] * system_.texel(link.texels[k]).v;
+    for (int c = 0; c < kColours; ++c) {
+      total.squares[c] += static_cast<double>(link.weight.v[c]) * sum[c] * sum[c];
+    }
+  }
+  return total.squares;
+}
+
+template <int C>
+void EncodedFit<C>::add_links(const std::vector<SeamLink>& links, double weight) {
+  links_.clear();
+  for (const SeamLink& link : links) {
+    links_.push_back(texel_link(link, system_, static_cast<float>(weight * link.strip_area)));
+  }
 }
 
 template <int C>
@@ -190,6 +219,7 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
       system_.diagonal(at).v += pull;
       system_.right_side(at).v += pull * target;
     });
+    system_.add_links(links_);
     system_.invert_diagonal();
     for (std::size_t i = 0; i < before.size(); ++i) {
       before[i] = system_.texel(static_cast<std::ptrdiff_t>(i));

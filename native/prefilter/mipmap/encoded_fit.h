@@ -8,6 +8,7 @@
 #include "prefilter/base/wrap.h"
 #include "prefilter/mipmap/moment_sweep.h"
 #include "prefilter/mipmap/nine_point_system.h"
+#include "prefilter/mipmap/seams.h"
 
 namespace prefilter {
 
@@ -28,6 +29,9 @@ class EncodedFit {
   /// Adds the cells of one block of this level. Blocks may be added at the same time.
   void add(const MomentBlock<C>& block);
 
+  /// As BilinearSystem::add_links, of encoded texels.
+  void add_links(const std::vector<SeamLink>& links, double weight);
+
   /// Improves on `start`, encoded texels within the ranges, which are encoded too. A fourth channel
   /// stays as it is. `used` has 1 for each texel that the surface reads. Can be called once.
   Image solve(const Image& start, const std::vector<unsigned char>& used,
@@ -46,7 +50,13 @@ class EncodedFit {
   // Puts the Gauss-Newton system at the texels together; returns the sum of squares of each
   // channel, less what does not depend on the texels.
   std::array<double, kColours> assemble(int threads);
-  std::array<double, kColours> assemble(const std::vector<Cell>& cells);
+
+  struct Sums {
+    std::array<double, kColours> squares{};
+    std::array<double, kColours> slopes{};  // squares of the curve's slope, times mass
+    double mass = 0.0;
+  };
+  Sums assemble(const std::vector<Cell>& cells);
 
   WrapModes wrap_;
   int image_height_;
@@ -54,6 +64,8 @@ class EncodedFit {
   int tile_rows_;
   NinePointSystem<LaneValues> system_;
   std::vector<std::vector<Cell>> cells_;  // by block
+  std::vector<TexelLink> links_;
+  bool links_scaled_ = false;
 };
 
 }  // namespace prefilter

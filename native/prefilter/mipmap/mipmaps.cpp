@@ -21,6 +21,7 @@
 #include "prefilter/mipmap/level_grid.h"
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/mipmap/seams.h"
 #include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/mipmap/texture_space.h"
 #include "prefilter/mipmap/trilinear_system.h"
@@ -338,6 +339,10 @@ class Builder {
                       .threads = options_.threads},
                      options_.progress.part(0.2, 0.5),
                      [&](const MomentBlock<C>& block) { system.add(block); });
+    for_each_level_of_seams(image_, full_level_count(image_.width, image_.height) - 2,
+                            [&](int level, const std::vector<SeamLink>& links, double weight) {
+                              system.add_links(level, links, weight);
+                            });
     auto solutions = system.solve(solve_options(), options_.progress.part(0.5, 0.95));
     std::vector<Image> levels;
     for (int level = 1; level < level_count_; ++level) {
@@ -345,6 +350,22 @@ class Builder {
                               options_.progress.part(0.95, 0.97)));
     }
     return levels;
+  }
+
+  // Calls use(level, links, weight) for every level; nothing where seams do not count.
+  template <typename Use>
+  void for_each_level_of_seams(const ImageView& image, int last_level, const Use& use) const {
+    if (options_.seam_weight == 0.0) return;
+    std::vector<SeamEdge> seams = find_seams(surfaces_);
+    weigh_seams(image, surfaces_, options_.wrap, &seams);
+    double area = 0.0;
+    for (const Surface* surface : surfaces_) area += surface->total_area();
+    // The fits count area in texels of the image.
+    const double texels_by_area = static_cast<double>(image_.width) * image_.height / area;
+    for (int level = 1; level <= last_level; ++level) {
+      use(level, link_seams(seams, width(level), height(level), options_.wrap),
+          options_.seam_weight * texels_by_area);
+    }
   }
 
   SolveOptions solve_options() const {
@@ -388,6 +409,16 @@ class Builder {
                        if (encoded) fits[block.level - 1]->add(block);
                      });
 
+    for_each_level_of_seams(image_, level_count_ - 1,
+                            [&](int level, const std::vector<SeamLink>& links, double weight) {
+                              systems[level - 1]->add_links(links, weight);
+                            });
+    if (encoded) {
+      for_each_level_of_seams(encoded_image.view(), level_count_ - 1,
+                              [&](int level, const std::vector<SeamLink>& links, double weight) {
+                                fits[level - 1]->add_links(links, weight);
+                              });
+    }
     const SolveOptions solve = solve_options();
     std::vector<Image> levels;
     double from = encoded ? 0.3 : 0.5;
@@ -489,6 +520,10 @@ void check_options(const ImageView& image, const std::vector<const Surface*>& su
     throw_invalid("bounds: the low bound is " + (bounds.low ? to_text(*bounds.low) : "open") +
                   " and the high bound is " + (bounds.high ? to_text(*bounds.high) : "open") +
                   "; numbers are needed, and low must not be above high");
+  }
+  if (!(options.seam_weight >= 0.0) || !std::isfinite(options.seam_weight)) {
+    throw_invalid("seam_weight: " + to_text(options.seam_weight) +
+                  "; a finite number of at least 0 is needed");
   }
   if (options.threads < 0) {
     throw_invalid("threads: " + std::to_string(options.threads) +

@@ -50,6 +50,9 @@ struct MipmapOptions {
   bool premultiplied = false;
   // Fitted to by kPamBilinear; the levels of the other filters are the same for all readers.
   Reader reader = Reader::kLinear;
+  // What the square of the difference across UV seams, over a strip one texel of the level wide,
+  // counts against the error over the surface. For the fitted filters.
+  double seam_weight = 0.0;
   int threads = 0;  // 0 = all processors
   Progress progress;
 };

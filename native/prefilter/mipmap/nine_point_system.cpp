@@ -21,6 +21,13 @@ Lanes of(const LaneValues& entry) { return entry.v; }
 void add_to(float* entry, float value) { *entry += value; }
 void add_to(LaneValues* entry, const LaneValues& value) { entry->v += value.v; }
 
+void add_square(float* entry, const LaneValues& weight, float share) {
+  *entry += weight.v[0] * share * share;
+}
+void add_square(LaneValues* entry, const LaneValues& weight, float share) {
+  entry->v += share * share * weight.v;
+}
+
 float inverse_of(float entry) { return entry > 0.0F ? 1.0F / entry : 0.0F; }
 LaneValues inverse_of(const LaneValues& entry) {
   const Lanes zero{};
@@ -91,65 +98,153 @@ int NinePointSystem<Entry>::row_beside(int y, int step) const {
   return wrap_.v == Wrap::kRepeat ? height_ - 1 - y : height_;
 }
 
+// A row whose texels take steps.
 template <typename Entry>
-bool NinePointSystem<Entry>::relax_row(int y, const SolveOptions& options, Lanes typical) {
-  // A little over-relaxation saves sweeps; from about 1.3 on it costs some.
-  constexpr float kRelaxation = 1.15F;
-  const int south_row = row_beside(y, -1);
-  const int north_row = row_beside(y, 1);
-  const Stencil* here = stencils_.data() + at(0, y);
-  const Stencil* south = stencils_.data() + at(0, south_row);
-  LaneValues* values = texels_.data() + at(0, y);
-  const LaneValues* south_values = texels_.data() + at(0, south_row);
-  const LaneValues* north_values = texels_.data() + at(0, north_row);
-  const LaneValues* right_side = right_side_.data() + at(0, y);
-
-  // Open ranges are as wide as floats go, and not infinite: times an alpha of 0 they are 0.
-  constexpr float kWidest = std::numeric_limits<float>::max();
-  Lanes low{};
-  Lanes high{};
-  for (int c = 0; c < kMaxChannels; ++c) {
-    low[c] = std::max(options.ranges[c].low, -kWidest);
-    high[c] = std::min(options.ranges[c].high, kWidest);
+class NinePointSystem<Entry>::Row {
+ public:
+  Row(NinePointSystem* system, int y, const SolveOptions& options, Lanes typical)
+      : width_(system->width_),
+        repeat_(system->wrap_.u == Wrap::kRepeat),
+        times_alpha_(options.ranges_times_alpha),
+        tolerance_(static_cast<float>(options.tolerance)),
+        typical_(typical) {
+    const std::ptrdiff_t south_row = system->at(0, system->row_beside(y, -1));
+    const std::ptrdiff_t north_row = system->at(0, system->row_beside(y, 1));
+    here_ = system->stencils_.data() + system->at(0, y);
+    south_ = system->stencils_.data() + south_row;
+    values_ = system->texels_.data() + system->at(0, y);
+    south_values_ = system->texels_.data() + south_row;
+    north_values_ = system->texels_.data() + north_row;
+    right_side_ = system->right_side_.data() + system->at(0, y);
+    // Open ranges are as wide as floats go, and not infinite: times an alpha of 0 they are 0.
+    constexpr float kWidest = std::numeric_limits<float>::max();
+    for (int c = 0; c < kMaxChannels; ++c) {
+      low_[c] = std::max(options.ranges[c].low, -kWidest);
+      high_[c] = std::min(options.ranges[c].high, kWidest);
+    }
   }
-  const auto tolerance = static_cast<float>(options.tolerance);
 
-  Lanes excess{};
-  const auto relax = [&](int x, int west, int east) {
-    const Lanes old = values[x].v;
-    Lanes sum = right_side[x].v;
-    sum -= of(here[x].east) * values[east].v;
-    sum -= of(here[x].north) * north_values[x].v;
-    sum -= of(south[x].north) * south_values[x].v;
-    sum -= of(here[x].north_east) * north_values[east].v;
-    sum -= of(south[west].north_east) * south_values[west].v;
-    sum -= of(here[x].north_west) * north_values[west].v;
-    sum -= of(south[east].north_west) * south_values[east].v;
-    sum -= of(here[west].east) * values[west].v;
-    const Lanes inverse = Lanes{} + of(here[x].centre);
+  // Steps of the texels [begin, end).
+  void relax(int begin, int end) {
+    const auto at_end = [&](int x) {
+      return relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
+                       Lanes{});
+    };
+    if (begin < end && begin == 0) at_end(begin++);
+    const int middle_end = std::min(end, width_ - 1);
+    for (int x = begin; x < middle_end; ++x) relax_one(x, x - 1, x + 1, Lanes{});
+    if (std::max(begin, middle_end) < end) at_end(end - 1);
+  }
+
+  // A step of one texel, with `pull` added to its right side; returns by how much it moved.
+  Lanes relax_linked(int x, Lanes pull) {
+    return relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
+                     pull);
+  }
+
+  // Whether a channel of a texel moved by more than the tolerance.
+  bool moved() const {
+    bool moved = false;
+    for (int c = 0; c < kMaxChannels; ++c) moved = moved || excess_[c] > 0.0F;
+    return moved;
+  }
+
+ private:
+  // Past the row's end is a texel of zeros.
+  int before_first() const { return repeat_ && width_ > 1 ? width_ - 1 : width_; }
+  int after_last() const { return repeat_ && width_ > 1 ? 0 : width_; }
+
+  Lanes relax_one(int x, int west, int east, Lanes pull) {
+    // A little over-relaxation saves sweeps; from about 1.3 on it costs some.
+    constexpr float kRelaxation = 1.15F;
+    const Lanes old = values_[x].v;
+    Lanes sum = right_side_[x].v + pull;
+    sum -= of(here_[x].east) * values_[east].v;
+    sum -= of(here_[x].north) * north_values_[x].v;
+    sum -= of(south_[x].north) * south_values_[x].v;
+    sum -= of(here_[x].north_east) * north_values_[east].v;
+    sum -= of(south_[west].north_east) * south_values_[west].v;
+    sum -= of(here_[x].north_west) * north_values_[west].v;
+    sum -= of(south_[east].north_west) * south_values_[east].v;
+    sum -= of(here_[west].east) * values_[west].v;
+    const Lanes inverse = Lanes{} + of(here_[x].centre);
     const Lanes free = inverse > 0.0F ? old + kRelaxation * (sum * inverse - old) : old;
     Lanes scale = Lanes{} + 1.0F;
-    if (options.ranges_times_alpha) {
-      scale = Lanes{} + std::clamp(free[3], low[3], high[3]);
+    if (times_alpha_) {
+      scale = Lanes{} + std::clamp(free[3], low_[3], high_[3]);
       scale[3] = 1.0F;
     }
-    const Lanes next = lane_min(lane_max(free, low * scale), high * scale);
-    values[x].v = next;
+    const Lanes next = lane_min(lane_max(free, low_ * scale), high_ * scale);
+    values_[x].v = next;
     const Lanes step = lane_max(next - old, old - next);
-    excess = lane_max(excess, step - tolerance * lane_max(typical, lane_max(next, -next)));
-  };
-  const bool repeat = wrap_.u == Wrap::kRepeat;
-  const int pad = width_;
-  if (width_ == 1) {
-    relax(0, pad, pad);
-  } else {
-    relax(0, repeat ? width_ - 1 : pad, 1);
-    for (int x = 1; x + 1 < width_; ++x) relax(x, x - 1, x + 1);
-    relax(width_ - 1, width_ - 2, repeat ? 0 : pad);
+    excess_ = lane_max(excess_, step - tolerance_ * lane_max(typical_, lane_max(next, -next)));
+    return next - old;
   }
-  bool moved = false;
-  for (int c = 0; c < kMaxChannels; ++c) moved = moved || excess[c] > 0.0F;
-  return moved;
+
+  int width_;
+  bool repeat_;
+  bool times_alpha_;
+  float tolerance_;
+  Lanes typical_;
+  Lanes low_{};
+  Lanes high_{};
+  Lanes excess_{};
+  const Stencil* here_;
+  const Stencil* south_;
+  LaneValues* values_;
+  const LaneValues* south_values_;
+  const LaneValues* north_values_;
+  const LaneValues* right_side_;
+};
+
+template <typename Entry>
+bool NinePointSystem<Entry>::relax_row(int y, const SolveOptions& options, Lanes typical) {
+  Row row(this, y, options, typical);
+  if (linked_.empty()) {
+    row.relax(0, width_);
+    return row.moved();
+  }
+  int begin = 0;
+  auto linked = std::lower_bound(
+      linked_.begin(), linked_.end(), at(0, y),
+      [](const LinkedTexel& texel, std::ptrdiff_t first) { return texel.at < first; });
+  for (; linked->at < at(width_, y); ++linked) {
+    const int x = static_cast<int>(linked->at - at(0, y));
+    row.relax(begin, x);
+    begin = x + 1;
+  }
+  row.relax(begin, width_);
+  return row.moved();
+}
+
+template <typename Entry>
+void NinePointSystem<Entry>::relax_linked(const SolveOptions& options, Lanes typical,
+                                          std::vector<unsigned char>* moves) {
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    Lanes sum{};
+    for (int k = 0; k < links_[i].count; ++k) {
+      sum += links_[i].shares[k] * texels_[links_[i].texels[k]].v;
+    }
+    link_sums_[i].v = sum;
+  }
+  for (std::size_t k = 0; k + 1 < linked_.size();) {
+    const int y = static_cast<int>(linked_[k].at / stride_);
+    Row row(this, y, options, typical);
+    for (; linked_[k].at < at(width_, y); ++k) {
+      const std::ptrdiff_t texel = linked_[k].at;
+      const Lanes value = texels_[texel].v;
+      Lanes pull{};
+      for (std::size_t use = linked_[k].first_use; use < linked_[k + 1].first_use; ++use) {
+        const auto [link, share] = uses_[use];
+        pull -= share * links_[link].weight.v * (link_sums_[link].v - share * value);
+      }
+      const Lanes step = row.relax_linked(static_cast<int>(texel - at(0, y)), pull);
+      for (std::size_t use = linked_[k].first_use; use < linked_[k + 1].first_use; ++use) {
+        link_sums_[uses_[use].link].v += uses_[use].share * step;
+      }
+    }
+    if (row.moved()) (*moves)[y] = 1;
+  }
 }
 
 template <typename Entry>
@@ -208,6 +303,7 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
       }
       if (team.rank() == 0) {
         if (odd_ring) relax(height_ - 1);
+        relax_linked(options, typical, &moves);
         ++sweeps;
         const bool settled = std::find(moves.begin(), moves.end(), 1) == moves.end();
         try {
@@ -225,9 +321,45 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
 }
 
 template <typename Entry>
+void NinePointSystem<Entry>::add_links(std::vector<TexelLink> links) {
+  const auto outside = [this](const TexelLink& link) {
+    return std::any_of(link.texels.begin(), link.texels.begin() + link.count,
+                       [this](std::ptrdiff_t at) { return !is_part(at); });
+  };
+  std::erase_if(links, outside);
+  links_ = std::move(links);
+  link_sums_.assign(links_.size(), LaneValues{});
+  struct Use {
+    std::ptrdiff_t at;
+    LinkUse use;
+  };
+  std::vector<Use> uses;
+  for (std::size_t i = 0; i < links_.size(); ++i) {
+    for (int k = 0; k < links_[i].count; ++k) {
+      const float share = links_[i].shares[k];
+      uses.push_back({links_[i].texels[k], {static_cast<std::uint32_t>(i), share}});
+      add_square(&stencils_[links_[i].texels[k]].centre, links_[i].weight, share);
+    }
+  }
+  std::stable_sort(uses.begin(), uses.end(),
+                   [](const Use& a, const Use& b) { return a.at < b.at; });
+  linked_.clear();
+  uses_.clear();
+  for (const Use& use : uses) {
+    if (linked_.empty() || linked_.back().at != use.at) linked_.push_back({use.at, uses_.size()});
+    uses_.push_back(use.use);
+  }
+  if (!linked_.empty()) {
+    linked_.push_back({static_cast<std::ptrdiff_t>(stencils_.size()), uses_.size()});
+  }
+}
+
+template <typename Entry>
 void NinePointSystem<Entry>::clear() {
   std::fill(stencils_.begin(), stencils_.end(), Stencil{});
   std::fill(right_side_.begin(), right_side_.end(), LaneValues{});
+  links_.clear();
+  linked_.clear();
 }
 
 template <typename Entry>

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "prefilter/base/image.h"
@@ -28,6 +29,16 @@ struct SolveOptions {
   double tolerance = 1e-5;
   int max_sweeps = 300;
   int threads = 0;
+};
+
+/// A sum of shares of a few texels, wherever they are, whose square is added to what a system
+/// minimises.
+struct TexelLink {
+  static constexpr int kMostTexels = 8;
+  std::array<std::ptrdiff_t, kMostTexels> texels;  // as NinePointSystem::at has them
+  std::array<float, kMostTexels> shares;
+  int count = 0;
+  LaneValues weight;  // of the square, by channel
 };
 
 /// A symmetric system for up to four channels at once. Its entries are float where the channels
@@ -56,8 +67,12 @@ class NinePointSystem {
   LaneValues& right_side(std::ptrdiff_t at) { return right_side_[at]; }
   LaneValues& texel(std::ptrdiff_t at) { return texels_[at]; }
   const LaneValues& texel(std::ptrdiff_t at) const { return texels_[at]; }
-  /// What add_cell put together is forgotten; texels stay.
+  /// What add_cell and add_links put together is forgotten; texels stay.
   void clear();
+
+  /// Adds the squares of links, less those that read a texel with a diagonal of 0. To be called
+  /// once all cells are there.
+  void add_links(std::vector<TexelLink> links);
 
   /// Makes the system ready for `solve`: from here on `diagonal` holds the inverse, or 0 for texels
   /// that are not part of it (a diagonal of 0), which stay as they are.
@@ -89,11 +104,16 @@ class NinePointSystem {
     Entry north_west{};
   };
 
+  class Row;
+
   void add_pair(int x, int y, int dx, int dy, Entry value);
   // The row below (step -1) or above (1), or the row of zeros where there is none.
   int row_beside(int y, int step) const;
   // One step of every texel of a row; true where a channel moved by more than the tolerance.
   bool relax_row(int y, const SolveOptions& options, Lanes typical);
+  // One step of every texel that links meet, in order: they can be anywhere, so they move by
+  // themselves. Marks the rows of those that moved.
+  void relax_linked(const SolveOptions& options, Lanes typical, std::vector<unsigned char>* moves);
   // A typical value of each channel: the median over rows of the mean magnitude of the texels in
   // use.
   Lanes typical_values() const;
@@ -107,6 +127,19 @@ class NinePointSystem {
   std::vector<Stencil> stencils_;
   std::vector<LaneValues> right_side_;
   std::vector<LaneValues> texels_;
+
+  struct LinkedTexel {
+    std::ptrdiff_t at;
+    std::size_t first_use;  // in uses_, up to that of the next
+  };
+  struct LinkUse {
+    std::uint32_t link;
+    float share;
+  };
+  std::vector<TexelLink> links_;
+  std::vector<LaneValues> link_sums_;  // of the texels as they are
+  std::vector<LinkedTexel> linked_;    // in order, with one more behind the last
+  std::vector<LinkUse> uses_;
 };
 
 }  // namespace prefilter

@@ -28,6 +28,11 @@ class TrilinearSystem {
   /// at the same time.
   void add(const MomentBlock<C>& block);
 
+  /// As BilinearSystem::add_links, for a level.
+  void add_links(int level, const std::vector<SeamLink>& links, double weight) {
+    systems_[level - 1]->add_links(links, weight);
+  }
+
   /// Levels 1 to the last, within the ranges. Can be called once.
   std::vector<typename BilinearSystem<C>::Solution> solve(const SolveOptions& options,
                                                           const Progress& progress);

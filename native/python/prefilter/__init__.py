@@ -7,7 +7,7 @@ message that names the argument, what was found and what is allowed.
 
 from ._native import Cancelled
 from .color import to_linear, to_srgb
-from .mipmap import mipmap_error, mipmaps
+from .mipmap import mipmap_error, mipmaps, seam_contrast
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
 
@@ -19,6 +19,7 @@ __all__ = [
     "fill_unused",
     "mipmap_error",
     "mipmaps",
+    "seam_contrast",
     "texel_weights",
     "to_linear",
     "to_srgb",

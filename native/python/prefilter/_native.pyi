@@ -31,6 +31,7 @@ def mipmaps(
     levels: int,
     premultiplied: bool,
     reader: str,
+    seam_weight: float,
     progress: ProgressCallback | None,
     threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
@@ -43,6 +44,12 @@ def mipmap_error(
     reader: str,
     progress: ProgressCallback | None,
     threads: int,
+) -> list[float]: ...
+def seam_contrast(
+    levels: list[npt.NDArray[np.float32]],
+    surfaces: list[Surface],
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
 ) -> list[float]: ...
 def texel_weights(
     surfaces: list[Surface],

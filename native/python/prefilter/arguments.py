@@ -69,3 +69,9 @@ def as_size(argument: str, size: int) -> int:
     if isinstance(size, bool) or not isinstance(size, int | np.integer) or not 1 <= size <= 2**20:
         raise ValueError(f"{argument}: {size!r}; a whole number from 1 to {2**20} is needed")
     return int(size)
+
+
+def as_number(argument: str, number: float) -> float:
+    if isinstance(number, bool) or not isinstance(number, int | float | np.number):
+        raise ValueError(f"{argument}: {number!r}; a number is needed")
+    return float(number)

@@ -13,6 +13,7 @@ from .arguments import (
     as_bounds,
     as_level_count,
     as_name,
+    as_number,
     as_progress,
     as_surfaces,
     as_wrap,
@@ -31,6 +32,7 @@ def mipmaps(
     levels: int | None = None,
     premultiplied: bool = False,
     reader: str = "linear",
+    seam_weight: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> list[FloatArray]:
@@ -62,6 +64,10 @@ def mipmaps(
             then decodes (Cycles on 8-bit sRGB images). The image and the levels are scene-linear in
             both cases, and what the image shows is defined by the reader too. The second is a
             bounded Gauss-Newton fit, started from the first.
+        seam_weight: How much it counts, for "pam-bilinear" and "pam-trilinear", that lookups on the
+            two sides of a UV seam agree: the mean square of their difference over a strip one texel
+            of the level wide, against the error over the surface. Seams along which the image
+            itself differs count less. 0 leaves seams alone; 1 halves what shows of them.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
@@ -84,6 +90,7 @@ def mipmaps(
         as_level_count(levels),
         bool(premultiplied),
         as_name("reader", reader),
+        as_number("seam_weight", seam_weight),
         as_progress(progress),
         as_threads(threads),
     )
@@ -143,3 +150,41 @@ def mipmap_error(
         as_threads(threads),
     )
     return np.array(errors).reshape(values.shape)
+
+
+def seam_contrast(
+    levels: Sequence[npt.ArrayLike],
+    surface: Surface | Sequence[Surface],
+    *,
+    wrap: Wrap = "clamp",
+    progress: ProgressCallback | None = None,
+) -> npt.NDArray[np.float64]:
+    """How far the two sides of UV seams differ in each level: what `seam_weight` brings down.
+
+    A seam is an edge whose two triangles have it at different places of the texture; vertices at
+    the same position are one, and edges of more than two triangles are none.
+
+    Args:
+        levels: Arrays (height, width, channels), of any sizes.
+        surface: One surface, or several that share the image.
+        wrap: As for `mipmaps`.
+        progress: As for `mipmaps`.
+
+    Returns:
+        For each level, the root mean square, over the length of the seams and the channels, of the
+        difference between the bilinear lookups on their two sides; 0 where there is no seam.
+
+    Raises:
+        ValueError: An argument is out of range, or a texel that a seam reads is not finite.
+        Cancelled: The progress callback returned False.
+    """
+    if not isinstance(levels, Sequence):
+        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
+    return np.array(
+        _native.seam_contrast(
+            [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)],
+            as_surfaces(surface),
+            as_wrap(wrap),
+            as_progress(progress),
+        )
+    )
