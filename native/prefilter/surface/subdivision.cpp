@@ -23,9 +23,9 @@ namespace {
 namespace Far = OpenSubdiv::Far;
 namespace Sdc = OpenSubdiv::Sdc;
 
-constexpr double kMaxTriangles = 1 << 26;
-constexpr double kBytesPerTriangle = 300.0;  // measured: the refiner's levels and the surface
-constexpr std::size_t kMaxValence = 65535;   // Far's
+constexpr double kMaxTriangles = 1 << 25;
+constexpr double kBytesPerTriangle = 370.0;  // measured, at the peak
+constexpr std::int64_t kMaxValence = 65535;  // Far's
 
 // What OpenSubdiv interpolates: N numbers.
 template <int N>
@@ -35,6 +35,10 @@ struct Values {
   void Clear() { v.fill(0.0); }
   void AddWithWeight(const Values& other, double weight) {
     for (int i = 0; i < N; ++i) v[i] += weight * other.v[i];
+  }
+  // The weights that OpenSubdiv has as literals of type float are all meant to be sixths.
+  void AddWithWeight(const Values& other, float weight) {
+    AddWithWeight(other, std::round(6.0 * weight) / 6.0);
   }
 };
 
@@ -92,19 +96,26 @@ void check_faces(const PolygonArrays& mesh, SubdivisionScheme scheme) {
     throw_invalid("face_sizes: the mesh has no faces; at least one is needed");
   }
   const bool triangles_only = scheme == SubdivisionScheme::kLoop;
-  std::size_t corner = 0;
-  std::vector<std::int64_t> sorted;
+  std::int64_t total = 0;
   for (std::size_t face = 0; face < mesh.face_count; ++face) {
     const std::int64_t size = mesh.face_sizes[face];
-    if (triangles_only ? size != 3 : size < 3 || size > static_cast<std::int64_t>(kMaxValence)) {
+    if (triangles_only ? size != 3 : size < 3 || size > kMaxValence) {
       throw_invalid("face_sizes: face " + std::to_string(face) + " has " + std::to_string(size) +
                     " corners; " +
                     (triangles_only ? "the scheme loop needs triangles"
                                     : "3 to " + std::to_string(kMaxValence) + " are allowed"));
     }
-    const std::size_t end = corner + static_cast<std::size_t>(size);
-    if (end > mesh.corner_count) break;  // The sum is wrong, and told below.
-    sorted.assign(mesh.face_vertices + corner, mesh.face_vertices + end);
+    total += size;
+  }
+  if (total != static_cast<std::int64_t>(mesh.corner_count)) {
+    throw_invalid("face_sizes: add up to " + std::to_string(total) + ", but face_vertices has " +
+                  std::to_string(mesh.corner_count) + " entries; both must be equal");
+  }
+  std::vector<std::int64_t> sorted;
+  const std::int64_t* corner = mesh.face_vertices;
+  for (std::size_t face = 0; face < mesh.face_count; ++face) {
+    sorted.assign(corner, corner + mesh.face_sizes[face]);
+    corner += mesh.face_sizes[face];
     for (const std::int64_t vertex : sorted) {
       check_vertex(vertex, mesh, "face_vertices: face " + std::to_string(face));
     }
@@ -114,13 +125,6 @@ void check_faces(const PolygonArrays& mesh, SubdivisionScheme scheme) {
       throw_invalid("face_vertices: face " + std::to_string(face) + " names vertex " +
                     std::to_string(*twice) + " twice; a face needs different vertices");
     }
-    corner = end;
-  }
-  const std::int64_t total =
-      std::accumulate(mesh.face_sizes, mesh.face_sizes + mesh.face_count, std::int64_t{0});
-  if (total != static_cast<std::int64_t>(mesh.corner_count)) {
-    throw_invalid("face_sizes: add up to " + std::to_string(total) + ", but face_vertices has " +
-                  std::to_string(mesh.corner_count) + " entries; both must be equal");
   }
   if (mesh.kept != nullptr &&
       std::none_of(mesh.kept, mesh.kept + mesh.face_count, [](bool kept) { return kept; })) {
@@ -148,7 +152,7 @@ void check_level(const PolygonArrays& mesh, const SubdivisionOptions& options) {
                                          : "the mesh is fine enough as it is";
   throw_invalid("level: " + std::to_string(options.level) + " makes " + to_text(count) +
                 " triangles, about " + to_text(std::ceil(count * kBytesPerTriangle / 1e9)) +
-                " GB; 2^26 triangles are allowed: " + advice);
+                " GB; 2^25 triangles are allowed: " + advice);
 }
 
 void check_polygons(const PolygonArrays& mesh, const SubdivisionOptions& options) {

@@ -79,7 +79,7 @@ struct SubdivisionOptions {
 /// Throws Error for a mesh without faces, or without one that is kept; faces of fewer than three
 /// corners (Loop: of other than three) or that name a vertex twice; indices out of range; creases
 /// that are no edges; values that are not finite; negative sharpness or weights; a level that is
-/// out of range, or makes more than 2^26 triangles; and, from the progress callback, when
+/// out of range, or makes more than 2^25 triangles; and, from the progress callback, when
 /// cancelled.
 Surface subdivide(const PolygonArrays& mesh, const SubdivisionOptions& options);
 
