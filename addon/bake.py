@@ -4,7 +4,7 @@ The operator and the command are two ways to call this.
 """
 
 import re
-from collections.abc import Callable, Iterable, Sequence, Sized
+from collections.abc import Callable, Generator, Iterable, Sequence, Sized
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -90,6 +90,14 @@ class Settings:
         use_images: Whether to write an image datablock for each level.
         filepath: A mip-mapped file to write; empty for none. It gets every level.
         threads: How many threads to use; 0 for all.
+        use_subdivision_limit: Whether objects with a Catmull-Clark modifier on top count as their
+            limit surface.
+        importance: The name of a vertex group or attribute that areas are multiplied by; empty for
+            none.
+        use_frames: Whether to average over the frames below, instead of taking the current one.
+        frame_start: The first frame.
+        frame_end: The last frame.
+        frame_step: How far the frames are apart.
     """
 
     filter: str = "pam-bilinear"
@@ -100,6 +108,12 @@ class Settings:
     use_images: bool = True
     filepath: str = ""
     threads: int = 0
+    use_subdivision_limit: bool = True
+    importance: str = ""
+    use_frames: bool = False
+    frame_start: int = 1
+    frame_end: int = 250
+    frame_step: int = 1
 
 
 @dataclass(frozen=True)
@@ -160,14 +174,47 @@ class Bake:
             ValueError: There is nothing to bake, or the image or a mesh is unfit.
             OSError: The file of the settings cannot be written.
         """
+        reading = cls.reading(image, objects, settings, depsgraph, all_faces=all_faces)
+        while True:
+            try:
+                next(reading)
+            except StopIteration as done:
+                return done.value
+
+    @classmethod
+    def reading(
+        cls,
+        image: bpy.types.Image,
+        objects: Sequence[bpy.types.Object],
+        settings: Settings,
+        depsgraph: bpy.types.Depsgraph,
+        *,
+        all_faces: bool = False,
+    ) -> Generator[float, None, "Bake"]:
+        """Does what `read` does, in steps of a frame.
+
+        The scene is at other frames in between; closing the generator takes it back, as its end
+        does. Nothing else may change meanwhile.
+
+        Yields:
+            The fraction done.
+
+        Returns:
+            The bake.
+        """
         target = files.check_target(settings.filepath) if settings.filepath else None
         if target is None and not settings.use_images:
             raise ValueError("nothing to write: neither level images nor a file are asked for")
         picture = images.read(image)
         _check_levels(picture, settings.levels)
-        found = meshes.image_surfaces(objects, image, depsgraph, all_faces=all_faces)
+        found = yield from _read_surfaces(image, objects, settings, depsgraph, all_faces=all_faces)
         if not found.surfaces and settings.filter not in TEXTURE_SPACE_FILTERS:
             raise ValueError(_no_surface(image, objects, found.problems))
+        if settings.importance and found.surfaces and not any(s.area for s in found.surfaces):
+            raise ValueError(
+                f"importance: '{settings.importance}' is 0 wherever objects "
+                f"{listed(dict.fromkeys(found.objects))} use the image"
+            )
         return cls(picture, found, settings, target)
 
     @property
@@ -270,6 +317,8 @@ class Bake:
         parts = [f"Baked '{self.image_name}' with {FILTERS[self._settings.filter].label}"]
         if self._surfaces:
             parts.append(f"over {_count(set(self._objects), 'object')}")
+            if self._settings.use_frames:
+                parts.append(f"at {_count(_frames(self._settings), 'frame')}")
         results = []
         if names:
             results.append(_count(names, "level image"))
@@ -292,6 +341,45 @@ def bake(
     job = Bake.read(image, objects, settings, depsgraph, all_faces=all_faces)
     job.compute(progress)
     return job.write()
+
+
+def _read_surfaces(
+    image: bpy.types.Image,
+    objects: Sequence[bpy.types.Object],
+    settings: Settings,
+    depsgraph: bpy.types.Depsgraph,
+    *,
+    all_faces: bool,
+) -> Generator[float, None, meshes.ImageSurfaces]:
+    """Reads the surfaces of one frame or several, and yields the fraction done."""
+    options = meshes.SurfaceOptions(settings.use_subdivision_limit, settings.importance)
+    if not settings.use_frames:
+        return meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
+    frames = _frames(settings)
+    found = meshes.ImageSurfaces()
+    scene = depsgraph.scene
+    before = scene.frame_current, scene.frame_subframe
+    try:
+        for count, frame in enumerate(frames, start=1):
+            scene.frame_set(frame)
+            found.add_pose(
+                meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
+            )
+            yield count / len(frames)
+    finally:
+        scene.frame_set(before[0], subframe=before[1])
+    return found
+
+
+def _frames(settings: Settings) -> range:
+    if settings.frame_step < 1:
+        raise ValueError(f"frame_step: found {settings.frame_step}; 1 and up is needed")
+    if settings.frame_end < settings.frame_start:
+        raise ValueError(
+            f"frame_end: found {settings.frame_end}, which is before frame_start, "
+            f"{settings.frame_start}"
+        )
+    return range(settings.frame_start, settings.frame_end + 1, settings.frame_step)
 
 
 def _check_levels(picture: Picture, levels: int) -> None:

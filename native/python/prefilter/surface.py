@@ -93,7 +93,7 @@ class Surface(_native.Surface):
             level: How often faces are refined, 1 to 10. A face of n corners becomes 2 n 4^(level
                 - 1) triangles ("loop": 4^level), of which 2^25 are allowed in all.
             creases: Semi-sharp edges, ((creases, 2) vertices, (creases,) sharpness). 0 is smooth,
-                10 and up infinitely sharp.
+                10 and up infinitely sharp; what is sharper than `level` counts as that, too.
             corners: Sharp vertices, ((corners,) vertices, (corners,) sharpness).
             scheme: "catmull-clark", "loop" (triangles only) or "bilinear".
             boundary: "edge-only": boundaries of the mesh are smooth curves. "edge-and-corner": the
