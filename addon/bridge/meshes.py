@@ -141,7 +141,7 @@ def _search(
     instances = _Instances(objects, depsgraph)
     # Blender makes the objects of instanced geometry up while it walks over them. They go first:
     # reading the others may evaluate the graph anew.
-    for pointer, instance in _walk(depsgraph):
+    for pointer, instance in _walk(depsgraph) if instances.of_geometry else ():
         matrices = instances.of_geometry.pop((instance.parent.original, pointer), None)
         if matrices is not None:
             mesh = instance.object.data
@@ -164,6 +164,10 @@ def _walk(
             yield instance.object.data.as_pointer(), instance
 
 
+def _may_have_instances(obj: bpy.types.Object) -> bool:
+    return obj.is_instancer or any(modifier.type == "NODES" for modifier in obj.modifiers)
+
+
 class _Instances:
     """What the objects are instancers of, and where.
 
@@ -177,8 +181,8 @@ class _Instances:
         """Walks over the instances of a dependency graph."""
         self.of_geometry: dict[tuple[bpy.types.Object, int], Matrices] = defaultdict(list)
         grouped: dict[tuple[bpy.types.Object, bpy.types.Object], Matrices] = defaultdict(list)
-        chosen = set(objects)
-        for pointer, instance in _walk(depsgraph):
+        chosen = {obj for obj in objects if _may_have_instances(obj)}
+        for pointer, instance in _walk(depsgraph) if chosen else ():
             parent = instance.parent.original
             if parent not in chosen:
                 continue
