@@ -3,8 +3,9 @@
 The operator and the command are two ways to call this.
 """
 
+import os
 import re
-from collections.abc import Callable, Iterable, Sequence, Sized
+from collections.abc import Callable, Generator, Iterable, Sequence, Sized
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -90,6 +91,14 @@ class Settings:
         use_images: Whether to write an image datablock for each level.
         filepath: A mip-mapped file to write; empty for none. It gets every level.
         threads: How many threads to use; 0 for all.
+        use_subdivision_limit: Whether objects with a Catmull-Clark modifier on top count as their
+            limit surface.
+        importance: The name of a vertex group or attribute that areas are multiplied by; empty for
+            none.
+        use_frames: Whether to average over the frames below, instead of taking the current one.
+        frame_start: The first frame.
+        frame_end: The last frame.
+        frame_step: How far the frames are apart.
     """
 
     filter: str = "pam-bilinear"
@@ -100,6 +109,12 @@ class Settings:
     use_images: bool = True
     filepath: str = ""
     threads: int = 0
+    use_subdivision_limit: bool = True
+    importance: str = ""
+    use_frames: bool = False
+    frame_start: int = 1
+    frame_end: int = 250
+    frame_step: int = 1
 
 
 @dataclass(frozen=True)
@@ -136,6 +151,7 @@ class Bake:
         self._wrap = self._choose_wrap(found.extensions)
         self._levels: list[FloatArray] = []
         self._staged: files.StagedFile | None = None
+        self._staged_levels: images.StagedLevels | None = None
 
     @classmethod
     def read(
@@ -146,7 +162,7 @@ class Bake:
         depsgraph: bpy.types.Depsgraph,
         *,
         all_faces: bool = False,
-    ) -> "Bake":
+    ) -> "Bake | TiledBake":
         """Copies everything that the bake needs out of Blender.
 
         Args:
@@ -160,15 +176,52 @@ class Bake:
             ValueError: There is nothing to bake, or the image or a mesh is unfit.
             OSError: The file of the settings cannot be written.
         """
-        target = files.check_target(settings.filepath) if settings.filepath else None
-        if target is None and not settings.use_images:
+        reading = cls.reading(image, objects, settings, depsgraph, all_faces=all_faces)
+        while True:
+            try:
+                next(reading)
+            except StopIteration as done:
+                return done.value
+
+    @classmethod
+    def reading(
+        cls,
+        image: bpy.types.Image,
+        objects: Sequence[bpy.types.Object],
+        settings: Settings,
+        depsgraph: bpy.types.Depsgraph,
+        *,
+        all_faces: bool = False,
+    ) -> Generator[float, None, "Bake | TiledBake"]:
+        """Does what `read` does, in steps of a frame.
+
+        The scene is at other frames in between; closing the generator takes it back, as its end
+        does. Nothing else may change meanwhile.
+
+        Yields:
+            The fraction done.
+
+        Returns:
+            The bake.
+        """
+        numbers = images.tile_numbers(image)
+        targets = [files.check_target(path) for path in _paths(settings.filepath, numbers)]
+        if not targets and not settings.use_images:
             raise ValueError("nothing to write: neither level images nor a file are asked for")
-        picture = images.read(image)
-        _check_levels(picture, settings.levels)
-        found = meshes.image_surfaces(objects, image, depsgraph, all_faces=all_faces)
+        pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
+        for picture in pictures:
+            _check_levels(picture, settings.levels)
+        found = yield from _read_surfaces(image, objects, settings, depsgraph, all_faces=all_faces)
         if not found.surfaces and settings.filter not in TEXTURE_SPACE_FILTERS:
             raise ValueError(_no_surface(image, objects, found.problems))
-        return cls(picture, found, settings, target)
+        if settings.importance and found.surfaces and not any(s.area for s in found.surfaces):
+            raise ValueError(
+                f"importance: '{settings.importance}' is 0 wherever objects "
+                f"{listed(dict.fromkeys(found.objects))} use the image"
+            )
+        if not numbers:
+            return cls(pictures[0], found, settings, targets[0] if targets else None)
+        return TiledBake.of(image, pictures, numbers, found, settings, targets)
 
     @property
     def image_name(self) -> str:
@@ -221,27 +274,49 @@ class Bake:
             OSError: The file cannot be put into place, or an image cannot be made; nothing was
                 written then.
         """
-        levels = self._levels if self._settings.use_images else []
+        self.stage_images()
+        return self.commit()
+
+    def stage_images(self) -> None:
+        """Makes the level images, which replace none yet.
+
+        Raises:
+            OSError: An image cannot be made.
+        """
         try:
-            staged_levels = images.stage_levels(self._picture, levels)
-            try:
-                if self._staged is not None:
-                    self._staged.commit()
-            except BaseException:
-                staged_levels.discard()
-                raise
-        finally:
+            levels = self._levels if self._settings.use_images else []
+            self._staged_levels = images.stage_levels(self._picture, levels)
+        except BaseException:
             self.discard()
-        names = staged_levels.commit()
+            raise
+
+    def commit(self) -> Outcome:
+        """Puts what is staged into place.
+
+        Raises:
+            OSError: The file cannot be put into place; nothing was written then.
+        """
+        try:
+            if self._staged is not None:
+                self._staged.commit()
+        except BaseException:
+            self.discard()
+            raise
+        names = self._staged_levels.commit()
+        self._staged_levels = None
+        self.discard()
         if any(name != f"{self.image_name}.mip{i}" for i, name in enumerate(names, start=1)):
             self.warnings.append(f"the level images are named {listed(names)}")
         return Outcome(self._summary(names), names, str(self._target or ""), self.warnings)
 
     def discard(self) -> None:
-        """Removes what `compute` left on disk, if it was not written into place."""
+        """Removes what was staged, if it was not put into place."""
         if self._staged is not None:
             self._staged.discard()
             self._staged = None
+        if self._staged_levels is not None:
+            self._staged_levels.discard()
+            self._staged_levels = None
 
     def _choose_wrap(self, extensions: Sequence[str]) -> tuple[str, str]:
         wrap = self._settings.wrap
@@ -270,6 +345,8 @@ class Bake:
         parts = [f"Baked '{self.image_name}' with {FILTERS[self._settings.filter].label}"]
         if self._surfaces:
             parts.append(f"over {_count(set(self._objects), 'object')}")
+            if self._settings.use_frames:
+                parts.append(f"at {_count(_frames(self._settings), 'frame')}")
         results = []
         if names:
             results.append(_count(names, "level image"))
@@ -277,6 +354,97 @@ class Bake:
             results.append(f"'{self._target}'")
         parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
         return " ".join(parts)
+
+
+class TiledBake:
+    """The bakes of the tiles of a UDIM image, as one; it is used like a `Bake`."""
+
+    def __init__(self, image_name: str, bakes: Sequence[Bake], warnings: list[str]) -> None:
+        """Takes the bakes over; use `Bake.read`."""
+        self.image_name = image_name
+        self.warnings = warnings
+        self._bakes = bakes
+
+    @classmethod
+    def of(
+        cls,
+        image: bpy.types.Image,
+        pictures: Sequence[Picture],
+        numbers: Sequence[int],
+        found: meshes.ImageSurfaces,
+        settings: Settings,
+        targets: Sequence[Path],
+    ) -> "TiledBake":
+        """Makes a bake of each tile that some of the surface lies in.
+
+        Args:
+            image: The tiled image.
+            pictures: Of each tile.
+            numbers: Of each tile.
+            found: The surfaces on all of the tiles.
+            settings: What to bake.
+            targets: The file of each tile; empty for none.
+
+        Raises:
+            ValueError: The surface lies in none of the tiles.
+        """
+        bakes, warnings = [], list(found.problems)
+        for index, (picture, number) in enumerate(zip(pictures, numbers, strict=True)):
+            # A lookup past the edge of a tile is one in the next.
+            inside = meshes.ImageSurfaces(extensions=["EXTEND"])
+            for surface, name in zip(found.surfaces, found.objects, strict=True):
+                part = surface.udim_tile(number)
+                if part is not None:
+                    inside.surfaces.append(part)
+                    inside.objects.append(name)
+            area = sum(part.area for part in inside.surfaces)
+            if area == 0 and settings.filter not in TEXTURE_SPACE_FILTERS:
+                warnings.append(f"tile {number} is left out: no surface lies in it")
+                continue
+            bakes.append(Bake(picture, inside, settings, targets[index] if targets else None))
+        if not bakes:
+            raise ValueError(
+                f"image '{image.name}': no surface lies in its tiles, {listed(map(str, numbers))}"
+            )
+        return cls(image.name, bakes, warnings)
+
+    def compute(self, progress: Progress) -> None:
+        """Computes tile by tile; see `Bake.compute`."""
+        try:
+            for index, one in enumerate(self._bakes):
+                one.compute(partial(self._advance, progress, index))
+        except BaseException:
+            self.discard()
+            raise
+
+    def write(self) -> Outcome:
+        """Writes all tiles, once everything is staged; see `Bake.write`."""
+        try:
+            for one in self._bakes:
+                one.stage_images()
+            outcomes = [one.commit() for one in self._bakes]
+        except BaseException:
+            self.discard()
+            raise
+        for outcome in outcomes:
+            self.warnings.extend(outcome.warnings)
+        names = [name for outcome in outcomes for name in outcome.images]
+        summary = f"{outcomes[0].summary}, and likewise its other tiles, {len(outcomes)} in all"
+        path = outcomes[0].filepath
+        return Outcome(
+            outcomes[0].summary if len(outcomes) == 1 else summary,
+            names,
+            path,
+            list(dict.fromkeys(self.warnings)),
+        )
+
+    def discard(self) -> None:
+        """Removes what was staged, if it was not put into place."""
+        for one in self._bakes:
+            one.discard()
+
+    def _advance(self, progress: Progress, index: int, fraction: float) -> bool:
+        return progress((index + fraction) / len(self._bakes))
 
 
 def bake(
@@ -292,6 +460,55 @@ def bake(
     job = Bake.read(image, objects, settings, depsgraph, all_faces=all_faces)
     job.compute(progress)
     return job.write()
+
+
+def _paths(path: str, tiles: Sequence[int]) -> list[str]:
+    """Returns the file of each tile: with its number for <UDIM>, or else before the extension."""
+    if not path or not tiles:
+        return [path] if path else []
+    if "<UDIM>" not in path:
+        stem, extension = os.path.splitext(path)
+        path = f"{stem}.<UDIM>{extension}"
+    return [path.replace("<UDIM>", str(number)) for number in tiles]
+
+
+def _read_surfaces(
+    image: bpy.types.Image,
+    objects: Sequence[bpy.types.Object],
+    settings: Settings,
+    depsgraph: bpy.types.Depsgraph,
+    *,
+    all_faces: bool,
+) -> Generator[float, None, meshes.ImageSurfaces]:
+    """Reads the surfaces of one frame or several, and yields the fraction done."""
+    options = meshes.SurfaceOptions(settings.use_subdivision_limit, settings.importance)
+    if not settings.use_frames:
+        return meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
+    frames = _frames(settings)
+    found = meshes.ImageSurfaces()
+    scene = depsgraph.scene
+    before = scene.frame_current, scene.frame_subframe
+    try:
+        for count, frame in enumerate(frames, start=1):
+            scene.frame_set(frame)
+            found.add_pose(
+                meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
+            )
+            yield count / len(frames)
+    finally:
+        scene.frame_set(before[0], subframe=before[1])
+    return found
+
+
+def _frames(settings: Settings) -> range:
+    if settings.frame_step < 1:
+        raise ValueError(f"frame_step: found {settings.frame_step}; 1 and up is needed")
+    if settings.frame_end < settings.frame_start:
+        raise ValueError(
+            f"frame_end: found {settings.frame_end}, which is before frame_start, "
+            f"{settings.frame_start}"
+        )
+    return range(settings.frame_start, settings.frame_end + 1, settings.frame_step)
 
 
 def _check_levels(picture: Picture, levels: int) -> None:

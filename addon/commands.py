@@ -2,8 +2,10 @@
 
 import argparse
 import os
+import re
 import sys
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -99,7 +101,8 @@ def _add_bake(commands: Any) -> None:
         metavar="NAME",
         action="append",
         default=[],
-        help="a mesh object to bake for; repeat for several (default: all that use the image)",
+        help="a mesh object or collection instance to bake for; repeat for several (default: all "
+        "that use the image)",
     )
     parser.add_argument(
         "--image",
@@ -136,6 +139,24 @@ def _add_bake(commands: Any) -> None:
         help="how many threads to use; 0 uses all (default: 0)",
     )
     parser.add_argument(
+        "--importance",
+        metavar="NAME",
+        default=defaults.importance,
+        help="a vertex group or attribute that areas are multiplied by",
+    )
+    parser.add_argument(
+        "--no-subdivision-limit",
+        dest="use_subdivision_limit",
+        action="store_false",
+        help="take Catmull-Clark modifiers as they are, not as their limit surface",
+    )
+    parser.add_argument(
+        "--frames",
+        metavar="START:END[:STEP]",
+        type=_frames,
+        help="average over these frames of the animation (default: the current frame only)",
+    )
+    parser.add_argument(
         "--output",
         metavar="FILE",
         default="",
@@ -156,6 +177,13 @@ def _count(text: str) -> int:
     return value
 
 
+def _frames(text: str) -> tuple[int, int, int]:
+    found = re.fullmatch(r"(-?\d+):(-?\d+)(?::(\d+))?", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"found '{text}'; START:END or START:END:STEP is needed")
+    return int(found[1]), int(found[2]), int(found[3] or 1)
+
+
 def _bake(options: argparse.Namespace) -> None:
     extension = os.path.splitext(options.file)[1].lower()
     if extension not in _EXTENSIONS:
@@ -173,7 +201,14 @@ def _bake(options: argparse.Namespace) -> None:
         use_images=options.save,
         filepath=options.output,
         threads=options.threads,
+        use_subdivision_limit=options.use_subdivision_limit,
+        importance=options.importance,
     )
+    if options.frames:
+        start, end, step = options.frames
+        settings = replace(
+            settings, use_frames=True, frame_start=start, frame_end=end, frame_step=step
+        )
     path = os.path.abspath(options.file)
     objects = _chosen(_load(path, extension), options.object)
     if options.save:
@@ -195,7 +230,7 @@ def _bake(options: argparse.Namespace) -> None:
 
 
 def _load(path: str, extension: str) -> list[bpy.types.Object]:
-    """Loads a file and returns its mesh objects."""
+    """Loads a file and returns its mesh objects and collection instances."""
     if not os.path.isfile(path):
         raise OSError(f"FILE: there is no file '{path}'")
     before: set[bpy.types.Object] = set()
@@ -208,10 +243,14 @@ def _load(path: str, extension: str) -> list[bpy.types.Object]:
     except RuntimeError as error:
         raise OSError(f"FILE: cannot load '{path}': {str(error).strip()}") from error
     objects = bpy.context.view_layer.objects
-    loaded = [obj for obj in objects if obj.type == "MESH" and obj not in before]
+    loaded = [obj for obj in objects if obj not in before and _has_surface(obj)]
     if not loaded:
         raise ValueError(f"FILE: found no mesh object in '{path}'")
     return loaded
+
+
+def _has_surface(obj: bpy.types.Object) -> bool:
+    return obj.type == "MESH" or obj.instance_type == "COLLECTION"
 
 
 def _chosen(objects: list[bpy.types.Object], names: Sequence[str]) -> list[bpy.types.Object]:

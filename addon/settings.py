@@ -46,6 +46,39 @@ class BakeProperties:
         min=0,
         soft_max=16,
     )
+    use_subdivision_limit: BoolProperty(
+        name="Subdivision Limit",
+        description="Objects with a Catmull-Clark modifier on top count as the smooth surface that "
+        "subdividing forever would give",
+        default=bake.Settings.use_subdivision_limit,
+    )
+    importance: StringProperty(
+        name="Importance",
+        description="A vertex group or attribute that says where texels matter more: areas are "
+        "multiplied by it; leave empty for none",
+        default=bake.Settings.importance,
+    )
+    use_frames: BoolProperty(
+        name="Frame Range",
+        description="Average over frames of the animation instead of the current one only",
+        default=bake.Settings.use_frames,
+    )
+    frame_start: IntProperty(
+        name="Start",
+        description="The first frame of the average",
+        default=bake.Settings.frame_start,
+    )
+    frame_end: IntProperty(
+        name="End",
+        description="The last frame of the average",
+        default=bake.Settings.frame_end,
+    )
+    frame_step: IntProperty(
+        name="Step",
+        description="How far the frames of the average are apart",
+        default=bake.Settings.frame_step,
+        min=1,
+    )
     use_images: BoolProperty(
         name="Level Images",
         description="Keep each level as a packed image named after the image, with .mip1, .mip2 "
@@ -75,6 +108,15 @@ class BakeProperties:
         column.prop(self, "wrap_v")
         layout.prop(self, "bounds")
         layout.prop(self, "levels")
+        layout.separator()
+        layout.prop(self, "importance")
+        layout.prop(self, "use_subdivision_limit")
+        layout.prop(self, "use_frames")
+        column = layout.column(align=True)
+        column.active = self.use_frames
+        column.prop(self, "frame_start")
+        column.prop(self, "frame_end")
+        column.prop(self, "frame_step")
         layout.separator()
         layout.prop(self, "use_images")
         layout.prop(self, "filepath")

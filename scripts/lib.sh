@@ -16,6 +16,7 @@ build_dir=$source_dir/build
 cache_dir=${PREFILTER_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/prefilter}
 root_dir=$cache_dir/trixie
 headers_dir=$cache_dir/headers
+opensubdiv_dir=$cache_dir/opensubdiv-3.6.0
 log_dir=$cache_dir/logs
 
 caller_path=${PATH:-}
@@ -170,6 +171,25 @@ make_root() {
   mv "$root_dir.new" "$root_dir"
 }
 
+# OpenSubdiv is linked in, and Debian has no static library of it: the source is that of Debian's package.
+ensure_opensubdiv() {
+  [[ ! -e $opensubdiv_dir ]] || return 0
+  local mirror version=${opensubdiv_dir##*-} new=$opensubdiv_dir.new
+  mirror=$(debian_mirror)
+  note "fetching the source of OpenSubdiv $version from $mirror (35 MB)"
+  rm -rf "$new"
+  mkdir -p "$new"
+  logged opensubdiv.log /usr/lib/apt/apt-helper download-file \
+    "${mirror%/}/pool/main/o/opensubdiv/opensubdiv_$version.orig.tar.xz" "$new/source.tar.xz" \
+    SHA256:09dcab919207361addeba64792e9ebd07dae65881ef205a75be68b087989434e
+  (cd "$new" && cmake -E tar xf source.tar.xz)
+  mkdir "$new/kept" "$new/kept/opensubdiv"
+  mv "$new/opensubdiv-$version"/{LICENSE,NOTICE}.txt "$new/kept/"
+  mv "$new/opensubdiv-$version"/opensubdiv/{far,sdc,vtr,version.h} "$new/kept/opensubdiv/"
+  mv "$new/kept" "$opensubdiv_dir"
+  rm -rf "$new"
+}
+
 ensure_root() {
   local stamp=$root_dir/.prefilter-packages missing
   ! cmp --silent "$stamp" <(printf '%s\n' "${root_packages[@]}") || return 0
@@ -246,6 +266,7 @@ setup() {
   lock "$cache_dir/.lock"
   choose_blender
   ensure_packages "${host_packages[@]}"
+  ensure_opensubdiv
   if [[ $blender_kind == root ]]; then
     ensure_root
     ensure_root_headers
@@ -292,7 +313,7 @@ compile() {
 
 configure_release() {
   configure release "PREFILTER_PYTHON_HEADERS=$python_headers" \
-    "PREFILTER_PYBIND11_INCLUDE=$pybind11_include"
+    "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir"
 }
 
 # build_packages: brings the Python package of every Python up to date.
@@ -351,7 +372,8 @@ package_extension() {
   mkdir -p "$stage/wheels"
   for tag in "${python_tags[@]}"; do
     /usr/bin/python3 "$source_dir/scripts/make_wheel.py" --package "$build_dir/release/python/$tag/prefilter" \
-      --tag "$tag" --version "$version" --license "$source_dir/LICENSE" --output "$build_dir/wheels" >&2
+      --tag "$tag" --version "$version" --license "$source_dir/LICENSE" \
+      --linked "$opensubdiv_dir" --output "$build_dir/wheels" >&2
   done
   cp "$build_dir/wheels"/*.whl "$stage/wheels/"
   cp -R "$source_dir/addon/." "$stage/"

@@ -2,7 +2,7 @@
 """Make a wheel of a built Python package: the same contents give the same file, byte for byte.
 
 usage: make_wheel.py --package BUILD/python/cp313/prefilter --tag cp313 --version 0.1.0
-                     --license LICENSE --output FOLDER
+                     --license LICENSE [--linked SOURCE ...] --output FOLDER
 
 Reads no environment variables. Needs strip and objdump (binutils). The platform of the wheel's name
 is the oldest glibc that its module runs on.
@@ -25,7 +25,7 @@ Name: {name}
 Version: {version}
 Summary: Mipmaps that know the mesh
 License-Expression: GPL-3.0-or-later
-License-File: LICENSE
+{license_files}
 Requires-Python: >=3.11
 Requires-Dist: numpy
 """
@@ -84,6 +84,14 @@ def main() -> int:
     parser.add_argument("--tag", required=True, help="its Python, such as cp313")
     parser.add_argument("--version", required=True)
     parser.add_argument("--license", type=Path, required=True)
+    parser.add_argument(
+        "--linked",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="SOURCE",
+        help="source folder of a linked library, whose LICENSE.txt and NOTICE.txt go along",
+    )
     parser.add_argument("--output", type=Path, required=True, help="folder to write the wheel in")
     options = parser.parse_args()
 
@@ -101,9 +109,17 @@ def main() -> int:
             data = stripped(path) if path.suffix == ".so" else path.read_bytes()
             files[path.relative_to(package.parent).as_posix()] = data
     info = f"{name}-{options.version}.dist-info"
-    files[f"{info}/METADATA"] = METADATA.format(name=name, version=options.version).encode()
     files[f"{info}/WHEEL"] = WHEEL.format(name=name, tag=tag).encode()
-    files[f"{info}/licenses/LICENSE"] = options.license.read_bytes()
+    licenses = {"LICENSE": options.license}
+    for library in options.linked:
+        for text in ("LICENSE.txt", "NOTICE.txt"):
+            licenses[f"{library.name}/{text}"] = library / text
+    files |= {f"{info}/licenses/{path}": source.read_bytes() for path, source in licenses.items()}
+    files[f"{info}/METADATA"] = METADATA.format(
+        name=name,
+        version=options.version,
+        license_files="\n".join(f"License-File: {path}" for path in licenses),
+    ).encode()
     files = dict(sorted(files.items()))
     files[f"{info}/RECORD"] = record(files, f"{info}/RECORD").encode()
 

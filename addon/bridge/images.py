@@ -13,8 +13,10 @@ the four channels are independent.
 import hashlib
 import os
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import bpy
@@ -140,6 +142,54 @@ def read(image: bpy.types.Image) -> Picture:
         linear_space=linear_space,
         ocio_config=_ocio_config(),
     )
+
+
+def tile_numbers(image: bpy.types.Image) -> list[int]:
+    """Returns the numbers of a UDIM image's tiles; none for another image."""
+    return [tile.number for tile in image.tiles] if image.source == "TILED" else []
+
+
+def read_tile(image: bpy.types.Image, number: int) -> Picture:
+    """Copies the pixels of a UDIM tile, from its file: Blender gives out those of one tile only.
+
+    Raises:
+        ValueError: The tile has no file, it cannot be read, or it differs from what Blender shows.
+    """
+    who = f"image '{image.name}', tile {number}"
+    if image.is_dirty:
+        raise ValueError(f"{who}: has changes that are not in its file; save the image first")
+    with _tile_file(image, number, who) as path:
+        try:
+            tile = bpy.data.images.load(path)
+        except RuntimeError as error:
+            raise ValueError(f"{who}: cannot be read: {str(error).strip()}") from error
+        try:
+            tile.colorspace_settings.name = image.colorspace_settings.name
+            tile.alpha_mode = image.alpha_mode
+            picture = read(tile)
+        finally:
+            bpy.data.images.remove(tile)
+    return replace(picture, name=f"{image.name}.{number}", full_name=f"{image.name_full}.{number}")
+
+
+@contextmanager
+def _tile_file(image: bpy.types.Image, number: int, who: str) -> Iterator[str]:
+    """Yields the path of a tile's file, for the time being where the tile is packed."""
+    column, row = (number - 1001) % 10, (number - 1001) // 10
+    path = image.filepath.replace("<UDIM>", str(number))
+    path = path.replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
+    packed = next((file for file in image.packed_files if file.tile_number == number), None)
+    if packed is not None:
+        with tempfile.TemporaryDirectory() as folder:
+            copy = os.path.join(folder, os.path.basename(bpy.path.abspath(path)))
+            with open(copy, "wb") as file:
+                file.write(packed.packed_file.data)
+            yield copy
+        return
+    found = bpy.path.abspath(path, library=image.library)
+    if not os.path.isfile(found):
+        raise ValueError(f"{who}: there is no file '{found}'; save the image first")
+    yield found
 
 
 def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:

@@ -1,5 +1,8 @@
 """`prefilter.bake_mipmaps`: the levels of an image, right for the meshes that wear it."""
 
+import time
+from typing import Any
+
 import bpy
 import prefilter
 from bpy.props import StringProperty
@@ -55,7 +58,7 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Bakes and waits."""
         try:
-            baking = self._read(context)
+            baking = bake.Bake.read(*self._what_to_read(context))
             baking.compute(lambda _: True)
             self._finish(baking)
         except bake.FAILURES as error:
@@ -68,10 +71,10 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
         if bpy.app.background:
             return self.execute(context)
         try:
-            self._bake = self._read(context)
+            self._reading = bake.Bake.reading(*self._what_to_read(context))
+            self._go_on_reading()
         except bake.FAILURES as error:
             return self._fail(error)
-        self._job = Job(self._bake.compute)
         PREFILTER_OT_bake_mipmaps._running = True
         manager = context.window_manager
         manager.progress_begin(0, 100)
@@ -81,17 +84,15 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Shows progress, and writes the result once the thread is done."""
+        if self._job is None:
+            return self._modal_reading(context, event)
         if event.type == "ESC" and event.value == "PRESS":
             self._job.cancel()
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         if not self._job.is_done:
-            percent = round(100 * self._job.progress)
-            context.window_manager.progress_update(percent)
-            context.workspace.status_text_set(
-                f"Baking mipmaps of '{self._bake.image_name}': {percent} %   Esc: Cancel"
-            )
+            self._show(context, f"Baking mipmaps of '{self._bake.image_name}'", self._job.progress)
             return {"PASS_THROUGH"}
         self._leave(context)
         try:
@@ -108,6 +109,10 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Stops the thread when Blender ends the operator, such as for another file."""
+        if self._job is None:
+            self._reading.close()
+            self._leave(context)
+            return
         self._job.cancel()
         try:
             self._job.result()
@@ -119,7 +124,40 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
             self._bake.discard()
             self._leave(context)
 
-    def _read(self, context: bpy.types.Context) -> bake.Bake:
+    def _modal_reading(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Reads frame after frame; nothing may change meanwhile, so no event is passed on."""
+        if event.type == "ESC" and event.value == "PRESS":
+            self._reading.close()
+            self._leave(context)
+            self.report({"INFO"}, "Bake cancelled")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"RUNNING_MODAL"}
+        try:
+            self._go_on_reading()
+        except bake.FAILURES as error:
+            self._leave(context)
+            return self._fail(error)
+        if self._job is None:
+            self._show(context, "Reading frames", self._read_fraction)
+        return {"RUNNING_MODAL"}
+
+    def _go_on_reading(self) -> None:
+        """Reads for a tick's time; starts the thread once everything is read."""
+        end = time.monotonic() + _TICK_SECONDS
+        try:
+            while time.monotonic() < end:
+                self._read_fraction = next(self._reading)
+        except StopIteration as done:
+            self._bake = done.value
+            self._job = Job(self._bake.compute)
+
+    def _show(self, context: bpy.types.Context, what: str, fraction: float) -> None:
+        percent = round(100 * fraction)
+        context.window_manager.progress_update(percent)
+        context.workspace.status_text_set(f"{what}: {percent} %   Esc: Cancel")
+
+    def _what_to_read(self, context: bpy.types.Context) -> tuple[Any, ...]:
         if self.image:
             image = images.find(self.image)
         else:
@@ -128,8 +166,7 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, bpy.types.Operator):
             raise ValueError("image: no name is given, and the editor shows no image")
         view_layer = context.view_layer
         objects = [obj for obj in view_layer.objects if obj.select_get() or obj.mode == "EDIT"]
-        depsgraph = context.evaluated_depsgraph_get()
-        return bake.Bake.read(image, objects, self.to_settings(), depsgraph)
+        return image, objects, self.to_settings(), context.evaluated_depsgraph_get()
 
     def _finish(self, baking: bake.Bake) -> None:
         outcome = baking.write()

@@ -1,26 +1,142 @@
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <optional>
+#include <utility>
+
 #include "convert.h"
+#include "prefilter/base/error.h"
+#include "prefilter/surface/subdivision.h"
 #include "prefilter/surface/surface.h"
+#include "prefilter/surface/udim_tile.h"
 
 namespace py = pybind11;
 
 namespace prefilter::python {
+namespace {
+
+WeightsOf weights_kind(const std::string& name) {
+  if (name == "vertices") return WeightsOf::kVertices;
+  if (name == "corners") return WeightsOf::kCorners;
+  return WeightsOf::kTriangles;
+}
+
+template <typename T>
+std::size_t length(const Array<T>& array) {
+  return static_cast<std::size_t>(array.shape(0));
+}
+
+// A copy of rows that a surface holds, each of which is an array or a struct of T alone.
+template <typename T, typename Row>
+Array<T> rows(const std::vector<Row>& from, std::vector<py::ssize_t> row_shape) {
+  row_shape.insert(row_shape.begin(), static_cast<py::ssize_t>(from.size()));
+  Array<T> array(row_shape);
+  if (!from.empty()) std::memcpy(array.mutable_data(), from.data(), from.size() * sizeof(Row));
+  return array;
+}
+
+Surface bound_surface(const Array<double>& positions, const Array<std::int64_t>& triangles,
+                      const Array<double>& uvs, const std::optional<Array<double>>& weights,
+                      const std::string& weights_of) {
+  MeshArrays mesh;
+  mesh.positions = positions.data();
+  mesh.vertex_count = length(positions);
+  mesh.triangles = triangles.data();
+  mesh.uvs = uvs.data();
+  mesh.triangle_count = length(triangles);
+  if (weights) {
+    mesh.weights = weights->data();
+    mesh.weights_of = weights_kind(weights_of);
+  }
+  const py::gil_scoped_release unlocked;
+  return make_surface(mesh);
+}
+
+Surface bound_placed(const Surface& surface, const Array<double>& matrices) {
+  std::vector<AffineMap> maps(length(matrices));
+  std::memcpy(maps.data(), matrices.data(), maps.size() * sizeof(AffineMap));
+  const py::gil_scoped_release unlocked;
+  return place_surface(surface, maps);
+}
+
+std::optional<Surface> bound_with_areas_of(const Surface& surface, const Surface& other) {
+  const py::gil_scoped_release unlocked;
+  if (!same_layout(surface, other)) return std::nullopt;
+  return add_areas(surface, other);
+}
+
+std::optional<Surface> bound_udim_tile(const Surface& surface, int number) {
+  const py::gil_scoped_release unlocked;
+  Surface tile = udim_tile(surface, number);
+  if (tile.triangle_count() == 0) return std::nullopt;
+  return tile;
+}
+
+Surface bound_subdivide(const Array<double>& positions, const Array<std::int64_t>& face_sizes,
+                        const Array<std::int64_t>& face_vertices, const Array<double>& face_uvs,
+                        const Array<std::int64_t>& crease_edges,
+                        const Array<double>& crease_sharpness,
+                        const Array<std::int64_t>& corner_vertices,
+                        const Array<double>& corner_sharpness,
+                        const std::optional<Array<double>>& weights, const std::string& weights_of,
+                        const std::optional<Array<bool>>& kept, const std::string& scheme,
+                        const std::string& boundary, const std::string& uv_smooth, int level,
+                        const py::object& progress) {
+  PolygonArrays mesh;
+  mesh.positions = positions.data();
+  mesh.vertex_count = length(positions);
+  mesh.face_sizes = face_sizes.data();
+  mesh.face_count = length(face_sizes);
+  mesh.face_vertices = face_vertices.data();
+  mesh.face_uvs = face_uvs.data();
+  mesh.corner_count = length(face_vertices);
+  mesh.crease_edges = crease_edges.data();
+  mesh.crease_sharpness = crease_sharpness.data();
+  mesh.crease_count = length(crease_sharpness);
+  mesh.corner_vertices = corner_vertices.data();
+  mesh.corner_sharpness = corner_sharpness.data();
+  mesh.sharp_corner_count = length(corner_sharpness);
+  if (weights) {
+    mesh.weights = weights->data();
+    mesh.weights_of = weights_kind(weights_of);
+  }
+  if (kept) mesh.kept = kept->data();
+  SubdivisionOptions options;
+  options.scheme = subdivision_scheme(scheme);
+  options.boundary = subdivision_boundary(boundary);
+  options.uv_interpolation = uv_interpolation(uv_smooth);
+  options.level = level;
+  options.progress = to_progress(progress);
+  const py::gil_scoped_release unlocked;
+  return subdivide(mesh, options);
+}
+
+}  // namespace
 
 void bind_surface(py::module_& m) {
   py::class_<Surface>(m, "Surface")
-      .def(py::init([](const Array<double>& positions, const Array<std::int64_t>& triangles,
-                       const Array<double>& uvs) {
-             MeshArrays mesh;
-             mesh.positions = positions.data();
-             mesh.vertex_count = static_cast<std::size_t>(positions.shape(0));
-             mesh.triangles = triangles.data();
-             mesh.uvs = uvs.data();
-             mesh.triangle_count = static_cast<std::size_t>(triangles.shape(0));
-             const py::gil_scoped_release unlocked;
-             return make_surface(mesh);
-           }),
-           py::arg("positions"), py::arg("triangles"), py::arg("uvs"))
+      .def(py::init([](Surface& taken) { return std::move(taken); }), py::arg("taken"))
+      .def(py::init(&bound_surface), py::arg("positions"), py::arg("triangles"), py::arg("uvs"),
+           py::arg("weights"), py::arg("weights_of"))
+      .def("placed", &bound_placed, py::arg("matrices"))
+      .def("with_areas_of", &bound_with_areas_of, py::arg("other"))
+      .def("udim_tile", &bound_udim_tile, py::arg("number"))
       .def_property_readonly("triangle_count", &Surface::triangle_count)
-      .def_property_readonly("area", &Surface::total_area);
+      .def_property_readonly("area", &Surface::total_area)
+      .def_property_readonly("positions",
+                             [](const Surface& s) { return rows<double>(s.positions, {3}); })
+      .def_property_readonly("triangles",
+                             [](const Surface& s) { return rows<std::int32_t>(s.triangles, {3}); })
+      .def_property_readonly("uvs",
+                             [](const Surface& s) {
+                               return rows<double>(s.uvs, {3, 2});
+                             })
+      .def_property_readonly("areas", [](const Surface& s) { return rows<double>(s.areas, {}); });
+  m.def("subdivide", &bound_subdivide, py::arg("positions"), py::arg("face_sizes"),
+        py::arg("face_vertices"), py::arg("face_uvs"), py::arg("crease_edges"),
+        py::arg("crease_sharpness"), py::arg("corner_vertices"), py::arg("corner_sharpness"),
+        py::arg("weights"), py::arg("weights_of"), py::arg("kept"), py::arg("scheme"),
+        py::arg("boundary"), py::arg("uv_smooth"), py::arg("level"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -127,3 +127,64 @@ def textured_quad(
 def depsgraph() -> bpy.types.Depsgraph:
     """Returns the evaluated dependency graph."""
     return bpy.context.evaluated_depsgraph_get()
+
+
+def cube(picture: bpy.types.Image, name: str = "Cube") -> bpy.types.Object:
+    """Makes a cube of side 2 with Blender's UVs, a cross of six charts that are joined."""
+    bpy.ops.mesh.primitive_cube_add()
+    made = bpy.context.object
+    made.name = name
+    made.data.materials.append(material(f"{name} material", picture))
+    return made
+
+
+def subdivided(obj: bpy.types.Object, **settings: object) -> bpy.types.SubsurfModifier:
+    """Adds a Subdivision Surface modifier."""
+    modifier = obj.modifiers.new("Subdivision", "SUBSURF")
+    for name, value in settings.items():
+        setattr(modifier, name, value)
+    return modifier
+
+
+def scatter(
+    obj: bpy.types.Object, instance: bpy.types.Object | None = None
+) -> bpy.types.NodesModifier:
+    """Puts instances of an object, or of the object's own geometry, on the object's vertices."""
+    group = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+    for direction in ("INPUT", "OUTPUT"):
+        group.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+    start, end = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+    put = group.nodes.new("GeometryNodeInstanceOnPoints")
+    group.links.new(start.outputs[0], put.inputs["Points"])
+    source = start.outputs[0]
+    if instance is not None:
+        info = group.nodes.new("GeometryNodeObjectInfo")
+        info.inputs["Object"].default_value = instance
+        info.inputs["As Instance"].default_value = True
+        source = info.outputs["Geometry"]
+    group.links.new(source, put.inputs["Instance"])
+    group.links.new(put.outputs[0], end.inputs[0])
+    modifier = obj.modifiers.new("Scatter", "NODES")
+    modifier.node_group = group
+    return modifier
+
+
+def collection_instance(obj: bpy.types.Object, name: str = "Instancer") -> bpy.types.Object:
+    """Moves an object to a collection of its own, outside of the scene, and instances that."""
+    collection = bpy.data.collections.new(f"{name} collection")
+    collection.objects.link(obj)
+    bpy.context.scene.collection.objects.unlink(obj)
+    made = bpy.data.objects.new(name, None)
+    made.instance_type = "COLLECTION"
+    made.instance_collection = collection
+    bpy.context.scene.collection.objects.link(made)
+    return made
+
+
+def fcurves(obj: bpy.types.Object) -> list[bpy.types.FCurve]:
+    """Returns the animation curves of an object; actions have layers since Blender 4.4."""
+    action = obj.animation_data.action
+    if bpy.app.version < (4, 4, 0):
+        return list(action.fcurves)
+    strip = action.layers[0].strips[0]
+    return list(strip.channelbag(obj.animation_data.action_slot).fcurves)

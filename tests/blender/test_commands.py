@@ -138,3 +138,26 @@ def test_read_only_blend_is_left_alone(blend):
     blend.chmod(0o444)
     assert_fails(run("bake", blend, "--save"), "scene.blend", "read-only")
     assert blend.read_bytes() == before
+
+
+def test_frames_importance_and_instances(blend, tmp_path):
+    bpy.ops.wm.open_mainfile(filepath=str(blend))
+    quad = bpy.data.objects["Quad"]
+    quad.data.attributes.new("Care", "FLOAT", "POINT").data.foreach_set("value", [1.0] * 4)
+    scenes.collection_instance(quad)
+    bpy.ops.wm.save_mainfile()
+    target = tmp_path / "out.exr"
+    options = ["--importance", "Care", "--frames", "1:5:2", "--no-subdivision-limit"]
+    result = run("bake", blend, "--output", target, *options)
+    assert result.returncode == 0, result.stderr
+    assert "over 1 object at 3 frames" in result.stdout
+    assert target.exists()
+    missing = run("bake", blend, "--output", tmp_path / "no.exr", "--importance", "Other")
+    assert_fails(missing, "importance: found no vertex group or attribute named 'Other'")
+    assert not (tmp_path / "no.exr").exists()
+
+
+@pytest.mark.parametrize("frames", ["5", "1-5", "1:2:3:4", "a:b", ""])
+def test_frames_that_are_none(blend, tmp_path, frames):
+    result = run("bake", blend, "--output", tmp_path / "no.exr", f"--frames={frames}")
+    assert_fails(result, "--frames", "START:END", status=2)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <string>
 
@@ -23,12 +24,76 @@ void check_finite(const double* values, std::size_t rows, std::size_t columns,
   }
 }
 
-double triangle_area(const double* a, const double* b, const double* c) {
-  const double ab[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-  const double ac[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-  const double normal[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
-                            ab[0] * ac[1] - ab[1] * ac[0]};
-  return 0.5 * std::hypot(normal[0], normal[1], normal[2]);
+using Vector3 = std::array<double, 3>;
+
+Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+
+Vector3 difference(const Vector3& a, const Vector3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+// A normal, as long as twice the triangle's area.
+Vector3 triangle_normal(const Surface& surface, std::size_t k) {
+  const auto& [a, b, c] = surface.triangles[k];
+  const std::vector<Vector3>& points = surface.positions;
+  return cross(difference(points[b], points[a]), difference(points[c], points[a]));
+}
+
+double length(const Vector3& a) { return std::hypot(a[0], a[1], a[2]); }
+
+void check_area(double area, const char* argument, std::size_t triangle) {
+  if (!std::isfinite(area)) {
+    throw_invalid(std::string(argument) + ": the area of triangle " + std::to_string(triangle) +
+                  " is too large for a floating-point number");
+  }
+}
+
+void check_weights(const MeshArrays& mesh) {
+  const bool of_vertices = mesh.weights_of == WeightsOf::kVertices;
+  const bool of_corners = mesh.weights_of == WeightsOf::kCorners;
+  const std::size_t columns = of_corners ? 3 : 1;
+  const std::size_t rows = of_vertices ? mesh.vertex_count : mesh.triangle_count;
+  for (std::size_t i = 0; i < rows * columns; ++i) {
+    const double weight = mesh.weights[i];
+    if (!std::isfinite(weight) || weight < 0.0) {
+      throw_invalid(std::string("weights: ") + (of_vertices ? "vertex " : "triangle ") +
+                    std::to_string(i / columns) + " has " + to_text(weight) +
+                    "; finite weights of 0 and up are needed");
+    }
+  }
+}
+
+double weight_of(const MeshArrays& mesh, std::size_t triangle) {
+  const auto mean = [](double a, double b, double c) { return a / 3.0 + b / 3.0 + c / 3.0; };
+  const std::int64_t* vertices = mesh.triangles + 3 * triangle;
+  const double* weights = mesh.weights;
+  switch (mesh.weights_of) {
+    case WeightsOf::kNothing:
+      return 1.0;
+    case WeightsOf::kVertices:
+      return mean(weights[vertices[0]], weights[vertices[1]], weights[vertices[2]]);
+    case WeightsOf::kTriangles:
+      return weights[triangle];
+    case WeightsOf::kCorners:
+      return mean(weights[3 * triangle], weights[3 * triangle + 1], weights[3 * triangle + 2]);
+  }
+  return 1.0;
+}
+
+// What a linear map does to normals that are as long as areas: its cofactors.
+std::array<Vector3, 3> cofactors(const AffineMap& map) {
+  const auto row = [&](int i) { return Vector3{map[i][0], map[i][1], map[i][2]}; };
+  return {cross(row(1), row(2)), cross(row(2), row(0)), cross(row(0), row(1))};
+}
+
+Vector3 apply(const std::array<Vector3, 3>& rows, const Vector3& v) {
+  Vector3 result;
+  for (int i = 0; i < 3; ++i) {
+    result[i] = rows[i][0] * v[0] + rows[i][1] * v[1] + rows[i][2] * v[2];
+  }
+  return result;
 }
 
 }  // namespace
@@ -41,6 +106,11 @@ Surface make_surface(const MeshArrays& mesh) {
   }
   check_finite(mesh.positions, mesh.vertex_count, 3, "positions", "vertex");
   check_finite(mesh.uvs, mesh.triangle_count, 6, "uvs", "triangle");
+  if (mesh.weights_of != WeightsOf::kNothing) check_weights(mesh);
+  if (mesh.vertex_count > std::numeric_limits<std::int32_t>::max()) {
+    throw_invalid("positions: " + std::to_string(mesh.vertex_count) +
+                  " vertices; at most 2^31 - 1 are allowed");
+  }
 
   Surface surface;
   surface.uvs.resize(mesh.triangle_count);
@@ -64,13 +134,62 @@ Surface make_surface(const MeshArrays& mesh) {
       const double* uv = mesh.uvs + 6 * k + 2 * corner;
       surface.uvs[k][corner] = {uv[0], uv[1]};
     }
-    surface.areas[k] =
-        triangle_area(mesh.positions + 3 * vertices[0], mesh.positions + 3 * vertices[1],
-                      mesh.positions + 3 * vertices[2]);
-    if (!std::isfinite(surface.areas[k])) {
-      throw_invalid("positions: the area of triangle " + std::to_string(k) +
-                    " is too large for a floating-point number");
+    const double area = 0.5 * length(triangle_normal(surface, k));
+    check_area(area, "positions", k);
+    surface.areas[k] = area * weight_of(mesh, k);
+    check_area(surface.areas[k], "weights", k);
+  }
+  return surface;
+}
+
+Surface place_surface(const Surface& surface, std::span<const AffineMap> maps) {
+  if (maps.empty()) throw_invalid("matrices: none; at least one is needed");
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    check_finite(maps[i][0].data(), 1, 12, "matrices: matrix " + std::to_string(i), "row");
+  }
+  std::vector<std::array<Vector3, 3>> normal_maps(maps.size());
+  std::transform(maps.begin(), maps.end(), normal_maps.begin(), cofactors);
+
+  Surface placed = surface;
+  for (std::size_t k = 0; k < surface.triangle_count(); ++k) {
+    const Vector3 normal = triangle_normal(surface, k);
+    const double before = length(normal);
+    if (before == 0.0) continue;  // Flat before is flat after.
+    double after = 0.0;
+    for (const std::array<Vector3, 3>& map : normal_maps) after += length(apply(map, normal));
+    placed.areas[k] = surface.areas[k] * (after / before);
+    check_area(placed.areas[k], "matrices", k);
+  }
+  for (Vector3& position : placed.positions) {
+    Vector3 moved;
+    for (int i = 0; i < 3; ++i) {
+      const std::array<double, 4>& row = maps[0][i];
+      moved[i] = row[0] * position[0] + row[1] * position[1] + row[2] * position[2] + row[3];
+      if (!std::isfinite(moved[i])) {
+        throw_invalid("matrices: matrix 0 takes a vertex beyond the largest floating-point number");
+      }
     }
+    position = moved;
+  }
+  return placed;
+}
+
+bool same_layout(const Surface& a, const Surface& b) {
+  const auto same_uvs = [](const std::array<TextureCoordinate, 3>& first,
+                           const std::array<TextureCoordinate, 3>& second) {
+    return std::equal(first.begin(), first.end(), second.begin(),
+                      [](const TextureCoordinate& p, const TextureCoordinate& q) {
+                        return p.u == q.u && p.v == q.v;
+                      });
+  };
+  return a.positions.size() == b.positions.size() && a.triangles == b.triangles &&
+         std::equal(a.uvs.begin(), a.uvs.end(), b.uvs.begin(), b.uvs.end(), same_uvs);
+}
+
+Surface add_areas(Surface surface, const Surface& other) {
+  for (std::size_t k = 0; k < surface.triangle_count(); ++k) {
+    surface.areas[k] += other.areas[k];
+    check_area(surface.areas[k], "surfaces", k);
   }
   return surface;
 }

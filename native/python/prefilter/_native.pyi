@@ -1,5 +1,7 @@
 """The native module. The package around it checks and converts arguments; call that."""
 
+from typing import overload
+
 import numpy as np
 import numpy.typing as npt
 
@@ -8,17 +10,51 @@ from .arguments import ProgressCallback
 class Cancelled(Exception): ...  # noqa: N818
 
 class Surface:
+    @overload
+    def __init__(self, taken: Surface) -> None: ...
+    @overload
     def __init__(
         self,
         positions: npt.NDArray[np.float64],
         triangles: npt.NDArray[np.int64],
         uvs: npt.NDArray[np.float64],
+        weights: npt.NDArray[np.float64] | None,
+        weights_of: str,
     ) -> None: ...
+    def placed(self, matrices: npt.NDArray[np.float64]) -> Surface: ...
+    def with_areas_of(self, other: Surface) -> Surface | None: ...
+    def udim_tile(self, number: int) -> Surface | None: ...
     @property
     def triangle_count(self) -> int: ...
     @property
     def area(self) -> float: ...
+    @property
+    def positions(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def triangles(self) -> npt.NDArray[np.int32]: ...
+    @property
+    def uvs(self) -> npt.NDArray[np.float64]: ...
+    @property
+    def areas(self) -> npt.NDArray[np.float64]: ...
 
+def subdivide(
+    positions: npt.NDArray[np.float64],
+    face_sizes: npt.NDArray[np.int64],
+    face_vertices: npt.NDArray[np.int64],
+    face_uvs: npt.NDArray[np.float64],
+    crease_edges: npt.NDArray[np.int64],
+    crease_sharpness: npt.NDArray[np.float64],
+    corner_vertices: npt.NDArray[np.int64],
+    corner_sharpness: npt.NDArray[np.float64],
+    weights: npt.NDArray[np.float64] | None,
+    weights_of: str,
+    kept: npt.NDArray[np.bool_] | None,
+    scheme: str,
+    boundary: str,
+    uv_smooth: str,
+    level: int,
+    progress: ProgressCallback | None,
+) -> Surface: ...
 def decode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
 def encode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
 def mipmaps(

@@ -1,24 +1,28 @@
 """Arguments that several functions take, checked once, here at the border."""
 
 from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .surface import Surface
+from . import _native
+
+if TYPE_CHECKING:
+    from .surface import Surface
 
 ProgressCallback = Callable[[float], bool | None]
 Wrap = str | tuple[str, str]
 Bounds = tuple[float | None, float | None]
 
 
-def as_surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
+def as_surfaces(surface: "Surface | Sequence[Surface] | None") -> "list[Surface]":
     if surface is None:
         return []
-    surfaces = [surface] if isinstance(surface, Surface) else surface
+    surfaces = [surface] if isinstance(surface, _native.Surface) else surface
     if not isinstance(surfaces, Sequence):
         raise ValueError(f"surface: a {type(surface).__name__}; a Surface or a list is needed")
     for found in surfaces:
-        if not isinstance(found, Surface):
+        if not isinstance(found, _native.Surface):
             raise ValueError(f"surface: holds a {type(found).__name__}; a Surface is needed")
     return list(surfaces)
 

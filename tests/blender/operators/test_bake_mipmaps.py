@@ -1,5 +1,6 @@
 """The operator, as scripts call it."""
 
+from functools import partial
 from types import SimpleNamespace
 
 import bpy
@@ -149,7 +150,24 @@ def test_thread_that_does_not_start_leaves_nothing(addon, monkeypatch):
     monkeypatch.setattr(module, "Job", no_job)
     monkeypatch.setattr(module, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
     operator_class = module.PREFILTER_OT_bake_mipmaps
-    operator = SimpleNamespace(_read=lambda context: SimpleNamespace(compute=None))
+    operator = SimpleNamespace(_what_to_read=lambda context: ())
+    operator._go_on_reading = partial(operator_class._go_on_reading, operator)
+
+    def reading():
+        yield 0.5
+        return SimpleNamespace(compute=None)
+
+    monkeypatch.setattr(module.bake.Bake, "reading", reading)
     with pytest.raises(RuntimeError, match="no thread"):
         operator_class.invoke(operator, SimpleNamespace(window_manager=None), None)
     assert not operator_class._running
+
+
+def test_frames_and_instances():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    quad = scenes.textured_quad(image)
+    scenes.collection_instance(quad).select_set(True)
+    bpy.context.scene.frame_set(5)
+    assert bake(image="Paint", use_frames=True, frame_start=2, frame_end=4) == {"FINISHED"}
+    assert bpy.context.scene.frame_current == 5
+    assert "Paint.mip3" in bpy.data.images

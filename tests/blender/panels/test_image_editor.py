@@ -66,5 +66,8 @@ def test_panel_and_modal_bake(display, tmp_path):
     assert not found["polls_while_running"]
     assert found["after_bake"] == ["Big", "Paint", "Paint.mip1", "Paint.mip2", "Paint.mip3"]
     assert found["after_cancel"] == found["after_bake"]
+    assert found["frame_while_reading"] != 9
+    assert found["frame_after_cancel"] == 9
+    assert found["after_frames"] == sorted([*found["after_bake"], "Big.mip1"])
     assert found["polls_in_next_file"]
     assert found["in_next_file"] == ["Next"]

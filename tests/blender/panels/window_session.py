@@ -1,6 +1,7 @@
 """Runs in a Blender with a window: draws the panel, and bakes through the modal operator.
 
-One bake runs to its end, one is cancelled by Esc, and one by loading another file.
+One bake runs to its end, one is cancelled by Esc, and one by loading another file; the same while
+frames are read.
 
 Usage: blender --factory-startup --enable-event-simulate --python window_session.py -- RESULT.json
 """
@@ -65,7 +66,37 @@ def session() -> Iterator[None]:
     yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
     after_cancel = image_names()
 
+    scene = bpy.context.scene
+    scene.frame_set(9)
+    endless = {"image": "Big", "use_frames": True, "frame_end": 10**6}
     with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", **endless)
+    yield
+    frame_while_reading = scene.frame_current
+    window.event_simulate(type="ESC", value="PRESS")
+    yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
+    frame_after_cancel = scene.frame_current
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.bake_mipmaps(
+            "INVOKE_DEFAULT", image="Big", levels=2, use_frames=True, frame_end=3
+        )
+    yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
+    after_frames = image_names()
+
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", **endless)
+    yield
+    bpy.ops.wm.read_homefile(use_empty=True)
+    yield
+    area = max(
+        bpy.context.window_manager.windows[0].screen.areas,
+        key=lambda area: area.width * area.height,
+    )
+    area.type = "IMAGE_EDITOR"
+    area.spaces.active.image = scenes.image("Big", scenes.noise(1024, 1024))
+    scenes.textured_quad(area.spaces.active.image)
+    yield
+    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area):
         bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
     bpy.ops.wm.read_homefile(use_empty=True)
     yield
@@ -81,6 +112,9 @@ def session() -> Iterator[None]:
                 "polls_while_running": polls_while_running,
                 "after_bake": after_bake,
                 "after_cancel": after_cancel,
+                "frame_while_reading": frame_while_reading,
+                "frame_after_cancel": frame_after_cancel,
+                "after_frames": after_frames,
                 "polls_in_next_file": bpy.ops.prefilter.bake_mipmaps.poll(),
                 "in_next_file": image_names(),
             }

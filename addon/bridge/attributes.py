@@ -1,0 +1,89 @@
+"""Arrays of a mesh: where its vertices and corners are, and weights that a user has painted."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+# Rec. 709, as Blender makes a number of a colour.
+_LUMINANCE = (0.2126, 0.7152, 0.0722)
+
+
+@dataclass(frozen=True)
+class Weights:
+    """One number for each element of a mesh.
+
+    Attributes:
+        domain: POINT, FACE or CORNER.
+        values: float64.
+    """
+
+    domain: str
+    values: NDArray[np.float64]
+
+
+def positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
+    """Returns the vertices, (n, 3), in the object's space."""
+    found = np.empty((len(mesh.vertices), 3), np.float32)
+    mesh.attributes["position"].data.foreach_get("vector", found.ravel())
+    return found
+
+
+def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
+    """Returns the vertex of each corner."""
+    found = np.empty(len(mesh.loops), np.int32)
+    mesh.attributes[".corner_vert"].data.foreach_get("value", found)
+    return found
+
+
+def read_weights(
+    object_name: str, mesh: bpy.types.Mesh, evaluated: bpy.types.Object | None, name: str
+) -> Weights | None:
+    """Returns a vertex group, or an attribute of numbers or colours, as weights.
+
+    Args:
+        object_name: For messages.
+        mesh: A mesh.
+        evaluated: Its object, which knows the vertex groups; None for a mesh without an object.
+        name: The name; a vertex group comes first where both have it.
+
+    Returns:
+        The weights, or None where there is neither.
+
+    Raises:
+        ValueError: The attribute has another domain or type.
+    """
+    group = evaluated.vertex_groups.get(name) if evaluated is not None else None
+    if group is not None:
+        return Weights("POINT", _group_weights(mesh, group.index))
+    attribute = mesh.attributes.get(name)
+    if attribute is None:
+        return None
+    found = f"object '{object_name}', importance: attribute '{name}' is"
+    if attribute.domain not in {"POINT", "FACE", "CORNER"}:
+        raise ValueError(
+            f"{found} on the domain {attribute.domain}; POINT, FACE or CORNER is needed"
+        )
+    count = len(attribute.data)
+    if attribute.data_type in {"FLOAT_COLOR", "BYTE_COLOR"}:
+        colors = np.empty((count, 4), np.float32)
+        attribute.data.foreach_get("color", colors.ravel())
+        return Weights(attribute.domain, colors[:, :3] @ np.array(_LUMINANCE))
+    types = {"FLOAT": np.float32, "INT": np.int32, "INT8": np.int8, "BOOLEAN": np.bool_}
+    if attribute.data_type not in types:
+        raise ValueError(
+            f"{found} of the type {attribute.data_type}; a number, a colour or a boolean is needed"
+        )
+    values = np.empty(count, types[attribute.data_type])
+    attribute.data.foreach_get("value", values)
+    return Weights(attribute.domain, values.astype(np.float64))
+
+
+def _group_weights(mesh: bpy.types.Mesh, index: int) -> NDArray[np.float64]:
+    values = np.zeros(len(mesh.vertices))
+    for vertex in mesh.vertices:
+        for element in vertex.groups:
+            if element.group == index:
+                values[vertex.index] = element.weight
+    return values

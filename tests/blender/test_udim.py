@@ -1,0 +1,129 @@
+"""UDIM images: a bake of each tile, over the part of the surface that lies in it."""
+
+import bpy
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+import scenes
+
+LEFT = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+
+
+@pytest.fixture
+def bake(addon):
+    module = addon("bake")
+
+    def run(image, objects, **settings):
+        return module.bake(image, objects, module.Settings(**settings), scenes.depsgraph())
+
+    return run
+
+
+def write_png(path, pixels):
+    height, width = pixels.shape[:2]
+    writer = oiio.ImageOutput.create(str(path))
+    assert writer.open(str(path), oiio.ImageSpec(width, height, pixels.shape[2], "uint8"))
+    assert writer.write_image(np.ascontiguousarray(pixels[::-1]))
+    writer.close()
+
+
+@pytest.fixture
+def tiles(tmp_path):
+    """Two tiles of different sizes, 1001 and 1012, side by side on one strip of four squares."""
+    values = {1001: scenes.noise(8, 8, seed=2), 1012: scenes.noise(4, 16, seed=3)}
+    for number, pixels in values.items():
+        write_png(tmp_path / f"skin.{number}.png", pixels[..., :3])
+    image = bpy.data.images.load(str(tmp_path / "skin.1001.png"))
+    image.source = "TILED"
+    image.filepath = str(tmp_path / "skin.<UDIM>.png")
+    image.tiles.new(1012)
+    image.name = "Skin"
+    strip = scenes.quads("Strip", [LEFT, np.add(LEFT, (1, 1))], sizes=[1, 2])
+    strip.data.materials.append(scenes.material("Skin", image))
+    return image, strip, values
+
+
+def reference(bake, values, name):
+    """The levels of the tile as an image of its own."""
+    image = scenes.image(name, values)
+    quad = scenes.textured_quad(image, f"{name} quad")
+    bake(image, [quad], wrap="clamp")
+    return name
+
+
+def test_tiles_are_baked_like_images(bake, tiles):
+    image, strip, values = tiles
+    outcome = bake(image, [strip])
+    names = [f"Skin.1001.mip{i}" for i in (1, 2, 3)] + [f"Skin.1012.mip{i}" for i in (1, 2, 3, 4)]
+    assert outcome.images == names
+    assert outcome.warnings == []
+    for number, pixels in values.items():
+        alone = reference(bake, pixels, f"Alone{number}")
+        for level in (1, 2, 3):
+            np.testing.assert_array_equal(
+                scenes.pixels(f"Skin.{number}.mip{level}"), scenes.pixels(f"{alone}.mip{level}")
+            )
+    assert len(bpy.data.images) == 1 + 7 + 2 + 7
+
+
+def test_packed_tiles(bake, tiles, tmp_path):
+    image, strip, values = tiles
+    image.pack()
+    for number in values:
+        (tmp_path / f"skin.{number}.png").unlink()
+    bake(image, [strip], filter="box")
+    linear = scenes.to_linear(values[1012][..., :3])
+    expected = scenes.to_srgb(scenes.halved(linear))
+    found = scenes.pixels("Skin.1012.mip1")[..., :3]
+    np.testing.assert_allclose(found, expected, atol=0.51 / 255)
+
+
+@pytest.mark.parametrize("name", ["out.exr", "out.<UDIM>.exr"])
+def test_a_file_a_tile(bake, tiles, tmp_path, name):
+    image, strip, _ = tiles
+    bake(image, [strip], filepath=str(tmp_path / name), use_images=False)
+    sizes = {}
+    for path in tmp_path.glob("out*"):
+        spec = oiio.ImageBuf(str(path)).spec()
+        sizes[path.name] = (spec.width, spec.height)
+    assert sizes == {"out.1001.exr": (8, 8), "out.1012.exr": (16, 4)}
+
+
+def test_tiles_without_surface_are_left_out(bake, tiles):
+    image, _, _ = tiles
+    only = scenes.quads("Only", [LEFT])
+    only.data.materials.append(scenes.material("Skin", image))
+    outcome = bake(image, [only])
+    assert outcome.warnings == ["tile 1012 is left out: no surface lies in it"]
+    assert outcome.images == [f"Skin.1001.mip{i}" for i in (1, 2, 3)]
+    away = scenes.quads("Away", [np.add(LEFT, (5, 0))])
+    away.data.materials.append(only.active_material)
+    with pytest.raises(ValueError, match="no surface lies in its tiles, '1001', '1012'"):
+        bake(image, [away])
+
+
+def test_missing_file_leaves_nothing(bake, tiles, tmp_path):
+    image, strip, _ = tiles
+    (tmp_path / "skin.1012.png").unlink()
+    with pytest.raises(ValueError, match=r"image 'Skin', tile 1012: there is no file '.*1012.png'"):
+        bake(image, [strip], filepath=str(tmp_path / "out.exr"))
+    assert [i.name for i in bpy.data.images] == ["Skin"]
+    assert list(tmp_path.glob("out*")) == []
+
+
+def test_failure_in_the_second_tile_leaves_nothing(bake, tiles, tmp_path):
+    image, strip, _ = tiles
+    folder = tmp_path / "out"
+    folder.mkdir()
+    blocked = folder / "out.1012.exr"
+    blocked.write_bytes(b"keep")
+    blocked.chmod(0o444)
+    with pytest.raises(OSError, match=r"out\.1012\.exr' is read-only"):
+        bake(image, [strip], filepath=str(folder / "out.exr"))
+    assert [i.name for i in bpy.data.images] == ["Skin"]
+    assert [path.name for path in folder.iterdir()] == ["out.1012.exr"]
+
+
+def test_the_operator_takes_tiles(tiles):
+    assert bpy.ops.prefilter.bake_mipmaps(image="Skin") == {"FINISHED"}
+    assert "Skin.1012.mip4" in bpy.data.images
