@@ -14,7 +14,8 @@ import bpy
 import numpy as np
 import prefilter
 
-from .bridge import files, images, meshes
+from . import contents
+from .bridge import files, images, materials, meshes
 from .bridge.images import FloatArray, Picture
 from .wording import listed
 
@@ -67,6 +68,28 @@ BOUNDS = {
     "none": Choice("None", "Values may leave the range of the image"),
 }
 
+CONTENTS = {
+    "auto": Choice(
+        "Automatic",
+        "A normal map where a Normal Map node reads the image, data where its color space is "
+        "Non-Color, else color",
+    ),
+    "color": Choice("Color", "Filtered as light, with alpha as coverage"),
+    "data": Choice(
+        "Data", "Roughness, masks, packed channels: values as they are stored, each by itself"
+    ),
+    "normal": Choice("Normal Map", "Filtered as vectors, which keep the length 1"),
+    "cutout": Choice(
+        "Cut-Out", "Color whose alpha test keeps as much of the surface at every level"
+    ),
+}
+ROUGHNESS_CHANNELS = {
+    "all": Choice("All", "The image holds nothing but roughness"),
+    "red": Choice("Red", "The red channel holds roughness"),
+    "green": Choice("Green", "The green channel holds roughness, as in glTF files"),
+    "blue": Choice("Blue", "The blue channel holds roughness"),
+}
+
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
 _LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
 _WRAP_OF_EXTENSION = {
@@ -90,6 +113,11 @@ class Settings:
         use_images: Whether to write an image datablock for each level.
         filepath: A mip-mapped file to write; empty for none. It gets every level.
         threads: How many threads to use; 0 for all.
+        content: A key of `CONTENTS`: what the image holds.
+        threshold: The alpha from which on a cut-out is shown; above 0, at most 1.
+        roughness: The name of an image that gets what a normal map's levels lose; empty for none.
+        roughness_channel: A key of `ROUGHNESS_CHANNELS`.
+        roughness_filepath: A mip-mapped file of the roughness to write; empty for none.
     """
 
     filter: str = "pam-bilinear"
@@ -100,6 +128,11 @@ class Settings:
     use_images: bool = True
     filepath: str = ""
     threads: int = 0
+    content: str = "auto"
+    threshold: float = 0.5
+    roughness: str = ""
+    roughness_channel: str = "all"
+    roughness_filepath: str = ""
 
 
 @dataclass(frozen=True)
@@ -125,6 +158,9 @@ class Bake:
         found: meshes.ImageSurfaces,
         settings: Settings,
         target: Path | None,
+        content: str,
+        roughness: contents.Roughness | None,
+        roughness_target: Path | None,
     ) -> None:
         """Keeps copies of what was read; use `Bake.read`."""
         self.warnings = list(found.problems)
@@ -134,8 +170,12 @@ class Bake:
         self._settings = settings
         self._target = target
         self._wrap = self._choose_wrap(found.extensions)
+        self._content = content
+        self._roughness = roughness
+        self._roughness_target = roughness_target
         self._levels: list[FloatArray] = []
-        self._staged: files.StagedFile | None = None
+        self._roughness_levels: list[FloatArray] = []
+        self._staged: list[files.StagedFile] = []
 
     @classmethod
     def read(
@@ -165,10 +205,32 @@ class Bake:
             raise ValueError("nothing to write: neither level images nor a file are asked for")
         picture = images.read(image)
         _check_levels(picture, settings.levels)
+        is_normal_map = any(
+            materials.feeds_normal_map(slot.material, image)
+            for obj in objects
+            for slot in obj.material_slots
+            if slot.material is not None
+        )
+        content = contents.resolved(settings.content, picture, is_normal_map=is_normal_map)
+        is_encoded = picture.encoding is not images.Encoding.NONE
+        picture = contents.as_content(picture, content)
+        if content == "cutout":
+            contents.check_cutout(picture)
+        roughness, roughness_target = _read_roughness(settings, content, picture)
         found = meshes.image_surfaces(objects, image, depsgraph, all_faces=all_faces)
         if not found.surfaces and settings.filter not in TEXTURE_SPACE_FILTERS:
             raise ValueError(_no_surface(image, objects, found.problems))
-        return cls(picture, found, settings, target)
+        job = cls(picture, found, settings, target, content, roughness, roughness_target)
+        if content == "normal" and is_encoded:
+            job.warnings.append(
+                f"image '{picture.name}' has the color space {picture.colorspace}; a shader reads "
+                f"normals right in Non-Color only"
+            )
+        if settings.roughness and roughness is None:
+            job.warnings.append(
+                f"roughness '{settings.roughness}' is left out: '{picture.name}' is no normal map"
+            )
+        return job
 
     @property
     def image_name(self) -> str:
@@ -183,36 +245,68 @@ class Bake:
             ValueError: The library refuses the image or the surfaces.
             OSError: The file cannot be written.
         """
-        settings = self._settings
         linear = images.scene_linear(self._picture, partial(_go_on, progress, 0.0))
         try:
-            levels = prefilter.mipmaps(
-                linear,
-                self._surfaces or None,
-                filter=settings.filter,
-                wrap=self._wrap,
-                bounds=self._bounds(linear),
-                levels=None if self._target is not None else settings.levels or None,
-                premultiplied=not self._picture.alpha_is_straight,
-                progress=lambda fraction: progress(_FILTERED * fraction),
-                threads=settings.threads,
-            )
+            levels, rough = self._filtered(linear, lambda done: progress(_FILTERED * done))
         except ValueError as error:
             raise ValueError(_naming_objects(str(error), self._objects)) from error
         check = partial(_go_on, progress, _FILTERED)
-        stored = [images.encoded(self._picture, level, check) for level in levels[1:]]
-        stored.insert(0, self._picture.stored)
-        if self._target is not None:
-            levels[0] = linear
-            self._staged = files.stage(
-                self._target, self._picture, levels, stored, self._wrap, check
-            )
-        self._levels = stored[1 : settings.levels or None]
         try:
+            self._levels = self._stage(self._picture, linear, levels, self._target, check)
+            if self._roughness is not None:
+                self._roughness_levels = self._stage(
+                    self._roughness.picture,
+                    self._roughness.linear,
+                    rough,
+                    self._roughness_target,
+                    check,
+                )
             _go_on(progress, 1.0)
         except BaseException:
             self.discard()
             raise
+
+    def _filtered(
+        self, linear: FloatArray, progress: Progress
+    ) -> tuple[list[FloatArray], list[FloatArray]]:
+        """Returns all levels, scene-linear, of the image and of its roughness."""
+        settings = self._settings
+        to_file = self._target is not None or self._roughness_target is not None
+        options = {
+            "filter": settings.filter,
+            "wrap": self._wrap,
+            "levels": None if to_file else settings.levels or None,
+            "threads": settings.threads,
+        }
+        surfaces = self._surfaces or None
+        if self._content == "normal":
+            return contents.normal_levels(linear, surfaces, self._roughness, progress, **options)
+        bounds = self._bounds(linear)
+        if self._content == "cutout":
+            levels = contents.cutout_levels(
+                self._picture, linear, surfaces, bounds, settings.threshold, progress, **options
+            )
+        else:
+            levels = contents.plain_levels(
+                self._picture, linear, surfaces, bounds, progress, **options
+            )
+        return levels, []
+
+    def _stage(
+        self,
+        picture: Picture,
+        linear: FloatArray,
+        levels: list[FloatArray],
+        target: Path | None,
+        check: Callable[[], None],
+    ) -> list[FloatArray]:
+        """Stages a file of the levels; returns those above 0 as level images hold them."""
+        stored = [images.encoded(picture, level, check) for level in levels[1:]]
+        stored.insert(0, picture.stored)
+        if target is not None:
+            levels[0] = linear
+            self._staged.append(files.stage(target, picture, levels, stored, self._wrap, check))
+        return stored[1 : self._settings.levels or None]
 
     def write(self) -> Outcome:
         """Puts the file into place and writes the level images.
@@ -221,27 +315,36 @@ class Bake:
             OSError: The file cannot be put into place, or an image cannot be made; nothing was
                 written then.
         """
-        levels = self._levels if self._settings.use_images else []
+        pairs = [(self._picture, self._levels)]
+        if self._roughness is not None:
+            pairs.append((self._roughness.picture, self._roughness_levels))
+        staged_levels: list[images.StagedLevels] = []
         try:
-            staged_levels = images.stage_levels(self._picture, levels)
             try:
-                if self._staged is not None:
-                    self._staged.commit()
+                for picture, levels in pairs if self._settings.use_images else ():
+                    staged_levels.append(images.stage_levels(picture, levels))
+                for staged in self._staged:
+                    staged.commit()
             except BaseException:
-                staged_levels.discard()
+                for staged in staged_levels:
+                    staged.discard()
                 raise
         finally:
             self.discard()
-        names = staged_levels.commit()
-        if any(name != f"{self.image_name}.mip{i}" for i, name in enumerate(names, start=1)):
-            self.warnings.append(f"the level images are named {listed(names)}")
+        names: list[str] = []
+        for staged in staged_levels:
+            made = staged.commit()
+            names += made
+            base = staged.picture.name
+            if any(name != f"{base}.mip{i}" for i, name in enumerate(made, start=1)):
+                self.warnings.append(f"the level images are named {listed(made)}")
         return Outcome(self._summary(names), names, str(self._target or ""), self.warnings)
 
     def discard(self) -> None:
         """Removes what `compute` left on disk, if it was not written into place."""
-        if self._staged is not None:
-            self._staged.discard()
-            self._staged = None
+        for staged in self._staged:
+            staged.discard()
+        self._staged.clear()
 
     def _choose_wrap(self, extensions: Sequence[str]) -> tuple[str, str]:
         wrap = self._settings.wrap
@@ -267,14 +370,17 @@ class Bake:
         return low, high
 
     def _summary(self, names: Sequence[str]) -> str:
-        parts = [f"Baked '{self.image_name}' with {FILTERS[self._settings.filter].label}"]
+        baked = f"Baked '{self.image_name}'"
+        if self._content not in {"color", "data"}:
+            baked += f" as {CONTENTS[self._content].label}"
+        parts = [f"{baked} with {FILTERS[self._settings.filter].label}"]
         if self._surfaces:
             parts.append(f"over {_count(set(self._objects), 'object')}")
         results = []
         if names:
             results.append(_count(names, "level image"))
-        if self._target is not None:
-            results.append(f"'{self._target}'")
+        targets = (self._target, self._roughness_target)
+        results += [f"'{target}'" for target in targets if target is not None]
         parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
         return " ".join(parts)
 
@@ -299,6 +405,37 @@ def _check_levels(picture: Picture, levels: int) -> None:
     full = max(width, height).bit_length()
     if levels > full:
         raise ValueError(f"levels: found {levels}; an image of {width} x {height} has 1 to {full}")
+
+
+def _read_roughness(
+    settings: Settings, content: str, picture: Picture
+) -> tuple[contents.Roughness | None, Path | None]:
+    """Returns the roughness of a normal map, and the file to write it to."""
+    if not settings.roughness:
+        if settings.roughness_filepath:
+            raise ValueError("roughness file: needs the name of a roughness image, found none")
+        return None, None
+    if content != "normal":
+        if settings.content == "auto":
+            return None, None
+        raise ValueError(
+            f"roughness: found '{settings.roughness}' with the content '{content}'; it is for "
+            f"normal maps only"
+        )
+    if not settings.use_images and not settings.roughness_filepath:
+        raise ValueError(
+            "nothing to write the roughness to: neither level images nor a roughness file are "
+            "asked for"
+        )
+    target = None
+    if settings.roughness_filepath:
+        target = files.check_target(settings.roughness_filepath)
+        if settings.filepath and target == files.check_target(settings.filepath):
+            raise ValueError(f"roughness file: '{target}' is the file of the normal map")
+    rough = images.read(images.find(settings.roughness))
+    contents.check_roughness(picture, rough)
+    linear = images.scene_linear(rough)
+    return contents.Roughness(rough, linear, settings.roughness_channel), target
 
 
 def _go_on(progress: Progress, fraction: float) -> None:
