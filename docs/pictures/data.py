@@ -44,7 +44,7 @@ def cutout() -> Image.Image:
         for number in CUTOUT_LEVELS:
             shown, share = tested(levels[number])
             print(f"{title}, level {number}: {100 * share:.1f} % shown")
-            cells.append((shown, f"{title if number else 'image'}, level {number}: {share:.0%}"))
+            cells.append((shown, f"{title if number else 'image'}, level {number}: {share:.1%}"))
     return sheet(cells, len(CUTOUT_LEVELS))
 
 

@@ -62,10 +62,13 @@ def test_fitted_levels_are_the_least_squares_of_vectors():
     assert np.degrees(np.arccos(np.minimum(cosines[strong], 1))).max() < 0.3
 
 
-@pytest.mark.parametrize("filter", ["pam-bilinear", "pam-box", "box", "box-covered", "lanczos3"])
+@pytest.mark.parametrize("size", [(32, 16), (29, 17), (1, 13)])
+@pytest.mark.parametrize(
+    "filter", ["pam-bilinear", "pam-trilinear", "pam-box", "box", "box-covered", "lanczos3"]
+)
 @pytest.mark.parametrize("encoded", [True, False])
-def test_every_level_has_unit_length(filter, encoded):
-    normals = bumps(3, 32, 16, 0.8, smooth=0)
+def test_every_level_has_unit_length(filter, encoded, size):
+    normals = bumps(3, *size, 0.8, smooth=0)
     image = encode(normals) if encoded else 3 * normals.astype(np.float32)
     levels = prefilter.normal_mipmaps(image, two_charts().surface, filter=filter, encoded=encoded)
     np.testing.assert_array_equal(levels[0], image)
@@ -240,6 +243,19 @@ def test_angles_are_closer_than_those_of_box_levels():
     box = prefilter.normal_mipmaps(encode(normals), filter="box")
     for k in (1, 2, 3):
         assert angular_error(fitted[k], normals, mesh) < 0.9 * angular_error(box[k], normals, mesh)
+
+
+@pytest.mark.parametrize("size", [(16, 16), (15, 9), (1, 7), (1, 1)])
+@pytest.mark.parametrize("filter", ["pam-bilinear", "pam-trilinear", "box", "box-covered"])
+def test_roughness_never_falls_below_what_all_texels_have(size, filter):
+    normals = bumps(21, *size, 0.5, smooth=0)
+    levels, rough = prefilter.normal_mipmaps(
+        normals, two_charts().surface, encoded=False, roughness=0.3, filter=filter
+    )
+    assert [level.shape[:2] for level in levels] == [level.shape[:2] for level in rough]
+    for level in rough:
+        assert level.min() > 0.2999
+        assert level.max() <= 1
 
 
 def test_flat_map_stays_flat_and_keeps_its_roughness():

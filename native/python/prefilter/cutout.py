@@ -1,6 +1,7 @@
 """Alpha-tested cut-outs: levels that keep as much of the surface as the image does."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -65,20 +66,23 @@ def keep_coverage(
     report = as_progress(progress)
     grid = _area_grid(images[0].shape[1::-1], surface, modes, report, count)
 
-    def share(alpha: FloatArray, weights: FloatArray) -> float:
-        cells = np.array(weights.shape[1::-1])
+    def share(grid: FloatArray, done: float, alpha: FloatArray) -> float:
+        # How many of these a level takes is not known before: progress rises between levels.
+        hold = None if report is None else lambda _: report(done)
+        cells = np.array(grid.shape[1::-1])
         samples = -(-_SAMPLES * np.array(alpha.shape[1::-1]) // cells).max()
-        return _native.covered_share(
-            alpha, weights, max(1, int(samples)), limit, modes, None, count
-        )
+        return _native.covered_share(alpha, grid, max(1, int(samples)), limit, modes, hold, count)
 
-    wanted = share(_alpha(images[0]), grid)
+    wanted = share(grid, 0.3, _alpha(images[0]))
     kept = [images[0].copy()]
-    for number, image in enumerate(images[1:], start=1):
-        _report(report, 0.3 + 0.7 * (number - 1) / len(images))
+    done = 0.4
+    for image in images[1:]:
         grid = _coarser(grid, image.shape[1::-1])
-        kept.append(_kept(image, limit, wanted, lambda alpha: share(alpha, grid), premultiplied))  # noqa: B023
-    _report(report, 1.0)
+        kept.append(_kept(image, limit, wanted, partial(share, grid, done), premultiplied))
+        # A level has a quarter of the texels of the one before.
+        done += 0.75 * (1 - done)
+    if report is not None and report(1.0) is False:
+        raise _native.Cancelled("cancelled")
     return kept
 
 
@@ -189,8 +193,3 @@ def _as_threshold(threshold: float) -> float:
     if not is_number or not 0 < threshold <= 1:
         raise ValueError(f"threshold: {threshold!r}; a number above 0 and at most 1 is needed")
     return float(threshold)
-
-
-def _report(progress: ProgressCallback | None, fraction: float) -> None:
-    if progress is not None and progress(fraction) is False:
-        raise _native.Cancelled("cancelled")

@@ -123,8 +123,12 @@ def normal_mipmaps(
     except ValueError as error:
         raise ValueError(re.sub("^image:", "normals:", str(error))) from error
     made = [image.copy()]
+    hold = None if report is None else lambda _: report(share)
     for level in directions[1:]:
-        unit = _unit(_above(level, vectors, surface, wrap))
+        above = _above(level, vectors, surface, wrap, threads)
+        unit = np.empty_like(level)
+        for band in _bands(level.shape, hold):
+            unit[band] = _unit(above[band])
         made.append((unit + 1) / 2 if encoded else unit)
     if rough is None:
         return made
@@ -202,14 +206,17 @@ def _above(
     vectors: FloatArray,
     surface: Surface | Sequence[Surface] | None,
     wrap: Wrap,
+    threads: int,
 ) -> FloatArray:
     """The level without what least squares overshoot: z below 0 where the map has none."""
     if level[..., 2].min() >= 0:
         return level
     below = vectors[..., 2] < 0
     if below.any() and surface is not None:
-        below &= texel_weights(surface, vectors.shape[1], vectors.shape[0], wrap=wrap) > 0
-    return level if below.any() else np.maximum(level, (-np.inf, -np.inf, 0))
+        height, width = below.shape
+        below &= texel_weights(surface, width, height, wrap=wrap, threads=threads) > 0
+    lowest = np.array((-np.inf, -np.inf, 0), np.float32)
+    return level if below.any() else np.maximum(level, lowest)
 
 
 def _check_finite(name: str, image: FloatArray) -> None:
