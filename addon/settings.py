@@ -105,7 +105,13 @@ class BakeProperties:
         values = {name: getattr(self, name) for name in BakeProperties.__annotations__}
         values["filepath"] = bpy.path.abspath(self.filepath)
         values["roughness_filepath"] = bpy.path.abspath(self.roughness_filepath)
+        if not self._shows_roughness():
+            # What an earlier choice has left in fields that are not shown.
+            values["roughness"] = values["roughness_filepath"] = ""
         return bake.Settings(**values)
+
+    def _shows_roughness(self) -> bool:
+        return self.content == "normal" or (self.content == "auto" and bool(self.roughness))
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
         """Draws the properties."""
@@ -118,9 +124,9 @@ class BakeProperties:
         layout.prop(self, "content")
         if self.content == "cutout":
             layout.prop(self, "threshold")
-        if self.content == "normal":
+        if self._shows_roughness():
             layout.prop_search(self, "roughness", bpy.data, "images")
-        has_roughness = self.content == "normal" and self.roughness
+        has_roughness = self._shows_roughness() and self.roughness
         if has_roughness:
             layout.prop(self, "roughness_channel")
         row = layout.row()

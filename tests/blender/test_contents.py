@@ -454,5 +454,16 @@ def test_operator_has_the_settings():
     ) == {"FINISHED"}
     found = scenes.pixels("Leaf.mip2")[..., 3]
     assert kept(found, 0.4) == pytest.approx(kept(leaves()[..., 3], 0.4), abs=0.02)
-    with pytest.raises(RuntimeError, match="normal maps only"):
-        bpy.ops.prefilter.bake_mipmaps(image="Leaf", content="color", roughness="Leaf")
+
+
+def test_operator_gives_roughness_to_normal_maps_only(capfd):
+    image = scenes.image("Bumps", bumps(8, 8), colorspace="Non-Color")
+    scenes.image("Rough", gray(8, 8), colorspace="Non-Color")
+    scenes.quads("Quad").data.materials.append(normal_map_material(image))
+    # Set for a normal map before, and not shown in the panel for other contents.
+    options = {"image": "Bumps", "roughness": "Rough"}
+    assert bpy.ops.prefilter.bake_mipmaps(content="data", **options) == {"FINISHED"}
+    assert "Rough.mip1" not in bpy.data.images
+    assert "Warning" not in capfd.readouterr().out
+    assert bpy.ops.prefilter.bake_mipmaps(**options) == {"FINISHED"}
+    assert "Rough.mip1" in bpy.data.images

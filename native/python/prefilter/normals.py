@@ -123,13 +123,13 @@ def normal_mipmaps(
     except ValueError as error:
         raise ValueError(re.sub("^image:", "normals:", str(error))) from error
     made = [image.copy()]
-    hold = None if report is None else lambda _: report(share)
     for level in directions[1:]:
-        above = _above(level, vectors, surface, wrap, threads)
+        above = _above(level, vectors, surface, wrap, _held(report, share), threads)
         unit = np.empty_like(level)
-        for band in _bands(level.shape, hold):
+        for band in _bands(level.shape, _held(report, share)):
             unit[band] = _unit(above[band])
         made.append((unit + 1) / 2 if encoded else unit)
+    del directions
     if rough is None:
         return made
 
@@ -155,10 +155,17 @@ def normal_mipmaps(
         bounds=None,
         levels=levels,
         premultiplied=True,
-        progress=_part(report, 0.8, 1.0),
+        progress=_part(report, 0.8, 0.95),
         threads=threads,
     )
-    return made, [rough.copy(), *(_roughness_of(level) for level in means[1:])]
+    rougher = [rough.copy()]
+    for level in means[1:]:
+        rougher.append(np.empty((*level.shape[:2], 1), np.float32))
+        for band in _bands(level.shape, _held(report, 0.95)):
+            rougher[-1][band] = _roughness_of(level[band])
+    if report is not None and report(1.0) is False:
+        raise _native.Cancelled("cancelled")
+    return made, rougher
 
 
 def _as_roughness(roughness: npt.ArrayLike, size: tuple[int, int]) -> FloatArray:
@@ -206,6 +213,7 @@ def _above(
     vectors: FloatArray,
     surface: Surface | Sequence[Surface] | None,
     wrap: Wrap,
+    progress: ProgressCallback | None,
     threads: int,
 ) -> FloatArray:
     """The level without what least squares overshoot: z below 0 where the map has none."""
@@ -214,9 +222,14 @@ def _above(
     below = vectors[..., 2] < 0
     if below.any() and surface is not None:
         height, width = below.shape
-        below &= texel_weights(surface, width, height, wrap=wrap, threads=threads) > 0
+        options = {"wrap": wrap, "progress": progress, "threads": threads}
+        below &= texel_weights(surface, width, height, **options) > 0
     lowest = np.array((-np.inf, -np.inf, 0), np.float32)
     return level if below.any() else np.maximum(level, lowest)
+
+
+def _held(progress: ProgressCallback | None, fraction: float) -> ProgressCallback | None:
+    return None if progress is None else lambda _: progress(fraction)
 
 
 def _check_finite(name: str, image: FloatArray) -> None:
