@@ -15,7 +15,8 @@ import bpy
 import numpy as np
 import prefilter
 
-from .bridge import files, images, meshes
+from . import contents
+from .bridge import files, images, materials, meshes
 from .bridge.images import FloatArray, Picture
 from .wording import listed
 
@@ -68,6 +69,28 @@ BOUNDS = {
     "none": Choice("None", "Values may leave the range of the image"),
 }
 
+CONTENTS = {
+    "auto": Choice(
+        "Automatic",
+        "A normal map where a Normal Map node reads the image, data where its color space is "
+        "Non-Color, else color",
+    ),
+    "color": Choice("Color", "Filtered as light, with alpha as coverage"),
+    "data": Choice(
+        "Data", "Roughness, masks, packed channels: values as they are stored, each by itself"
+    ),
+    "normal": Choice("Normal Map", "Filtered as vectors, which keep the length 1"),
+    "cutout": Choice(
+        "Cut-Out", "Color whose alpha test keeps as much of the surface at every level"
+    ),
+}
+ROUGHNESS_CHANNELS = {
+    "all": Choice("All", "The image holds nothing but roughness"),
+    "red": Choice("Red", "The red channel holds roughness"),
+    "green": Choice("Green", "The green channel holds roughness, as in glTF files"),
+    "blue": Choice("Blue", "The blue channel holds roughness"),
+}
+
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
 _LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
 _WRAP_OF_EXTENSION = {
@@ -99,6 +122,11 @@ class Settings:
         frame_start: The first frame.
         frame_end: The last frame.
         frame_step: How far the frames are apart.
+        content: A key of `CONTENTS`: what the image holds.
+        threshold: The alpha from which on a cut-out is shown; above 0, at most 1.
+        roughness: The name of an image that gets what a normal map's levels lose; empty for none.
+        roughness_channel: A key of `ROUGHNESS_CHANNELS`.
+        roughness_filepath: A mip-mapped file of the roughness to write; empty for none.
     """
 
     filter: str = "pam-bilinear"
@@ -115,6 +143,11 @@ class Settings:
     frame_start: int = 1
     frame_end: int = 250
     frame_step: int = 1
+    content: str = "auto"
+    threshold: float = 0.5
+    roughness: str = ""
+    roughness_channel: str = "all"
+    roughness_filepath: str = ""
 
 
 @dataclass(frozen=True)
@@ -140,6 +173,9 @@ class Bake:
         found: meshes.ImageSurfaces,
         settings: Settings,
         target: Path | None,
+        content: str,
+        roughness: contents.Roughness | None = None,
+        roughness_target: Path | None = None,
     ) -> None:
         """Keeps copies of what was read; use `Bake.read`."""
         self.warnings = list(found.problems)
@@ -149,9 +185,13 @@ class Bake:
         self._settings = settings
         self._target = target
         self._wrap = self._choose_wrap(found.extensions)
+        self._content = content
+        self._roughness = roughness
+        self._roughness_target = roughness_target
         self._levels: list[FloatArray] = []
-        self._staged: files.StagedFile | None = None
-        self._staged_levels: images.StagedLevels | None = None
+        self._roughness_levels: list[FloatArray] = []
+        self._staged: list[files.StagedFile] = []
+        self._staged_levels: list[images.StagedLevels] = []
 
     @classmethod
     def read(
@@ -211,6 +251,24 @@ class Bake:
         pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
         for picture in pictures:
             _check_levels(picture, settings.levels)
+        is_normal_map = any(
+            materials.feeds_normal_map(slot.material, image)
+            for obj in objects
+            for slot in obj.material_slots
+            if slot.material is not None
+        )
+        content = contents.resolved(settings.content, pictures[0], is_normal_map=is_normal_map)
+        is_encoded = pictures[0].encoding is not images.Encoding.NONE
+        pictures = [contents.as_content(picture, content) for picture in pictures]
+        if content == "cutout":
+            for picture in pictures:
+                contents.check_cutout(picture)
+        if numbers and settings.roughness:
+            raise ValueError(
+                f"roughness: found '{settings.roughness}' for the tiled image '{image.name}'; it "
+                f"goes with images of one tile"
+            )
+        roughness, roughness_target = _read_roughness(settings, content, pictures[0])
         found = yield from _read_surfaces(image, objects, settings, depsgraph, all_faces=all_faces)
         if not found.surfaces and settings.filter not in TEXTURE_SPACE_FILTERS:
             raise ValueError(_no_surface(image, objects, found.problems))
@@ -219,9 +277,22 @@ class Bake:
                 f"importance: '{settings.importance}' is 0 wherever objects "
                 f"{listed(dict.fromkeys(found.objects))} use the image"
             )
-        if not numbers:
-            return cls(pictures[0], found, settings, targets[0] if targets else None)
-        return TiledBake.of(image, pictures, numbers, found, settings, targets)
+        job: Bake | TiledBake
+        if numbers:
+            job = TiledBake.of(image, pictures, numbers, found, settings, targets, content)
+        else:
+            target = targets[0] if targets else None
+            job = cls(pictures[0], found, settings, target, content, roughness, roughness_target)
+        if content == "normal" and is_encoded:
+            job.warnings.append(
+                f"image '{image.name}' has the color space {pictures[0].colorspace}; a shader "
+                f"reads normals right in Non-Color only"
+            )
+        if settings.roughness and roughness is None:
+            job.warnings.append(
+                f"roughness '{settings.roughness}' is left out: '{image.name}' is no normal map"
+            )
+        return job
 
     @property
     def image_name(self) -> str:
@@ -236,36 +307,68 @@ class Bake:
             ValueError: The library refuses the image or the surfaces.
             OSError: The file cannot be written.
         """
-        settings = self._settings
         linear = images.scene_linear(self._picture, partial(_go_on, progress, 0.0))
         try:
-            levels = prefilter.mipmaps(
-                linear,
-                self._surfaces or None,
-                filter=settings.filter,
-                wrap=self._wrap,
-                bounds=self._bounds(linear),
-                levels=None if self._target is not None else settings.levels or None,
-                premultiplied=not self._picture.alpha_is_straight,
-                progress=lambda fraction: progress(_FILTERED * fraction),
-                threads=settings.threads,
-            )
+            levels, rough = self._filtered(linear, lambda done: progress(_FILTERED * done))
         except ValueError as error:
             raise ValueError(_naming_objects(str(error), self._objects)) from error
         check = partial(_go_on, progress, _FILTERED)
-        stored = [images.encoded(self._picture, level, check) for level in levels[1:]]
-        stored.insert(0, self._picture.stored)
-        if self._target is not None:
-            levels[0] = linear
-            self._staged = files.stage(
-                self._target, self._picture, levels, stored, self._wrap, check
-            )
-        self._levels = stored[1 : settings.levels or None]
         try:
+            self._levels = self._stage(self._picture, linear, levels, self._target, check)
+            if self._roughness is not None:
+                self._roughness_levels = self._stage(
+                    self._roughness.picture,
+                    self._roughness.linear,
+                    rough,
+                    self._roughness_target,
+                    check,
+                )
             _go_on(progress, 1.0)
         except BaseException:
             self.discard()
             raise
+
+    def _filtered(
+        self, linear: FloatArray, progress: Progress
+    ) -> tuple[list[FloatArray], list[FloatArray]]:
+        """Returns all levels, scene-linear, of the image and of its roughness."""
+        settings = self._settings
+        to_file = self._target is not None or self._roughness_target is not None
+        options = {
+            "filter": settings.filter,
+            "wrap": self._wrap,
+            "levels": None if to_file else settings.levels or None,
+            "threads": settings.threads,
+        }
+        surfaces = self._surfaces or None
+        if self._content == "normal":
+            return contents.normal_levels(linear, surfaces, self._roughness, progress, **options)
+        bounds = self._bounds(linear)
+        if self._content == "cutout":
+            levels = contents.cutout_levels(
+                self._picture, linear, surfaces, bounds, settings.threshold, progress, **options
+            )
+        else:
+            levels = contents.plain_levels(
+                self._picture, linear, surfaces, bounds, progress, **options
+            )
+        return levels, []
+
+    def _stage(
+        self,
+        picture: Picture,
+        linear: FloatArray,
+        levels: list[FloatArray],
+        target: Path | None,
+        check: Callable[[], None],
+    ) -> list[FloatArray]:
+        """Stages a file of the levels; returns those above 0 as level images hold them."""
+        stored = [images.encoded(picture, level, check) for level in levels[1:]]
+        stored.insert(0, picture.stored)
+        if target is not None:
+            levels[0] = linear
+            self._staged.append(files.stage(target, picture, levels, stored, self._wrap, check))
+        return stored[1 : self._settings.levels or None]
 
     def write(self) -> Outcome:
         """Puts the file into place and writes the level images.
@@ -283,9 +386,12 @@ class Bake:
         Raises:
             OSError: An image cannot be made.
         """
+        pairs = [(self._picture, self._levels)]
+        if self._roughness is not None:
+            pairs.append((self._roughness.picture, self._roughness_levels))
         try:
-            levels = self._levels if self._settings.use_images else []
-            self._staged_levels = images.stage_levels(self._picture, levels)
+            for picture, levels in pairs if self._settings.use_images else ():
+                self._staged_levels.append(images.stage_levels(picture, levels))
         except BaseException:
             self.discard()
             raise
@@ -297,26 +403,28 @@ class Bake:
             OSError: The file cannot be put into place; nothing was written then.
         """
         try:
-            if self._staged is not None:
-                self._staged.commit()
+            for staged in self._staged:
+                staged.commit()
         except BaseException:
             self.discard()
             raise
-        names = self._staged_levels.commit()
-        self._staged_levels = None
+        names: list[str] = []
+        for staged in self._staged_levels:
+            made = staged.commit()
+            names += made
+            base = staged.picture.name
+            if any(name != f"{base}.mip{i}" for i, name in enumerate(made, start=1)):
+                self.warnings.append(f"the level images are named {listed(made)}")
+        self._staged_levels.clear()
         self.discard()
-        if any(name != f"{self.image_name}.mip{i}" for i, name in enumerate(names, start=1)):
-            self.warnings.append(f"the level images are named {listed(names)}")
         return Outcome(self._summary(names), names, str(self._target or ""), self.warnings)
 
     def discard(self) -> None:
         """Removes what was staged, if it was not put into place."""
-        if self._staged is not None:
-            self._staged.discard()
-            self._staged = None
-        if self._staged_levels is not None:
-            self._staged_levels.discard()
-            self._staged_levels = None
+        for staged in (*self._staged, *self._staged_levels):
+            staged.discard()
+        self._staged.clear()
+        self._staged_levels.clear()
 
     def _choose_wrap(self, extensions: Sequence[str]) -> tuple[str, str]:
         wrap = self._settings.wrap
@@ -342,7 +450,10 @@ class Bake:
         return low, high
 
     def _summary(self, names: Sequence[str]) -> str:
-        parts = [f"Baked '{self.image_name}' with {FILTERS[self._settings.filter].label}"]
+        baked = f"Baked '{self.image_name}'"
+        if self._content not in {"color", "data"}:
+            baked += f" as {CONTENTS[self._content].label}"
+        parts = [f"{baked} with {FILTERS[self._settings.filter].label}"]
         if self._surfaces:
             parts.append(f"over {_count(set(self._objects), 'object')}")
             if self._settings.use_frames:
@@ -350,8 +461,8 @@ class Bake:
         results = []
         if names:
             results.append(_count(names, "level image"))
-        if self._target is not None:
-            results.append(f"'{self._target}'")
+        targets = (self._target, self._roughness_target)
+        results += [f"'{target}'" for target in targets if target is not None]
         parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
         return " ".join(parts)
 
@@ -374,6 +485,7 @@ class TiledBake:
         found: meshes.ImageSurfaces,
         settings: Settings,
         targets: Sequence[Path],
+        content: str,
     ) -> "TiledBake":
         """Makes a bake of each tile that some of the surface lies in.
 
@@ -384,6 +496,7 @@ class TiledBake:
             found: The surfaces on all of the tiles.
             settings: What to bake.
             targets: The file of each tile; empty for none.
+            content: What the image holds: a key of `CONTENTS`, other than "auto".
 
         Raises:
             ValueError: The surface lies in none of the tiles.
@@ -401,7 +514,8 @@ class TiledBake:
             if area == 0 and settings.filter not in TEXTURE_SPACE_FILTERS:
                 warnings.append(f"tile {number} is left out: no surface lies in it")
                 continue
-            bakes.append(Bake(picture, inside, settings, targets[index] if targets else None))
+            target = targets[index] if targets else None
+            bakes.append(Bake(picture, inside, settings, target, content))
         if not bakes:
             raise ValueError(
                 f"image '{image.name}': no surface lies in its tiles, {listed(map(str, numbers))}"
@@ -516,6 +630,37 @@ def _check_levels(picture: Picture, levels: int) -> None:
     full = max(width, height).bit_length()
     if levels > full:
         raise ValueError(f"levels: found {levels}; an image of {width} x {height} has 1 to {full}")
+
+
+def _read_roughness(
+    settings: Settings, content: str, picture: Picture
+) -> tuple[contents.Roughness | None, Path | None]:
+    """Returns the roughness of a normal map, and the file to write it to."""
+    if not settings.roughness:
+        if settings.roughness_filepath:
+            raise ValueError("roughness file: needs the name of a roughness image, found none")
+        return None, None
+    if content != "normal":
+        if settings.content == "auto":
+            return None, None
+        raise ValueError(
+            f"roughness: found '{settings.roughness}' with the content '{content}'; it is for "
+            f"normal maps only"
+        )
+    if not settings.use_images and not settings.roughness_filepath:
+        raise ValueError(
+            "nothing to write the roughness to: neither level images nor a roughness file are "
+            "asked for"
+        )
+    target = None
+    if settings.roughness_filepath:
+        target = files.check_target(settings.roughness_filepath)
+        if settings.filepath and target == files.check_target(settings.filepath):
+            raise ValueError(f"roughness file: '{target}' is the file of the normal map")
+    rough = images.read(images.find(settings.roughness))
+    contents.check_roughness(picture, rough)
+    linear = images.scene_linear(rough)
+    return contents.Roughness(rough, linear, settings.roughness_channel), target
 
 
 def _go_on(progress: Progress, fraction: float) -> None:

@@ -30,6 +30,7 @@ _TABLES = (
     _table("filters", bake.FILTERS),
     _table("wrap modes", bake.WRAPS | bake.WRAPS_V),
     _table("value ranges", bake.BOUNDS),
+    _table("contents", bake.CONTENTS),
 )
 _BAKE_NOTES = """\
 Without --image, the image that the meshes use is baked; name it where they use several. A picture
@@ -115,6 +116,13 @@ def _add_bake(commands: Any) -> None:
         ("wrap", bake.WRAPS, "MODE", "what lies outside of the image along u"),
         ("wrap-v", bake.WRAPS_V, "MODE", "the same along v"),
         ("bounds", bake.BOUNDS, "RANGE", "the values that texels of a level may have"),
+        ("content", bake.CONTENTS, "CONTENT", "what the image holds"),
+        (
+            "roughness-channel",
+            bake.ROUGHNESS_CHANNELS,
+            "CHANNEL",
+            "where the roughness image holds roughness",
+        ),
     ):
         default = getattr(defaults, flag.replace("-", "_"))
         parser.add_argument(
@@ -130,6 +138,26 @@ def _add_bake(commands: Any) -> None:
         type=_count,
         default=defaults.levels,
         help="how many levels to make, the image itself included; 0 makes all (default: 0)",
+    )
+    parser.add_argument(
+        "--threshold",
+        metavar="ALPHA",
+        type=_alpha,
+        default=defaults.threshold,
+        help="the alpha from which on a cut-out is shown; above 0, at most 1 (default: 0.5)",
+    )
+    parser.add_argument(
+        "--roughness",
+        metavar="NAME",
+        default="",
+        help="an image that gets what the levels of a normal map lose: its name in the file, or "
+        "the path of a picture file",
+    )
+    parser.add_argument(
+        "--roughness-output",
+        metavar="FILE",
+        default="",
+        help="a tiled, mip-mapped file of the roughness to write",
     )
     parser.add_argument(
         "--threads",
@@ -184,6 +212,18 @@ def _frames(text: str) -> tuple[int, int, int]:
     return int(found[1]), int(found[2]), int(found[3] or 1)
 
 
+def _alpha(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value <= 1.0:
+        raise argparse.ArgumentTypeError(
+            f"found '{text}'; a number above 0 and at most 1 is needed"
+        )
+    return value
+
+
 def _bake(options: argparse.Namespace) -> None:
     extension = os.path.splitext(options.file)[1].lower()
     if extension not in _EXTENSIONS:
@@ -192,6 +232,12 @@ def _bake(options: argparse.Namespace) -> None:
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
     if not options.save and not options.output:
         options.usage_error("nothing to write: give --output FILE or --save")
+    path = os.path.abspath(options.file)
+    objects = _chosen(_load(path, extension), options.object)
+    if options.save:
+        files.check_writable(Path(path))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    image, is_picture = _image(options.image, objects, options.content)
     settings = bake.Settings(
         filter=options.filter,
         wrap=options.wrap,
@@ -203,18 +249,17 @@ def _bake(options: argparse.Namespace) -> None:
         threads=options.threads,
         use_subdivision_limit=options.use_subdivision_limit,
         importance=options.importance,
+        content=options.content,
+        threshold=options.threshold,
+        roughness=_roughness_name(options.roughness),
+        roughness_channel=options.roughness_channel,
+        roughness_filepath=options.roughness_output,
     )
     if options.frames:
         start, end, step = options.frames
         settings = replace(
             settings, use_frames=True, frame_start=start, frame_end=end, frame_step=step
         )
-    path = os.path.abspath(options.file)
-    objects = _chosen(_load(path, extension), options.object)
-    if options.save:
-        files.check_writable(Path(path))
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    image, is_picture = _image(options.image, objects)
     progress = _ProgressLine()
     try:
         outcome = bake.bake(
@@ -263,16 +308,34 @@ def _chosen(objects: list[bpy.types.Object], names: Sequence[str]) -> list[bpy.t
     return [by_name[name] for name in names] if names else objects
 
 
-def _image(name: str | None, objects: Sequence[bpy.types.Object]) -> tuple[bpy.types.Image, bool]:
+def _image(
+    name: str | None, objects: Sequence[bpy.types.Object], content: str
+) -> tuple[bpy.types.Image, bool]:
     """Returns the image to bake, and whether it is a picture file from the command line."""
     if name is None:
         return _only_image(objects), False
     if name not in bpy.data.images and os.path.isfile(name):
-        try:
-            return bpy.data.images.load(os.path.abspath(name), check_existing=True), True
-        except RuntimeError as error:
-            raise OSError(f"--image: cannot load '{name}': {str(error).strip()}") from error
+        return _loaded("--image", name, is_data=content in {"normal", "data"}), True
     return images.find(name), False
+
+
+def _roughness_name(name: str) -> str:
+    """Returns the name of the image; a picture file is loaded as data."""
+    if not name or name in bpy.data.images or not os.path.isfile(name):
+        return name
+    return _loaded("--roughness", name, is_data=True).name
+
+
+def _loaded(option: str, path: str, *, is_data: bool) -> bpy.types.Image:
+    """Loads a picture file; one that the .blend file uses already stays as it is there."""
+    before = set(bpy.data.images)
+    try:
+        image = bpy.data.images.load(os.path.abspath(path), check_existing=True)
+    except RuntimeError as error:
+        raise OSError(f"{option}: cannot load '{path}': {str(error).strip()}") from error
+    if is_data and image not in before:
+        image.colorspace_settings.is_data = True
+    return image
 
 
 def _only_image(objects: Sequence[bpy.types.Object]) -> bpy.types.Image:

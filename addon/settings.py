@@ -1,7 +1,14 @@
 """The settings of the operators: defined once, for an operator and for the scene."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, IntProperty, PointerProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    IntProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 from . import bake
 from .bake import Choice
@@ -37,6 +44,40 @@ class BakeProperties:
         description="The range, in scene-linear values, that the texels of a level stay in",
         items=_items(bake.BOUNDS),
         default=bake.Settings.bounds,
+    )
+    content: EnumProperty(
+        name="Content",
+        description="What the image holds, which decides how its levels are made",
+        items=_items(bake.CONTENTS),
+        default=bake.Settings.content,
+    )
+    threshold: FloatProperty(
+        name="Threshold",
+        description="The alpha from which on the material shows the surface",
+        subtype="FACTOR",
+        default=bake.Settings.threshold,
+        min=0.001,
+        max=1.0,
+    )
+    roughness: StringProperty(
+        name="Roughness",
+        description="An image of the roughness of the same surface, whose levels get what those of "
+        "the normal map lose. Leave empty for none",
+        default=bake.Settings.roughness,
+    )
+    roughness_channel: EnumProperty(
+        name="Channel",
+        description="Where the roughness image holds roughness; its other channels are filtered "
+        "as data",
+        items=_items(bake.ROUGHNESS_CHANNELS),
+        default=bake.Settings.roughness_channel,
+    )
+    roughness_filepath: StringProperty(
+        name="Roughness File",
+        description="A tiled, mip-mapped file of the roughness to write: .exr, .tif or .tx; leave "
+        "empty for none",
+        subtype="FILE_PATH",
+        default=bake.Settings.roughness_filepath,
     )
     levels: IntProperty(
         name="Levels",
@@ -96,7 +137,14 @@ class BakeProperties:
         """Returns the values, with the file's path made absolute."""
         values = {name: getattr(self, name) for name in BakeProperties.__annotations__}
         values["filepath"] = bpy.path.abspath(self.filepath)
+        values["roughness_filepath"] = bpy.path.abspath(self.roughness_filepath)
+        if not self._shows_roughness():
+            # What an earlier choice has left in fields that are not shown.
+            values["roughness"] = values["roughness_filepath"] = ""
         return bake.Settings(**values)
+
+    def _shows_roughness(self) -> bool:
+        return self.content == "normal" or (self.content == "auto" and bool(self.roughness))
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
         """Draws the properties."""
@@ -106,7 +154,17 @@ class BakeProperties:
         column = layout.column(align=True)
         column.prop(self, "wrap", text="Wrap U")
         column.prop(self, "wrap_v")
-        layout.prop(self, "bounds")
+        layout.prop(self, "content")
+        if self.content == "cutout":
+            layout.prop(self, "threshold")
+        if self._shows_roughness():
+            layout.prop_search(self, "roughness", bpy.data, "images")
+        has_roughness = self._shows_roughness() and self.roughness
+        if has_roughness:
+            layout.prop(self, "roughness_channel")
+        row = layout.row()
+        row.active = self.content != "normal"
+        row.prop(self, "bounds")
         layout.prop(self, "levels")
         layout.separator()
         layout.prop(self, "importance")
@@ -120,6 +178,8 @@ class BakeProperties:
         layout.separator()
         layout.prop(self, "use_images")
         layout.prop(self, "filepath")
+        if has_roughness:
+            layout.prop(self, "roughness_filepath")
 
 
 def copy_bake_properties(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct) -> None:

@@ -2,9 +2,12 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 from mathutils import Euler, Matrix
+
+_FACTORS = frozenset({"Fac", "Factor"})
 
 Groups = tuple[bpy.types.Node, ...]
 
@@ -64,6 +67,64 @@ def images_of(material: bpy.types.Material) -> list[bpy.types.Image]:
         return []
     nodes = _image_nodes(material.node_tree, ())
     return list(dict.fromkeys(node.image for node, _ in nodes))
+
+
+def feeds_normal_map(material: bpy.types.Material, image: bpy.types.Image) -> bool:
+    """Tells whether a Normal Map node of a material gets its color from an image.
+
+    Reroutes, groups and nodes that change colors, such as those that turn green over, are followed.
+    """
+    if not material.use_nodes or material.node_tree is None:
+        return False
+    return any(
+        _comes_from(node.inputs["Color"], groups, image, set())
+        for node, groups in _nodes_of_type(material.node_tree, (), "NORMAL_MAP")
+    )
+
+
+def _comes_from(
+    socket: bpy.types.NodeSocket, groups: Groups, image: bpy.types.Image, seen: set[Any]
+) -> bool:
+    link = _link_into(socket)
+    if link is None:
+        return False
+    node, source = link.from_node, link.from_socket
+    place = (groups, node, source)
+    if place in seen:
+        return False
+    seen.add(place)
+    if node.type == "TEX_IMAGE":
+        return node.image == image and not node.mute
+    if node.type == "GROUP" and node.node_tree is not None and not node.mute:
+        outputs = [
+            inner
+            for inner in node.node_tree.nodes
+            if inner.type == "GROUP_OUTPUT" and inner.is_active_output
+        ]
+        inside = (*groups, node)
+        return any(
+            _comes_from(_socket(output.inputs, source.identifier), inside, image, seen)
+            for output in outputs
+        )
+    if node.type == "GROUP_INPUT" and groups:
+        return _comes_from(_socket(groups[-1].inputs, source.identifier), groups[:-1], image, seen)
+    # What a factor holds is no normals, and other textures make their colors themselves.
+    inputs = [] if node.type.startswith("TEX_") else node.inputs
+    return any(
+        _comes_from(input_, groups, image, seen) for input_ in inputs if input_.name not in _FACTORS
+    )
+
+
+def _nodes_of_type(
+    tree: bpy.types.NodeTree, groups: Groups, node_type: str
+) -> Iterator[tuple[bpy.types.Node, Groups]]:
+    for node in tree.nodes:
+        if node.mute:
+            continue
+        if node.type == node_type:
+            yield node, groups
+        elif node.type == "GROUP" and node.node_tree is not None:
+            yield from _nodes_of_type(node.node_tree, (*groups, node), node_type)
 
 
 def _image_nodes(

@@ -11,7 +11,9 @@ namespace py = pybind11;
 namespace prefilter::python {
 
 void bind_color(py::module_& m);
+void bind_cutout(py::module_& m);
 void bind_mipmap(py::module_& m);
+void bind_normals(py::module_& m);
 void bind_surface(py::module_& m);
 
 ImageView view_of(const Array<float>& array) {
@@ -75,6 +77,8 @@ PYBIND11_MODULE(_native, m) {
     }
   });
   prefilter::python::bind_color(m);
+  prefilter::python::bind_cutout(m);
+  prefilter::python::bind_normals(m);
   prefilter::python::bind_surface(m);
   prefilter::python::bind_mipmap(m);
 }

@@ -161,3 +161,26 @@ def test_frames_importance_and_instances(blend, tmp_path):
 def test_frames_that_are_none(blend, tmp_path, frames):
     result = run("bake", blend, "--output", tmp_path / "no.exr", f"--frames={frames}")
     assert_fails(result, "--frames", "START:END", status=2)
+
+
+def test_normal_map_and_roughness_from_picture_files(obj_and_picture, tmp_path):
+    obj, picture = obj_and_picture
+    rough = tmp_path / "rough.png"
+    rough.write_bytes(picture.read_bytes())
+    result = run(
+        *("bake", obj, "--image", picture, "--content", "normal", "--output", tmp_path / "n.tif"),
+        *("--roughness", rough, "--roughness-channel", "green"),
+        *("--roughness-output", tmp_path / "r.tif"),
+    )
+    assert result.returncode == 0, result.stderr
+    assert "warning" not in result.stderr
+    assert "as Normal Map" in result.stdout
+    level = oiio.ImageBuf(str(tmp_path / "n.tif"), 0, 2).get_pixels("float")
+    np.testing.assert_allclose(np.linalg.norm(2 * level - 1, axis=2), 1, atol=0.01)
+    assert oiio.ImageBuf(str(tmp_path / "r.tif"), 0, 2).spec().width == 4
+
+
+def test_wrong_thresholds_exit_with_2(blend):
+    for threshold in ("0", "1.5", "nan", "much"):
+        assert_fails(run("bake", blend, "--save", "--threshold", threshold), threshold, status=2)
+    assert_fails(run("bake", blend, "--save", "--content", "bumps"), "bumps", status=2)

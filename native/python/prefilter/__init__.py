@@ -7,7 +7,9 @@ message that names the argument, what was found and what is allowed.
 
 from ._native import Cancelled
 from .color import to_linear, to_srgb
+from .cutout import keep_coverage
 from .mipmap import mipmap_error, mipmaps, seam_contrast
+from .normals import normal_mipmaps
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
 
@@ -17,8 +19,10 @@ __all__ = [
     "Cancelled",
     "Surface",
     "fill_unused",
+    "keep_coverage",
     "mipmap_error",
     "mipmaps",
+    "normal_mipmaps",
     "seam_contrast",
     "texel_weights",
     "to_linear",

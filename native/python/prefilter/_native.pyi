@@ -57,6 +57,15 @@ def subdivide(
 ) -> Surface: ...
 def decode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
 def encode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
+def covered_share(
+    alpha: npt.NDArray[np.float32],
+    weights: npt.NDArray[np.float32],
+    samples: int,
+    threshold: float,
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> float: ...
 def mipmaps(
     image: npt.NDArray[np.float32],
     surfaces: list[Surface],
@@ -99,6 +108,14 @@ def fill_unused(
     image: npt.NDArray[np.float32],
     surfaces: list[Surface],
     wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
+def lookup_means(
+    normals: npt.NDArray[np.float32],
+    roughness: npt.NDArray[np.float32],
+    wrap: tuple[str, str],
+    least_length: float,
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float32]: ...

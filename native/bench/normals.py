@@ -1,0 +1,88 @@
+"""Measures by how many degrees the levels of normal maps are off, over gathered models.
+
+Usage: blender --background --python-exit-code 1 --python native/bench/normals.py -- [MODEL...]
+       (--data FOLDER names the folder of the models)
+
+The models have no normal maps, so each gets one from its picture: brightness for height. Compared
+are the normals of lookups, of length 1 as shaders make them, at random points of the surface. Ends
+with status 1 if a level of "pam-bilinear" is farther off than that of "box".
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import quality
+
+FILTERS = ("box", "pam-bilinear")
+LEVELS = range(1, 7)
+POINTS = 400_000
+STEEPNESS = 0.3  # The standard deviation of the slopes.
+
+
+def main() -> None:
+    """Measures the models of the command line."""
+    parser = argparse.ArgumentParser(prog="normals.py", description=__doc__.splitlines()[0])
+    models = [*quality.REQUIRED_MODELS, *quality.FURTHER_MODELS]
+    parser.add_argument("models", nargs="*", default=models)
+    data = Path(__file__).resolve().parents[3] / "shared" / "data" / "textured"
+    parser.add_argument("--data", type=Path, default=data)
+    options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
+    holds = True
+    print(f"| model | filter | {' | '.join(f'level {level}' for level in LEVELS)} |")
+    print("| --- " * (len(LEVELS) + 2) + "|")
+    for model in options.models:
+        for subject in quality.load(options.data / model, "auto"):
+            errors = measured(subject)
+            for name in FILTERS:
+                cells = " | ".join(f"{error:.2f}" for error in errors[name])
+                print(f"| {subject.name} | {name} | {cells} |", flush=True)
+            holds &= bool((errors["pam-bilinear"] < errors["box"]).all())
+    print("holds" if holds else "DOES NOT HOLD")
+    if not holds:
+        raise SystemExit(1)
+
+
+def measured(subject: quality.Subject) -> dict[str, NDArray[np.float64]]:
+    """Returns the root mean square of the angle, in degrees, for each filter and level."""
+    wrap = subject.wrap
+    normals = bumps(subject.image)
+    points = quality.random_points(subject, POINTS)
+    shown = unit(2 * quality.lookup(normals, points, wrap) - 1)
+    errors = {}
+    for name in FILTERS:
+        made = prefilter.normal_mipmaps(normals, subject.surfaces, filter=name, wrap=wrap)
+        squares = []
+        for level in LEVELS:
+            # Levels are kept in bytes.
+            stored = np.round(made[level] * 255).astype(np.float32) / 255
+            found = unit(2 * quality.lookup(stored, points, wrap) - 1)
+            cosines = np.clip((shown * found).sum(axis=1), -1, 1)
+            squares.append((np.degrees(np.arccos(cosines)) ** 2).mean())
+        errors[name] = np.sqrt(squares)
+    return errors
+
+
+def bumps(image: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Returns an encoded normal map whose heights are the brightness of an image."""
+    height = image[..., :3].astype(float).mean(axis=2)
+    slopes = np.stack(
+        [(np.roll(height, 1, axis) - np.roll(height, -1, axis)) / 2 for axis in (1, 0)], axis=2
+    )
+    slopes *= STEEPNESS / slopes.std()
+    vectors = unit(np.concatenate([slopes, np.ones((*height.shape, 1))], axis=2))
+    return np.round((vectors + 1) / 2 * 255).astype(np.float32) / 255
+
+
+def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the vectors with length 1."""
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
+
+
+main()

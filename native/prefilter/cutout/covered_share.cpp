@@ -1,0 +1,122 @@
+#include "prefilter/cutout/covered_share.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+namespace {
+
+// Where the lookups of one axis read: texels `first` and `first + 1`, the second by `fraction`.
+struct Lookup {
+  int first;
+  float fraction;
+};
+
+std::vector<Lookup> lookups(int cells, int samples, int texels) {
+  const std::int64_t count = static_cast<std::int64_t>(cells) * samples;
+  std::vector<Lookup> result(static_cast<std::size_t>(count));
+  for (std::int64_t i = 0; i < count; ++i) {
+    const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(count) * texels - 0.5;
+    const double first = std::floor(at);
+    result[static_cast<std::size_t>(i)] = {static_cast<int>(first), static_cast<float>(at - first)};
+  }
+  return result;
+}
+
+// Alpha with one more texel around it, as the wrap modes say, so that lookups need not ask.
+Image framed(const ImageView& alpha, WrapModes wrap) {
+  Image result(alpha.width + 2, alpha.height + 2, 1);
+  for (int y = 0; y < result.height; ++y) {
+    const int from_y = wrap_index(y - 1, alpha.height, wrap.v);
+    for (int x = 0; x < result.width; ++x) {
+      const int from_x = wrap_index(x - 1, alpha.width, wrap.u);
+      const float value = from_x < 0 || from_y < 0 ? 0.0F : *alpha.texel(from_x, from_y);
+      *result.texel(x, y) = std::isfinite(value) ? value : 0.0F;
+    }
+  }
+  return result;
+}
+
+void check(const ImageView& alpha, const ImageView& weights, int samples) {
+  if (alpha.channels != 1 || weights.channels != 1) {
+    throw_invalid("alpha, weights: " + std::to_string(alpha.channels) + " and " +
+                  std::to_string(weights.channels) + " channels; 1 each is needed");
+  }
+  if (samples < 1) {
+    throw_invalid("samples: " + std::to_string(samples) + "; at least 1 is needed");
+  }
+}
+
+}  // namespace
+
+double covered_share(const ImageView& alpha, const ImageView& weights, int samples, float threshold,
+                     WrapModes wrap, const Progress& progress, int threads) {
+  check(alpha, weights, samples);
+  const Image texels = framed(alpha, wrap);
+  const std::vector<Lookup> columns = lookups(weights.width, samples, alpha.width);
+  const std::vector<Lookup> rows = lookups(weights.height, samples, alpha.height);
+  const auto per_row = static_cast<std::size_t>(weights.height);
+  std::vector<double> kept(per_row);
+  std::vector<double> all(per_row);
+
+  parallel_for(weights.height, threads, progress, [&](std::int64_t index) {
+    const int cell_y = static_cast<int>(index);
+    const Lookup* const y_from = rows.data() + index * samples;
+    const Lookup* const y_to = y_from + samples;
+    double kept_here = 0.0;
+    double all_here = 0.0;
+    for (int cell_x = 0; cell_x < weights.width; ++cell_x) {
+      const double weight = *weights.texel(cell_x, cell_y);
+      if (!(weight > 0.0)) continue;
+      all_here += weight;
+      const Lookup* const x_from = columns.data() + static_cast<std::int64_t>(cell_x) * samples;
+      const Lookup* const x_to = x_from + samples;
+
+      // Most cells are read above the threshold everywhere, or nowhere.
+      float low = *texels.texel(x_from->first + 1, y_from->first + 1);
+      float high = low;
+      for (int y = y_from->first + 1; y <= (y_to - 1)->first + 2; ++y) {
+        for (int x = x_from->first + 1; x <= (x_to - 1)->first + 2; ++x) {
+          low = std::min(low, *texels.texel(x, y));
+          high = std::max(high, *texels.texel(x, y));
+        }
+      }
+      if (high < threshold) continue;
+      if (low >= threshold) {
+        kept_here += weight;
+        continue;
+      }
+
+      int hits = 0;
+      for (const Lookup* y = y_from; y != y_to; ++y) {
+        for (const Lookup* x = x_from; x != x_to; ++x) {
+          const float* const below = texels.texel(x->first + 1, y->first + 1);
+          const float* const above = below + texels.width;
+          const float at_below = below[0] + (below[1] - below[0]) * x->fraction;
+          const float at_above = above[0] + (above[1] - above[0]) * x->fraction;
+          hits += at_below + (at_above - at_below) * y->fraction >= threshold ? 1 : 0;
+        }
+      }
+      kept_here += weight * hits / (static_cast<double>(samples) * samples);
+    }
+    kept[static_cast<std::size_t>(index)] = kept_here;
+    all[static_cast<std::size_t>(index)] = all_here;
+  });
+
+  double kept_sum = 0.0;
+  double all_sum = 0.0;
+  for (std::size_t y = 0; y < per_row; ++y) {
+    kept_sum += kept[y];
+    all_sum += all[y];
+  }
+  if (!(all_sum > 0.0)) throw_invalid("weights: none is positive; at least one is needed");
+  return kept_sum / all_sum;
+}
+
+}  // namespace prefilter
