@@ -4,7 +4,8 @@ The operator and the command are two ways to call this.
 """
 
 import re
-from collections.abc import Callable, Iterable, Sequence, Sized
+from collections.abc import Callable, Iterable, Iterator, Sequence, Sized
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -146,6 +147,7 @@ class Bake:
         depsgraph: bpy.types.Depsgraph,
         *,
         all_faces: bool = False,
+        needs_surface: bool = False,
     ) -> "Bake":
         """Copies everything that the bake needs out of Blender.
 
@@ -155,6 +157,7 @@ class Bake:
             settings: What to bake.
             depsgraph: The evaluated dependency graph.
             all_faces: See `meshes.image_surfaces`.
+            needs_surface: Whether a surface is needed for any filter.
 
         Raises:
             ValueError: There is nothing to bake, or the image or a mesh is unfit.
@@ -166,7 +169,8 @@ class Bake:
         picture = images.read(image)
         _check_levels(picture, settings.levels)
         found = meshes.image_surfaces(objects, image, depsgraph, all_faces=all_faces)
-        if not found.surfaces and settings.filter not in TEXTURE_SPACE_FILTERS:
+        needs_surface = needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
+        if needs_surface and not found.surfaces:
             raise ValueError(_no_surface(image, objects, found.problems))
         return cls(picture, found, settings, target)
 
@@ -174,6 +178,72 @@ class Bake:
     def image_name(self) -> str:
         """The name of the image that is baked."""
         return self._picture.name
+
+    @property
+    def picture(self) -> Picture:
+        """The pixels of the image that is baked."""
+        return self._picture
+
+    @property
+    def settings(self) -> Settings:
+        """What to bake."""
+        return self._settings
+
+    @property
+    def surfaces(self) -> Sequence[prefilter.Surface]:
+        """The surfaces that the image is mapped on."""
+        return self._surfaces
+
+    @property
+    def objects(self) -> Sequence[str]:
+        """The name of the object that each surface comes from."""
+        return self._objects
+
+    @property
+    def wrap(self) -> tuple[str, str]:
+        """What lookups read outside of the image along u and v."""
+        return self._wrap
+
+    def linear(self, progress: Progress) -> FloatArray:
+        """Returns the image's scene-linear values; raises what `compute` does."""
+        return images.scene_linear(self._picture, partial(_go_on, progress, 0.0))
+
+    def filtered(
+        self,
+        linear: FloatArray,
+        filter: str,
+        progress: Progress,
+        *,
+        levels: int | None = None,
+    ) -> list[FloatArray]:
+        """Returns scene-linear levels with any filter; raises what `compute` does.
+
+        Args:
+            linear: What `linear` returned.
+            filter: A key of `FILTERS`.
+            progress: Called with the fraction done.
+            levels: How many, the image itself included; None for all.
+        """
+        with self.naming_objects():
+            return prefilter.mipmaps(
+                linear,
+                self._surfaces or None,
+                filter=filter,
+                wrap=self._wrap,
+                bounds=self._bounds(linear),
+                levels=levels,
+                premultiplied=not self._picture.alpha_is_straight,
+                progress=progress,
+                threads=self._settings.threads,
+            )
+
+    @contextmanager
+    def naming_objects(self) -> Iterator[None]:
+        """Puts objects in the place of surfaces in the library's messages."""
+        try:
+            yield
+        except ValueError as error:
+            raise ValueError(_naming_objects(str(error), self._objects)) from error
 
     def compute(self, progress: Progress) -> None:
         """Filters, encodes and stages the file.
@@ -184,21 +254,13 @@ class Bake:
             OSError: The file cannot be written.
         """
         settings = self._settings
-        linear = images.scene_linear(self._picture, partial(_go_on, progress, 0.0))
-        try:
-            levels = prefilter.mipmaps(
-                linear,
-                self._surfaces or None,
-                filter=settings.filter,
-                wrap=self._wrap,
-                bounds=self._bounds(linear),
-                levels=None if self._target is not None else settings.levels or None,
-                premultiplied=not self._picture.alpha_is_straight,
-                progress=lambda fraction: progress(_FILTERED * fraction),
-                threads=settings.threads,
-            )
-        except ValueError as error:
-            raise ValueError(_naming_objects(str(error), self._objects)) from error
+        linear = self.linear(progress)
+        levels = self.filtered(
+            linear,
+            settings.filter,
+            lambda fraction: progress(_FILTERED * fraction),
+            levels=None if self._target is not None else settings.levels or None,
+        )
         check = partial(_go_on, progress, _FILTERED)
         stored = [images.encoded(self._picture, level, check) for level in levels[1:]]
         stored.insert(0, self._picture.stored)

@@ -4,6 +4,7 @@ import argparse
 import os
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,15 @@ import bpy
 from . import bake
 from .bake import Choice
 from .bridge import files, images, meshes
+from .view import errors, figure
 from .wording import listed
 
 _PROGRAM = "blender --background --command prefilter"
 
 _BAKE_HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
+
+
+_PLOT_HELP = "plot the error of filters over the mip value, on the meshes that use an image"
 
 
 def _table(title: str, choices: dict[str, Choice]) -> str:
@@ -37,6 +42,14 @@ examples:
   prefilter bake scene.blend --image Wood --save
   prefilter bake spot.obj --image spot.png --output spot.exr
   prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif"""
+
+_PLOT_NOTES = """\
+The figure is that of the dissertation (7.7): solid lines are the root mean square errors over the
+surface at each mip value, dashed ones those over all mip values. The image is chosen as for bake.
+
+examples:
+  prefilter plot spot.obj --image spot.png --output error.png
+  prefilter plot scene.blend --image Wood --filters box pam-bilinear --table error.csv"""
 
 _IMPORTERS: dict[str, Callable[[str], Any]] = {
     ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
@@ -82,6 +95,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_bake(commands)
+    _add_plot(commands)
     return parser
 
 
@@ -93,19 +107,7 @@ def _add_bake(commands: Any) -> None:
         epilog="\n\n".join([*_TABLES, _BAKE_NOTES]),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", metavar="FILE", help="a .blend, .glb, .gltf or .obj file")
-    parser.add_argument(
-        "--object",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="a mesh object to bake for; repeat for several (default: all that use the image)",
-    )
-    parser.add_argument(
-        "--image",
-        metavar="NAME",
-        help="the image: its name in the file, or the path of a picture file",
-    )
+    _add_scene(parser)
     defaults = bake.Settings()
     for flag, choices, metavar, text in (
         ("filter", bake.FILTERS, "FILTER", "how a texel of a level is made"),
@@ -149,6 +151,60 @@ def _add_bake(commands: Any) -> None:
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
 
+def _add_scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="a .blend, .glb, .gltf or .obj file")
+    parser.add_argument(
+        "--object",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="a mesh object that counts; repeat for several (default: all that use the image)",
+    )
+    parser.add_argument(
+        "--image",
+        metavar="NAME",
+        help="the image: its name in the file, or the path of a picture file",
+    )
+
+
+def _add_plot(commands: Any) -> None:
+    parser = commands.add_parser(
+        "plot",
+        help=_PLOT_HELP,
+        description=f"{_PLOT_HELP[0].upper()}{_PLOT_HELP[1:]}.",
+        epilog="\n\n".join([*_TABLES, _PLOT_NOTES]),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    _add_scene(parser)
+    parser.add_argument(
+        "--filters",
+        metavar="FILTER",
+        nargs="+",
+        choices=bake.FILTERS,
+        default=list(errors.DEFAULT_FILTERS),
+        help=f"the filters to compare (default: {' '.join(errors.DEFAULT_FILTERS)})",
+    )
+    defaults = bake.Settings()
+    for flag, choices, metavar, text in (
+        ("wrap", bake.WRAPS, "MODE", "what lies outside of the image along u"),
+        ("wrap-v", bake.WRAPS_V, "MODE", "the same along v"),
+        ("bounds", bake.BOUNDS, "RANGE", "the values that texels of a level may have"),
+    ):
+        default = getattr(defaults, flag.replace("-", "_"))
+        parser.add_argument(
+            f"--{flag}",
+            choices=choices,
+            default=default,
+            metavar=metavar,
+            help=f"{text} (default: {default})",
+        )
+    parser.add_argument("--output", metavar="FILE", default="", help="a .png file to write")
+    parser.add_argument(
+        "--table", metavar="FILE", default="", help="a .csv file to write the values to"
+    )
+    parser.set_defaults(execute=_plot, usage_error=parser.error)
+
+
 def _count(text: str) -> int:
     value = int(text) if text.isdecimal() else -1
     if value < 0:
@@ -156,10 +212,58 @@ def _count(text: str) -> int:
     return value
 
 
-def _bake(options: argparse.Namespace) -> None:
+def _checked_extension(options: argparse.Namespace) -> str:
     extension = os.path.splitext(options.file)[1].lower()
     if extension not in _EXTENSIONS:
         options.usage_error(f"FILE: found '{options.file}'; allowed are {', '.join(_EXTENSIONS)}")
+    return extension
+
+
+def _plot(options: argparse.Namespace) -> None:
+    extension = _checked_extension(options)
+    if not options.output and not options.table:
+        options.usage_error("nothing to write: give --output FILE or --table FILE")
+    targets = [
+        files.check_plain_target(path, ending)
+        for path, ending in ((options.output, ".png"), (options.table, ".csv"))
+        if path
+    ]
+    objects = _chosen(_load(os.path.abspath(options.file), extension), options.object)
+    image, is_picture = _image(options.image, objects)
+    filters = list(dict.fromkeys(options.filters))
+    source = bake.Bake.read(
+        image,
+        objects,
+        bake.Settings(wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds),
+        bpy.context.evaluated_depsgraph_get(),
+        all_faces=is_picture,
+        needs_surface=True,
+    )
+    progress = _ProgressLine()
+    try:
+        curves = errors.measure(source, filters, progress)
+    finally:
+        progress.end()
+    staged = []
+    try:
+        for target in targets:
+            if target.suffix.lower() == ".png":
+                write = partial(images.save_png, pixels=figure.draw(curves))
+            else:
+                write = partial(Path.write_text, data=curves.table())
+            staged.append(files.stage_with(target, write))
+        for file in staged:
+            file.commit()
+    finally:
+        for file in staged:
+            file.discard()
+    for warning in source.warnings:
+        print(f"prefilter: warning: {warning}", file=sys.stderr)
+    print(curves.summary())
+
+
+def _bake(options: argparse.Namespace) -> None:
+    extension = _checked_extension(options)
     if options.save and extension != ".blend":
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
     if not options.save and not options.output:

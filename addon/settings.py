@@ -7,7 +7,8 @@ from . import bake
 from .bake import Choice
 
 
-def _items(choices: dict[str, Choice]) -> list[tuple[str, str, str]]:
+def items(choices: dict[str, Choice]) -> list[tuple[str, str, str]]:
+    """Returns the items of an enumeration."""
     return [(key, choice.label, choice.description) for key, choice in choices.items()]
 
 
@@ -17,25 +18,25 @@ class BakeProperties:
     filter: EnumProperty(
         name="Filter",
         description="How a texel of a level is made from the image",
-        items=_items(bake.FILTERS),
+        items=items(bake.FILTERS),
         default=bake.Settings.filter,
     )
     wrap: EnumProperty(
         name="Wrap",
         description="What lies outside of the image along U",
-        items=_items(bake.WRAPS),
+        items=items(bake.WRAPS),
         default=bake.Settings.wrap,
     )
     wrap_v: EnumProperty(
         name="V",
         description="What lies outside of the image along V",
-        items=_items(bake.WRAPS_V),
+        items=items(bake.WRAPS_V),
         default=bake.Settings.wrap_v,
     )
     bounds: EnumProperty(
         name="Value Range",
         description="The range, in scene-linear values, that the texels of a level stay in",
-        items=_items(bake.BOUNDS),
+        items=items(bake.BOUNDS),
         default=bake.Settings.bounds,
     )
     levels: IntProperty(
