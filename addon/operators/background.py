@@ -8,7 +8,7 @@ import bpy
 import prefilter
 
 from .. import bake
-from ..bridge import images
+from ..bridge import derived, images
 from ..jobs import Job
 
 Work = Callable[[bake.Progress], Any]
@@ -22,14 +22,16 @@ def read_source(
 
     Args:
         context: The context.
-        name: The image's name; empty for that of the editor.
+        name: The image's name; empty for that of the editor. Where the editor shows a picture about
+            an image, such as its error plot, that image is meant.
         settings: How the image wraps, and more.
         needs_surface: Whether a surface is needed whatever the filter.
 
     Raises:
         ValueError: There is no such image, or no surface.
     """
-    image = images.find(name) if name else getattr(context.space_data, "image", None)
+    shown = getattr(context.space_data, "image", None)
+    image = images.find(name) if name else derived.pictured(shown) or shown
     if image is None:
         raise ValueError("image: no name is given, and the editor shows no image")
     objects = [obj for obj in context.view_layer.objects if obj.select_get() or obj.mode == "EDIT"]

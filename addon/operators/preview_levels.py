@@ -7,7 +7,7 @@ from .. import bake
 from ..bridge import images
 from ..settings import items
 from ..view import preview
-from .background import BackgroundOperator, Work, read_source
+from .background import BackgroundOperator, Work, read_source, show_in_editor
 
 
 class PREFILTER_OT_preview_levels(BackgroundOperator, bpy.types.Operator):
@@ -40,13 +40,15 @@ class PREFILTER_OT_preview_levels(BackgroundOperator, bpy.types.Operator):
         needs_surface = self.compare not in bake.TEXTURE_SPACE_FILTERS
         source = read_source(context, self.image, settings, needs_surface=needs_surface)
         self.warn(source)
-        uid = images.find(source.image_name).session_uid
+        self._name = source.image_name
+        uid = images.find(self._name).session_uid
         filters = (source.settings.filter, self.compare)
         return lambda progress: preview.compute(source, uid, filters, progress)
 
     def finish(self, context: bpy.types.Context, result: preview.Preview) -> str:
         """Has the editors draw the levels."""
         preview.keep(result)
+        show_in_editor(context, images.find(self._name))
         context.window_manager.prefilter_view.use_preview = True
         preview.redraw()
         return f"Computed levels 0 to {result.last_level}"

@@ -20,7 +20,6 @@ class _Panel:
     bl_space_type = "IMAGE_EDITOR"
     bl_region_type = "UI"
     bl_category = "Prefilter"
-    bl_options = {"DEFAULT_CLOSED"}
 
 
 class PREFILTER_PT_preview(_Panel, bpy.types.Panel):
@@ -75,6 +74,7 @@ class PREFILTER_PT_error(_Panel, bpy.types.Panel):
     """The error plot."""
 
     bl_label = "Error Plot"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
@@ -89,6 +89,7 @@ class PREFILTER_PT_texel_use(_Panel, bpy.types.Panel):
     """The weights of texels, and what to do about unused ones."""
 
     bl_label = "Texel Use"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""

@@ -103,6 +103,25 @@ def session() -> Iterator[None]:
 
     yield from offscreen(preview, images["byte"])
 
+    for obj in bpy.data.objects:
+        obj.select_set(False)
+    inner = [(0.3 + 0.4 * u, 0.3 + 0.4 * v) for u, v in scenes.UNIT_SQUARE]
+    edited = scenes.quads("Inner", [inner])
+    edited.data.materials.append(bpy.data.materials["byte material"])
+    with bpy.context.temp_override(**override):
+        bpy.ops.object.mode_set(mode="EDIT")
+        bpy.ops.mesh.select_all(action="SELECT")
+    area.ui_type = "UV"
+    area.spaces.active.image = images["byte"]
+    with bpy.context.temp_override(**override):
+        bpy.ops.image.view_all(fit_view=True)
+    yield from shoot("byte.uv")
+    with bpy.context.temp_override(**override):
+        bpy.ops.object.mode_set(mode="OBJECT")
+    area.ui_type = "IMAGE_EDITOR"
+    area.spaces.active.image = images["byte"]
+    yield
+
     with bpy.context.temp_override(**override):
         bpy.ops.ed.undo_push(message="before")
         bpy.data.objects["byte"].location.x += 1
@@ -115,6 +134,8 @@ def session() -> Iterator[None]:
         bpy.ops.ed.undo()
     yield
     image = bpy.data.images["Byte"]
+    found["editor's image after undo"] = str(getattr(area.spaces.active.image, "name", None))
+    area.spaces.active.image = image
     found["kept after undo"] = preview.find(image) is not None
     yield from shoot("byte.undone")
     preview.find(image).is_stale = False
@@ -133,6 +154,8 @@ def session() -> Iterator[None]:
     found["kept in next file"] = len(preview._previews)
     addon_utils.disable(PACKAGE, default_set=True)
     yield
+    # Blender removes the package of a disabled extension, and other tests need it.
+    assert addon_utils.enable(PACKAGE, default_set=True) is not None
     np.savez(RESULT, **found)
 
 

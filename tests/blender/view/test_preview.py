@@ -179,6 +179,19 @@ def test_between_levels_and_zoomed_out(shown, stored):
     difference(shown["byte.zoomed.screen"], expected, mask, "zoomed")
 
 
+def test_uvs_stay_in_front(shown, stored):
+    made = levels(stored["byte"], "byte")
+    u, v, x, y, _ = places(shown, "byte.uv", (64, 32))
+    light = (scenes.bilinear(made[1], u, v) + scenes.bilinear(made[2], u, v)) / 2
+    error = np.abs(shown["byte.uv.screen"] - displayed(light, x, y, "COLOR_ALPHA")).max(axis=-1)
+    rows = (v[:, 0] > 0.4) & (v[:, 0] < 0.6)
+    columns = u[0]
+    assert error[np.ix_(rows, (columns > 0.35) & (columns < 0.65))].max() < BYTE + DARK_BYTE
+    for edge in (0.3, 0.7):
+        near = error[np.ix_(rows, np.abs(columns - edge) < 0.005)]
+        assert np.all(near.max(axis=1) > 25)
+
+
 def test_exact_where_nothing_is_rounded(shown, stored):
     """In a framebuffer of floats only the 16-bit floats of the textures are left."""
     made = {which: levels(stored["byte"], "byte", which) for which in ("tent", "pam-bilinear")}

@@ -125,3 +125,31 @@ def test_bad_mesh_is_named():
         with pytest.raises(RuntimeError, match=r"object 'Quad': .*positions"):
             getattr(bpy.ops.prefilter, operator)(image="Paint")
     assert [found.name for found in bpy.data.images] == ["Paint"]
+
+
+def test_pictures_know_their_image(addon):
+    image = half_used(scenes.noise(8, 8))
+    bpy.ops.prefilter.show_weights(image="Paint")
+    bpy.ops.prefilter.fill_unused(image="Paint")
+    derived = addon("bridge.derived")
+    assert derived.pictured(bpy.data.images["Paint.weights"]) == image
+    assert derived.source_of(bpy.data.images["Paint.filled"]) == image
+    assert derived.pictured(bpy.data.images["Paint.filled"]) is None
+    assert derived.source_of(image) is None
+    assert derived.source_of(None) is None
+    filled = bpy.data.images["Paint.filled"]
+    bpy.data.images.remove(image)
+    assert derived.source_of(filled) is None
+
+
+def test_undo_takes_the_copy_back():
+    half_used(scenes.noise(8, 8))
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.prefilter.fill_unused(image="Paint", use_in_place=True)
+    assert "Paint.filled" in bpy.data.images
+    bpy.ops.ed.undo_push(message="after")
+    bpy.ops.ed.undo()
+    assert [image.name for image in bpy.data.images] == ["Paint"]
+    nodes = bpy.data.materials["Half"].node_tree.nodes
+    assert [node.image.name for node in nodes if node.type == "TEX_IMAGE"] == ["Paint"]
+    np.testing.assert_allclose(scenes.pixels("Paint"), scenes.noise(8, 8), atol=1e-6)
