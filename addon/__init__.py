@@ -1,8 +1,8 @@
 """Prefilter: mipmaps that know the mesh, baked in Blender."""
 
-from . import commands, operators, panels, settings
+from . import commands, operators, panels, settings, view
 
-_PARTS = (settings, operators, panels, commands)
+_PARTS = (settings, view, operators, panels, commands)
 
 
 def register() -> None:

@@ -5,7 +5,8 @@ The operator and the command are two ways to call this.
 
 import os
 import re
-from collections.abc import Callable, Generator, Iterable, Sequence, Sized
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence, Sized
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -36,6 +37,10 @@ class Choice(NamedTuple):
 FILTERS = {
     "pam-bilinear": Choice(
         "PAM Bilinear", "Best fit over the surface, for readers that interpolate between texels"
+    ),
+    "pam-trilinear": Choice(
+        "PAM Trilinear",
+        "Best fit of all levels together, for readers that interpolate between levels too, as GPUs",
     ),
     "pam-box": Choice("PAM Box", "Average of the surface under each texel"),
     "box": Choice("Box", "Average of four texels, whether a face uses them or not"),
@@ -118,6 +123,8 @@ class Settings:
             limit surface.
         importance: The name of a vertex group or attribute that areas are multiplied by; empty for
             none.
+        seam_weight: How much it counts that the two sides of UV seams agree; see
+            `prefilter.mipmaps`.
         use_frames: Whether to average over the frames below, instead of taking the current one.
         frame_start: The first frame.
         frame_end: The last frame.
@@ -139,6 +146,7 @@ class Settings:
     threads: int = 0
     use_subdivision_limit: bool = True
     importance: str = ""
+    seam_weight: float = 0.0
     use_frames: bool = False
     frame_start: int = 1
     frame_end: int = 250
@@ -202,6 +210,7 @@ class Bake:
         depsgraph: bpy.types.Depsgraph,
         *,
         all_faces: bool = False,
+        needs_surface: bool = False,
     ) -> "Bake | TiledBake":
         """Copies everything that the bake needs out of Blender.
 
@@ -211,12 +220,20 @@ class Bake:
             settings: What to bake.
             depsgraph: The evaluated dependency graph.
             all_faces: See `meshes.image_surfaces`.
+            needs_surface: Whether a surface is needed for any filter.
 
         Raises:
             ValueError: There is nothing to bake, or the image or a mesh is unfit.
             OSError: The file of the settings cannot be written.
         """
-        reading = cls.reading(image, objects, settings, depsgraph, all_faces=all_faces)
+        reading = cls.reading(
+            image,
+            objects,
+            settings,
+            depsgraph,
+            all_faces=all_faces,
+            needs_surface=needs_surface,
+        )
         while True:
             try:
                 next(reading)
@@ -232,6 +249,7 @@ class Bake:
         depsgraph: bpy.types.Depsgraph,
         *,
         all_faces: bool = False,
+        needs_surface: bool = False,
     ) -> Generator[float, None, "Bake | TiledBake"]:
         """Does what `read` does, in steps of a frame.
 
@@ -270,7 +288,8 @@ class Bake:
             )
         roughness, roughness_target = _read_roughness(settings, content, pictures[0])
         found = yield from _read_surfaces(image, objects, settings, depsgraph, all_faces=all_faces)
-        if not found.surfaces and settings.filter not in TEXTURE_SPACE_FILTERS:
+        needs_surface = needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
+        if needs_surface and not found.surfaces:
             raise ValueError(_no_surface(image, objects, found.problems))
         if settings.importance and found.surfaces and not any(s.area for s in found.surfaces):
             raise ValueError(
@@ -299,6 +318,73 @@ class Bake:
         """The name of the image that is baked."""
         return self._picture.name
 
+    @property
+    def picture(self) -> Picture:
+        """The pixels of the image that is baked."""
+        return self._picture
+
+    @property
+    def settings(self) -> Settings:
+        """What to bake."""
+        return self._settings
+
+    @property
+    def surfaces(self) -> Sequence[prefilter.Surface]:
+        """The surfaces that the image is mapped on."""
+        return self._surfaces
+
+    @property
+    def objects(self) -> Sequence[str]:
+        """The name of the object that each surface comes from."""
+        return self._objects
+
+    @property
+    def wrap(self) -> tuple[str, str]:
+        """What lookups read outside of the image along u and v."""
+        return self._wrap
+
+    def linear(self, progress: Progress) -> FloatArray:
+        """Returns the image's scene-linear values; raises what `compute` does."""
+        return images.scene_linear(self._picture, partial(_go_on, progress, 0.0))
+
+    def filtered(
+        self,
+        linear: FloatArray,
+        filter: str,
+        progress: Progress,
+        *,
+        levels: int | None = None,
+    ) -> list[FloatArray]:
+        """Returns scene-linear levels with any filter; raises what `compute` does.
+
+        Args:
+            linear: What `linear` returned.
+            filter: A key of `FILTERS`.
+            progress: Called with the fraction done.
+            levels: How many, the image itself included; None for all.
+        """
+        with self.naming_objects():
+            return prefilter.mipmaps(
+                linear,
+                self._surfaces or None,
+                filter=filter,
+                wrap=self._wrap,
+                bounds=self._bounds(linear),
+                levels=levels,
+                premultiplied=not self._picture.alpha_is_straight,
+                seam_weight=self._settings.seam_weight,
+                progress=progress,
+                threads=self._settings.threads,
+            )
+
+    @contextmanager
+    def naming_objects(self) -> Iterator[None]:
+        """Puts objects in the place of surfaces in the library's messages."""
+        try:
+            yield
+        except ValueError as error:
+            raise ValueError(_naming_objects(str(error), self._objects)) from error
+
     def compute(self, progress: Progress) -> None:
         """Filters, encodes and stages the file.
 
@@ -307,11 +393,9 @@ class Bake:
             ValueError: The library refuses the image or the surfaces.
             OSError: The file cannot be written.
         """
-        linear = images.scene_linear(self._picture, partial(_go_on, progress, 0.0))
-        try:
+        linear = self.linear(progress)
+        with self.naming_objects():
             levels, rough = self._filtered(linear, lambda done: progress(_FILTERED * done))
-        except ValueError as error:
-            raise ValueError(_naming_objects(str(error), self._objects)) from error
         check = partial(_go_on, progress, _FILTERED)
         try:
             self._levels = self._stage(self._picture, linear, levels, self._target, check)
@@ -344,6 +428,7 @@ class Bake:
         if self._content == "normal":
             return contents.normal_levels(linear, surfaces, self._roughness, progress, **options)
         bounds = self._bounds(linear)
+        options["seam_weight"] = settings.seam_weight
         if self._content == "cutout":
             levels = contents.cutout_levels(
                 self._picture, linear, surfaces, bounds, settings.threshold, progress, **options

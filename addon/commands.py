@@ -1,11 +1,13 @@
 """`blender --background --command prefilter ...`: the operators without a window."""
 
 import argparse
+import math
 import os
 import re
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +16,15 @@ import bpy
 from . import bake
 from .bake import Choice
 from .bridge import files, images, meshes
+from .view import errors, figure
 from .wording import listed
 
 _PROGRAM = "blender --background --command prefilter"
 
 _BAKE_HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
+
+
+_PLOT_HELP = "plot the error of filters over the mip value, on the meshes that use an image"
 
 
 def _table(title: str, choices: dict[str, Choice]) -> str:
@@ -40,6 +46,14 @@ examples:
   prefilter bake scene.blend --image Wood --save
   prefilter bake spot.obj --image spot.png --output spot.exr
   prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif"""
+
+_PLOT_NOTES = """\
+The figure is that of the dissertation (7.7): solid lines are the root mean square errors over the
+surface at each mip value, dashed ones those over all mip values. The image is chosen as for bake.
+
+examples:
+  prefilter plot spot.obj --image spot.png --output error.png
+  prefilter plot scene.blend --image Wood --filters box pam-bilinear --table error.csv"""
 
 _IMPORTERS: dict[str, Callable[[str], Any]] = {
     ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
@@ -85,6 +99,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_bake(commands)
+    _add_plot(commands)
     return parser
 
 
@@ -96,20 +111,7 @@ def _add_bake(commands: Any) -> None:
         epilog="\n\n".join([*_TABLES, _BAKE_NOTES]),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("file", metavar="FILE", help="a .blend, .glb, .gltf or .obj file")
-    parser.add_argument(
-        "--object",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="a mesh object or collection instance to bake for; repeat for several (default: all "
-        "that use the image)",
-    )
-    parser.add_argument(
-        "--image",
-        metavar="NAME",
-        help="the image: its name in the file, or the path of a picture file",
-    )
+    _add_scene(parser)
     defaults = bake.Settings()
     for flag, choices, metavar, text in (
         ("filter", bake.FILTERS, "FILTER", "how a texel of a level is made"),
@@ -173,6 +175,14 @@ def _add_bake(commands: Any) -> None:
         help="a vertex group or attribute that areas are multiplied by",
     )
     parser.add_argument(
+        "--seams",
+        metavar="WEIGHT",
+        type=_weight,
+        default=defaults.seam_weight,
+        help="how much it counts that the two sides of a UV seam agree: 0 leaves seams alone, 1 "
+        "halves what shows of them (default: 0)",
+    )
+    parser.add_argument(
         "--no-subdivision-limit",
         dest="use_subdivision_limit",
         action="store_false",
@@ -198,10 +208,75 @@ def _add_bake(commands: Any) -> None:
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
 
+def _add_scene(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="a .blend, .glb, .gltf or .obj file")
+    parser.add_argument(
+        "--object",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="a mesh object or collection instance that counts; repeat for several (default: all "
+        "that use the image)",
+    )
+    parser.add_argument(
+        "--image",
+        metavar="NAME",
+        help="the image: its name in the file, or the path of a picture file",
+    )
+
+
+def _add_plot(commands: Any) -> None:
+    parser = commands.add_parser(
+        "plot",
+        help=_PLOT_HELP,
+        description=f"{_PLOT_HELP[0].upper()}{_PLOT_HELP[1:]}.",
+        epilog="\n\n".join([*_TABLES, _PLOT_NOTES]),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    _add_scene(parser)
+    parser.add_argument(
+        "--filters",
+        metavar="FILTER",
+        nargs="+",
+        choices=bake.FILTERS,
+        default=list(errors.DEFAULT_FILTERS),
+        help=f"the filters to compare (default: {' '.join(errors.DEFAULT_FILTERS)})",
+    )
+    defaults = bake.Settings()
+    for flag, choices, metavar, text in (
+        ("wrap", bake.WRAPS, "MODE", "what lies outside of the image along u"),
+        ("wrap-v", bake.WRAPS_V, "MODE", "the same along v"),
+        ("bounds", bake.BOUNDS, "RANGE", "the values that texels of a level may have"),
+    ):
+        default = getattr(defaults, flag.replace("-", "_"))
+        parser.add_argument(
+            f"--{flag}",
+            choices=choices,
+            default=default,
+            metavar=metavar,
+            help=f"{text} (default: {default})",
+        )
+    parser.add_argument("--output", metavar="FILE", default="", help="a .png file to write")
+    parser.add_argument(
+        "--table", metavar="FILE", default="", help="a .csv file to write the values to"
+    )
+    parser.set_defaults(execute=_plot, usage_error=parser.error)
+
+
 def _count(text: str) -> int:
     value = int(text) if text.isdecimal() else -1
     if value < 0:
         raise argparse.ArgumentTypeError(f"found '{text}'; a number from 0 up is needed")
+    return value
+
+
+def _weight(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value < math.inf:
+        raise argparse.ArgumentTypeError(f"found '{text}'; a number of at least 0 is needed")
     return value
 
 
@@ -224,10 +299,59 @@ def _alpha(text: str) -> float:
     return value
 
 
-def _bake(options: argparse.Namespace) -> None:
+def _checked_extension(options: argparse.Namespace) -> str:
     extension = os.path.splitext(options.file)[1].lower()
     if extension not in _EXTENSIONS:
         options.usage_error(f"FILE: found '{options.file}'; allowed are {', '.join(_EXTENSIONS)}")
+    return extension
+
+
+def _plot(options: argparse.Namespace) -> None:
+    extension = _checked_extension(options)
+    if not options.output and not options.table:
+        options.usage_error("nothing to write: give --output FILE or --table FILE")
+    targets = [
+        files.check_plain_target(path, ending)
+        for path, ending in ((options.output, ".png"), (options.table, ".csv"))
+        if path
+    ]
+    objects = _chosen(_load(os.path.abspath(options.file), extension), options.object)
+    image, is_picture = _image(options.image, objects, "auto")
+    images.check_untiled(image)
+    filters = list(dict.fromkeys(options.filters))
+    source = bake.Bake.read(
+        image,
+        objects,
+        bake.Settings(wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds),
+        bpy.context.evaluated_depsgraph_get(),
+        all_faces=is_picture,
+        needs_surface=True,
+    )
+    progress = _ProgressLine()
+    try:
+        curves = errors.measure(source, filters, progress)
+    finally:
+        progress.end()
+    staged = []
+    try:
+        for target in targets:
+            if target.suffix.lower() == ".png":
+                write = partial(images.save_png, pixels=figure.draw(curves))
+            else:
+                write = partial(Path.write_text, data=curves.table())
+            staged.append(files.stage_with(target, write))
+        for file in staged:
+            file.commit()
+    finally:
+        for file in staged:
+            file.discard()
+    for warning in source.warnings:
+        print(f"prefilter: warning: {warning}", file=sys.stderr)
+    print(curves.summary())
+
+
+def _bake(options: argparse.Namespace) -> None:
+    extension = _checked_extension(options)
     if options.save and extension != ".blend":
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
     if not options.save and not options.output:
@@ -249,6 +373,7 @@ def _bake(options: argparse.Namespace) -> None:
         threads=options.threads,
         use_subdivision_limit=options.use_subdivision_limit,
         importance=options.importance,
+        seam_weight=options.seams,
         content=options.content,
         threshold=options.threshold,
         roughness=_roughness_name(options.roughness),

@@ -14,7 +14,8 @@ from . import bake
 from .bake import Choice
 
 
-def _items(choices: dict[str, Choice]) -> list[tuple[str, str, str]]:
+def items(choices: dict[str, Choice]) -> list[tuple[str, str, str]]:
+    """Returns the items of an enumeration."""
     return [(key, choice.label, choice.description) for key, choice in choices.items()]
 
 
@@ -24,25 +25,25 @@ class BakeProperties:
     filter: EnumProperty(
         name="Filter",
         description="How a texel of a level is made from the image",
-        items=_items(bake.FILTERS),
+        items=items(bake.FILTERS),
         default=bake.Settings.filter,
     )
     wrap: EnumProperty(
         name="Wrap",
         description="What lies outside of the image along U",
-        items=_items(bake.WRAPS),
+        items=items(bake.WRAPS),
         default=bake.Settings.wrap,
     )
     wrap_v: EnumProperty(
         name="V",
         description="What lies outside of the image along V",
-        items=_items(bake.WRAPS_V),
+        items=items(bake.WRAPS_V),
         default=bake.Settings.wrap_v,
     )
     bounds: EnumProperty(
         name="Value Range",
         description="The range, in scene-linear values, that the texels of a level stay in",
-        items=_items(bake.BOUNDS),
+        items=items(bake.BOUNDS),
         default=bake.Settings.bounds,
     )
     content: EnumProperty(
@@ -98,6 +99,15 @@ class BakeProperties:
         description="A vertex group or attribute that says where texels matter more: areas are "
         "multiplied by it; leave empty for none",
         default=bake.Settings.importance,
+    )
+    seam_weight: FloatProperty(
+        name="Seams",
+        description="How much it counts that the two sides of a UV seam agree in every level: 0 "
+        "leaves seams alone, 1 halves what shows of them. For PAM Bilinear and PAM Trilinear",
+        default=bake.Settings.seam_weight,
+        min=0.0,
+        soft_max=2.0,
+        step=10,
     )
     use_frames: BoolProperty(
         name="Frame Range",
@@ -168,6 +178,7 @@ class BakeProperties:
         layout.prop(self, "levels")
         layout.separator()
         layout.prop(self, "importance")
+        layout.prop(self, "seam_weight")
         layout.prop(self, "use_subdivision_limit")
         layout.prop(self, "use_frames")
         column = layout.column(align=True)

@@ -11,7 +11,7 @@ import os
 import secrets
 import shutil
 import stat
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -55,12 +55,37 @@ def check_target(path: str) -> Path:
         raise ValueError(
             f"file '{path}': found extension '{target.suffix}'; allowed are {', '.join(_FORMATS)}"
         )
-    if not target.parent.is_dir():
-        raise OSError(f"file '{path}': there is no folder '{target.parent}'")
-    if target.is_dir():
-        raise OSError(f"file '{path}' is a folder")
-    check_writable(target)
+    _check_place(path, target)
     return target
+
+
+def check_plain_target(path: str, ending: str) -> Path:
+    """Returns the absolute path of a file that can be written, and whose name ends as needed.
+
+    Raises:
+        ValueError: The name does not end in `ending`.
+        OSError: The folder is missing, or the file or its folder is read-only.
+    """
+    target = Path(os.path.realpath(path))
+    if target.suffix.lower() != ending:
+        raise ValueError(f"file '{path}': found extension '{target.suffix}'; {ending} is needed")
+    _check_place(path, target)
+    return target
+
+
+def stage_with(target: Path, write: Callable[[Path], object]) -> StagedFile:
+    """Has a function write a file beside its target.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    staged = _staged(target)
+    try:
+        write(staged.temporary)
+    except BaseException:
+        staged.discard()
+        raise
+    return staged
 
 
 def check_writable(path: Path) -> None:
@@ -102,8 +127,7 @@ def stage(
     keep_bytes = file_format == "tiff" and not picture.is_float
     levels = stored_levels if keep_bytes else linear_levels
     float_type = "half" if file_format == "openexr" and half else "float"
-    name = f".prefilter-{secrets.token_hex(4)}{target.suffix}"
-    staged = StagedFile(target.with_name(name), target)
+    staged = _staged(target)
     try:
         openimageio.write_texture(
             staged.temporary,
@@ -119,6 +143,19 @@ def stage(
         staged.discard()
         raise
     return staged
+
+
+def _check_place(path: str, target: Path) -> None:
+    if not target.parent.is_dir():
+        raise OSError(f"file '{path}': there is no folder '{target.parent}'")
+    if target.is_dir():
+        raise OSError(f"file '{path}' is a folder")
+    check_writable(target)
+
+
+def _staged(target: Path) -> StagedFile:
+    name = f".prefilter-{secrets.token_hex(4)}{target.suffix}"
+    return StagedFile(target.with_name(name), target)
 
 
 def _file_pixels(picture: Picture, level: FloatArray) -> FloatArray:

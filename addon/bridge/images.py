@@ -18,6 +18,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import Enum
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -142,6 +143,14 @@ def read(image: bpy.types.Image) -> Picture:
         linear_space=linear_space,
         ocio_config=_ocio_config(),
     )
+
+
+def check_untiled(image: bpy.types.Image) -> None:
+    """Raises ValueError where the image has UDIM tiles."""
+    if image.source == "TILED":
+        raise ValueError(
+            f"image '{image.name}': it has UDIM tiles; an image of one tile is needed here"
+        )
 
 
 def tile_numbers(image: bpy.types.Image) -> list[int]:
@@ -278,16 +287,8 @@ def stage_levels(picture: Picture, levels: Sequence[FloatArray]) -> StagedLevels
     staged = StagedLevels(picture, [])
     try:
         for number, level in enumerate(levels, start=1):
-            height, width = level.shape[:2]
-            image = bpy.data.images.new(
-                level_name(picture.name, number),
-                width,
-                height,
-                alpha=True,
-                float_buffer=picture.is_float,
-            )
-            staged.images.append(image)
-            _fill_level(image, picture, level)
+            name = level_name(picture.name, number)
+            staged.images.append(new_packed(name, picture, level))
     except RuntimeError as error:
         staged.discard()
         raise OSError(f"image '{picture.name}': cannot make level {number}: {error}") from error
@@ -302,12 +303,53 @@ def level_name(image_name: str, number: int) -> str:
 
     A base that is too long is cut, and gets a hash of what it was.
     """
-    suffix = f".mip{number}"
+    return suffixed(image_name, f"mip{number}")
+
+
+def suffixed(image_name: str, ending: str) -> str:
+    """Returns `<image>.<ending>`; a base that is too long is cut, as in `level_name`."""
+    suffix = f".{ending}"
     base = image_name.encode()
     if len(base) + len(suffix) <= _MAX_NAME_BYTES:
         return image_name + suffix
     suffix = f"~{hashlib.sha256(base).hexdigest()[:_HASH_DIGITS]}{suffix}"
     return base[: _MAX_NAME_BYTES - len(suffix)].decode(errors="ignore") + suffix
+
+
+def new_packed(name: str, like: Picture | None, pixels: FloatArray) -> bpy.types.Image:
+    """Makes a packed image datablock with a fake user.
+
+    Args:
+        name: Its name; Blender adds a number to one that is taken.
+        like: What it is stored as (see `stage_levels`); None for an sRGB byte image.
+        pixels: Its values, row 0 at the bottom.
+    """
+    height, width = pixels.shape[:2]
+    is_float = like is not None and like.is_float
+    image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
+    try:
+        _fill_level(image, like, pixels)
+    except BaseException:
+        bpy.data.images.remove(image)
+        raise
+    return image
+
+
+def save_png(path: Path, pixels: FloatArray) -> None:
+    """Writes sRGB values, row 0 at the bottom, as a PNG file.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    image = new_packed("prefilter picture", None, pixels)
+    try:
+        image.filepath_raw = str(path)
+        image.file_format = "PNG"
+        image.save()
+    except RuntimeError as error:
+        raise OSError(f"file '{path}': cannot be written: {str(error).strip()}") from error
+    finally:
+        bpy.data.images.remove(image)
 
 
 def _why_empty(image: bpy.types.Image) -> str:
@@ -362,8 +404,10 @@ def _scene_linear_name() -> str:
         bpy.data.images.remove(probe)
 
 
-def _fill_level(image: bpy.types.Image, picture: Picture, level: FloatArray) -> None:
-    if not picture.is_float:
+def _fill_level(image: bpy.types.Image, picture: Picture | None, level: FloatArray) -> None:
+    if picture is None:
+        image.colorspace_settings.name = "sRGB"
+    elif not picture.is_float:
         image.colorspace_settings.name = picture.colorspace
         image.alpha_mode = "STRAIGHT" if picture.alpha_mode == "PREMUL" else picture.alpha_mode
     else:

@@ -1,6 +1,9 @@
 """Takes a picture of the Prefilter tab in a Blender window that nobody sees.
 
 usage: python3 panel.py TARGET.png        (outside of Blender: starts Xvfb and Blender)
+
+TARGET is named after what it shows: panel.png (the bake), preview.png (a level, with the wipe) or
+weights.png (the weights of texels, with their legend).
 """
 
 import os
@@ -33,8 +36,7 @@ def main(target: Path) -> None:
                 "blender",
                 "--window-geometry",
                 *("0", "0", str(WIDTH), str(HEIGHT)),
-                "--python",
-                __file__,
+                *("--python", __file__, "--", target.stem),
             ],
             env={**os.environ, "DISPLAY": display},
             stdout=subprocess.PIPE,
@@ -86,6 +88,14 @@ def show_panel() -> None:
     area.type = "IMAGE_EDITOR"
     area.spaces.active.image = image
     area.spaces.active.show_region_ui = True
+    shown = sys.argv[-1]
+    if shown == "weights":
+        open_panel(bpy.types.PREFILTER_PT_texel_use)
+
+    def show_level() -> None:
+        settings = bpy.context.window_manager.prefilter_view
+        settings.mip_value, settings.use_wipe, settings.wipe = 4.0, True, 0.4
+        bpy.ops.prefilter.preview_levels()
 
     def open_tab() -> float | None:
         sidebar = next(region for region in area.regions if region.type == "UI")
@@ -94,12 +104,27 @@ def show_panel() -> None:
         sidebar.active_panel_category = "Prefilter"
         region = next(region for region in area.regions if region.type == "WINDOW")
         with bpy.context.temp_override(window=window, area=area, region=region):
+            if shown == "preview":
+                show_level()
+            elif shown == "weights":
+                bpy.ops.prefilter.show_weights()
             bpy.ops.image.view_all(fit_view=True)
         area.tag_redraw()
         bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
         return None
 
     bpy.app.timers.register(open_tab, first_interval=2.0)
+
+
+def open_panel(panel: type) -> None:
+    """Inside Blender: has a panel start open, and the others make room."""
+    import bpy
+
+    names = ("bake", "preview", "error", "texel_use")
+    for other in [getattr(bpy.types, f"PREFILTER_PT_{name}") for name in names]:
+        bpy.utils.unregister_class(other)
+        other.bl_options = set() if other == panel else {"DEFAULT_CLOSED"}
+        bpy.utils.register_class(other)
 
 
 if "bpy" in sys.modules:

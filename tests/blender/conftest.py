@@ -1,7 +1,10 @@
 """An empty Blender with the add-on enabled, for every test."""
 
 import importlib
-from collections.abc import Callable
+import os
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -32,3 +35,34 @@ def textured() -> Path:
     if not TEXTURED.is_dir():
         pytest.skip(f"there is no {TEXTURED}")
     return TEXTURED
+
+
+@pytest.fixture(scope="module")
+def display(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]]:
+    """Runs an X server without a screen, and returns the environment for programs to use it.
+
+    FRAMEBUFFER is a file with what its screen shows; see `scenes.screen`.
+    """
+    folder = tmp_path_factory.mktemp("display")
+    if shutil.which("Xvfb") is None:
+        pytest.skip("there is no Xvfb")
+    reading, writing = os.pipe()
+    server = subprocess.Popen(
+        [
+            "Xvfb",
+            *("-displayfd", str(writing), "-screen", "0", "1280x800x24", "-nolisten", "tcp"),
+            *("-fbdir", str(folder)),
+        ],
+        pass_fds=[writing],
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writing)
+    try:
+        with os.fdopen(reading) as answer:
+            number = answer.readline().strip()
+        if not number:
+            pytest.skip("Xvfb does not start")
+        yield {"DISPLAY": f":{number}", "FRAMEBUFFER": str(folder / "Xvfb_screen0")}
+    finally:
+        server.terminate()
+        server.wait()

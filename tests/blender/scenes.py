@@ -188,3 +188,32 @@ def fcurves(obj: bpy.types.Object) -> list[bpy.types.FCurve]:
         return list(action.fcurves)
     strip = action.layers[0].strips[0]
     return list(strip.channelbag(obj.animation_data.action_slot).fcurves)
+
+
+def screen(path: str) -> NDArray[np.uint8]:
+    """Returns what an X screen shows, (height, width, 3), row 0 at the bottom.
+
+    Args:
+        path: The server's framebuffer, in X's window dump format (XWDFile.h).
+    """
+    with open(path, "rb") as file:
+        dump = file.read()
+    header = np.frombuffer(dump, ">u4", 25)
+    size, width, height, bytes_per_line, colors = header[[0, 4, 5, 12, 19]]
+    rows = np.frombuffer(dump, np.uint8, height * bytes_per_line, size + 12 * colors)
+    pixels = rows.reshape(height, -1)[:, : 4 * width].reshape(height, width, 4)
+    return pixels[::-1, :, 2::-1].copy()
+
+
+def bilinear(level: Array, u: Array, v: Array) -> Array:
+    """Looks up a level at points of UV space, with clamped texels; every point by itself."""
+    height, width = level.shape[:2]
+    result = np.zeros((*u.shape, level.shape[2]))
+    x, y = u * width - 0.5, v * height - 0.5
+    for j in (np.floor(y), np.floor(y) + 1):
+        for i in (np.floor(x), np.floor(x) + 1):
+            share = (1 - np.abs(x - i)) * (1 - np.abs(y - j))
+            row = np.clip(j, 0, height - 1).astype(int)
+            column = np.clip(i, 0, width - 1).astype(int)
+            result += share[..., None] * level[row, column]
+    return result

@@ -184,3 +184,41 @@ def test_wrong_thresholds_exit_with_2(blend):
     for threshold in ("0", "1.5", "nan", "much"):
         assert_fails(run("bake", blend, "--save", "--threshold", threshold), threshold, status=2)
     assert_fails(run("bake", blend, "--save", "--content", "bumps"), "bumps", status=2)
+
+
+def test_plot(blend, tmp_path):
+    picture, table = tmp_path / "error.png", tmp_path / "error.csv"
+    result = run(
+        *("plot", blend, "--filters", "box", "pam-box"),
+        *("--wrap", "clamp", "--output", picture, "--table", table),
+    )
+    assert result.returncode == 0, result.stderr
+    assert "Error of 'Paint' over all mip values: Box" in result.stdout
+    head, *rows = table.read_text().splitlines()
+    assert head == "mip value,box,pam-box"
+    assert [row.split(",")[0] for row in (rows[0], rows[-2], rows[-1])] == ["0", "4", "all"]
+    found = oiio.ImageBuf(str(picture)).get_pixels(oiio.FLOAT)
+    assert found.shape[:2] == (800, 1200)
+    assert found[..., :3].min() < 0.2
+    assert (found[..., :3] == 1).all(axis=-1).mean() > 0.8
+    # Row 0 is the title's: there is ink above the axes, in the upper tenth.
+    assert found[20:75, 300:900, :3].min() < 0.3
+    assert sorted(path.name for path in tmp_path.iterdir()) == [
+        *("error.csv", "error.png", "scene.blend")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words", "status"),
+    [
+        ([], ["nothing to write"], 2),
+        (["--output", "error.jpg"], ["'.jpg'", ".png"], 1),
+        (["--table", "error.png"], ["'.png'", ".csv"], 1),
+        (["--output", "nowhere/error.png"], ["there is no folder"], 1),
+        (["--filters", "sinc", "--output", "error.png"], ["'sinc'"], 2),
+        (["--image", "Pain", "--output", "error.png"], ["'Pain'", "'Paint'"], 1),
+    ],
+)
+def test_plot_refuses(blend, tmp_path, arguments, words, status):
+    assert_fails(run("plot", blend, *arguments, cwd=tmp_path), *words, status=status)
+    assert [path.name for path in tmp_path.iterdir()] == ["scene.blend"]

@@ -10,10 +10,14 @@ def test_unregister_is_symmetric():
         assert hasattr(bpy.types, "PREFILTER_OT_bake_mipmaps")
         assert hasattr(bpy.types, "PREFILTER_PT_bake")
         assert hasattr(bpy.types.Scene, "prefilter_bake")
+        assert hasattr(bpy.types, "PREFILTER_PT_preview")
+        assert hasattr(bpy.types.WindowManager, "prefilter_view")
         addon_utils.disable(PACKAGE, default_set=True)
         assert not hasattr(bpy.types, "PREFILTER_OT_bake_mipmaps")
         assert not hasattr(bpy.types, "PREFILTER_PT_bake")
+        assert not hasattr(bpy.types, "PREFILTER_PT_preview")
         assert not hasattr(bpy.types.Scene, "prefilter_bake")
+        assert not hasattr(bpy.types.WindowManager, "prefilter_view")
         assert addon_utils.enable(PACKAGE, default_set=True) is not None
 
 

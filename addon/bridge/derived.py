@@ -1,0 +1,66 @@
+"""Images and texts that are made of an image: figures, views, copies. They are tagged with it."""
+
+import bpy
+
+from . import images
+from .images import FloatArray, Picture
+
+_PICTURE_KEY = "prefilter_picture_of"
+_COPY_KEY = "prefilter_copy_of"
+
+
+def write_picture(
+    source: Picture, suffix: str, pixels: FloatArray, *, like_source: bool = False
+) -> bpy.types.Image:
+    """Makes a packed image named `<source>.<suffix>`, in the place of one that was made before.
+
+    Args:
+        source: What it is made of.
+        suffix: The end of its name.
+        pixels: sRGB values for a byte image, unless `like_source`.
+        like_source: Whether it is stored as `source` is, and `pixels` are stored values.
+
+    Raises:
+        OSError: The image cannot be made.
+    """
+    name = images.suffixed(source.name, suffix)
+    key = _COPY_KEY if like_source else _PICTURE_KEY
+    try:
+        image = images.new_packed(name, source if like_source else None, pixels)
+    except RuntimeError as error:
+        raise OSError(f"image '{source.name}': cannot make '{name}': {error}") from error
+    image[key] = source.full_name
+    earlier = bpy.data.images.get(name)
+    if earlier is not None and earlier != image and earlier.get(key) == source.full_name:
+        earlier.user_remap(image)
+        bpy.data.images.remove(earlier)
+        image.name = name
+    return image
+
+
+def write_text(source: Picture, suffix: str, text: str) -> bpy.types.Text:
+    """Writes a text named `<source>.<suffix>`, over one that was written before."""
+    name = images.suffixed(source.name, suffix)
+    found = bpy.data.texts.get(name)
+    if found is None or found.get(_PICTURE_KEY) != source.full_name:
+        found = bpy.data.texts.new(name)
+        found[_PICTURE_KEY] = source.full_name
+    found.from_string(text)
+    return found
+
+
+def source_of(image: bpy.types.Image | None) -> bpy.types.Image | None:
+    """Returns the image that a picture or a copy was made of, if that is still there."""
+    return pictured(image) or _tagged(image, _COPY_KEY)
+
+
+def pictured(image: bpy.types.Image | None) -> bpy.types.Image | None:
+    """Returns the image that a picture is about, if that is still there; None for a copy."""
+    return _tagged(image, _PICTURE_KEY)
+
+
+def _tagged(image: bpy.types.Image | None, key: str) -> bpy.types.Image | None:
+    name = image.get(key) if image is not None else None
+    if name is None:
+        return None
+    return next((other for other in bpy.data.images if other.name_full == name), None)

@@ -1,0 +1,282 @@
+"""Draws levels over their image in the Image and UV editors.
+
+A texel is looked up as a renderer does, in single precision: bilinear within a level, linear
+between two levels, in scene-linear light. The shader encodes the result for an sRGB display, which
+is how the editor shows an image unless its View as Render is on.
+"""
+
+import math
+
+import blf
+import bpy
+import gpu
+import numpy as np
+from gpu_extras.batch import batch_for_shader
+from mathutils import Matrix
+
+from ..bake import FILTERS
+from . import preview
+from .preview import Preview
+
+# Between the image, which the editor draws behind, and the UVs, which it draws in front.
+_DEPTH = 0.5
+_CHANNELS = {"COLOR_ALPHA": 0, "COLOR": 1, "ALPHA": 2, "RED": 3, "GREEN": 4, "BLUE": 5}
+_LINE_WIDTH = 2  # In pixels.
+_LABEL_SIZE, _LABEL_GAP = 13, 10
+
+_VERTEX = """
+void main()
+{
+  uv = position;
+  gl_Position = vec4(position * view.xy + view.zw, depth, 1.0);
+  across = gl_Position.x * 0.5 + 0.5;
+}
+"""
+_FRAGMENT = """
+int wrapped(int index, int size, int mode)
+{
+  return mode == 1 ? index - size * int(floor(float(index) / float(size)))
+                   : clamp(index, 0, size - 1);
+}
+
+vec4 texel(sampler2D level, ivec2 index)
+{
+  ivec2 size = textureSize(level, 0);
+  bool outside = (wrap.x == 2 && (index.x < 0 || index.x >= size.x)) ||
+                 (wrap.y == 2 && (index.y < 0 || index.y >= size.y));
+  if (outside) {
+    return vec4(0.0);
+  }
+  return texelFetch(
+    level, ivec2(wrapped(index.x, size.x, wrap.x), wrapped(index.y, size.y, wrap.y)), 0);
+}
+
+vec4 bilinear(sampler2D level)
+{
+  vec2 place = uv * vec2(textureSize(level, 0)) - 0.5;
+  ivec2 low = ivec2(floor(place));
+  vec2 f = place - floor(place);
+  return mix(mix(texel(level, low), texel(level, low + ivec2(1, 0)), f.x),
+             mix(texel(level, low + ivec2(0, 1)), texel(level, low + ivec2(1, 1)), f.x), f.y);
+}
+
+float encoded(float light)
+{
+  return light <= 0.0031308 ? light * 12.92 : 1.055 * pow(light, 1.0 / 2.4) - 0.055;
+}
+
+float decoded(float value)
+{
+  return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+}
+
+vec3 encoded(vec3 light)
+{
+  return vec3(encoded(light.r), encoded(light.g), encoded(light.b));
+}
+
+vec3 decoded(vec3 value)
+{
+  return vec3(decoded(value.r), decoded(value.g), decoded(value.b));
+}
+
+void main()
+{
+  vec4 light = across < wipe ? mix(bilinear(left_fine), bilinear(left_coarse), fraction)
+                             : mix(bilinear(right_fine), bilinear(right_coarse), fraction);
+  float alpha = clamp(light.a, 0.0, 1.0);
+  vec3 shown = clamp(blends && alpha > 0.0 ? light.rgb / alpha : light.rgb, 0.0, 1.0);
+  if (blends) {
+    // As the editor does: colour is multiplied as it is displayed, and then blended as light.
+    shown = decoded(encoded(shown) * alpha);
+  }
+  if (channels == 0 && blends) {
+    ivec2 square = ivec2(floor(gl_FragCoord.xy / checker_size));
+    vec3 checker = ((square.x + square.y) & 1) == 0 ? checker_first.rgb : checker_second.rgb;
+    shown += decoded(checker) * (1.0 - alpha);
+  }
+  else if (channels == 2) {
+    shown = vec3(alpha);
+  }
+  else if (channels >= 3) {
+    shown = vec3(shown[channels - 3]);
+  }
+  color = vec4(srgbTarget ? shown : encoded(shown), 1.0);
+}
+"""
+_SAMPLERS = ("left_fine", "left_coarse", "right_fine", "right_coarse")
+
+_handles: list[object] = []
+_shader: gpu.types.GPUShader | None = None
+
+
+def draw_levels(
+    shown: Preview,
+    view: Matrix,
+    *,
+    filters: tuple[str, str],
+    mip_value: float,
+    wipe: float,
+    channels: str = "COLOR_ALPHA",
+) -> None:
+    """Draws the unit square of UV space with levels on it, into the active framebuffer.
+
+    Args:
+        shown: Where the levels come from.
+        view: The matrix from UV space to clip space; it scales and moves.
+        filters: Those left and right of the wipe.
+        mip_value: 0 is the image.
+        wipe: Where the wipe is, as a share of the framebuffer's width; 0 shows the right one.
+        channels: As `SpaceImageEditor.display_channels` names them.
+    """
+    mip_value = min(max(mip_value, 0.0), float(shown.last_level))
+    fine = min(math.floor(mip_value), max(shown.last_level - 1, 0))
+    coarse = min(fine + 1, shown.last_level)
+    wanted = [(name, level) for name in filters for level in (fine, coarse)]
+    textures = _textures(shown, wanted)
+    shader = _compiled()
+    batch = batch_for_shader(shader, "TRI_FAN", {"position": [(0, 0), (1, 0), (1, 1), (0, 1)]})
+    shader.bind()
+    for name, texture in zip(_SAMPLERS, textures, strict=True):
+        shader.uniform_sampler(name, texture)
+    shader.uniform_float("view", (view[0][0], view[1][1], view[0][3], view[1][3]))
+    shader.uniform_float("depth", _DEPTH)
+    shader.uniform_float("fraction", mip_value - fine)
+    shader.uniform_float("wipe", wipe)
+    shader.uniform_int("wrap", shown.wrap_numbers)
+    shader.uniform_int("channels", _CHANNELS.get(channels, 0))
+    shader.uniform_bool("blends", shown.blends)
+    theme = bpy.context.preferences.themes[0].user_interface
+    shader.uniform_float("checker_first", (*theme.transparent_checker_primary[:3], 1.0))
+    shader.uniform_float("checker_second", (*theme.transparent_checker_secondary[:3], 1.0))
+    shader.uniform_float("checker_size", float(theme.transparent_checker_size))
+    batch.draw(shader)
+
+
+def _compiled() -> gpu.types.GPUShader:
+    global _shader
+    if _shader is None:
+        info = gpu.types.GPUShaderCreateInfo()
+        for kind, name in (
+            ("VEC4", "view"),
+            ("VEC4", "checker_first"),
+            ("VEC4", "checker_second"),
+            ("IVEC2", "wrap"),
+            ("FLOAT", "depth"),
+            ("FLOAT", "fraction"),
+            ("FLOAT", "wipe"),
+            ("FLOAT", "checker_size"),
+            ("INT", "channels"),
+            ("BOOL", "blends"),
+            # Blender sets it: whether the framebuffer encodes what is written to it.
+            ("BOOL", "srgbTarget"),
+        ):
+            info.push_constant(kind, name)
+        for slot, name in enumerate(_SAMPLERS):
+            info.sampler(slot, "FLOAT_2D", name)
+        passed = gpu.types.GPUStageInterfaceInfo("prefilter_level")
+        passed.smooth("VEC2", "uv")
+        passed.smooth("FLOAT", "across")
+        info.vertex_in(0, "VEC2", "position")
+        info.vertex_out(passed)
+        info.fragment_out(0, "VEC4", "color")
+        info.vertex_source(_VERTEX)
+        info.fragment_source(_FRAGMENT)
+        _shader = gpu.shader.create_from_info(info)
+    return _shader
+
+
+def _textures(shown: Preview, wanted: list[tuple[str, int]]) -> list[gpu.types.GPUTexture]:
+    """Returns textures of levels; those that no drawing wants any longer are freed."""
+    keys = [("", 0) if level == 0 else (name, level) for name, level in wanted]
+    kept = {key: shown.textures[key] for key in keys if key in shown.textures}
+    for key, (name, level) in zip(keys, wanted, strict=True):
+        if key not in kept:
+            kept[key] = _upload(shown.levels[name][level])
+    shown.textures = kept
+    return [kept[key] for key in keys]
+
+
+def _upload(level: np.ndarray) -> gpu.types.GPUTexture:
+    height, width = level.shape[:2]
+    rgba = np.ones((height, width, 4), np.float32)
+    rgba[..., : level.shape[2]] = level
+    values = gpu.types.Buffer("FLOAT", rgba.size, rgba.ravel())
+    return gpu.types.GPUTexture((width, height), format="RGBA16F", data=values)
+
+
+def _shown_here() -> tuple[Preview, tuple[str, str], float] | None:
+    """Returns what the editor draws: the preview, the filters, and where the wipe is."""
+    settings = bpy.context.window_manager.prefilter_view
+    shown = preview.find(bpy.context.space_data.image)
+    if shown is None or not settings.use_preview:
+        return None
+    main = next(iter(shown.levels))
+    other = settings.compare
+    wipes = settings.use_wipe and other in shown.levels
+    return shown, (other if wipes else main, main), settings.wipe if wipes else 0.0
+
+
+def _draw_view() -> None:
+    found = _shown_here()
+    if found is None:
+        return
+    shown, filters, wipe = found
+    gpu.state.blend_set("NONE")
+    gpu.state.depth_test_set("LESS_EQUAL")
+    draw_levels(
+        shown,
+        gpu.matrix.get_projection_matrix() @ gpu.matrix.get_model_view_matrix(),
+        filters=filters,
+        mip_value=bpy.context.window_manager.prefilter_view.mip_value,
+        wipe=wipe,
+        channels=bpy.context.space_data.display_channels,
+    )
+    gpu.state.depth_test_set("NONE")
+
+
+def _draw_labels() -> None:
+    found = _shown_here()
+    if found is None:
+        return
+    shown, (left, right), wipe = found
+    scale = bpy.context.preferences.system.ui_scale
+    height = bpy.context.region.height
+    mip_value = min(bpy.context.window_manager.prefilter_view.mip_value, shown.last_level)
+    # The header may lie over the region's upper edge.
+    y = _LABEL_GAP * scale
+    blf.size(0, _LABEL_SIZE * scale)
+    blf.enable(0, blf.SHADOW)
+    blf.shadow(0, 5, 0.0, 0.0, 0.0, 1.0)
+    blf.color(0, 1.0, 1.0, 1.0, 1.0)
+    x = wipe * bpy.context.region.width
+    text = f"{FILTERS[right].label}, mip value {mip_value:g}"
+    blf.position(0, x + _LABEL_GAP * scale, y, 0)
+    blf.draw(0, text)
+    if left != right:
+        text = FILTERS[left].label
+        blf.position(0, x - blf.dimensions(0, text)[0] - _LABEL_GAP * scale, y, 0)
+        blf.draw(0, text)
+        shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+        half = _LINE_WIDTH * scale / 2
+        corners = [(x - half, 0), (x + half, 0), (x + half, height), (x - half, height)]
+        line = batch_for_shader(shader, "TRI_FAN", {"pos": corners})
+        shader.bind()
+        shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
+        line.draw(shader)
+    blf.disable(0, blf.SHADOW)
+
+
+def register() -> None:
+    """Adds the drawing to the editors."""
+    for draw, when in ((_draw_view, "POST_VIEW"), (_draw_labels, "POST_PIXEL")):
+        handle = bpy.types.SpaceImageEditor.draw_handler_add(draw, (), "WINDOW", when)
+        _handles.append(handle)
+
+
+def unregister() -> None:
+    """Takes the drawing out of the editors."""
+    global _shader
+    while _handles:
+        bpy.types.SpaceImageEditor.draw_handler_remove(_handles.pop(), "WINDOW")
+    _shader = None
