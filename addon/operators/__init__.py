@@ -3,7 +3,8 @@
 import bpy
 
 from .bake_mipmaps import PREFILTER_OT_bake_mipmaps
+from .bake_texture_cache import PREFILTER_OT_bake_texture_cache
 
-_CLASSES = (PREFILTER_OT_bake_mipmaps,)
+_CLASSES = (PREFILTER_OT_bake_mipmaps, PREFILTER_OT_bake_texture_cache)
 
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)

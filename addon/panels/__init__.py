@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import image_editor
+from . import image_editor, texture_cache
 
 _CLASSES = (image_editor.PREFILTER_PT_bake,)
 
@@ -13,9 +13,15 @@ def register() -> None:
     """Registers the panels and the menu entries."""
     _register_classes()
     bpy.types.IMAGE_MT_image.append(image_editor.draw_image_menu)
+    bpy.types.IMAGE_MT_image.append(texture_cache.draw_image_menu)
+    if texture_cache.has_parent():
+        bpy.utils.register_class(texture_cache.PREFILTER_PT_texture_cache)
 
 
 def unregister() -> None:
     """Removes the menu entries and the panels."""
+    if texture_cache.PREFILTER_PT_texture_cache.is_registered:
+        bpy.utils.unregister_class(texture_cache.PREFILTER_PT_texture_cache)
+    bpy.types.IMAGE_MT_image.remove(texture_cache.draw_image_menu)
     bpy.types.IMAGE_MT_image.remove(image_editor.draw_image_menu)
     _unregister_classes()

@@ -434,4 +434,5 @@ def wrapped(index: NDArray[np.int64], size: int, wrap: str) -> NDArray[np.int64]
     raise ValueError(f"wrap: found '{wrap}'; the sampled check knows repeat and clamp")
 
 
-main()
+if __name__ == "__main__":
+    main()
