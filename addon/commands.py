@@ -11,7 +11,7 @@ from typing import Any
 
 import bpy
 
-from . import bake
+from . import bake, texture_cache
 from .bake import Choice
 from .bridge import files, images, meshes
 from .wording import listed
@@ -39,6 +39,15 @@ examples:
   prefilter bake scene.blend --image Wood --save
   prefilter bake spot.obj --image spot.png --output spot.exr
   prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif"""
+
+_CACHE_HELP = "bake PAM into Cycles' texture cache, for every image of a scene"
+_CACHE_NOTES = """\
+Blender makes the cache files, in the folder of its preferences or beside the images; their levels
+are then replaced. Files that are there are overwritten. When an image file changes, Blender makes
+its cache file anew, and it has to be baked again. Needs Blender 5.2 LTS or later.
+
+example:
+  prefilter bake-cache scene.blend --save"""
 
 _IMPORTERS: dict[str, Callable[[str], Any]] = {
     ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
@@ -84,6 +93,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_bake(commands)
+    _add_bake_cache(commands)
     return parser
 
 
@@ -168,6 +178,61 @@ def _add_bake(commands: Any) -> None:
         help="keep the levels as packed images in the .blend FILE, and save it",
     )
     parser.set_defaults(execute=_bake, usage_error=parser.error)
+
+
+def _add_bake_cache(commands: Any) -> None:
+    parser = commands.add_parser(
+        "bake-cache",
+        help=_CACHE_HELP,
+        description=f"{_CACHE_HELP[0].upper()}{_CACHE_HELP[1:]}.",
+        epilog=_CACHE_NOTES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("file", metavar="FILE", help="a .blend file")
+    parser.add_argument(
+        "--scene", metavar="NAME", help="the scene that is rendered (default: the active one)"
+    )
+    parser.add_argument(
+        "--threads",
+        metavar="N",
+        type=_count,
+        default=0,
+        help="how many threads to use; 0 uses all (default: 0)",
+    )
+    parser.add_argument(
+        "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
+    )
+    parser.set_defaults(execute=_bake_cache, usage_error=parser.error)
+
+
+def _bake_cache(options: argparse.Namespace) -> None:
+    extension = os.path.splitext(options.file)[1].lower()
+    if extension != ".blend":
+        options.usage_error(f"FILE: found '{options.file}'; a .blend file is needed")
+    path = os.path.abspath(options.file)
+    _load(path, extension)
+    if options.save:
+        files.check_writable(Path(path))
+    scene = bpy.context.scene if options.scene is None else bpy.data.scenes.get(options.scene)
+    if scene is None:
+        known = listed(other.name for other in bpy.data.scenes)
+        raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {known}")
+    bpy.context.window.scene = scene
+    progress = _ProgressLine()
+    try:
+        outcome = texture_cache.bake(
+            scene,
+            bpy.context.evaluated_depsgraph_get(),
+            threads=options.threads,
+            progress=progress,
+        )
+    finally:
+        progress.end()
+    if options.save:
+        _save(path)
+    for warning in outcome.warnings:
+        print(f"prefilter: warning: {warning}", file=sys.stderr)
+    print(outcome.summary)
 
 
 def _count(text: str) -> int:

@@ -290,23 +290,19 @@ def _levels(
         ]
         if covers:
             levels = [_associated(level) for level in levels]
-    elif not texture.is_float:
-        levels = fit(stored, premultiplied=True)[1:]
-    elif covers:
-        bounds = _float_bounds(stored[..., :3])
-        halves = (partial(_half, progress, 0), partial(_half, progress, 1))
-        colours = fit(stored[..., :3], bounds=bounds, progress=halves[0])[1:]
-        alphas = fit(stored[..., 3:], progress=halves[1])[1:]
-        levels = [np.concatenate(pair, axis=2) for pair in zip(colours, alphas, strict=True)]
-    else:
+    elif texture.is_float:
         levels = fit(stored, premultiplied=True, bounds=_float_bounds(stored))[1:]
+        if covers:
+            levels = [_at_most_opaque(level) for level in levels]
+    else:
+        levels = fit(stored, premultiplied=True)[1:]
     if is_opaque:
         levels = [np.pad(level, ((0, 0), (0, 0), (0, 1)), constant_values=1) for level in levels]
     return levels
 
 
 def _float_bounds(values: FloatArray) -> tuple[float | None, None]:
-    """Returns that light stays positive where it is."""
+    """Returns bounds that keep light positive."""
     return (0.0 if values.min(where=np.isfinite(values), initial=0.0) >= 0.0 else None), None
 
 
@@ -320,6 +316,11 @@ def _unassociated(pixels: FloatArray) -> FloatArray:
 
 def _associated(pixels: FloatArray) -> FloatArray:
     return np.concatenate([pixels[..., :3] * pixels[..., 3:], pixels[..., 3:]], axis=2)
+
+
+def _at_most_opaque(pixels: FloatArray) -> FloatArray:
+    """Returns texels whose alpha is at most 1, of the same straight colours."""
+    return pixels / np.maximum(pixels[..., 3:], 1.0)
 
 
 def _wrap(worn: _Worn) -> str:
@@ -347,10 +348,6 @@ def _advance(progress: Progress, index: int, count: int, fraction: float) -> boo
 def _go_on(progress: Progress, fraction: float) -> None:
     if not progress(fraction):
         raise prefilter.Cancelled("cancelled")
-
-
-def _half(progress: Progress, index: int, fraction: float) -> bool:
-    return progress((index + fraction) / 2)
 
 
 def _nothing(scene: bpy.types.Scene, warnings: Sequence[str]) -> str:
