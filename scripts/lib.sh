@@ -224,6 +224,11 @@ ensure_root() {
   printf '%s\n' "${packages[@]}" >"$stamp"
 }
 
+# root_version PACKAGE: prints the version that the root has of it.
+root_version() {
+  dpkg-query --admindir "$root_dir/var/lib/dpkg" -W -f '${Version}' "$1"
+}
+
 # exec_in_root COMMAND...: becomes a command in the Debian root, with the host's folders at their places.
 exec_in_root() {
   exec unshare --mount --propagation unchanged -- \

@@ -243,6 +243,40 @@ def test_colour_and_alpha_are_associated(scene, tmp_path, name, kind, mode):
 
 
 @needs_cache
+@pytest.mark.parametrize("is_cut_out", [False, True])
+@pytest.mark.parametrize("kind", ["uint8", "float"])
+def test_covered_colours_are_closer_to_the_image(scene, tmp_path, is_cut_out, kind):
+    pixels, alpha = smooth(256, 256, 4), smooth(256, 256, 1, seed=8)
+    pixels[..., 3:] = alpha > 0.5 if is_cut_out else np.clip(2 * alpha - 0.5, 0, 1)
+    if kind == "float":
+        pixels[..., :3] *= pixels[..., 3:]
+    name = "leaf.png" if kind == "uint8" else "leaf.exr"
+    image = cycles.write_picture(tmp_path / name, pixels, kind)
+    material = cycles.shown_on(image).data.materials[0]
+    material.node_tree.nodes["Image Texture"].extension = "EXTEND"
+    generate()
+    path = cycles.cache_file(tmp_path)
+    random = np.random.default_rng(1)
+    u, v = random.random(40000), random.random(40000)
+
+    def read(number):
+        texels = cycles.looked_up(cycles.level(path, number), u, v)
+        color, covered = texels[:, :3], texels[:, 3:]
+        straight = np.divide(color, covered, out=np.zeros_like(color), where=covered > 0)
+        if kind == "uint8":
+            straight = scenes.to_linear(straight)
+        return np.concatenate([straight * covered, covered], axis=1)
+
+    def errors():
+        true = read(0)
+        return np.array([np.sqrt(np.mean((read(k) - true) ** 2)) for k in (1, 2, 3, 4)])
+
+    box = errors()
+    bake()
+    assert np.all(errors() < box)
+
+
+@needs_cache
 @pytest.mark.parametrize("mode", ["CHANNEL_PACKED", "NONE"])
 def test_channels_that_are_no_alpha_do_not_mix(scene, tmp_path, mode):
     pixels = np.ones((64, 64, 4), np.float32)
