@@ -29,8 +29,8 @@ class PREFILTER_PT_texture_cache(bpy.types.Panel):
         del context
         column = self.layout.column()
         column.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)
-        column.label(text="Overwrites the cache files of the scene's images", icon="INFO")
-        column.label(text="Bake again when an image file has changed", icon="BLANK1")
+        column.label(text="Overwrites the cache files", icon="INFO")
+        column.label(text="Bake again when images change", icon="BLANK1")
 
 
 def has_parent() -> bool:
