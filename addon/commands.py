@@ -13,7 +13,7 @@ from typing import Any
 
 import bpy
 
-from . import bake
+from . import bake, texture_cache
 from .bake import Choice
 from .bridge import files, images, meshes
 from .view import errors, figure
@@ -54,6 +54,14 @@ surface at each mip value, dashed ones those over all mip values. The image is c
 examples:
   prefilter plot spot.obj --image spot.png --output error.png
   prefilter plot scene.blend --image Wood --filters box pam-bilinear --table error.csv"""
+_CACHE_HELP = "bake PAM into Cycles' texture cache, for every image of a scene"
+_CACHE_NOTES = """\
+Blender makes the cache files, in the folder of its preferences or beside the images; their levels
+are then replaced. Files that are there are overwritten. When an image file changes, Blender makes
+its cache file anew, and it has to be baked again. Needs Blender 5.2 LTS or later.
+
+example:
+  prefilter bake-cache scene.blend --save"""
 
 _IMPORTERS: dict[str, Callable[[str], Any]] = {
     ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
@@ -100,6 +108,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
     _add_bake(commands)
     _add_plot(commands)
+    _add_bake_cache(commands)
     return parser
 
 
@@ -261,6 +270,61 @@ def _add_plot(commands: Any) -> None:
         "--table", metavar="FILE", default="", help="a .csv file to write the values to"
     )
     parser.set_defaults(execute=_plot, usage_error=parser.error)
+
+
+def _add_bake_cache(commands: Any) -> None:
+    parser = commands.add_parser(
+        "bake-cache",
+        help=_CACHE_HELP,
+        description=f"{_CACHE_HELP[0].upper()}{_CACHE_HELP[1:]}.",
+        epilog=_CACHE_NOTES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("file", metavar="FILE", help="a .blend file")
+    parser.add_argument(
+        "--scene", metavar="NAME", help="the scene that is rendered (default: the active one)"
+    )
+    parser.add_argument(
+        "--threads",
+        metavar="N",
+        type=_count,
+        default=0,
+        help="how many threads to use; 0 uses all (default: 0)",
+    )
+    parser.add_argument(
+        "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
+    )
+    parser.set_defaults(execute=_bake_cache, usage_error=parser.error)
+
+
+def _bake_cache(options: argparse.Namespace) -> None:
+    extension = os.path.splitext(options.file)[1].lower()
+    if extension != ".blend":
+        options.usage_error(f"FILE: found '{options.file}'; a .blend file is needed")
+    path = os.path.abspath(options.file)
+    _load(path, extension)
+    if options.save:
+        files.check_writable(Path(path))
+    scene = bpy.context.scene if options.scene is None else bpy.data.scenes.get(options.scene)
+    if scene is None:
+        known = listed(other.name for other in bpy.data.scenes)
+        raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {known}")
+    bpy.context.window.scene = scene
+    progress = _ProgressLine()
+    try:
+        outcome = texture_cache.bake(
+            scene,
+            bpy.context.evaluated_depsgraph_get(),
+            threads=options.threads,
+            progress=progress,
+        )
+    finally:
+        progress.end()
+    if options.save:
+        _save(path)
+    for warning in outcome.warnings:
+        print(f"prefilter: warning: {warning}", file=sys.stderr)
+    print(outcome.summary)
 
 
 def _count(text: str) -> int:

@@ -1,6 +1,6 @@
 """Words that several messages share."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sized
 
 _MOST_LISTED = 5
 
@@ -10,3 +10,8 @@ def listed(names: Iterable[str]) -> str:
     quoted = [f"'{name}'" for name in names]
     more = len(quoted) - _MOST_LISTED
     return ", ".join(quoted[:_MOST_LISTED]) + (f" and {more} more" if more > 0 else "")
+
+
+def counted(things: Sized, noun: str) -> str:
+    """Returns how many things there are, such as "2 files"."""
+    return f"{len(things)} {noun}{'' if len(things) == 1 else 's'}"

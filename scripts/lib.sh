@@ -5,7 +5,8 @@
 #   PREFILTER_CACHE           folder for what is downloaded or made outside of the checkout
 #                             (default: ${XDG_CACHE_HOME:-$HOME/.cache}/prefilter)
 #   PREFILTER_BLENDER         the Blender to use; else `blender` on PATH if it is 4.2 or later; else the
-#                             one of a Debian 13 root that is made in the cache folder
+#                             one of a Debian root that is made in the cache folder
+#   PREFILTER_SUITE           the Debian release of that root: trixie (13, Blender 4.3; the default) or sid
 #   PREFILTER_MIRROR          Debian mirror for that root (default: that of the host's own packages)
 
 set -euo pipefail
@@ -14,8 +15,7 @@ set -euo pipefail
 source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build_dir=$source_dir/build
 cache_dir=${PREFILTER_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/prefilter}
-root_dir=$cache_dir/trixie
-headers_dir=$cache_dir/headers
+headers_dir=$cache_dir/python-headers
 opensubdiv_dir=$cache_dir/opensubdiv-3.6.0
 log_dir=$cache_dir/logs
 
@@ -26,7 +26,10 @@ host_packages=(cmake ninja-build g++ libgtest-dev python3-dev pybind11-dev pytho
 # Debian's Blender comes without OpenImageIO's Python module, without fonts and without a screen.
 blender_packages=(python3-openimageio openimageio-tools python3-numpy python3-scipy python3-pytest
   python3-pil fonts-dejavu-core xvfb xauth)
-root_packages=(blender "${blender_packages[@]}" python3-dev pybind11-dev ca-certificates)
+declare -A root_packages=(
+  [trixie]="blender ${blender_packages[*]} python3-dev pybind11-dev ca-certificates"
+  [sid]="blender ${blender_packages[*]} python3-dev pybind11-dev ca-certificates python3-cattr python3-requests"
+)
 
 note() { printf 'prefilter: %s\n' "$*" >&2; }
 fail() { note "$*"; exit 1; }
@@ -41,6 +44,15 @@ lock() {
 }
 
 unlock() { exec {lock_fd}>&-; }
+
+# use_suite SUITE: lets a root of that Debian release be the root; sets suite and root_dir.
+use_suite() {
+  [[ -n ${root_packages[$1]:-} ]] || fail "PREFILTER_SUITE: found '$1'; allowed are ${!root_packages[*]}"
+  suite=$1
+  root_dir=$cache_dir/$suite
+}
+
+use_suite "${PREFILTER_SUITE:-trixie}"
 
 # progress LOG: keeps standard input in LOG and shows now and then where it is.
 progress() {
@@ -153,18 +165,19 @@ remove_root() {
   rm -rf --one-file-system "$folder"
 }
 
+# Sid's list of packages may be older than it allows itself to be, where a mirror is behind.
 make_root() {
   local mirror
   mirror=$(debian_mirror)
-  note "making a Debian 13 root with Blender in $root_dir from $mirror (360 MB to fetch, about 2 minutes)"
+  note "making a Debian $suite root with Blender in $root_dir from $mirror (360 MB to fetch, about 2 minutes)"
   remove_root "$root_dir.new"
-  logged root.log mmdebstrap --verbose --variant=minbase \
-    --include="$(IFS=,; printf '%s' "${root_packages[*]}")" \
+  logged "root-$suite.log" mmdebstrap --verbose --variant=minbase --include="${root_packages[$suite]// /,}" \
     --aptopt='Acquire::Languages "none"' --aptopt='APT::Install-Recommends "false"' \
+    --aptopt='Acquire::Check-Valid-Until "false"' \
     --dpkgopt=force-unsafe-io \
     --dpkgopt='path-exclude=/usr/share/doc/*' --dpkgopt='path-exclude=/usr/share/man/*' \
     --dpkgopt='path-exclude=/usr/share/info/*' --dpkgopt='path-exclude=/usr/share/locale/*' \
-    trixie "$root_dir.new" "$mirror"
+    "$suite" "$root_dir.new" "$mirror"
   ln -sf ../proc/self/mounts "$root_dir.new/etc/mtab"
   rm -f "$root_dir.new/etc/resolv.conf"
   touch "$root_dir.new/etc/resolv.conf" "$root_dir.new/etc/hosts"
@@ -191,13 +204,14 @@ ensure_opensubdiv() {
 }
 
 ensure_root() {
-  local stamp=$root_dir/.prefilter-packages missing
-  ! cmp --silent "$stamp" <(printf '%s\n' "${root_packages[@]}") || return 0
+  local stamp=$root_dir/.prefilter-packages missing packages
+  read -ra packages <<<"${root_packages[$suite]}"
+  ! cmp --silent "$stamp" <(printf '%s\n' "${packages[@]}") || return 0
   ((EUID == 0)) ||
     fail "no Blender 4.2 or later on PATH: install one, set PREFILTER_BLENDER, or run this as root"
   ensure_packages mmdebstrap mount
   if [[ -e $root_dir ]]; then
-    mapfile -t missing < <(missing_packages --root "$root_dir" "${root_packages[@]}")
+    mapfile -t missing < <(missing_packages --root "$root_dir" "${packages[@]}")
     if ((${#missing[@]})); then
       note "installing ${missing[*]} in $root_dir"
       logged root-install.log exec_in_root sh -c '
@@ -207,7 +221,12 @@ ensure_root() {
   else
     make_root
   fi
-  printf '%s\n' "${root_packages[@]}" >"$stamp"
+  printf '%s\n' "${packages[@]}" >"$stamp"
+}
+
+# root_version PACKAGE: prints the version that the root has of it.
+root_version() {
+  dpkg-query --admindir "$root_dir/var/lib/dpkg" -W -f '${Version}' "$1"
 }
 
 # exec_in_root COMMAND...: becomes a command in the Debian root, with the host's folders at their places.
@@ -216,32 +235,34 @@ exec_in_root() {
     "$source_dir/scripts/enter_root" "$root_dir" "$source_dir" "$@"
 }
 
-# The host's compiler builds for the root's Python too: it needs the headers, and no library.
+# The host's compiler builds for the root's Python too: it needs the headers, and no library. Sets blender_tag.
 ensure_root_headers() {
-  local python version arch new=$headers_dir.new
+  local python version arch folder=$headers_dir/$suite new=$headers_dir/$suite.new
   python=$(compgen -G "$root_dir/usr/include/python3.*/Python.h" | head -n 1) ||
     fail "$root_dir has no Python headers: remove it and run scripts/setup"
   python=$(dirname "$python")
   version=${python##*/python3.}
   blender_tag=cp3$version
-  ! cmp --silent "$headers_dir/.stamp" "$root_dir/.prefilter-packages" || return 0
+  ! cmp --silent "$folder/.stamp" "$root_dir/.prefilter-packages" || return 0
   arch=$(uname -m)-linux-gnu
   rm -rf "$new"
   mkdir -p "$new/$blender_tag/$arch" "$new/pybind11-include"
   cp -RLp "$python/." "$new/$blender_tag/"
   cp -RLp "$root_dir/usr/include/$arch/python3.$version" "$new/$blender_tag/$arch/"
   cp -RLp "$root_dir/usr/include/pybind11" "$new/pybind11-include/"
+  # A new Python wants a new pybind11; this one comes before that of all others.
+  ln -s ../pybind11-include/pybind11 "$new/$blender_tag/pybind11"
   cp "$root_dir/.prefilter-packages" "$new/.stamp"
-  rm -rf "$headers_dir"
-  mv "$new" "$headers_dir"
+  rm -rf "$folder"
+  mv "$new" "$folder"
 }
 
 # find_headers: sets python_headers to TAG=FOLDER;... and pybind11_include, as CMake wants them.
 find_headers() {
   local folder tag
   local -A found=()
-  for folder in /usr/include/python3.* "$headers_dir"/cp3*; do
-    [[ -e $folder/Python.h ]] || continue
+  for folder in /usr/include/python3.* "$headers_dir"/*/cp3*; do
+    [[ -e $folder/Python.h && $folder != *.new/* ]] || continue
     tag=${folder##*/}
     tag=${tag/#python3./cp3}
     if ((${tag#cp3} >= 11)) && [[ -z ${found[$tag]:-} ]]; then
@@ -257,7 +278,8 @@ find_headers() {
   [[ -n ${found[$blender_tag]:-} ]] ||
     fail "Blender's Python is 3.${blender_tag#cp3}, and its headers are missing: install python3.${blender_tag#cp3}-dev"
   pybind11_include=/usr/include
-  [[ ! -e $headers_dir/pybind11-include ]] || pybind11_include=$headers_dir/pybind11-include
+  folder=$headers_dir/trixie/pybind11-include
+  [[ ! -e $folder ]] || pybind11_include=$folder
 }
 
 # setup: installs or makes what is missing, and sets blender_kind, blender_tag, host_tag, python_tags,

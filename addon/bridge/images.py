@@ -181,24 +181,56 @@ def read_tile(image: bpy.types.Image, number: int) -> Picture:
     return replace(picture, name=f"{image.name}.{number}", full_name=f"{image.name_full}.{number}")
 
 
+def files_of(image: bpy.types.Image) -> dict[int | None, Path]:
+    """Returns the file that a still image is rendered from, or those of a UDIM image's tiles.
+
+    Returns:
+        Absolute paths, by the number of the tile; None stands for an image without tiles.
+
+    Raises:
+        ValueError: The image is rendered from something else, or a file is missing.
+    """
+    kind = _KIND_OF_TYPE.get(image.type)
+    if kind is None and image.source not in {"FILE", "TILED"}:
+        kind = _KIND_OF_SOURCE.get(image.source, "a generated image, which has no file")
+    if kind is None and image.packed_files:
+        kind = "an image that is packed into the .blend file"
+    if kind is not None:
+        raise ValueError(f"image '{image.name}': found {kind}; a picture file is needed")
+    if image.is_dirty:
+        raise ValueError(f"image '{image.name}': has changes that are not in its file; save it")
+    numbers = tile_numbers(image)
+    paths: dict[int | None, Path] = {number: Path(_tile_path(image, number)) for number in numbers}
+    if not numbers:
+        paths[None] = Path(bpy.path.abspath(image.filepath, library=image.library))
+    for path in paths.values():
+        if not path.is_file():
+            raise ValueError(f"image '{image.name}': there is no file '{path}'")
+    return paths
+
+
 @contextmanager
 def _tile_file(image: bpy.types.Image, number: int, who: str) -> Iterator[str]:
     """Yields the path of a tile's file, for the time being where the tile is packed."""
-    column, row = (number - 1001) % 10, (number - 1001) // 10
-    path = image.filepath.replace("<UDIM>", str(number))
-    path = path.replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
+    path = _tile_path(image, number)
     packed = next((file for file in image.packed_files if file.tile_number == number), None)
     if packed is not None:
         with tempfile.TemporaryDirectory() as folder:
-            copy = os.path.join(folder, os.path.basename(bpy.path.abspath(path)))
+            copy = os.path.join(folder, os.path.basename(path))
             with open(copy, "wb") as file:
                 file.write(packed.packed_file.data)
             yield copy
         return
-    found = bpy.path.abspath(path, library=image.library)
-    if not os.path.isfile(found):
-        raise ValueError(f"{who}: there is no file '{found}'; save the image first")
-    yield found
+    if not os.path.isfile(path):
+        raise ValueError(f"{who}: there is no file '{path}'; save the image first")
+    yield path
+
+
+def _tile_path(image: bpy.types.Image, number: int) -> str:
+    column, row = (number - 1001) % 10, (number - 1001) // 10
+    path = image.filepath.replace("<UDIM>", str(number))
+    path = path.replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
+    return bpy.path.abspath(path, library=image.library)
 
 
 def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:

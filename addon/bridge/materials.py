@@ -61,11 +61,18 @@ def image_uses(
     return uses, warnings
 
 
-def images_of(material: bpy.types.Material) -> list[bpy.types.Image]:
-    """Returns the images of a material's Image Texture nodes, each once."""
-    if not material.use_nodes or material.node_tree is None:
+def images_of(
+    owner: bpy.types.Material | bpy.types.World | bpy.types.Light, kind: str = "TEX_IMAGE"
+) -> list[bpy.types.Image]:
+    """Returns the images of a material's Image Texture nodes, each once.
+
+    Args:
+        owner: The material, or something else with shader nodes.
+        kind: The type of the nodes; "TEX_ENVIRONMENT" for Environment Texture nodes.
+    """
+    if not owner.use_nodes or owner.node_tree is None:
         return []
-    nodes = _image_nodes(material.node_tree, ())
+    nodes = _image_nodes(owner.node_tree, (), kind)
     return list(dict.fromkeys(node.image for node, _ in nodes))
 
 
@@ -128,15 +135,15 @@ def _nodes_of_type(
 
 
 def _image_nodes(
-    tree: bpy.types.NodeTree, groups: Groups
+    tree: bpy.types.NodeTree, groups: Groups, kind: str = "TEX_IMAGE"
 ) -> Iterator[tuple[bpy.types.Node, Groups]]:
     for node in tree.nodes:
         if node.mute:
             continue
-        if node.type == "TEX_IMAGE" and node.image is not None:
+        if node.type == kind and node.image is not None:
             yield node, groups
         elif node.type == "GROUP" and node.node_tree is not None:
-            yield from _image_nodes(node.node_tree, (*groups, node))
+            yield from _image_nodes(node.node_tree, (*groups, node), kind)
 
 
 def _use(node: bpy.types.Node, groups: Groups) -> ImageUse:

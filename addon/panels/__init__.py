@@ -2,7 +2,7 @@
 
 import bpy
 
-from . import image_editor, seeing
+from . import image_editor, seeing, texture_cache
 
 _CLASSES = (image_editor.PREFILTER_PT_bake, *seeing.CLASSES)
 
@@ -14,10 +14,16 @@ def register() -> None:
     seeing.load_swatches()
     _register_classes()
     bpy.types.IMAGE_MT_image.append(image_editor.draw_image_menu)
+    bpy.types.IMAGE_MT_image.append(texture_cache.draw_image_menu)
+    if texture_cache.has_parent():
+        bpy.utils.register_class(texture_cache.PREFILTER_PT_texture_cache)
 
 
 def unregister() -> None:
     """Removes the menu entries and the panels."""
+    if texture_cache.PREFILTER_PT_texture_cache.is_registered:
+        bpy.utils.unregister_class(texture_cache.PREFILTER_PT_texture_cache)
+    bpy.types.IMAGE_MT_image.remove(texture_cache.draw_image_menu)
     bpy.types.IMAGE_MT_image.remove(image_editor.draw_image_menu)
     _unregister_classes()
     seeing.free_swatches()

@@ -46,7 +46,9 @@ def test_every_level_in_tiles(addon, tmp_path, file_name):
 def test_tiff_keeps_encoded_bytes(addon, tmp_path):
     values = scenes.noise(16, 16)
     levels, specs = read_levels(bake(addon, tmp_path, "out.tif", values))
-    assert specs[0].get_string_attribute("oiio:ColorSpace") == "sRGB"
+    # OpenImageIO 3.1 has another name for it.
+    space = specs[0].get_string_attribute("oiio:ColorSpace")
+    assert space in {"sRGB", "srgb_rec709_scene"}
     np.testing.assert_allclose(levels[0], values[..., :3], atol=1e-6)
     linear = scenes.halved(scenes.to_linear(values[..., :3]))
     np.testing.assert_allclose(levels[1], scenes.to_srgb(linear), atol=0.51 / 255)

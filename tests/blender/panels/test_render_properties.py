@@ -1,0 +1,51 @@
+"""The panel and the modal bake into the texture cache, in a window that nobody sees."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import bpy
+import pytest
+
+SESSION = Path(__file__).with_name("cache_session.py")
+
+
+@pytest.mark.skipif(bpy.app.version < (5, 2, 0), reason="Blender 5.2 or later is needed")
+def test_panel_and_modal_bake_into_the_cache(display, tmp_path):
+    session = subprocess.run(
+        [
+            bpy.app.binary_path,
+            "--factory-startup",
+            "--enable-event-simulate",
+            "--window-geometry",
+            *("0", "0", "1280", "800"),
+            "--python",
+            SESSION,
+            "--",
+            tmp_path,
+        ],
+        env={**os.environ, "DISPLAY": display},
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    output = session.stdout + session.stderr
+    assert session.returncode == 0, output
+    assert "Traceback" not in output, output
+    found = json.loads((tmp_path / "result.json").read_text())
+    assert found["started"] == ["RUNNING_MODAL"]
+    assert not found["polls_while_running"]
+    assert found["same_files"]
+    assert len(found["replaced"]) == 1
+    assert found["cache_after_bake"]
+    assert found["cancelled_leaves_files"]
+    assert not found["cache_after_cancel"]
+    assert found["polls_in_next_file"]
+    assert found["next_file_leaves_files"]
+
+
+@pytest.mark.skipif(bpy.app.version >= (5, 2, 0), reason="this Blender has a texture cache")
+def test_an_older_blender_has_no_panel():
+    assert not hasattr(bpy.types, "PREFILTER_PT_texture_cache")
