@@ -1,6 +1,9 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
+
 #include "convert.h"
+#include "prefilter/color/transfer.h"
 #include "prefilter/mipmap/mipmap_error.h"
 #include "prefilter/mipmap/mipmaps.h"
 #include "prefilter/mipmap/seams.h"
@@ -17,13 +20,10 @@ WrapModes wrap_modes(const WrapNames& names) {
   return {wrap_mode(names.first), wrap_mode(names.second)};
 }
 
-std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
-                                        const std::vector<const Surface*>& surfaces,
-                                        const std::string& filter, const WrapNames& wrap,
-                                        std::optional<float> low, std::optional<float> high,
-                                        int levels, bool premultiplied, const std::string& reader,
-                                        double seam_weight, const py::object& progress,
-                                        int threads) {
+MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::optional<float> low,
+                         std::optional<float> high, int levels, bool premultiplied,
+                         const std::string& reader, double seam_weight, const py::object& progress,
+                         int threads) {
   MipmapOptions options;
   options.filter = mipmap_filter(filter);
   options.wrap = wrap_modes(wrap);
@@ -34,14 +34,51 @@ std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
   options.seam_weight = seam_weight;
   options.threads = threads;
   options.progress = to_progress(progress);
+  return options;
+}
+
+template <typename... Options>
+std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
+                                        const std::vector<const Surface*>& surfaces,
+                                        Options... given) {
+  const MipmapOptions options = to_options(given...);
   const ImageView image = view_of(array);
   std::vector<Image> images;
   {
     const py::gil_scoped_release unlocked;
-    images = mipmaps(image, surfaces, options);
+    images = coarser_levels(image, surfaces, options);
   }
   std::vector<Array<float>> arrays;
   for (Image& level : images) arrays.push_back(to_array(std::move(level)));
+  return arrays;
+}
+
+template <typename... Options>
+std::vector<Array<std::uint8_t>> bound_byte_mipmaps(const Array<std::uint8_t>& array, bool srgb,
+                                                    const std::vector<const Surface*>& surfaces,
+                                                    Options... given) {
+  const MipmapOptions options = to_options(given...);
+  const ByteValues values = byte_values(srgb);
+  const TexelSource image(array.data(), static_cast<int>(array.shape(1)),
+                          static_cast<int>(array.shape(0)), static_cast<int>(array.shape(2)),
+                          &values);
+  std::vector<Image> images;
+  {
+    const py::gil_scoped_release unlocked;
+    images = coarser_levels(image, surfaces, options);
+  }
+  std::vector<Array<std::uint8_t>> arrays;
+  for (Image& level : images) {
+    std::vector<std::uint8_t> bytes;
+    {
+      const py::gil_scoped_release unlocked;
+      bytes = to_bytes(level.view(), srgb, options.threads);
+    }
+    Array<std::uint8_t> result({level.height, level.width, level.channels});
+    std::copy(bytes.begin(), bytes.end(), result.mutable_data());
+    level = Image();
+    arrays.push_back(std::move(result));
+  }
   return arrays;
 }
 
@@ -101,10 +138,20 @@ Array<float> bound_fill_unused(const Array<float>& array,
 }  // namespace
 
 void bind_mipmap(py::module_& m) {
-  m.def("mipmaps", &bound_mipmaps, py::arg("image"), py::arg("surfaces"), py::arg("filter"),
-        py::arg("wrap"), py::arg("low"), py::arg("high"), py::arg("levels"),
-        py::arg("premultiplied"), py::arg("reader"), py::arg("seam_weight"), py::arg("progress"),
-        py::arg("threads"));
+  using ForFloats = std::vector<Array<float>> (*)(
+      const Array<float>&, const std::vector<const Surface*>&, std::string, WrapNames,
+      std::optional<float>, std::optional<float>, int, bool, std::string, double, py::object, int);
+  using ForBytes = std::vector<Array<std::uint8_t>> (*)(
+      const Array<std::uint8_t>&, bool, const std::vector<const Surface*>&, std::string, WrapNames,
+      std::optional<float>, std::optional<float>, int, bool, std::string, double, py::object, int);
+  m.def("coarser_levels", static_cast<ForFloats>(&bound_mipmaps), py::arg("image"),
+        py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"), py::arg("high"),
+        py::arg("levels"), py::arg("premultiplied"), py::arg("reader"), py::arg("seam_weight"),
+        py::arg("progress"), py::arg("threads"));
+  m.def("coarser_byte_levels", static_cast<ForBytes>(&bound_byte_mipmaps), py::arg("image"),
+        py::arg("srgb"), py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"),
+        py::arg("high"), py::arg("levels"), py::arg("premultiplied"), py::arg("reader"),
+        py::arg("seam_weight"), py::arg("progress"), py::arg("threads"));
   m.def("mipmap_error", &bound_mipmap_error, py::arg("levels"), py::arg("image"),
         py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("reader"),
         py::arg("progress"), py::arg("threads"));

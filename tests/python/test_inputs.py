@@ -46,7 +46,7 @@ def test_surface(positions, triangles, uvs, message):
         (np.zeros((16, 16, 0), np.float32), "image: .* no pixels"),
         ([[1.0], [1.0, 2.0]], "image: found no array"),
         (np.full((16, 16, 3), 1e300), "image: the texel in row 0, column 0 holds inf"),
-        (np.zeros((16, 16, 3), np.uint8), "image: dtype uint8; float32 or float64"),
+        (np.zeros((16, 16, 3), np.int16), "image: dtype int16; float32 or float64"),
         (None, "image: dtype object"),
         (changed(IMAGE, (3, 5, 1), np.nan), "image: the texel in row 3, column 5 holds nan in ch"),
         (changed(IMAGE, (0, 0, 2), np.inf), "image: the texel in row 0, column 0 holds inf"),

@@ -1,8 +1,10 @@
 // Images: interleaved float channels, row 0 at v = 0.
 #pragma once
 
+#include <array>
 #include <cassert>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace prefilter {
@@ -26,6 +28,40 @@ struct ImageView {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   }
   std::size_t value_count() const { return texel_count() * static_cast<std::size_t>(channels); }
+};
+
+/// Values of the 256 bytes, channel by channel.
+using ByteValues = std::array<std::array<float, 256>, kMaxChannels>;
+
+/// The texels of an image as they are stored: floats, or bytes that stand for values. Bytes are
+/// turned into floats where they are read, so that an image of them takes no more memory than it
+/// does.
+class TexelSource {
+ public:
+  // NOLINTNEXTLINE(google-explicit-constructor): an image of floats is one
+  TexelSource(const ImageView& floats)
+      : width(floats.width), height(floats.height), channels(floats.channels), floats_(floats) {}
+  /// Interleaved rows without gaps, as ImageView has them.
+  TexelSource(const std::uint8_t* bytes, int width_, int height_, int channels_,
+              const ByteValues* values)
+      : width(width_), height(height_), channels(channels_), bytes_(bytes), values_(values) {}
+
+  bool has_bytes() const { return bytes_ != nullptr; }
+  const ImageView& floats() const { return floats_; }
+  const std::uint8_t* byte_texel(int x, int y) const {
+    assert(x >= 0 && x < width && y >= 0 && y < height);
+    return bytes_ + (static_cast<std::ptrdiff_t>(y) * width + x) * channels;
+  }
+  float value(std::uint8_t byte, int channel) const { return (*values_)[channel][byte]; }
+
+  int width;
+  int height;
+  int channels;
+
+ private:
+  ImageView floats_;
+  const std::uint8_t* bytes_ = nullptr;
+  const ByteValues* values_ = nullptr;
 };
 
 /// An image that owns its texels, in the layout of ImageView.

@@ -46,4 +46,31 @@ Image encode_srgb(const ImageView& image, int threads) {
   return map_colours(image, threads, linear_to_srgb);
 }
 
+ByteValues byte_values(bool srgb) {
+  ByteValues values;
+  for (int c = 0; c < kMaxChannels; ++c) {
+    for (int i = 0; i < 256; ++i) {
+      const float value = static_cast<float>(i) / 255.0F;
+      values[c][i] = srgb && c < 3 ? srgb_to_linear(value) : value;
+    }
+  }
+  return values;
+}
+
+std::vector<std::uint8_t> to_bytes(const ImageView& image, bool srgb, int threads) {
+  std::vector<std::uint8_t> bytes(image.value_count());
+  const std::size_t row_values = image.value_count() / static_cast<std::size_t>(image.height);
+  parallel_for(image.height, threads, Progress(), [&](std::int64_t y) {
+    const float* value = image.texel(0, static_cast<int>(y));
+    std::uint8_t* byte = bytes.data() + static_cast<std::size_t>(y) * row_values;
+    for (std::size_t i = 0; i < row_values; ++i) {
+      const bool colour =
+          srgb && static_cast<int>(i % static_cast<std::size_t>(image.channels)) < 3;
+      const float encoded = colour ? linear_to_srgb(value[i]) : value[i];
+      byte[i] = static_cast<std::uint8_t>(std::clamp(encoded, 0.0F, 1.0F) * 255.0F + 0.5F);
+    }
+  });
+  return bytes;
+}
+
 }  // namespace prefilter

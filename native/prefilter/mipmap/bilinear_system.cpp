@@ -66,7 +66,7 @@ void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double wei
 }
 
 template <int C>
-std::vector<LaneValues> BilinearSystem<C>::prepare(float image_share) {
+void BilinearSystem<C>::prepare(float image_share) {
   double sum = 0.0;
   std::int64_t used = 0;
   const auto size = static_cast<std::ptrdiff_t>(system_.size());
@@ -77,7 +77,6 @@ std::vector<LaneValues> BilinearSystem<C>::prepare(float image_share) {
   }
   const double pull = used > 0 ? kPull * sum / static_cast<double>(used) : 0.0;
   system_.make_texels();
-  std::vector<LaneValues> right(system_.size());
   for (std::ptrdiff_t j = 0; j < size; ++j) {
     if (!(system_.diagonal(j) > 0.0F) || !(weights_[j] > 0.0F)) {
       system_.diagonal(j) = 0.0F;
@@ -87,21 +86,18 @@ std::vector<LaneValues> BilinearSystem<C>::prepare(float image_share) {
     for (int c = 0; c < C; ++c) {
       const double mean = static_cast<double>(system_.right_side(j).v[c]) / weights_[j];
       system_.texel(j).v[c] = static_cast<float>(mean);
-      right[j].v[c] = image_share * system_.right_side(j).v[c] + static_cast<float>(pull * mean);
+      system_.right_side(j).v[c] =
+          image_share * system_.right_side(j).v[c] + static_cast<float>(pull * mean);
     }
   }
   std::vector<float>().swap(weights_);
   system_.add_links(std::move(links_));
   system_.invert_diagonal();
-  return right;
 }
 
 template <int C>
 auto BilinearSystem<C>::solve(const SolveOptions& options, const Progress& progress) -> Solution {
-  {
-    std::vector<LaneValues> right = prepare(1.0F);
-    system_.swap_right_side(&right);
-  }
+  prepare(1.0F);
   const int sweeps = system_.solve(options, progress);
   Solution solution = take_solution();
   solution.sweeps = sweeps;

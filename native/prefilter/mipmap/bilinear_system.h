@@ -44,9 +44,8 @@ class BilinearSystem {
   Solution solve(const SolveOptions& options, const Progress& progress);
 
   /// The steps of `solve`, for those who go on from there. `prepare` makes the system ready, with
-  /// texels at their means p_j, and returns its right side where that of the image counts
-  /// `image_share` times.
-  std::vector<LaneValues> prepare(float image_share);
+  /// texels at their means p_j; in its right side that of the image counts `image_share` times.
+  void prepare(float image_share);
   NinePointSystem<float>& system() { return system_; }
   Solution take_solution();
 

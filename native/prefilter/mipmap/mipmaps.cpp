@@ -83,16 +83,31 @@ Kernel kernel_of(MipmapFilter filter) {
 
 class Builder {
  public:
-  Builder(const ImageView& image, const std::vector<const Surface*>& surfaces,
+  Builder(const TexelSource& source, const std::vector<const Surface*>& surfaces,
           const MipmapOptions& options)
-      : original_(image), surfaces_(surfaces), options_(options), image_(image) {
+      : source_(source), surfaces_(surfaces), options_(options), image_(source.floats()) {
     level_count_ =
-        options.levels > 0 ? options.levels : full_level_count(image.width, image.height);
+        options.levels > 0 ? options.levels : full_level_count(source.width, source.height);
+    if (!source.has_bytes()) return;
+    if (reads_bytes()) {
+      image_ = {nullptr, source.width, source.height, source.channels};
+      return;
+    }
+    copy_ = Image(source.width, source.height, source.channels);
+    image_ = copy_.view();
+    for_each_texel(&copy_, Progress(), [&](std::size_t i, float* texel) {
+      const auto width = static_cast<std::size_t>(source.width);
+      const std::uint8_t* bytes =
+          source.byte_texel(static_cast<int>(i % width), static_cast<int>(i / width));
+      for (int c = 0; c < source.channels; ++c) texel[c] = source.value(bytes[c], c);
+    });
   }
 
   std::vector<Image> run() {
-    check_texels();
-    if (image_.channels == 4 && !options_.premultiplied) premultiply();
+    if (image_.data != nullptr) {
+      check_texels();
+      if (image_.channels == 4 && !options_.premultiplied) premultiply();
+    }
     std::vector<Image> levels;
     switch (reads_of(options_.filter)) {
       case Reads::kAll:
@@ -107,12 +122,31 @@ class Builder {
         break;
     }
     for (Image& level : levels) finish(&level);
-    levels.insert(levels.begin(), Image(original_));
     options_.progress.report(1.0);
     return levels;
   }
 
  private:
+  // Whether the filter needs no more than to read the texels once, as they are.
+  bool reads_bytes() const {
+    if (reads_of(options_.filter) != Reads::kLookedUp || options_.reader != Reader::kLinear ||
+        options_.seam_weight != 0.0) {
+      return false;
+    }
+    if (source_.channels < 4 || options_.premultiplied) return true;
+    constexpr std::uint8_t kOpaque = 255;
+    for (int y = 0; y < source_.height; ++y) {
+      const std::uint8_t* texel = source_.byte_texel(0, y);
+      for (int x = 0; x < source_.width; ++x, texel += 4) {
+        if (texel[3] != kOpaque) return false;
+      }
+    }
+    return true;
+  }
+
+  // What the fits read: the bytes as they are, or the floats that were made of them.
+  TexelSource texels() const { return image_.data == nullptr ? source_ : TexelSource(image_); }
+
   // Refuses a texel that counts and is not finite; one that does not count becomes 0.
   void check_texels() {
     if (reads_of(options_.filter) == Reads::kTouched) {
@@ -333,7 +367,7 @@ class Builder {
   std::vector<Image> solve_together() const {
     if (level_count_ == 1) return {};
     TrilinearSystem<C> system(image_.width, image_.height, options_.wrap);
-    sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)), image_, options_.wrap,
+    sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)), texels(), options_.wrap,
                      {.first_level = 1,
                       .last_level = full_level_count(image_.width, image_.height) - 1,
                       .threads = options_.threads},
@@ -398,7 +432,7 @@ class Builder {
     if (systems.empty()) return {};
     const Image encoded_image = encoded ? encode_srgb(image_, options_.threads) : Image();
     sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)),
-                     encoded ? encoded_image.view() : image_, options_.wrap,
+                     encoded ? TexelSource(encoded_image.view()) : texels(), options_.wrap,
                      {.first_level = 1,
                       .last_level = level_count_ - 1,
                       .reader = options_.reader,
@@ -493,10 +527,10 @@ class Builder {
                level);
   }
 
-  const ImageView& original_;
+  const TexelSource& source_;
   const std::vector<const Surface*>& surfaces_;
   const MipmapOptions& options_;
-  ImageView image_;  // what is filtered: the original, or a copy of it
+  ImageView image_;  // what is filtered: the source, or a copy of it; no data where bytes are read
   Image copy_;
   std::vector<unsigned char> covered_;
   int level_count_ = 0;
@@ -504,7 +538,7 @@ class Builder {
   std::array<ValueRange, 3> colours_{};  // of texels with alpha, before they are multiplied by it
 };
 
-void check_options(const ImageView& image, const std::vector<const Surface*>& surfaces,
+void check_options(const TexelSource& image, const std::vector<const Surface*>& surfaces,
                    const MipmapOptions& options) {
   const int full = full_level_count(image.width, image.height);
   if (options.levels < 0 || options.levels > full) {
@@ -585,11 +619,19 @@ void check_mapped(const TexelTriangles& triangles) {
   if (!(triangles.total_mass > 0.0)) throw_outside();
 }
 
-std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
-                           const MipmapOptions& options) {
-  check_mipmap_image(image);
+std::vector<Image> coarser_levels(const TexelSource& image,
+                                  const std::vector<const Surface*>& surfaces,
+                                  const MipmapOptions& options) {
+  check_mipmap_image({nullptr, image.width, image.height, image.channels});
   check_options(image, surfaces, options);
   return Builder(image, surfaces, options).run();
+}
+
+std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
+                           const MipmapOptions& options) {
+  std::vector<Image> levels = coarser_levels(image, surfaces, options);
+  levels.insert(levels.begin(), Image(image));
+  return levels;
 }
 
 }  // namespace prefilter

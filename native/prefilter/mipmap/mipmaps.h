@@ -72,6 +72,13 @@ struct MipmapOptions {
 std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
                            const MipmapOptions& options);
 
+/// The same without level 0. Texels that are bytes are read as they are by the fits that can do so,
+/// those for the linear reader where alpha plays no part; the other filters make floats of them
+/// first.
+std::vector<Image> coarser_levels(const TexelSource& image,
+                                  const std::vector<const Surface*>& surfaces,
+                                  const MipmapOptions& options);
+
 /// Throws Error unless the image has 1 to 4 channels.
 void check_mipmap_image(const ImageView& image);
 

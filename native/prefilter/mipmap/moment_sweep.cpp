@@ -146,14 +146,20 @@ class Patch {
   static constexpr int kSide = Tiles::kSize + 2;
   using Texel = std::array<double, C>;
 
-  void load(const ImageView& image, WrapModes wrap, const CellWindow& window) {
+  void load(const TexelSource& image, WrapModes wrap, const CellWindow& window) {
     for (int y = window.y0 - 1; y <= window.y1; ++y) {
       const int row = wrap_index(y, image.height, wrap.v);
       for (int x = window.x0 - 1; x <= window.x1; ++x) {
         const int column = wrap_index(x, image.width, wrap.u);
         Texel& texel = texels_[(y - window.y0 + 1) * kSide + x - window.x0 + 1];
-        for (int c = 0; c < C; ++c) {
-          texel[c] = row < 0 || column < 0 ? 0.0 : image.texel(column, row)[c];
+        texel.fill(0.0);
+        if (row < 0 || column < 0) continue;
+        if (image.has_bytes()) {
+          const std::uint8_t* bytes = image.byte_texel(column, row);
+          for (int c = 0; c < C; ++c) texel[c] = image.value(bytes[c], c);
+        } else {
+          const float* values = image.floats().texel(column, row);
+          for (int c = 0; c < C; ++c) texel[c] = values[c];
         }
       }
     }
@@ -294,7 +300,7 @@ class Sweep {
  public:
   using Visit = std::function<void(const MomentBlock<C>&)>;
 
-  Sweep(const TexelTriangles& triangles, const ImageView& image, WrapModes wrap,
+  Sweep(const TexelTriangles& triangles, const TexelSource& image, WrapModes wrap,
         const SweepOptions& options, const Progress& progress, const Visit& visit)
       : triangles_(triangles),
         image_(image),
@@ -450,7 +456,7 @@ class Sweep {
   }
 
   const TexelTriangles& triangles_;
-  const ImageView& image_;
+  const TexelSource& image_;
   WrapModes wrap_;
   SweepOptions options_;
   const Visit& visit_;
@@ -472,7 +478,7 @@ std::int64_t sweep_block_count(int width, int height) {
 }
 
 template <int C>
-void sweep_moments(const TexelTriangles& triangles, const ImageView& image, WrapModes wrap,
+void sweep_moments(const TexelTriangles& triangles, const TexelSource& image, WrapModes wrap,
                    const SweepOptions& options, const Progress& progress,
                    const std::function<void(const MomentBlock<C>&)>& visit) {
   assert(image.channels == C);
@@ -480,16 +486,16 @@ void sweep_moments(const TexelTriangles& triangles, const ImageView& image, Wrap
   Sweep<C>(triangles, image, wrap, options, progress, visit).run();
 }
 
-template void sweep_moments<1>(const TexelTriangles&, const ImageView&, WrapModes,
+template void sweep_moments<1>(const TexelTriangles&, const TexelSource&, WrapModes,
                                const SweepOptions&, const Progress&,
                                const std::function<void(const MomentBlock<1>&)>&);
-template void sweep_moments<2>(const TexelTriangles&, const ImageView&, WrapModes,
+template void sweep_moments<2>(const TexelTriangles&, const TexelSource&, WrapModes,
                                const SweepOptions&, const Progress&,
                                const std::function<void(const MomentBlock<2>&)>&);
-template void sweep_moments<3>(const TexelTriangles&, const ImageView&, WrapModes,
+template void sweep_moments<3>(const TexelTriangles&, const TexelSource&, WrapModes,
                                const SweepOptions&, const Progress&,
                                const std::function<void(const MomentBlock<3>&)>&);
-template void sweep_moments<4>(const TexelTriangles&, const ImageView&, WrapModes,
+template void sweep_moments<4>(const TexelTriangles&, const TexelSource&, WrapModes,
                                const SweepOptions&, const Progress&,
                                const std::function<void(const MomentBlock<4>&)>&);
 

@@ -90,7 +90,7 @@ std::int64_t sweep_block_count(int width, int height);
 /// two blocks that are not are visited in the same order whatever the number of threads. `image` is
 /// finite and has C channels.
 template <int C>
-void sweep_moments(const TexelTriangles& triangles, const ImageView& image, WrapModes wrap,
+void sweep_moments(const TexelTriangles& triangles, const TexelSource& image, WrapModes wrap,
                    const SweepOptions& options, const Progress& progress,
                    const std::function<void(const MomentBlock<C>&)>& visit);
 

@@ -55,7 +55,8 @@ auto TrilinearSystem<C>::solve(const SolveOptions& options, const Progress& prog
     BilinearSystem<C>& system = *systems_[level - 1];
     // The equations of a level are divided by 2/3. Of level 1, 1/6 A_1,0 times the image is known:
     // it is 1/6 of its right side.
-    fixed.push_back(system.prepare(level == 1 ? 1.5F * 5.0F / 6.0F : 1.5F));
+    system.prepare(level == 1 ? 1.5F * 5.0F / 6.0F : 1.5F);
+    system.system().swap_right_side(&fixed.emplace_back());
   }
   NinePointSystem<float>& last = systems_.back()->system();
   for (int c = 0; c < C; ++c) {

@@ -66,7 +66,7 @@ def covered_share(
     progress: ProgressCallback | None,
     threads: int,
 ) -> float: ...
-def mipmaps(
+def coarser_levels(
     image: npt.NDArray[np.float32],
     surfaces: list[Surface],
     filter: str,
@@ -80,6 +80,21 @@ def mipmaps(
     progress: ProgressCallback | None,
     threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
+def coarser_byte_levels(
+    image: npt.NDArray[np.uint8],
+    srgb: bool,
+    surfaces: list[Surface],
+    filter: str,
+    wrap: tuple[str, str],
+    low: float | None,
+    high: float | None,
+    levels: int,
+    premultiplied: bool,
+    reader: str,
+    seam_weight: float,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> list[npt.NDArray[np.uint8]]: ...
 def mipmap_error(
     levels: list[npt.NDArray[np.float32]],
     image: npt.NDArray[np.float32],

@@ -45,6 +45,14 @@ def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:
     return image
 
 
+def as_bytes(name: str, image: np.ndarray) -> np.ndarray:
+    """An uint8 image of shape (height, width, channels)."""
+    check_shape(name, image, ("height", "width", "channels"))
+    if 0 in image.shape:
+        raise ValueError(f"{name}: shape {image.shape} holds no pixels")
+    return np.ascontiguousarray(image)
+
+
 def check_shape(name: str, array: np.ndarray, shape: Sequence[int | str]) -> None:
     """Raises ValueError unless the array has the shape; a name fits any length."""
     fits = array.ndim == len(shape) and all(

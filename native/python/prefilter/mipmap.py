@@ -18,7 +18,7 @@ from .arguments import (
     as_surfaces,
     as_wrap,
 )
-from .arrays import FloatArray, as_image, as_threads
+from .arrays import as_bytes, as_image, as_threads
 from .surface import Surface
 
 
@@ -32,10 +32,11 @@ def mipmaps(
     levels: int | None = None,
     premultiplied: bool = False,
     reader: str = "linear",
+    encoding: str = "linear",
     seam_weight: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
-) -> list[FloatArray]:
+) -> list[npt.NDArray[np.float32]] | list[npt.NDArray[np.uint8]]:
     """The levels of an image's mipmap, each right for the surface that wears it.
 
     "pam-bilinear" minimises, level by level, the integral over the surface of the squared
@@ -48,7 +49,8 @@ def mipmaps(
     the "pam-" and "-covered" filters; they are filled from what is around them (push-pull).
 
     Args:
-        image: (height, width, 1 to 4 channels), scene-linear, row 0 at v = 0. Any sides.
+        image: (height, width, 1 to 4 channels), scene-linear, row 0 at v = 0. Any sides. Bytes
+            (uint8) stand for a 255th each; see `encoding`.
         surface: One surface, or several that share the image. Not needed for the plain filters.
         filter: One of the names above.
         wrap: What lookups read outside of the image: "clamp", "repeat" or "border" (zero, and
@@ -64,6 +66,8 @@ def mipmaps(
             then decodes (Cycles on 8-bit sRGB images). The image and the levels are scene-linear in
             both cases, and what the image shows is defined by the reader too. The second is a
             bounded Gauss-Newton fit, started from the first.
+        encoding: Of an image of bytes, and of its levels: with "srgb" its colours are decoded to be
+            filtered, and encoded again. The fourth of four channels is alpha, and linear.
         seam_weight: How much it counts, for "pam-bilinear" and "pam-trilinear", that lookups on the
             two sides of a UV seam agree: the mean square of their difference over a strip one texel
             of the level wide, against the error over the surface. Seams along which the image
@@ -72,7 +76,8 @@ def mipmaps(
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The levels, float32 (height, width, channels), level 0 first; it is a copy of the image.
+        The levels, (height, width, channels), level 0 first; it is a copy of the image. They are
+            float32, or for an image of bytes uint8.
         Each has half the sides of the one before, rounded down, never less than 1.
 
     Raises:
@@ -80,8 +85,8 @@ def mipmaps(
         Cancelled: The progress callback returned False.
     """
     low, high = as_bounds(bounds)
-    return _native.mipmaps(
-        as_image("image", image),
+    srgb = _is_srgb(encoding)
+    arguments = (
         as_surfaces(surface),
         as_name("filter", filter),
         as_wrap(wrap),
@@ -94,6 +99,24 @@ def mipmaps(
         as_progress(progress),
         as_threads(threads),
     )
+    if isinstance(image, np.ndarray) and image.dtype == np.uint8:
+        stored = as_bytes("image", image)
+        byte_levels = _native.coarser_byte_levels(stored, srgb, *arguments)
+        return [stored.copy(), *byte_levels]
+    if srgb:
+        raise ValueError(
+            "encoding: 'srgb' goes with images of bytes (uint8); decode others with to_linear"
+        )
+    stored = as_image("image", image)
+    float_levels = _native.coarser_levels(stored, *arguments)
+    # Copied once the memory for filtering is free again.
+    return [stored.copy(), *float_levels]
+
+
+def _is_srgb(encoding: str) -> bool:
+    if encoding not in ("linear", "srgb"):
+        raise ValueError(f"encoding: {encoding!r} is not one of linear, srgb")
+    return encoding == "srgb"
 
 
 def mipmap_error(
