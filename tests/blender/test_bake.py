@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+import OpenImageIO as oiio
 import prefilter
 import pytest
 import scenes
@@ -197,11 +198,26 @@ def test_too_many_levels(bake, calls, tmp_path, filepath):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize(("height", "width"), [(1, 8), (1, 1), (6, 8)])
-def test_sizes_that_the_library_refuses(bake, height, width):
+@pytest.mark.parametrize(("height", "width"), [(1, 8), (7, 5), (6, 8), (13, 1)])
+@pytest.mark.parametrize("ending", [".exr", ".tif"])
+def test_sides_need_no_power_of_two(bake, tmp_path, height, width, ending):
     image = scenes.image("Odd", scenes.noise(height, width))
-    with pytest.raises(ValueError, match=f"image: {width} x {height}"):
-        bake(image, filter="box")
+    target = tmp_path / f"out{ending}"
+    outcome = bake(image, filter="box", filepath=str(target))
+    sizes = [
+        (max(1, width >> k), max(1, height >> k)) for k in range(max(width, height).bit_length())
+    ]
+    assert [tuple(bpy.data.images[name].size) for name in outcome.images] == sizes[1:]
+    buffer = oiio.ImageBuf(str(target))
+    assert buffer.nmiplevels == len(sizes)
+    for level, size in enumerate(sizes):
+        spec = oiio.ImageBuf(str(target), 0, level).spec()
+        assert (spec.width, spec.height) == size
+
+
+def test_an_image_of_one_texel_has_no_further_level(bake):
+    outcome = bake(scenes.image("Dot", scenes.noise(1, 1)), filter="box")
+    assert outcome.images == []
 
 
 def test_nothing_to_write(bake):
