@@ -49,7 +49,7 @@ class BakeProperties:
     content: EnumProperty(
         name="Content",
         description="What the image holds, which decides how its levels are made",
-        items=_items(bake.CONTENTS),
+        items=items(bake.CONTENTS),
         default=bake.Settings.content,
     )
     threshold: FloatProperty(
@@ -70,7 +70,7 @@ class BakeProperties:
         name="Channel",
         description="Where the roughness image holds roughness; its other channels are filtered "
         "as data",
-        items=_items(bake.ROUGHNESS_CHANNELS),
+        items=items(bake.ROUGHNESS_CHANNELS),
         default=bake.Settings.roughness_channel,
     )
     roughness_filepath: StringProperty(

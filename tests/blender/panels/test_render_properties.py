@@ -2,38 +2,13 @@
 
 import json
 import os
-import shutil
 import subprocess
-from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
 import pytest
 
 SESSION = Path(__file__).with_name("cache_session.py")
-
-
-@pytest.fixture
-def display() -> Iterator[str]:
-    """Runs an X server without a screen, and returns its name."""
-    if shutil.which("Xvfb") is None:
-        pytest.skip("there is no Xvfb")
-    reading, writing = os.pipe()
-    server = subprocess.Popen(
-        ["Xvfb", "-displayfd", str(writing), "-screen", "0", "1280x800x24", "-nolisten", "tcp"],
-        pass_fds=[writing],
-        stderr=subprocess.DEVNULL,
-    )
-    os.close(writing)
-    try:
-        with os.fdopen(reading) as answer:
-            number = answer.readline().strip()
-        if not number:
-            pytest.skip("Xvfb does not start")
-        yield f":{number}"
-    finally:
-        server.terminate()
-        server.wait()
 
 
 @pytest.mark.skipif(bpy.app.version < (5, 2, 0), reason="Blender 5.2 or later is needed")
@@ -50,7 +25,7 @@ def test_panel_and_modal_bake_into_the_cache(display, tmp_path):
             "--",
             tmp_path,
         ],
-        env={**os.environ, "DISPLAY": display},
+        env={**os.environ, **display},
         capture_output=True,
         text=True,
         timeout=240,
