@@ -237,7 +237,8 @@ def _level_spec(oiio: Any, first: Any, pixels: FloatArray) -> Any:
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, first.format)
     spec.tile_width, spec.tile_height = first.tile_width, first.tile_height
-    for name in ("compression", "planarconfig"):
+    # Without a time of its own a level of a TIFF gets that of the writing, and files would differ.
+    for name in ("compression", "planarconfig", "DateTime"):
         value = first.getattribute(name)
         if value is not None:
             spec.attribute(name, value)

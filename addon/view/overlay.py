@@ -21,6 +21,8 @@ from .preview import Preview
 # Between the image, which the editor draws behind, and the UVs, which it draws in front.
 _DEPTH = 0.5
 _CHANNELS = {"COLOR_ALPHA": 0, "COLOR": 1, "ALPHA": 2, "RED": 3, "GREEN": 4, "BLUE": 5}
+# Whether the editor multiplies light by alpha: 5.2 does, 4.3 does not.
+_MULTIPLIES_LIGHT = bpy.app.version >= (5, 0, 0)
 _LINE_WIDTH = 2  # In pixels.
 _LABEL_SIZE, _LABEL_GAP = 13, 10
 
@@ -87,8 +89,8 @@ void main()
   float alpha = clamp(light.a, 0.0, 1.0);
   vec3 shown = clamp(blends && alpha > 0.0 ? light.rgb / alpha : light.rgb, 0.0, 1.0);
   if (blends) {
-    // As the editor does: colour is multiplied as it is displayed, and then blended as light.
-    shown = decoded(encoded(shown) * alpha);
+    // As the editor does, which used to multiply colour as it is displayed.
+    shown = MULTIPLIES_LIGHT ? shown * alpha : decoded(encoded(shown) * alpha);
   }
   if (channels == 0 && blends) {
     ivec2 square = ivec2(floor(gl_FragCoord.xy / checker_size));
@@ -181,6 +183,7 @@ def _compiled() -> gpu.types.GPUShader:
         info.vertex_out(passed)
         info.fragment_out(0, "VEC4", "color")
         info.vertex_source(_VERTEX)
+        info.define("MULTIPLIES_LIGHT", str(_MULTIPLIES_LIGHT).lower())
         info.fragment_source(_FRAGMENT)
         _shader = gpu.shader.create_from_info(info)
     return _shader

@@ -25,7 +25,7 @@ def test_panel_and_modal_bake_into_the_cache(display, tmp_path):
             "--",
             tmp_path,
         ],
-        env={**os.environ, "DISPLAY": display},
+        env={**os.environ, **display},
         capture_output=True,
         text=True,
         timeout=240,

@@ -90,7 +90,10 @@ def displayed(light, x, y, channels):
     """Returns what the editor should show of premultiplied light, in bytes."""
     alpha = np.clip(light[..., 3:], 0, 1)
     straight = light[..., :3] / np.where(alpha > 0, alpha, 1)
-    shown = scenes.to_srgb(np.clip(straight, 0, 1)) * alpha
+    if bpy.app.version < (5, 0, 0):
+        shown = scenes.to_srgb(np.clip(straight, 0, 1)) * alpha
+    else:
+        shown = scenes.to_srgb(np.clip(straight, 0, 1) * alpha)
     if channels == "COLOR_ALPHA":
         checker = np.where((x // 8 + y // 8) % 2 == 0, *CHECKER)[..., None]
         shown = scenes.to_srgb(
