@@ -1,0 +1,75 @@
+"""Compares prefilter with maketx, picture file to mip-mapped file, in time and memory.
+
+Usage: scripts/run python3 native/bench/compare_files.py [--size N] [--rounds N] [--threads N]
+
+The criteria, for 8-bit RGBA pictures of 1024 and 4096 texels, two threads each: pam-box takes no
+longer than maketx's box, pam-bilinear no longer than its lanczos3, pam-trilinear at most 3 times
+that; and pam-bilinear at 4096 no more than 450 MB. Every round runs each program once; ends with
+status 1 where a criterion does not hold.
+"""
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from compare_maketx import HERE, SPOT, measure, medians_ratio, print_table
+from peers import run
+from peers.file_to_file import FileToFile
+from peers.maketx import Maketx
+
+LIMITS = (
+    ("pam-box", "box", 1.0),
+    ("pam-bilinear", "lanczos3", 1.0),
+    ("pam-trilinear", "lanczos3", 3.0),
+)
+LARGEST_MIB = 450e6 / 2**20
+
+
+def main() -> None:
+    """Measures and prints."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--size", type=int, default=1024, help="texels (default: %(default)s)")
+    parser.add_argument("--rounds", type=int, default=5, help="how often (default: %(default)s)")
+    parser.add_argument("--threads", type=int, default=2, help="of each (default: %(default)s)")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        spot = [str(SPOT)] if SPOT.is_dir() else []
+        run([sys.executable, str(HERE / "scene.py"), name, *spot])
+        picture = folder / "sized.png"
+        size = f"{options.size}x{options.size}"
+        subprocess.run(
+            ["oiiotool", str(folder / "picture.png"), "--resize", size, "-o", str(picture)],
+            check=True,
+        )
+        ours = {
+            key: FileToFile(picture, folder, filter=key, threads=options.threads)
+            for key, _, _ in LIMITS
+        }
+        theirs = {
+            key: Maketx(picture, folder, filter=key, threads=options.threads)
+            for key in ("box", "lanczos3")
+        }
+        results = measure([*theirs.values(), *ours.values()], options.rounds)
+    print(f"{'spot' if spot else 'generated'}, {size} RGBA, {options.threads} threads each")
+    print_table(results, theirs["lanczos3"].name)
+    failed = False
+    for key, other, limit in LIMITS:
+        ratio = medians_ratio(results[ours[key].name], results[theirs[other].name])
+        failed = failed or ratio > limit
+        print(
+            f"{'holds' if ratio <= limit else 'DOES NOT HOLD'}: {key} takes {ratio:.2f} of the "
+            f"wall time of maketx's {other}; at most {limit} is asked for"
+        )
+    peak = max(found.peak_mib for found in results[ours["pam-bilinear"].name])
+    if options.size == 4096:
+        failed = failed or peak > LARGEST_MIB
+        print(f"{'holds' if peak <= LARGEST_MIB else 'DOES NOT HOLD'}: its peak is {peak:.0f} MiB")
+    if failed:
+        raise SystemExit(1)
+
+
+if __name__ == "__main__":
+    main()
