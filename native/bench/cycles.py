@@ -92,11 +92,15 @@ def measure(
 ) -> dict[int, dict[str, float]]:
     """Returns the RMSE over all views, by the size of the render and the cache."""
     objects = load(options.data / model)
-    for material, image in base_colors(objects):
+    worn = base_colors(objects)
+    emitted = {}
+    for image in dict.fromkeys(image for _, image in worn):
         pixels = linear(image)
         if painted:
             pixels[unused(objects, image)] = (*quality.MAGENTA, 1.0)
-        emit(material, write(pixels, folder / f"{image.name}{KINDS[kind]}"))
+        emitted[image] = write(pixels, folder / f"{image.name}{KINDS[kind]}")
+    for material, image in worn:
+        emit(material, emitted[image])
     scene = bpy.context.scene
     set_up(scene, objects)
     frames: dict[str, dict[tuple[int, int], Frame]] = {}
