@@ -1,5 +1,6 @@
 #include "prefilter/mipmap/level_coupling.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -35,9 +36,23 @@ int LevelCoupling::Axis::slot(int low, int high, int next, int* texel) const {
   return next - first(wrap == Wrap::kRepeat ? unwrapped : *texel);
 }
 
+std::vector<LevelCoupling::Triple> LevelCoupling::Axis::next_texels() const {
+  std::vector<Triple> triples(size);
+  for (int texel = 0; texel < size; ++texel) {
+    for (int k = 0; k < 3; ++k) {
+      const int next = wrap_index(first(texel) + k, next_size, wrap);
+      // Past the end are the zeros of NinePointSystem.
+      triples[texel][k] = next >= 0 ? next : next_size;
+    }
+  }
+  return triples;
+}
+
 LevelCoupling::LevelCoupling(int width, int height, int next_width, int next_height, WrapModes wrap)
     : x_{width, next_width, wrap.u},
       y_{height, next_height, wrap.v},
+      columns_(x_.next_texels()),
+      rows_(y_.next_texels()),
       products_(static_cast<std::size_t>(width) * height) {}
 
 template <int C>
@@ -85,18 +100,14 @@ void LevelCoupling::subtract_coarse(const NinePointSystem<float>& fine,
                                     const NinePointSystem<float>& coarse, float scale, int threads,
                                     std::vector<LaneValues>* sums) const {
   parallel_for(y_.size, threads, Progress(), [&](std::int64_t row) {
-    const int y = static_cast<int>(row);
     const std::array<float, 9>* products = products_.data() + row * x_.size;
-    for (int x = 0; x < x_.size; ++x, ++products) {
+    LaneValues* row_sums = sums->data() + fine.at(0, static_cast<int>(row));
+    const LaneValues* texels[3];
+    for (int k = 0; k < 3; ++k) texels[k] = &coarse.texel(coarse.at(0, rows_[row][k]));
+    for (int x = 0; x < x_.size; ++x) {
       Lanes sum{};
-      for (int k = 0; k < 9; ++k) {
-        const float weight = (*products)[k];
-        if (weight == 0.0F) continue;
-        const int i = wrap_index(x_.first(x) + k % 3, x_.next_size, x_.wrap);
-        const int j = wrap_index(y_.first(y) + k / 3, y_.next_size, y_.wrap);
-        if (i >= 0 && j >= 0) sum += weight * coarse.texel(coarse.at(i, j)).v;
-      }
-      (*sums)[fine.at(x, y)].v -= scale * sum;
+      for (int k = 0; k < 9; ++k) sum += products[x][k] * texels[k / 3][columns_[x][k % 3]].v;
+      row_sums[x].v -= scale * sum;
     }
   });
 }
@@ -110,18 +121,17 @@ void LevelCoupling::subtract_fine(const NinePointSystem<float>& fine,
     const int begin = static_cast<int>(band) * kRowsAtOnce;
     const int end = std::min(begin + kRowsAtOnce, y_.next_size);
     for (int y = 0; y < y_.size; ++y) {
-      for (int slot_y = 0; slot_y < 3; ++slot_y) {
-        const int j = wrap_index(y_.first(y) + slot_y, y_.next_size, y_.wrap);
-        if (j < begin || j >= end) continue;
+      for (int slot = 0; slot < 3; ++slot) {
+        const int row = rows_[y][slot];
+        if (row < begin || row >= end) continue;
         const std::array<float, 9>* products =
             products_.data() + static_cast<std::ptrdiff_t>(y) * x_.size;
-        for (int x = 0; x < x_.size; ++x, ++products) {
-          for (int slot_x = 0; slot_x < 3; ++slot_x) {
-            const float weight = (*products)[3 * slot_y + slot_x];
-            if (weight == 0.0F) continue;
-            const int i = wrap_index(x_.first(x) + slot_x, x_.next_size, x_.wrap);
-            if (i < 0) continue;
-            (*sums)[coarse.at(i, j)].v -= scale * weight * fine.texel(fine.at(x, y)).v;
+        const LaneValues* texels = &fine.texel(fine.at(0, y));
+        LaneValues* row_sums = sums->data() + coarse.at(0, row);
+        for (int x = 0; x < x_.size; ++x) {
+          const Lanes scaled = scale * texels[x].v;
+          for (int k = 0; k < 3; ++k) {
+            row_sums[columns_[x][k]].v -= products[x][3 * slot + k] * scaled;
           }
         }
       }

@@ -31,6 +31,8 @@ class LevelCoupling {
                      float scale, int threads, std::vector<LaneValues>* sums) const;
 
  private:
+  using Triple = std::array<int, 3>;
+
   // Along one axis: the texels of the next level that a texel meets.
   struct Axis {
     int size;
@@ -43,10 +45,14 @@ class LevelCoupling {
     // texel and 1 for the one after. The texel itself, after wrapping, goes to `texel`; -1 for the
     // border.
     int slot(int low, int high, int next, int* texel) const;
+    // The three of every texel, after wrapping; `next_size` for the border.
+    std::vector<Triple> next_texels() const;
   };
 
   Axis x_;
   Axis y_;
+  std::vector<Triple> columns_;
+  std::vector<Triple> rows_;
   std::vector<std::array<float, 9>> products_;  // row by row of the level, at [3 * y + x]
 };
 
