@@ -4,13 +4,11 @@
 #include "prefilter/mipmap/mipmaps.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 
 #include "prefilter/base/error.h"
-#include "prefilter/base/filterable.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
 #include "prefilter/color/transfer.h"
@@ -18,9 +16,10 @@
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/coverage.h"
 #include "prefilter/mipmap/encoded_fit.h"
-#include "prefilter/mipmap/level_grid.h"
+#include "prefilter/mipmap/filtered_image.h"
 #include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/mipmap/pam_box.h"
 #include "prefilter/mipmap/seams.h"
 #include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/mipmap/texture_space.h"
@@ -85,29 +84,21 @@ class Builder {
  public:
   Builder(const TexelSource& source, const std::vector<const Surface*>& surfaces,
           const MipmapOptions& options)
-      : source_(source), surfaces_(surfaces), options_(options), image_(source.floats()) {
-    level_count_ =
-        options.levels > 0 ? options.levels : full_level_count(source.width, source.height);
-    if (!source.has_bytes()) return;
-    if (reads_bytes()) {
-      image_ = {nullptr, source.width, source.height, source.channels};
-      return;
-    }
-    copy_ = Image(source.width, source.height, source.channels);
-    image_ = copy_.view();
-    for_each_texel(&copy_, Progress(), [&](std::size_t i, float* texel) {
-      const auto width = static_cast<std::size_t>(source.width);
-      const std::uint8_t* bytes =
-          source.byte_texel(static_cast<int>(i % width), static_cast<int>(i / width));
-      for (int c = 0; c < source.channels; ++c) texel[c] = source.value(bytes[c], c);
-    });
-  }
+      : surfaces_(surfaces),
+        options_(options),
+        width_(source.width),
+        height_(source.height),
+        channels_(source.channels),
+        level_count_(options.levels > 0 ? options.levels
+                                        : full_level_count(source.width, source.height)),
+        covered_(find_covered()),
+        image_(source, [this] { return read_texels(); },
+               {.straight_alpha = !options.premultiplied,
+                .needs_floats = needs_floats(),
+                .threads = options.threads,
+                .progress = options.progress.part(0.1, 0.16)}) {}
 
   std::vector<Image> run() {
-    if (image_.data != nullptr) {
-      check_texels();
-      if (image_.channels == 4 && !options_.premultiplied) premultiply();
-    }
     std::vector<Image> levels;
     switch (reads_of(options_.filter)) {
       case Reads::kAll:
@@ -115,7 +106,9 @@ class Builder {
         levels = texture_space_levels();
         break;
       case Reads::kWeighted:
-        levels = pam_box_levels();
+        levels =
+            pam_box_levels(image_.texels(), mapped(options_.progress.part(0.16, 0.2)), level_count_,
+                           options_.wrap, options_.progress.part(0.2, 0.97), options_.threads);
         break;
       case Reads::kLookedUp:
         levels = fitted_levels();
@@ -127,49 +120,27 @@ class Builder {
   }
 
  private:
-  // Whether the filter needs no more than to read the texels once, as they are.
-  bool reads_bytes() const {
-    if (reads_of(options_.filter) != Reads::kLookedUp || options_.reader != Reader::kLinear ||
-        options_.seam_weight != 0.0) {
-      return false;
+  // Whether the filter does more than read the texels once, as they are.
+  bool needs_floats() const {
+    switch (reads_of(options_.filter)) {
+      case Reads::kAll:
+      case Reads::kTouched:
+        return true;
+      case Reads::kWeighted:
+        return false;
+      case Reads::kLookedUp:
+        break;
     }
-    if (source_.channels < 4 || options_.premultiplied) return true;
-    constexpr std::uint8_t kOpaque = 255;
-    for (int y = 0; y < source_.height; ++y) {
-      const std::uint8_t* texel = source_.byte_texel(0, y);
-      for (int x = 0; x < source_.width; ++x, texel += 4) {
-        if (texel[3] != kOpaque) return false;
-      }
-    }
-    return true;
+    return options_.reader != Reader::kLinear || options_.seam_weight != 0.0;
   }
 
-  // What the fits read: the bytes as they are, or the floats that were made of them.
-  TexelSource texels() const { return image_.data == nullptr ? source_ : TexelSource(image_); }
-
-  // Refuses a texel that counts and is not finite; one that does not count becomes 0.
-  void check_texels() {
-    if (reads_of(options_.filter) == Reads::kTouched) {
-      covered_ = touched_texels(surfaces_, image_.width, image_.height, options_.wrap,
-                                options_.progress.part(0.0, 0.1), options_.threads);
-      if (std::find(covered_.begin(), covered_.end(), 1) == covered_.end()) throw_outside();
-    }
-    if (all_filterable(image_, options_.progress.part(0.1, 0.11), options_.threads)) return;
-    const std::vector<unsigned char> read = read_texels();
-    Image& copy = own_copy();
-    for (std::size_t i = 0; i < read.size(); ++i) {
-      float* texel = copy.data.data() + i * static_cast<std::size_t>(image_.channels);
-      for (int c = 0; c < image_.channels; ++c) {
-        if (is_filterable(texel[c])) continue;
-        if (read[i] != 0) {
-          const auto width = static_cast<std::size_t>(image_.width);
-          throw_invalid("image: the texel in row " + std::to_string(i / width) + ", column " +
-                        std::to_string(i % width) + " holds " + to_text(texel[c]) + " in channel " +
-                        std::to_string(c) + "; texels that count must be finite, and at most 1e30");
-        }
-        texel[c] = 0.0F;
-      }
-    }
+  std::vector<unsigned char> find_covered() const {
+    if (reads_of(options_.filter) != Reads::kTouched) return {};
+    std::vector<unsigned char> covered =
+        touched_texels(surfaces_, width_, height_, options_.wrap, options_.progress.part(0.0, 0.1),
+                       options_.threads);
+    if (std::find(covered.begin(), covered.end(), 1) == covered.end()) throw_outside();
+    return covered;
   }
 
   std::vector<unsigned char> read_texels() const {
@@ -187,68 +158,21 @@ class Builder {
         return read;
       }
       case Reads::kLookedUp:
-        return looked_up_texels(surfaces_, image_.width, image_.height, options_.wrap, progress,
+        return looked_up_texels(surfaces_, width_, height_, options_.wrap, progress,
                                 options_.threads);
     }
-    return std::vector<unsigned char>(image_.texel_count(), 1);
-  }
-
-  Image& own_copy() {
-    if (copy_.data.empty()) {
-      copy_ = Image(image_);
-      image_ = copy_.view();
-    }
-    return copy_;
-  }
-
-  // Multiplies colours by alpha, and notes the range of the colours that are seen at all, unless
-  // every texel that counts is opaque.
-  void premultiply() {
-    const auto opaque = [this](std::size_t i) { return image_.data[4 * i + 3] == 1.0F; };
-    std::size_t i = 0;
-    while (i < image_.texel_count() && opaque(i)) ++i;
-    if (i == image_.texel_count()) return;
-    const std::vector<unsigned char> read = read_texels();
-    while (i < read.size() && (read[i] == 0 || opaque(i))) ++i;
-    if (i == read.size()) return;
-
-    straight_alpha_ = true;
-    Image& copy = own_copy();
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    constexpr ValueRange kNothing = {kInfinity, -kInfinity};
-    std::vector<std::array<ValueRange, 3>> rows(static_cast<std::size_t>(copy.height));
-    for (std::array<ValueRange, 3>& row : rows) row.fill(kNothing);
-    const auto width = static_cast<std::size_t>(copy.width);
-    for_each_texel(&copy, options_.progress.part(0.15, 0.16), [&](std::size_t at, float* texel) {
-      texel[3] = std::clamp(texel[3], 0.0F, 1.0F);
-      for (int c = 0; c < 3; ++c) {
-        ValueRange& seen = rows[at / width][c];
-        if (texel[3] > 0.0F && read[at] != 0) seen = widened(seen, {texel[c], texel[c]});
-        texel[c] *= texel[3];
-      }
-    });
-    colours_.fill(kNothing);
-    for (const std::array<ValueRange, 3>& row : rows) {
-      for (int c = 0; c < 3; ++c) colours_[c] = widened(colours_[c], row[c]);
-    }
-    for (ValueRange& own : colours_) {
-      if (!(own.low <= own.high)) own = {0.0F, 0.0F};
-    }
-  }
-
-  static ValueRange widened(const ValueRange& a, const ValueRange& b) {
-    return {std::min(a.low, b.low), std::max(a.high, b.high)};
+    return std::vector<unsigned char>(static_cast<std::size_t>(width_) * height_, 1);
   }
 
   TexelTriangles mapped(const Progress& progress) const {
-    TexelTriangles triangles = map_to_texels(surfaces_, image_.width, image_.height, options_.wrap,
-                                             MassOf::kArea, progress);
+    TexelTriangles triangles =
+        map_to_texels(surfaces_, width_, height_, options_.wrap, MassOf::kArea, progress);
     check_mapped(triangles);
     return triangles;
   }
 
-  int width(int level) const { return level_size(image_.width, level); }
-  int height(int level) const { return level_size(image_.height, level); }
+  int width(int level) const { return level_size(width_, level); }
+  int height(int level) const { return level_size(height_, level); }
 
   std::vector<Image> texture_space_levels() const {
     const Progress progress = options_.progress.part(0.16, 0.97);
@@ -259,90 +183,11 @@ class Builder {
                                           static_cast<double>(level) / (level_count_ - 1));
       levels.push_back(
           covered_.empty()
-              ? filter_level(image_, level, kernel, options_.wrap, part, options_.threads)
-              : filter_covered_level(image_, covered_, level, kernel, options_.wrap, part,
+              ? filter_level(image_.floats(), level, kernel, options_.wrap, part, options_.threads)
+              : filter_covered_level(image_.floats(), covered_, level, kernel, options_.wrap, part,
                                      options_.threads));
     }
     return levels;
-  }
-
-  std::vector<Image> pam_box_levels() const {
-    const Progress& progress = options_.progress;
-    const AxisTexels columns(image_.width, level_count_);
-    const AxisTexels rows(image_.height, level_count_);
-    MassSums sums{Image(columns.cell_count(0), rows.cell_count(0), image_.channels),
-                  cell_masses(mapped(progress.part(0.16, 0.2)), columns.lines(0), rows.lines(0),
-                              progress.part(0.2, 0.6), options_.threads)};
-    parallel_for(sums.image.height, options_.threads, progress.part(0.6, 0.65),
-                 [&](std::int64_t y) {
-                   float* sum = sums.image.texel(0, static_cast<int>(y));
-                   const float* mass = sums.masses.data() + y * sums.image.width;
-                   for (const int x : columns.texels(0)) {
-                     const float* colour = image_.texel(x, rows.texels(0)[y]);
-                     for (int c = 0; c < image_.channels; ++c) *sum++ = *mass * colour[c];
-                     ++mass;
-                   }
-                 });
-    std::vector<Image> levels;
-    double from = 0.65;
-    for (int level = 1; level < level_count_; ++level) {
-      const Progress part = progress.part(from, from + 0.75 * (0.97 - from));
-      from += 0.75 * (0.97 - from);
-      sums = gathered(sums, columns.parents(level - 1), columns.cell_count(level),
-                      rows.parents(level - 1), rows.cell_count(level), part.part(0.0, 0.3));
-      const bool nested =
-          columns.cell_count(level) == width(level) && rows.cell_count(level) == height(level);
-      MassSums texels = nested ? sums
-                               : gathered(sums, columns.texels(level), width(level),
-                                          rows.texels(level), height(level), part.part(0.3, 0.5));
-      for_each_texel(&texels.image, part.part(0.5, 0.6), [&](std::size_t i, float* sum) {
-        const float mass = texels.masses[i];
-        for (int c = 0; c < image_.channels; ++c) sum[c] = mass > 0.0F ? sum[c] / mass : 0.0F;
-      });
-      fill_holes(texels.masses, options_.wrap, image_.channels, part.part(0.6, 1.0),
-                 options_.threads, &texels.image);
-      levels.push_back(std::move(texels.image));
-    }
-    return levels;
-  }
-
-  // Calls use(index, texel) for every texel, rows in parallel.
-  template <typename Use>
-  void for_each_texel(Image* image, const Progress& progress, const Use& use) const {
-    parallel_for(image->height, options_.threads, progress, [&](std::int64_t y) {
-      float* texel = image->texel(0, static_cast<int>(y));
-      const std::size_t first = static_cast<std::size_t>(y) * image->width;
-      for (int x = 0; x < image->width; ++x, texel += image->channels) use(first + x, texel);
-    });
-  }
-
-  // Sums of mass times colour, and of mass, cell by cell.
-  struct MassSums {
-    Image image;
-    std::vector<float> masses;
-  };
-
-  // The sums over blocks of cells: those of column x go to column `to_columns[x]` of `width`, and
-  // the same for rows. Both rise.
-  MassSums gathered(const MassSums& from, const std::vector<int>& to_columns, int width,
-                    const std::vector<int>& to_rows, int height, const Progress& progress) const {
-    const int channels = from.image.channels;
-    MassSums to{Image(width, height, channels),
-                std::vector<float>(static_cast<std::size_t>(width) * height)};
-    parallel_for(height, options_.threads, progress, [&](std::int64_t row) {
-      const auto [first, last] = std::equal_range(to_rows.begin(), to_rows.end(), row);
-      float* row_masses = to.masses.data() + row * width;
-      float* row_sums = to.image.texel(0, static_cast<int>(row));
-      for (auto y = first - to_rows.begin(); y < last - to_rows.begin(); ++y) {
-        const float* sum = from.image.texel(0, static_cast<int>(y));
-        const float* mass = from.masses.data() + y * from.image.width;
-        for (const int column : to_columns) {
-          for (int c = 0; c < channels; ++c) row_sums[column * channels + c] += *sum++;
-          row_masses[column] += *mass++;
-        }
-      }
-    });
-    return to;
   }
 
   std::vector<Image> fitted_levels() const {
@@ -350,7 +195,7 @@ class Builder {
       return options_.filter == MipmapFilter::kPamTrilinear ? solve_together<C>()
                                                             : solve_levels<C>();
     };
-    switch (image_.channels) {
+    switch (channels_) {
       case 1:
         return fit.operator()<1>();
       case 2:
@@ -366,14 +211,14 @@ class Builder {
   template <int C>
   std::vector<Image> solve_together() const {
     if (level_count_ == 1) return {};
-    TrilinearSystem<C> system(image_.width, image_.height, options_.wrap);
-    sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)), texels(), options_.wrap,
+    TrilinearSystem<C> system(width_, height_, options_.wrap);
+    sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)), image_.texels(), options_.wrap,
                      {.first_level = 1,
-                      .last_level = full_level_count(image_.width, image_.height) - 1,
+                      .last_level = full_level_count(width_, height_) - 1,
                       .threads = options_.threads},
                      options_.progress.part(0.2, 0.5),
                      [&](const MomentBlock<C>& block) { system.add(block); });
-    for_each_level_of_seams(image_, full_level_count(image_.width, image_.height) - 2,
+    for_each_level_of_seams(image_.floats(), full_level_count(width_, height_) - 2,
                             [&](int level, const std::vector<SeamLink>& links, double weight) {
                               system.add_links(level, links, weight);
                             });
@@ -395,7 +240,7 @@ class Builder {
     double area = 0.0;
     for (const Surface* surface : surfaces_) area += surface->total_area();
     // The fits count area in texels of the image.
-    const double texels_by_area = static_cast<double>(image_.width) * image_.height / area;
+    const double texels_by_area = static_cast<double>(width_) * height_ / area;
     for (int level = 1; level <= last_level; ++level) {
       use(level, link_seams(seams, width(level), height(level), options_.wrap),
           options_.seam_weight * texels_by_area);
@@ -404,8 +249,8 @@ class Builder {
 
   SolveOptions solve_options() const {
     SolveOptions solve;
-    for (int c = 0; c < image_.channels; ++c) solve.ranges[c] = solved_range(c);
-    solve.ranges_times_alpha = straight_alpha_;
+    for (int c = 0; c < channels_; ++c) solve.ranges[c] = image_.solved_range(c, bounds());
+    solve.ranges_times_alpha = image_.is_multiplied();
     solve.threads = options_.threads;
     return solve;
   }
@@ -413,7 +258,7 @@ class Builder {
   Image filled(Image level, const std::vector<unsigned char>& used,
                const Progress& progress) const {
     const std::vector<float> weights(used.begin(), used.end());
-    fill_holes(weights, options_.wrap, image_.channels, progress, options_.threads, &level);
+    fill_holes(weights, options_.wrap, channels_, progress, options_.threads, &level);
     return level;
   }
 
@@ -426,13 +271,13 @@ class Builder {
       systems.push_back(
           std::make_unique<BilinearSystem<C>>(width(level), height(level), options_.wrap));
       if (!encoded) continue;
-      fits.push_back(std::make_unique<EncodedFit<C>>(width(level), height(level), image_.width,
-                                                     image_.height, options_.wrap));
+      fits.push_back(std::make_unique<EncodedFit<C>>(width(level), height(level), width_, height_,
+                                                     options_.wrap));
     }
     if (systems.empty()) return {};
-    const Image encoded_image = encoded ? encode_srgb(image_, options_.threads) : Image();
+    const Image encoded_image = encoded ? encode_srgb(image_.floats(), options_.threads) : Image();
     sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)),
-                     encoded ? TexelSource(encoded_image.view()) : texels(), options_.wrap,
+                     encoded ? TexelSource(encoded_image.view()) : image_.texels(), options_.wrap,
                      {.first_level = 1,
                       .last_level = level_count_ - 1,
                       .reader = options_.reader,
@@ -443,7 +288,7 @@ class Builder {
                        if (encoded) fits[block.level - 1]->add(block);
                      });
 
-    for_each_level_of_seams(image_, level_count_ - 1,
+    for_each_level_of_seams(image_.floats(), level_count_ - 1,
                             [&](int level, const std::vector<SeamLink>& links, double weight) {
                               systems[level - 1]->add_links(links, weight);
                             });
@@ -488,54 +333,27 @@ class Builder {
     return {options_.bounds.low.value_or(-kInfinity), options_.bounds.high.value_or(kInfinity)};
   }
 
-  // What a channel may be while it is solved for. With straight alpha, a colour that is seen lies
-  // within the bounds and within the image's own range: it is the quotient of two solutions, and
-  // where little is covered a small error of either would make it anything.
-  ValueRange solved_range(int channel) const {
-    if (!straight_alpha_) return bounds();
-    if (channel == 3) return {0.0F, 1.0F};
-    const ValueRange limits = bounds();
-    const ValueRange& own = colours_[channel];
-    return {std::clamp(own.low, limits.low, limits.high),
-            std::clamp(own.high, limits.low, limits.high)};
-  }
-
   void finish(Image* level) const {
-    if (straight_alpha_) unpremultiply(level);
+    image_.divide_by_alpha(options_.wrap, options_.progress.part(0.97, 0.98), options_.threads,
+                           level);
     const ValueRange range = bounds();
-    for_each_texel(level, options_.progress.part(0.98, 0.99), [&](std::size_t, float* texel) {
-      for (int c = 0; c < level->channels; ++c) {
-        texel[c] = std::min(std::max(texel[c], range.low), range.high);
-      }
-    });
+    parallel_for(level->height, options_.threads, options_.progress.part(0.98, 0.99),
+                 [&](std::int64_t y) {
+                   float* row = level->texel(0, static_cast<int>(y));
+                   for (int i = 0; i < level->width * level->channels; ++i) {
+                     row[i] = std::min(std::max(row[i], range.low), range.high);
+                   }
+                 });
   }
 
-  void unpremultiply(Image* level) const {
-    // What is covered less than this cannot be seen, and its colour is mostly rounding.
-    constexpr float kLeastAlpha = 1e-3F;
-    std::vector<float> weights(level->view().texel_count());
-    for_each_texel(level, options_.progress.part(0.97, 0.98), [&](std::size_t i, float* texel) {
-      const float alpha = texel[3];
-      weights[i] = alpha > kLeastAlpha ? alpha : 0.0F;
-      for (int c = 0; c < 3; ++c) {
-        const float colour = weights[i] > 0.0F ? texel[c] / alpha : 0.0F;
-        texel[c] = std::min(std::max(colour, colours_[c].low), colours_[c].high);
-      }
-      texel[3] = std::clamp(alpha, 0.0F, 1.0F);
-    });
-    fill_holes(weights, options_.wrap, 3, options_.progress.part(0.97, 0.98), options_.threads,
-               level);
-  }
-
-  const TexelSource& source_;
   const std::vector<const Surface*>& surfaces_;
   const MipmapOptions& options_;
-  ImageView image_;  // what is filtered: the source, or a copy of it; no data where bytes are read
-  Image copy_;
+  int width_;
+  int height_;
+  int channels_;
+  int level_count_;
   std::vector<unsigned char> covered_;
-  int level_count_ = 0;
-  bool straight_alpha_ = false;
-  std::array<ValueRange, 3> colours_{};  // of texels with alpha, before they are multiplied by it
+  FilteredImage image_;
 };
 
 void check_options(const TexelSource& image, const std::vector<const Surface*>& surfaces,

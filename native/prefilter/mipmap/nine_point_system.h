@@ -10,15 +10,10 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/lanes.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/base/value_range.h"
 #include "prefilter/base/wrap.h"
 
 namespace prefilter {
-
-/// Lowest and highest value a channel may take.
-struct ValueRange {
-  float low;
-  float high;
-};
 
 struct SolveOptions {
   std::array<ValueRange, kMaxChannels> ranges{};

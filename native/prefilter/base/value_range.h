@@ -1,0 +1,12 @@
+// Ranges of values.
+#pragma once
+
+namespace prefilter {
+
+/// Lowest and highest value a channel may take.
+struct ValueRange {
+  float low;
+  float high;
+};
+
+}  // namespace prefilter

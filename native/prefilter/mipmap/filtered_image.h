@@ -1,0 +1,65 @@
+// An image as the filters read it: finite, and multiplied by its alpha where that counts.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "prefilter/base/image.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/base/value_range.h"
+#include "prefilter/base/wrap.h"
+
+namespace prefilter {
+
+/// The image itself where it can be read as it is, else a copy. The source must outlive it.
+class FilteredImage {
+ public:
+  /// 1 for each texel that the filter reads, else 0.
+  using FindRead = std::function<std::vector<unsigned char>()>;
+
+  struct Options {
+    // Whether the fourth of four channels is coverage that the others are not multiplied by yet.
+    bool straight_alpha = false;
+    // Whether bytes have to be floats, also where alpha plays no part.
+    bool needs_floats = true;
+    int threads = 0;
+    Progress progress;
+  };
+
+  /// `find_read` is called where not all texels are finite, or opaque. Throws Error where a texel
+  /// that is read is not finite or beyond 1e30; others that are not become 0.
+  FilteredImage(const TexelSource& source, const FindRead& find_read, const Options& options);
+
+  /// What is read: bytes as they are, or floats.
+  TexelSource texels() const { return floats_.data == nullptr ? source_ : TexelSource(floats_); }
+  /// The same; no data where bytes are read as they are.
+  const ImageView& floats() const { return floats_; }
+
+  /// Whether colours were multiplied by an alpha that is not 1 everywhere.
+  bool is_multiplied() const { return is_multiplied_; }
+
+  /// What a channel may be while it is solved for, `bounds` being what it may be in the end. Where
+  /// colours were multiplied by alpha, a colour that is seen lies within the bounds and within the
+  /// image's own range: it is the quotient of two solutions, and where little is covered a small
+  /// error of either would make it anything.
+  ValueRange solved_range(int channel, ValueRange bounds) const;
+
+  /// Divides the colours of a level by its alpha where those of the image were multiplied by it.
+  /// Those of texels with hardly any alpha come from around them.
+  void divide_by_alpha(WrapModes wrap, const Progress& progress, int threads, Image* level) const;
+
+ private:
+  void make_floats(const Options& options);
+  void check(const FindRead& find_read, const Options& options);
+  void multiply_by_alpha(const FindRead& find_read, const Options& options);
+  Image& own_copy();
+
+  const TexelSource& source_;
+  ImageView floats_;
+  Image copy_;
+  bool is_multiplied_ = false;
+  std::array<ValueRange, 3> colours_{};  // of texels with alpha, before they are multiplied by it
+};
+
+}  // namespace prefilter
