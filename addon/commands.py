@@ -13,9 +13,9 @@ from typing import Any
 
 import bpy
 
-from . import bake, texture_cache
-from .bake import Choice
+from . import bake, choices, texture_cache
 from .bridge import files, images, meshes
+from .choices import Choice
 from .view import errors, figure
 from .wording import listed
 
@@ -27,16 +27,16 @@ _BAKE_HELP = "bake the mipmap levels of an image, weighted by the surface of the
 _PLOT_HELP = "plot the error of filters over the mip value, on the meshes that use an image"
 
 
-def _table(title: str, choices: dict[str, Choice]) -> str:
-    rows = (f"  {key:<18}{choice.description}" for key, choice in choices.items())
+def _table(title: str, options: dict[str, Choice]) -> str:
+    rows = (f"  {key:<18}{choice.description}" for key, choice in options.items())
     return "\n".join([f"{title}:", *rows])
 
 
 _TABLES = (
-    _table("filters", bake.FILTERS),
-    _table("wrap modes", bake.WRAPS | bake.WRAPS_V),
-    _table("value ranges", bake.BOUNDS),
-    _table("contents", bake.CONTENTS),
+    _table("filters", choices.FILTERS),
+    _table("wrap modes", choices.WRAPS | choices.WRAPS_V),
+    _table("value ranges", choices.BOUNDS),
+    _table("contents", choices.CONTENTS),
 )
 _BAKE_NOTES = """\
 Without --image, the image that the meshes use is baked; name it where they use several. A picture
@@ -121,16 +121,16 @@ def _add_bake(commands: Any) -> None:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     _add_scene(parser)
-    defaults = bake.Settings()
-    for flag, choices, metavar, text in (
-        ("filter", bake.FILTERS, "FILTER", "how a texel of a level is made"),
-        ("wrap", bake.WRAPS, "MODE", "what lies outside of the image along u"),
-        ("wrap-v", bake.WRAPS_V, "MODE", "the same along v"),
-        ("bounds", bake.BOUNDS, "RANGE", "the values that texels of a level may have"),
-        ("content", bake.CONTENTS, "CONTENT", "what the image holds"),
+    defaults = choices.Settings()
+    for flag, allowed, metavar, text in (
+        ("filter", choices.FILTERS, "FILTER", "how a texel of a level is made"),
+        ("wrap", choices.WRAPS, "MODE", "what lies outside of the image along u"),
+        ("wrap-v", choices.WRAPS_V, "MODE", "the same along v"),
+        ("bounds", choices.BOUNDS, "RANGE", "the values that texels of a level may have"),
+        ("content", choices.CONTENTS, "CONTENT", "what the image holds"),
         (
             "roughness-channel",
-            bake.ROUGHNESS_CHANNELS,
+            choices.ROUGHNESS_CHANNELS,
             "CHANNEL",
             "where the roughness image holds roughness",
         ),
@@ -138,7 +138,7 @@ def _add_bake(commands: Any) -> None:
         default = getattr(defaults, flag.replace("-", "_"))
         parser.add_argument(
             f"--{flag}",
-            choices=choices,
+            choices=allowed,
             default=default,
             metavar=metavar,
             help=f"{text} (default: {default})",
@@ -247,20 +247,20 @@ def _add_plot(commands: Any) -> None:
         "--filters",
         metavar="FILTER",
         nargs="+",
-        choices=bake.FILTERS,
+        choices=choices.FILTERS,
         default=list(errors.DEFAULT_FILTERS),
         help=f"the filters to compare (default: {' '.join(errors.DEFAULT_FILTERS)})",
     )
-    defaults = bake.Settings()
-    for flag, choices, metavar, text in (
-        ("wrap", bake.WRAPS, "MODE", "what lies outside of the image along u"),
-        ("wrap-v", bake.WRAPS_V, "MODE", "the same along v"),
-        ("bounds", bake.BOUNDS, "RANGE", "the values that texels of a level may have"),
+    defaults = choices.Settings()
+    for flag, allowed, metavar, text in (
+        ("wrap", choices.WRAPS, "MODE", "what lies outside of the image along u"),
+        ("wrap-v", choices.WRAPS_V, "MODE", "the same along v"),
+        ("bounds", choices.BOUNDS, "RANGE", "the values that texels of a level may have"),
     ):
         default = getattr(defaults, flag.replace("-", "_"))
         parser.add_argument(
             f"--{flag}",
-            choices=choices,
+            choices=allowed,
             default=default,
             metavar=metavar,
             help=f"{text} (default: {default})",
@@ -386,7 +386,7 @@ def _plot(options: argparse.Namespace) -> None:
     source = bake.Bake.read(
         image,
         objects,
-        bake.Settings(wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds),
+        choices.Settings(wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds),
         bpy.context.evaluated_depsgraph_get(),
         all_faces=is_picture,
         needs_surface=True,
@@ -426,7 +426,7 @@ def _bake(options: argparse.Namespace) -> None:
         files.check_writable(Path(path))
     depsgraph = bpy.context.evaluated_depsgraph_get()
     image, is_picture = _image(options.image, objects, options.content)
-    settings = bake.Settings(
+    settings = choices.Settings(
         filter=options.filter,
         wrap=options.wrap,
         wrap_v=options.wrap_v,

@@ -9,14 +9,15 @@ import prefilter
 
 from .. import bake
 from ..bridge import derived, images
-from ..jobs import Job
+from ..choices import Settings
+from ..jobs import Job, Progress
 
-Work = Callable[[bake.Progress], Any]
+Work = Callable[[Progress], Any]
 _TICK_SECONDS = 0.1
 
 
 def read_source(
-    context: bpy.types.Context, name: str, settings: bake.Settings, *, needs_surface: bool = True
+    context: bpy.types.Context, name: str, settings: Settings, *, needs_surface: bool = True
 ) -> bake.Bake:
     """Reads an image and the selected objects that wear it.
 

@@ -7,10 +7,12 @@ import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import addon_utils
 import bpy
 import pytest
+import scenes
 
 PACKAGE = "bl_ext.user_default.prefilter"
 TEXTURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "textured"
@@ -27,6 +29,24 @@ def empty_blender() -> None:
 def addon() -> Callable[[str], ModuleType]:
     """Returns a function that gives a module of the add-on by its name."""
     return lambda name: importlib.import_module(f"{PACKAGE}.{name}")
+
+
+@pytest.fixture
+def bake(addon: Callable[[str], ModuleType]) -> Callable[..., Any]:
+    """Returns a function that bakes with the settings given as keywords."""
+
+    def run(image, objects=(), *, all_faces=False, progress=lambda _: True, **settings):
+        module = addon("bake")
+        return module.bake(
+            image,
+            list(objects),
+            module.Settings(**settings),
+            scenes.depsgraph(),
+            all_faces=all_faces,
+            progress=progress,
+        )
+
+    return run
 
 
 @pytest.fixture
