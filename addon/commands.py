@@ -22,8 +22,6 @@ from .wording import listed
 _PROGRAM = "blender --background --command prefilter"
 
 _BAKE_HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
-
-
 _PLOT_HELP = "plot the error of filters over the mip value, on the meshes that use an image"
 
 
@@ -38,6 +36,19 @@ _TABLES = (
     _table("value ranges", choices.BOUNDS),
     _table("contents", choices.CONTENTS),
 )
+_CHOSEN = {
+    "filter": (choices.FILTERS, "FILTER", "how a texel of a level is made"),
+    "wrap": (choices.WRAPS, "MODE", "what lies outside of the image along u"),
+    "wrap-v": (choices.WRAPS_V, "MODE", "the same along v"),
+    "bounds": (choices.BOUNDS, "RANGE", "the values that texels of a level may have"),
+    "content": (choices.CONTENTS, "CONTENT", "what the image holds"),
+    "roughness-channel": (
+        choices.ROUGHNESS_CHANNELS,
+        "CHANNEL",
+        "where the roughness image holds roughness",
+    ),
+}
+"""Options with a table of choices: the table, what stands for a value, and help."""
 _BAKE_NOTES = """\
 Without --image, the image that the meshes use is baked; name it where they use several. A picture
 file that no material uses is taken as the texture of all faces, with the active UV map.
@@ -112,37 +123,21 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_bake(commands: Any) -> None:
-    parser = commands.add_parser(
-        "bake",
-        help=_BAKE_HELP,
-        description=f"{_BAKE_HELP[0].upper()}{_BAKE_HELP[1:]}.",
-        epilog="\n\n".join([*_TABLES, _BAKE_NOTES]),
+def _add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
+    return commands.add_parser(
+        name,
+        help=purpose,
+        description=f"{purpose[0].upper()}{purpose[1:]}.",
+        epilog="\n\n".join(notes),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+
+
+def _add_bake(commands: Any) -> None:
+    parser = _add_command(commands, "bake", _BAKE_HELP, *_TABLES, _BAKE_NOTES)
     _add_scene(parser)
     defaults = choices.Settings()
-    for flag, allowed, metavar, text in (
-        ("filter", choices.FILTERS, "FILTER", "how a texel of a level is made"),
-        ("wrap", choices.WRAPS, "MODE", "what lies outside of the image along u"),
-        ("wrap-v", choices.WRAPS_V, "MODE", "the same along v"),
-        ("bounds", choices.BOUNDS, "RANGE", "the values that texels of a level may have"),
-        ("content", choices.CONTENTS, "CONTENT", "what the image holds"),
-        (
-            "roughness-channel",
-            choices.ROUGHNESS_CHANNELS,
-            "CHANNEL",
-            "where the roughness image holds roughness",
-        ),
-    ):
-        default = getattr(defaults, flag.replace("-", "_"))
-        parser.add_argument(
-            f"--{flag}",
-            choices=allowed,
-            default=default,
-            metavar=metavar,
-            help=f"{text} (default: {default})",
-        )
+    _add_choices(parser, *_CHOSEN)
     parser.add_argument(
         "--levels",
         metavar="N",
@@ -170,13 +165,7 @@ def _add_bake(commands: Any) -> None:
         default="",
         help="a tiled, mip-mapped file of the roughness to write",
     )
-    parser.add_argument(
-        "--threads",
-        metavar="N",
-        type=_count,
-        default=defaults.threads,
-        help="how many threads to use; 0 uses all (default: 0)",
-    )
+    _add_threads(parser)
     parser.add_argument(
         "--importance",
         metavar="NAME",
@@ -217,6 +206,16 @@ def _add_bake(commands: Any) -> None:
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
 
+def _add_threads(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--threads",
+        metavar="N",
+        type=_count,
+        default=choices.Settings.threads,
+        help="how many threads to use; 0 uses all (default: 0)",
+    )
+
+
 def _add_scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a .blend, .glb, .gltf or .obj file")
     parser.add_argument(
@@ -234,14 +233,22 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_choices(parser: argparse.ArgumentParser, *flags: str) -> None:
+    defaults = choices.Settings()
+    for flag in flags:
+        table, metavar, text = _CHOSEN[flag]
+        default = getattr(defaults, flag.replace("-", "_"))
+        parser.add_argument(
+            f"--{flag}",
+            choices=table,
+            default=default,
+            metavar=metavar,
+            help=f"{text} (default: {default})",
+        )
+
+
 def _add_plot(commands: Any) -> None:
-    parser = commands.add_parser(
-        "plot",
-        help=_PLOT_HELP,
-        description=f"{_PLOT_HELP[0].upper()}{_PLOT_HELP[1:]}.",
-        epilog="\n\n".join([*_TABLES, _PLOT_NOTES]),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = _add_command(commands, "plot", _PLOT_HELP, *_TABLES, _PLOT_NOTES)
     _add_scene(parser)
     parser.add_argument(
         "--filters",
@@ -251,20 +258,7 @@ def _add_plot(commands: Any) -> None:
         default=list(errors.DEFAULT_FILTERS),
         help=f"the filters to compare (default: {' '.join(errors.DEFAULT_FILTERS)})",
     )
-    defaults = choices.Settings()
-    for flag, allowed, metavar, text in (
-        ("wrap", choices.WRAPS, "MODE", "what lies outside of the image along u"),
-        ("wrap-v", choices.WRAPS_V, "MODE", "the same along v"),
-        ("bounds", choices.BOUNDS, "RANGE", "the values that texels of a level may have"),
-    ):
-        default = getattr(defaults, flag.replace("-", "_"))
-        parser.add_argument(
-            f"--{flag}",
-            choices=allowed,
-            default=default,
-            metavar=metavar,
-            help=f"{text} (default: {default})",
-        )
+    _add_choices(parser, "wrap", "wrap-v", "bounds")
     parser.add_argument("--output", metavar="FILE", default="", help="a .png file to write")
     parser.add_argument(
         "--table", metavar="FILE", default="", help="a .csv file to write the values to"
@@ -273,24 +267,12 @@ def _add_plot(commands: Any) -> None:
 
 
 def _add_bake_cache(commands: Any) -> None:
-    parser = commands.add_parser(
-        "bake-cache",
-        help=_CACHE_HELP,
-        description=f"{_CACHE_HELP[0].upper()}{_CACHE_HELP[1:]}.",
-        epilog=_CACHE_NOTES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = _add_command(commands, "bake-cache", _CACHE_HELP, _CACHE_NOTES)
     parser.add_argument("file", metavar="FILE", help="a .blend file")
     parser.add_argument(
         "--scene", metavar="NAME", help="the scene that is rendered (default: the active one)"
     )
-    parser.add_argument(
-        "--threads",
-        metavar="N",
-        type=_count,
-        default=0,
-        help="how many threads to use; 0 uses all (default: 0)",
-    )
+    _add_threads(parser)
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
     )

@@ -86,3 +86,33 @@ def display(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]
     finally:
         server.terminate()
         server.wait()
+
+
+@pytest.fixture(scope="module")
+def in_window(display: dict[str, str]) -> Callable[[Path, Path], None]:
+    """Returns a function that runs a session in a Blender with a window that nobody sees.
+
+    It takes the session's program and the argument that this gets; the session has to end well.
+    """
+
+    def run(session: Path, argument: Path) -> None:
+        result = subprocess.run(
+            [
+                bpy.app.binary_path,
+                "--factory-startup",
+                "--enable-event-simulate",
+                *("--window-geometry", "0", "0", "1280", "800"),
+                *("--python", session, "--", argument),
+            ],
+            env={**os.environ, **display},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        output = result.stdout + result.stderr
+        assert result.returncode == 0, output
+        assert "Traceback" not in output, output
+        assert "Error" not in output, output
+
+    return run
