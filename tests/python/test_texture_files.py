@@ -1,0 +1,370 @@
+"""DDS and KTX 2 files, read back by readers of their own and by other programs."""
+
+import itertools
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import prefilter
+import pytest
+from texture_readers import FORMATS, read_dds, read_ktx2
+
+WRITERS = {"dds": (prefilter.write_dds, read_dds), "ktx2": (prefilter.write_ktx2, read_ktx2)}
+SIZES = [(1, 1), (1, 7), (5, 1), (4, 4), (12, 20), (13, 37), (64, 2)]
+NAMES = {
+    "r8": ("R8_UNORM", "R8_SRGB"),
+    "rg8": ("R8G8_UNORM", "R8G8_SRGB"),
+    "rgba8": ("R8G8B8A8_UNORM", "R8G8B8A8_SRGB"),
+    "rgba16f": ("R16G16B16A16_SFLOAT", "R16G16B16A16_SFLOAT"),
+    "rgba32f": ("R32G32B32A32_SFLOAT", "R32G32B32A32_SFLOAT"),
+}
+
+
+def chain(height: int, width: int, channels: int, *, floats: bool = False, seed: int = 0) -> list:
+    """Levels of random values, so that no two rows, channels or levels are alike."""
+    random = np.random.default_rng(seed)
+    levels = []
+    while True:
+        shape = (height, width, channels)
+        if floats:
+            levels.append(random.random(shape, np.float32))
+        else:
+            levels.append(random.integers(0, 256, shape, np.uint8))
+        if height == width == 1:
+            return levels
+        height, width = max(1, height // 2), max(1, width // 2)
+
+
+def written(tmp_path: Path, kind: str, levels: list, **options):
+    """What a file of the levels reads as."""
+    write, read = WRITERS[kind]
+    path = tmp_path / f"levels.{kind}"
+    write(path, levels, **options)
+    assert os.listdir(tmp_path) == [path.name]
+    return read(path)
+
+
+@pytest.fixture(params=WRITERS)
+def kind(request):
+    return request.param
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+@pytest.mark.parametrize("encoding", ["linear", "srgb"])
+def test_bytes_are_kept(tmp_path, kind, size, channels, encoding):
+    levels = chain(*size, channels)
+    file = written(tmp_path, kind, levels, encoding=encoding)
+    assert (file.height, file.width) == size
+    assert file.is_srgb == (encoding == "srgb")
+    expected = {1: "R8_UNORM", 2: "R8G8_UNORM"}.get(channels, "R8G8B8A8_UNORM")
+    if encoding == "srgb":
+        expected = "R8G8B8A8_SRGB"
+    assert file.format == expected
+    for level, found in zip(levels, file.levels, strict=True):
+        if channels == 1 and encoding == "srgb":
+            level = np.repeat(level, 3, axis=2)
+        count = level.shape[2]
+        np.testing.assert_array_equal(found[..., :count], level)
+        if found.shape[2] == 4 and count < 4:
+            assert np.all(found[..., 3] == 255)
+            assert np.all(found[..., count:3] == 0)
+
+
+@pytest.mark.parametrize("format", ["rgba16f", "rgba32f", "auto"])
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_floats_are_kept(tmp_path, kind, format, channels):
+    levels = [9 * level - 3 for level in chain(9, 14, channels, floats=True)]
+    file = written(tmp_path, kind, levels, format=format, encoding="srgb")
+    assert not file.is_srgb
+    exact = np.float32 if format == "rgba32f" else np.float16
+    for level, found in zip(levels, file.levels, strict=True):
+        assert found.dtype == exact
+        count = 3 if channels == 1 else channels
+        np.testing.assert_array_equal(
+            found[..., :count], np.broadcast_to(level.astype(exact), (*level.shape[:2], count))
+        )
+        if channels < 4:
+            assert np.all(found[..., 3] == 1)
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+@pytest.mark.parametrize("encoding", ["linear", "srgb"])
+def test_floats_become_the_nearest_bytes(tmp_path, kind, channels, encoding):
+    levels = [1.4 * level - 0.2 for level in chain(8, 6, channels, floats=True)]
+    file = written(tmp_path, kind, levels, format="rgba8", encoding=encoding)
+    for level, found in zip(levels, file.levels, strict=True):
+        wanted = np.clip(level, 0, 1)
+        if encoding == "srgb":
+            low = wanted <= 0.0031308
+            curve = np.where(low, 12.92 * wanted, 1.055 * wanted ** (1 / 2.4) - 0.055)
+            wanted = np.concatenate([curve[..., :3], wanted[..., 3:]], axis=2)
+        if channels == 1:
+            wanted = np.repeat(wanted, 3, axis=2)
+        # A value in the middle between two bytes may go either way.
+        count = wanted.shape[2]
+        assert np.abs(found[..., :count] - 255.0 * wanted).max() <= 0.5 + 1e-3
+
+
+def test_bytes_are_decoded_for_formats_of_floats(tmp_path, kind):
+    levels = chain(4, 4, 4)
+    file = written(tmp_path, kind, levels, format="rgba32f", encoding="srgb")
+    values = levels[0] / 255.0
+    curve = np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+    np.testing.assert_allclose(file.levels[0][..., :3], curve[..., :3], atol=1e-6)
+    np.testing.assert_allclose(file.levels[0][..., 3], values[..., 3], atol=1e-6)
+
+
+@pytest.mark.parametrize("format", ["r8", "rg8"])
+def test_first_channels_are_taken(tmp_path, kind, format):
+    levels = chain(6, 5, 4)
+    file = written(tmp_path, kind, levels, format=format)
+    count = {"r8": 1, "rg8": 2}[format]
+    for level, found in zip(levels, file.levels, strict=True):
+        np.testing.assert_array_equal(found, level[..., :count])
+
+
+@pytest.mark.parametrize("format", NAMES)
+def test_ktx2_describes_its_samples(tmp_path, format):
+    for srgb in (False, True):
+        encoding = "srgb" if srgb else "linear"
+        file = written(tmp_path, "ktx2", chain(4, 4, 4), format=format, encoding=encoding)
+        assert file.format == NAMES[format][srgb]
+        assert file.metadata["KTXorientation"] == "rd"
+        assert file.metadata["KTXwriter"].startswith("prefilter ")
+        channels = FORMATS[file.format][2]
+        assert [s["channel"] for s in file.samples] == [0, 1, 2, 15][:channels]
+        for sample in file.samples:
+            if format.endswith("f"):
+                assert sample["qualifiers"] == 0xC0
+                assert sample["range"] == (0xBF800000, 0x3F800000)  # -1 and 1
+            else:
+                is_linear = srgb and sample["channel"] == 15
+                assert sample["qualifiers"] == (0x10 if is_linear else 0)
+                assert sample["range"] == (0, 255)
+
+
+@pytest.mark.parametrize("premultiplied", [False, True])
+def test_alpha_is_described(tmp_path, kind, premultiplied):
+    levels = chain(4, 4, 4)
+    file = written(tmp_path, kind, levels, premultiplied=premultiplied)
+    assert file.alpha == ("premultiplied" if premultiplied else "straight")
+    np.testing.assert_array_equal(file.levels[0], levels[0])
+    opaque = written(tmp_path, kind, chain(4, 4, 3), premultiplied=premultiplied)
+    assert opaque.alpha == ("opaque" if kind == "dds" else "straight")
+
+
+def test_levels_may_be_left_out(tmp_path, kind):
+    levels = chain(16, 8, 3)
+    for count in (1, 2, 4):
+        assert len(written(tmp_path, kind, levels[:count]).levels) == count
+
+
+def test_views_and_doubles_are_taken(tmp_path, kind):
+    image = np.random.default_rng(3).random((8, 12, 6))
+    views = [image[::2, ::-1, ::2], image[:2, :6, :3]]
+    file = written(tmp_path, kind, views, format="rgba32f")
+    for view, found in zip(views, file.levels, strict=True):
+        np.testing.assert_array_equal(found[..., :3], view.astype(np.float32))
+
+
+def test_file_is_the_same_for_any_thread_count(tmp_path):
+    levels = chain(40, 50, 4, floats=True)
+    for kind in WRITERS:
+        contents = set()
+        for threads in (1, 2, 7):
+            path = tmp_path / f"{threads}.{kind}"
+            WRITERS[kind][0](path, levels, format="rgba8", encoding="srgb", threads=threads)
+            contents.add(path.read_bytes())
+        assert len(contents) == 1
+
+
+GOOD = chain(8, 8, 3)
+HALF = GOOD[1]
+
+
+@pytest.mark.parametrize(
+    ("levels", "options", "words"),
+    [
+        ([], {}, "levels: an empty list"),
+        (np.zeros((8, 8, 3), np.uint8), {}, "levels: a ndarray"),
+        ("levels", {}, "levels: a str"),
+        ([GOOD[0], GOOD[2]], {}, "level 1 has 2 x 2 texels.* is 4 x 4"),
+        ([GOOD[0], GOOD[0]], {}, "level 1 has 8 x 8 texels.* is 4 x 4"),
+        ([*GOOD, GOOD[-1]], {}, "level 4 is one too many"),
+        ([GOOD[0], HALF[..., :2]], {}, "level 1 has 2 channels of uint8, the one before 3"),
+        ([GOOD[0], HALF / 255.0], {}, "level 1 has 3 channels of float32, .* 3 of uint8"),
+        ([GOOD[0][..., 0]], {}, r"level 0: shape \(8, 8\)"),
+        ([np.zeros((4, 4, 5), np.uint8)], {}, "level 0 has 5 channels; 1 to 4"),
+        ([np.zeros((0, 4, 3), np.uint8)], {}, "level 0: shape .* no pixels"),
+        ([np.zeros((4, 4, 3), np.uint16)], {}, "level 0: dtype uint16"),
+        ([np.full((2, 3, 1), np.nan, np.float32)], {}, "level 0: the texel in row 0, .* nan"),
+        ([np.full((2, 3, 1), np.inf)], {}, "level 0: the texel in row 0, .* inf"),
+        ([np.full((2, 3, 1), -7e4)], {}, "levels: hold -70000.*'rgba32f' is needed"),
+        (GOOD, {"format": "bc7"}, "format: 'bc7' is not one of auto, r8, .*"),
+        (GOOD, {"format": 8}, "format: 8 is not one of auto, r8"),
+        ([GOOD[0][..., :1]], {"format": "rg8"}, "format: 'rg8' needs 2 channels; .* have 1"),
+        (GOOD, {"encoding": "linearish"}, "encoding: 'linearish' is not one of linear, srgb"),
+        (GOOD, {"threads": -1}, "threads: -1"),
+        (GOOD, {"progress": 3}, "progress: 3"),
+    ],
+)
+def test_refusals(tmp_path, kind, levels, options, words):
+    write, _ = WRITERS[kind]
+    with pytest.raises(ValueError, match=words):
+        write(tmp_path / "levels", levels, **options)
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("format", ["r8", "rg8"])
+def test_dds_has_no_srgb_form_of_few_channels(tmp_path, format):
+    with pytest.raises(ValueError, match=f"encoding: 'srgb' with the format '{format}'"):
+        prefilter.write_dds(tmp_path / "levels", GOOD, format=format, encoding="srgb")
+    assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("path", [3, None, "a\0b"])
+def test_paths_that_are_none(kind, path):
+    with pytest.raises(ValueError, match=r"path: .* is needed"):
+        WRITERS[kind][0](path, GOOD)
+
+
+def test_places_that_cannot_be_written(tmp_path, kind):
+    write, _ = WRITERS[kind]
+    with pytest.raises(OSError, match="there is no folder"):
+        write(tmp_path / "missing" / "file", GOOD)
+    with pytest.raises(OSError, match="is a folder"):
+        write(tmp_path, GOOD)
+    target = tmp_path / "kept"
+    target.write_bytes(b"kept")
+    target.chmod(0o444)
+    with pytest.raises(OSError, match="is read-only"):
+        write(target, GOOD)
+    assert target.read_bytes() == b"kept"
+    folder = tmp_path / "locked"
+    folder.mkdir(0o555)
+    with pytest.raises(OSError, match="is read-only"):
+        write(folder / "file", GOOD)
+    assert os.listdir(folder) == []
+
+
+def test_file_is_replaced_with_its_mode_and_through_links(tmp_path, kind):
+    write, read = WRITERS[kind]
+    target = tmp_path / "file"
+    target.write_bytes(b"old")
+    target.chmod(0o640)
+    link = tmp_path / "link"
+    link.symlink_to(target)
+    write(link, GOOD)
+    assert link.is_symlink()
+    assert target.stat().st_mode & 0o777 == 0o640
+    np.testing.assert_array_equal(read(target).levels[0][..., :3], GOOD[0])
+
+
+def test_cancelling_writes_nothing(tmp_path, kind):
+    write, _ = WRITERS[kind]
+    target = tmp_path / "file"
+    target.write_bytes(b"old")
+    fractions = []
+
+    def stop(fraction):
+        fractions.append(fraction)
+        return len(fractions) < 3
+
+    with pytest.raises(prefilter.Cancelled):
+        write(target, GOOD, progress=stop)
+    assert target.read_bytes() == b"old"
+    assert os.listdir(tmp_path) == ["file"]
+    fractions.clear()
+    write(target, GOOD, progress=fractions.append)
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("encoding", ["linear", "srgb"])
+def test_pillow_and_openimageio_agree_on_dds(tmp_path, size, encoding):
+    levels = chain(*size, 4)
+    compared = 0
+    for number, level in enumerate(levels):
+        path = tmp_path / f"{number}.dds"
+        prefilter.write_dds(path, levels[number:], encoding=encoding)
+        for pixels in pillow_reading(path) + openimageio_reading(tmp_path / "0.dds", number):
+            np.testing.assert_array_equal(pixels, level[::-1])
+            compared += 1
+    if compared == 0:
+        pytest.skip("neither a Pillow nor an OpenImageIO that reads such files is there")
+
+
+def pillow_reading(path: Path) -> list:
+    """Level 0 as Pillow reads it; none where it is missing or too old."""
+    try:
+        from PIL import Image
+    except ImportError:
+        return []
+    try:
+        with Image.open(path) as image:
+            return [np.asarray(image)]
+    except NotImplementedError:
+        return []
+
+
+def openimageio_reading(path: Path, number: int) -> list:
+    """A level as OpenImageIO reads it, alpha left straight; none where it is missing or too old."""
+    try:
+        import OpenImageIO as oiio
+    except ImportError:
+        return []
+    config = oiio.ImageSpec()
+    config.attribute("oiio:UnassociatedAlpha", 1)
+    file = oiio.ImageInput.open(str(path), config)
+    if file is None:
+        return []
+    assert file.seek_subimage(0, number), "the level is missing"
+    return [file.read_image("uint8")]
+
+
+KTX_PARSE = """
+import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
+const { read } = await import(createRequire(process.cwd() + '/').resolve('ktx-parse'));
+const file = read(readFileSync(process.argv[1]));
+file.levels = file.levels.map(level => Buffer.from(level.levelData).toString('hex'));
+console.log(JSON.stringify(file));
+"""
+
+
+def ktx_parse(path: Path) -> dict:
+    """What the npm package ktx-parse says, which node finds beside the tests or in NODE_PATH."""
+    command = ["node", "--input-type=module", "--eval", KTX_PARSE, str(path)]
+    try:
+        run = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    except FileNotFoundError:
+        pytest.skip("there is no node")
+    if "Cannot find module 'ktx-parse'" in run.stderr:
+        pytest.skip("node finds no package ktx-parse")
+    assert run.returncode == 0, run.stderr
+    return json.loads(run.stdout)
+
+
+@pytest.mark.parametrize("format", NAMES)
+def test_ktx_parse_agrees_on_ktx2(tmp_path, format):
+    levels = chain(13, 6, 4)
+    path = tmp_path / "levels.ktx2"
+    for srgb, premultiplied in itertools.product((False, True), repeat=2):
+        encoding = "srgb" if srgb else "linear"
+        prefilter.write_ktx2(
+            path, levels, format=format, encoding=encoding, premultiplied=premultiplied
+        )
+        ours, theirs = read_ktx2(path), ktx_parse(path)
+        assert theirs["vkFormat"] == FORMATS[ours.format][1]
+        assert (theirs["pixelWidth"], theirs["pixelHeight"]) == (6, 13)
+        assert [bytes.fromhex(level) for level in theirs["levels"]] == ours.level_data
+        assert theirs["keyValue"] == ours.metadata
+        descriptor = theirs["dataFormatDescriptor"][0]
+        assert descriptor["transferFunction"] == (2 if ours.is_srgb else 1)
+        has_alpha = FORMATS[ours.format][2] == 4
+        assert descriptor["flags"] == int(premultiplied and has_alpha)
+        assert len(descriptor["samples"]) == len(ours.samples)
