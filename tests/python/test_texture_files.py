@@ -19,7 +19,12 @@ NAMES = {
     "rgba8": ("R8G8B8A8_UNORM", "R8G8B8A8_SRGB"),
     "rgba16f": ("R16G16B16A16_SFLOAT", "R16G16B16A16_SFLOAT"),
     "rgba32f": ("R32G32B32A32_SFLOAT", "R32G32B32A32_SFLOAT"),
+    "bc1": ("BC1_UNORM", "BC1_SRGB"),
+    "bc3": ("BC3_UNORM", "BC3_SRGB"),
+    "bc4": ("BC4_UNORM", None),
+    "bc5": ("BC5_UNORM", None),
 }
+BLOCKS = {"bc1": 3, "bc3": 4, "bc4": 1, "bc5": 2}
 
 
 def chain(height: int, width: int, channels: int, *, floats: bool = False, seed: int = 0) -> list:
@@ -126,34 +131,149 @@ def test_first_channels_are_taken(tmp_path, kind, format):
         np.testing.assert_array_equal(found, level[..., :count])
 
 
-@pytest.mark.parametrize("format", NAMES)
-def test_ktx2_describes_its_samples(tmp_path, format):
-    for srgb in (False, True):
-        encoding = "srgb" if srgb else "linear"
-        file = written(tmp_path, "ktx2", chain(4, 4, 4), format=format, encoding=encoding)
-        assert file.format == NAMES[format][srgb]
-        assert file.metadata["KTXorientation"] == "rd"
-        assert file.metadata["KTXwriter"].startswith("prefilter ")
-        channels = FORMATS[file.format][2]
-        assert [s["channel"] for s in file.samples] == [0, 1, 2, 15][:channels]
-        for sample in file.samples:
-            if format.endswith("f"):
-                assert sample["qualifiers"] == 0xC0
-                assert sample["range"] == (0xBF800000, 0x3F800000)  # -1 and 1
-            else:
-                is_linear = srgb and sample["channel"] == 15
-                assert sample["qualifiers"] == (0x10 if is_linear else 0)
-                assert sample["range"] == (0, 255)
+# What the samples of a block are, in KTX 2: the first bit and the number of them, and a channel.
+SAMPLES = {
+    "BC1": [((0, 64), 1)],  # Colour with a cut-out.
+    "BC3": [((0, 64), 15), ((64, 64), 0)],
+    "BC4": [((0, 64), 0)],
+    "BC5": [((0, 64), 0), ((64, 64), 1)],
+}
 
 
-@pytest.mark.parametrize("premultiplied", [False, True])
-def test_alpha_is_described(tmp_path, kind, premultiplied):
+@pytest.mark.parametrize(
+    ("format", "srgb"),
+    [(name, srgb) for name, pair in NAMES.items() for srgb in (False, True) if pair[srgb]],
+)
+def test_ktx2_describes_its_samples(tmp_path, format, srgb):
+    encoding = "srgb" if srgb else "linear"
+    file = written(tmp_path, "ktx2", chain(4, 4, 4), format=format, encoding=encoding)
+    assert file.format == NAMES[format][srgb]
+    assert file.metadata["KTXorientation"] == "rd"
+    assert file.metadata["KTXwriter"] == f"prefilter {prefilter.__version__}"
+    channels = FORMATS[file.format][2]
+    found = [(sample["bits"], sample["channel"]) for sample in file.samples]
+    if format in BLOCKS:
+        assert found == SAMPLES[file.format[:3]]
+    else:
+        assert [channel for _, channel in found] == [0, 1, 2, 15][:channels]
+    for sample in file.samples:
+        if format.endswith("f"):
+            assert sample["qualifiers"] == 0xC0
+            assert sample["range"] == (0xBF800000, 0x3F800000)  # -1 and 1
+        else:
+            is_linear = srgb and sample["channel"] == 15
+            assert sample["qualifiers"] == (0x10 if is_linear else 0)
+            assert sample["range"] == (0, 0xFFFFFFFF if format in BLOCKS else 255)
+
+
+@pytest.mark.parametrize("alpha", ["straight", "premultiplied", "independent"])
+@pytest.mark.parametrize("format", ["rgba8", "bc3"])
+def test_alpha_is_described(tmp_path, kind, alpha, format):
     levels = chain(4, 4, 4)
-    file = written(tmp_path, kind, levels, premultiplied=premultiplied)
-    assert file.alpha == ("premultiplied" if premultiplied else "straight")
-    np.testing.assert_array_equal(file.levels[0], levels[0])
-    opaque = written(tmp_path, kind, chain(4, 4, 3), premultiplied=premultiplied)
+    file = written(tmp_path, kind, levels, alpha=alpha, format=format)
+    known = {"dds": {"independent": "custom"}, "ktx2": {"independent": "straight"}}
+    assert file.alpha == known[kind].get(alpha, alpha)
+    if format == "rgba8":
+        np.testing.assert_array_equal(file.levels[0], levels[0])
+    opaque = written(tmp_path, kind, chain(4, 4, 3), alpha=alpha, format=format)
     assert opaque.alpha == ("opaque" if kind == "dds" else "straight")
+
+
+def smooth_chain(height: int, width: int, channels: int) -> list:
+    """Levels that vary slowly, in bytes."""
+    levels = []
+    while True:
+        y, x = np.meshgrid(np.linspace(0, 3, height), np.linspace(0, 2, width), indexing="ij")
+        waves = [np.sin(x + (1 + c / 3) * y + c) for c in range(channels)]
+        levels.append(np.rint(110 + 100 * np.stack(waves, axis=2)).astype(np.uint8))
+        if height == width == 1:
+            return levels
+        height, width = max(1, height // 2), max(1, width // 2)
+
+
+def simple_error(block: np.ndarray) -> float:
+    """The squared error of a block of a simple compressor: ends at the extremes of the main axis.
+
+    One channel has eight steps. Colours have four, and ends of 5, 6 and 5 bits.
+    """
+    texels = block.reshape(-1, block.shape[2]).astype(float)
+    if texels.shape[1] == 1:
+        palette = np.linspace(texels.min(), texels.max(), 8)[:, None].round()
+    else:
+        mean = texels.mean(axis=0)
+        axis = np.linalg.svd(texels - mean)[2][0]
+        along = (texels - mean) @ axis
+        steps = np.array([31, 63, 31]) / 255
+        ends = mean + np.array([along.min(), along.max()])[:, None] * axis
+        first, second = np.clip(np.rint(ends * steps), 0, 255 * steps) / steps
+        palette = first + (second - first) * np.linspace(0, 1, 4)[:, None]
+    distances = ((texels[:, None] - palette) ** 2).sum(axis=2)
+    return distances.min(axis=1).sum()
+
+
+@pytest.mark.parametrize(
+    ("format", "size"),
+    [*itertools.product(BLOCKS, [(96, 64)]), ("bc1", (37, 51)), ("bc3", (37, 51))],
+)
+@pytest.mark.parametrize("make", [smooth_chain, chain])
+def test_blocks_are_nearer_than_those_of_a_simple_compressor(tmp_path, kind, format, size, make):
+    levels = [level | np.array([0, 0, 0, 255], np.uint8) for level in make(*size, 4)]
+    count = BLOCKS[format]
+    file = written(tmp_path, kind, levels, format=format)
+    parts = [slice(0, 3)] if count > 2 else [slice(c, c + 1) for c in range(count)]
+    error = reference = 0.0
+    for level, found in zip(levels, file.levels, strict=True):
+        rows = level[::-1]
+        for top, left in itertools.product(
+            range(0, level.shape[0], 4), range(0, level.shape[1], 4)
+        ):
+            block = rows[top : top + 4, left : left + 4]
+            reference += sum(simple_error(block[..., part]) for part in parts)
+        error += ((found[..., :count] - level[..., :count]) ** 2).sum()
+        if count > 2:
+            assert np.all(found[..., 3] == 255)
+    assert error <= reference
+
+
+@pytest.mark.parametrize("format", BLOCKS)
+def test_flat_levels_stay_flat(tmp_path, kind, format):
+    values = np.array([37, 200, 90, 255], np.uint8)
+    levels = [np.broadcast_to(values, level.shape) for level in chain(11, 6, 4)]
+    file = written(tmp_path, kind, levels, format=format)
+    count = BLOCKS[format]
+    for found in file.levels:
+        assert np.ptp(found, axis=(0, 1)).max() == 0
+        near = 1.5 if count > 2 else 0.5
+        assert np.abs(found[0, 0, :count] - values[:count]).max() <= near
+
+
+def test_bc1_cuts_out_what_is_less_than_half_opaque(tmp_path, kind):
+    levels = chain(13, 10, 4)
+    file = written(tmp_path, kind, levels, format="bc1")
+    for level, found in zip(levels, file.levels, strict=True):
+        np.testing.assert_array_equal(found[..., 3], np.where(level[..., 3] < 128, 0, 255))
+        assert np.all(found[found[..., 3] == 0] == 0)
+
+
+def test_blocks_hide_the_error_under_straight_alpha(tmp_path, kind):
+    levels = chain(16, 16, 4)
+    levels[0][..., 3] = np.where(levels[0][..., 3] < 200, 0, 255)
+    seen = levels[0][..., 3] == 255
+    errors = {}
+    for alpha in ("straight", "premultiplied"):
+        found = written(tmp_path, kind, levels, format="bc3", alpha=alpha).levels[0]
+        errors[alpha] = np.mean((found[seen] - levels[0][seen]) ** 2)
+    assert errors["straight"] < 0.7 * errors["premultiplied"]
+
+
+@pytest.mark.parametrize("format", ["bc1", "bc3"])
+def test_floats_are_encoded_before_they_are_compressed(tmp_path, kind, format):
+    levels = [level / np.float32(255) for level in smooth_chain(24, 16, 3)]
+    coded = [np.rint(255 * prefilter.to_srgb(level)).astype(np.uint8) for level in levels]
+    of_floats = written(tmp_path, kind, levels, format=format, encoding="srgb")
+    of_bytes = written(tmp_path, kind, coded, format=format, encoding="srgb")
+    assert of_floats.is_srgb
+    assert of_floats.level_data == of_bytes.level_data
 
 
 def test_levels_may_be_left_out(tmp_path, kind):
@@ -172,11 +292,11 @@ def test_views_and_doubles_are_taken(tmp_path, kind):
 
 def test_file_is_the_same_for_any_thread_count(tmp_path):
     levels = chain(40, 50, 4, floats=True)
-    for kind in WRITERS:
+    for kind, format in itertools.product(WRITERS, ["rgba8", "bc1", "bc3"]):
         contents = set()
         for threads in (1, 2, 7):
             path = tmp_path / f"{threads}.{kind}"
-            WRITERS[kind][0](path, levels, format="rgba8", encoding="srgb", threads=threads)
+            WRITERS[kind][0](path, levels, format=format, encoding="srgb", threads=threads)
             contents.add(path.read_bytes())
         assert len(contents) == 1
 
@@ -206,6 +326,9 @@ HALF = GOOD[1]
         (GOOD, {"format": "bc7"}, "format: 'bc7' is not one of auto, r8, .*"),
         (GOOD, {"format": 8}, "format: 8 is not one of auto, r8"),
         ([GOOD[0][..., :1]], {"format": "rg8"}, "format: 'rg8' needs 2 channels; .* have 1"),
+        ([GOOD[0][..., :1]], {"format": "bc5"}, "format: 'bc5' needs 2 channels; .* have 1"),
+        ([np.full((4, 4, 3), np.nan)], {"format": "bc1"}, "level 0: the texel in row 0, .* nan"),
+        (GOOD, {"alpha": "opaque"}, "alpha: 'opaque' is not one of straight, premultiplied, indep"),
         (GOOD, {"encoding": "linearish"}, "encoding: 'linearish' is not one of linear, srgb"),
         (GOOD, {"threads": -1}, "threads: -1"),
         (GOOD, {"progress": 3}, "progress: 3"),
@@ -218,10 +341,13 @@ def test_refusals(tmp_path, kind, levels, options, words):
     assert os.listdir(tmp_path) == []
 
 
-@pytest.mark.parametrize("format", ["r8", "rg8"])
-def test_dds_has_no_srgb_form_of_few_channels(tmp_path, format):
+@pytest.mark.parametrize(
+    ("kind", "format"),
+    [("dds", "r8"), ("dds", "rg8"), *itertools.product(WRITERS, ["bc4", "bc5"])],
+)
+def test_formats_that_have_no_srgb_form(tmp_path, kind, format):
     with pytest.raises(ValueError, match=f"encoding: 'srgb' with the format '{format}'"):
-        prefilter.write_dds(tmp_path / "levels", GOOD, format=format, encoding="srgb")
+        WRITERS[kind][0](tmp_path / "levels", GOOD, format=format, encoding="srgb")
     assert os.listdir(tmp_path) == []
 
 
@@ -283,16 +409,27 @@ def test_cancelling_writes_nothing(tmp_path, kind):
     assert fractions[-1] == 1.0
 
 
-@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("size", [*SIZES, (32, 24)])
+@pytest.mark.parametrize("format", ["rgba8", *BLOCKS])
 @pytest.mark.parametrize("encoding", ["linear", "srgb"])
-def test_pillow_and_openimageio_agree_on_dds(tmp_path, size, encoding):
+def test_pillow_and_openimageio_agree_on_dds(tmp_path, size, format, encoding):
+    if encoding == "srgb" and NAMES[format][1] is None:
+        encoding = "linear"
     levels = chain(*size, 4)
+    if format == "bc1":
+        levels = [level[..., :3] for level in levels]
     compared = 0
-    for number, level in enumerate(levels):
+    for number in range(len(levels)):
         path = tmp_path / f"{number}.dds"
-        prefilter.write_dds(path, levels[number:], encoding=encoding)
+        prefilter.write_dds(path, levels[number:], format=format, encoding=encoding)
+        expected = read_dds(path).level(0)
+        # Decoders may round the ends to bytes, which is half a step, and then cut off the mean.
+        near = 0 if format == "rgba8" else 1.5
         for pixels in pillow_reading(path) + openimageio_reading(tmp_path / "0.dds", number):
-            np.testing.assert_array_equal(pixels, level[::-1])
+            assert pixels.shape[:2] == expected.shape[:2]
+            count = min(pixels.shape[2], expected.shape[2])
+            assert count == (3 if format == "bc1" and pixels.shape[2] == 3 else expected.shape[2])
+            assert np.abs(pixels[..., :count] - expected[..., :count]).max() <= near
             compared += 1
     if compared == 0:
         pytest.skip("neither a Pillow nor an OpenImageIO that reads such files is there")
@@ -306,7 +443,8 @@ def pillow_reading(path: Path) -> list:
         return []
     try:
         with Image.open(path) as image:
-            return [np.asarray(image)]
+            pixels = np.asarray(image)
+            return [pixels.reshape(*pixels.shape[:2], -1)]
     except NotImplementedError:
         return []
 
@@ -353,11 +491,11 @@ def ktx_parse(path: Path) -> dict:
 def test_ktx_parse_agrees_on_ktx2(tmp_path, format):
     levels = chain(13, 6, 4)
     path = tmp_path / "levels.ktx2"
-    for srgb, premultiplied in itertools.product((False, True), repeat=2):
+    for srgb, alpha in itertools.product((False, True), ("straight", "premultiplied")):
+        if NAMES[format][srgb] is None:
+            continue
         encoding = "srgb" if srgb else "linear"
-        prefilter.write_ktx2(
-            path, levels, format=format, encoding=encoding, premultiplied=premultiplied
-        )
+        prefilter.write_ktx2(path, levels, format=format, encoding=encoding, alpha=alpha)
         ours, theirs = read_ktx2(path), ktx_parse(path)
         assert theirs["vkFormat"] == FORMATS[ours.format][1]
         assert (theirs["pixelWidth"], theirs["pixelHeight"]) == (6, 13)
@@ -366,5 +504,5 @@ def test_ktx_parse_agrees_on_ktx2(tmp_path, format):
         descriptor = theirs["dataFormatDescriptor"][0]
         assert descriptor["transferFunction"] == (2 if ours.is_srgb else 1)
         has_alpha = FORMATS[ours.format][2] == 4
-        assert descriptor["flags"] == int(premultiplied and has_alpha)
+        assert descriptor["flags"] == int(alpha == "premultiplied" and has_alpha)
         assert len(descriptor["samples"]) == len(ours.samples)

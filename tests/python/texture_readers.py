@@ -19,6 +19,12 @@ FORMATS = {
     "R8G8B8A8_SRGB": (29, 43, 4, np.uint8, 4, True),
     "R16G16B16A16_SFLOAT": (10, 97, 4, np.float16, 8, False),
     "R32G32B32A32_SFLOAT": (2, 109, 4, np.float32, 16, False),
+    "BC1_UNORM": (71, 133, 4, None, 8, False),
+    "BC1_SRGB": (72, 134, 4, None, 8, True),
+    "BC3_UNORM": (77, 137, 4, None, 16, False),
+    "BC3_SRGB": (78, 138, 4, None, 16, True),
+    "BC4_UNORM": (80, 139, 1, None, 8, False),
+    "BC5_UNORM": (83, 141, 2, None, 16, False),
 }
 
 
@@ -39,15 +45,17 @@ class File:
         return FORMATS[self.format][5]
 
     def level(self, number: int) -> np.ndarray:
-        """A level of a plain format, the top row first."""
+        """A level, the top row first; that of a block format in floats, as it is decoded."""
         _, _, channels, dtype, _, _ = FORMATS[self.format]
         height, width = max(1, self.height >> number), max(1, self.width >> number)
+        if dtype is None:
+            return decoded_blocks(self.level_data[number], self.format[:3], width, height)
         values = np.frombuffer(self.level_data[number], np.dtype(dtype).newbyteorder("<"))
         return values.reshape(height, width, channels)
 
     @property
     def levels(self) -> list[np.ndarray]:
-        """All levels of a plain format, the bottom row first."""
+        """All levels, the bottom row first."""
         return [self.level(number)[::-1] for number in range(len(self.level_data))]
 
 
@@ -91,7 +99,7 @@ def read_dds(path: Path) -> File:
         levels.append(data[offset : offset + count])
         offset += count
     assert offset == len(data)
-    alpha = {1: "straight", 2: "premultiplied", 3: "opaque"}[misc2]
+    alpha = {1: "straight", 2: "premultiplied", 3: "opaque", 4: "custom"}[misc2]
     return File(name, width, height, levels, alpha)
 
 
@@ -171,3 +179,50 @@ def _read_descriptor(data: bytes, name: str) -> tuple[str, list[dict]]:
     models = {"BC1": 128, "BC3": 130, "BC4": 131, "BC5": 132}
     assert model == models.get(name[:3], 1)
     return "premultiplied" if flags & 1 else "straight", samples
+
+
+def decoded_blocks(data: bytes, name: str, width: int, height: int) -> np.ndarray:
+    """Blocks of BC1, BC3, BC4 or BC5 as values from 0 to 255, after the formats' definitions."""
+    rows, columns = (height + 3) // 4, (width + 3) // 4
+    blocks = np.frombuffer(data, np.uint8).reshape(rows * columns, -1)
+    if name == "BC1":
+        texels = _decoded_colors(blocks, has_cut_out=True)
+    elif name == "BC3":
+        texels = _decoded_colors(blocks[:, 8:], has_cut_out=False)
+        texels[..., 3] = _decoded_channel(blocks[:, :8])
+    else:
+        halves = np.split(blocks, {"BC4": 1, "BC5": 2}[name], axis=1)
+        texels = np.stack([_decoded_channel(half) for half in halves], axis=2)
+    texels = texels.reshape(rows, columns, 4, 4, -1).swapaxes(1, 2)
+    return texels.reshape(4 * rows, 4 * columns, -1)[:height, :width]
+
+
+def _decoded_colors(blocks: np.ndarray, *, has_cut_out: bool) -> np.ndarray:
+    words = np.ascontiguousarray(blocks[:, :4]).view("<u2").astype(int)
+    ends = np.stack(
+        [(words >> 11) * 255 / 31, (words >> 5 & 63) * 255 / 63, (words & 31) * 255 / 31], axis=2
+    )
+    first, second = ends[:, 0], ends[:, 1]
+    colors = np.full((len(blocks), 4, 4), 255.0)
+    colors[:, 0, :3], colors[:, 1, :3] = first, second
+    colors[:, 2, :3], colors[:, 3, :3] = (2 * first + second) / 3, (first + 2 * second) / 3
+    if has_cut_out:
+        three = words[:, 0] <= words[:, 1]
+        colors[three, 2, :3] = ((first + second) / 2)[three]
+        colors[three, 3] = 0
+    bits = np.ascontiguousarray(blocks[:, 4:8]).view("<u4")
+    index = bits >> 2 * np.arange(16) & 3
+    return np.take_along_axis(colors, index[..., None].astype(int), axis=1)
+
+
+def _decoded_channel(blocks: np.ndarray) -> np.ndarray:
+    low, high = blocks[:, :1].astype(float), blocks[:, 1:2].astype(float)
+    six, four = np.arange(1, 7) / 7, np.arange(1, 5) / 5
+    eight_values = np.hstack([low, high, low + (high - low) * six])
+    limits = np.broadcast_to([0.0, 255.0], (len(blocks), 2))
+    six_values = np.hstack([low, high, low + (high - low) * four, limits])
+    values = np.where(low > high, eight_values, six_values)
+    padded = np.zeros((len(blocks), 8), np.uint8)
+    padded[:, :6] = blocks[:, 2:8]
+    index = padded.view("<u8") >> np.arange(0, 48, 3, dtype=np.uint64) & 7
+    return np.take_along_axis(values, index.astype(int), axis=1)

@@ -10,7 +10,7 @@ _PIXEL_FORMAT, _MIPMAP_COUNT, _LINEAR_SIZE = 0x1000, 0x20000, 0x80000
 _FOUR_CC = 0x4
 _CAPS_TEXTURE, _CAPS_COMPLEX, _CAPS_MIPMAP = 0x1000, 0x8, 0x400000
 _TEXTURE_2D = 3
-_ALPHA_STRAIGHT, _ALPHA_PREMULTIPLIED, _ALPHA_OPAQUE = 1, 2, 3
+_ALPHA_MODES = {"straight": 1, "premultiplied": 2, None: 3, "independent": 4}
 
 
 def _parts(texture: Texture) -> Iterator[bytes]:
@@ -25,9 +25,6 @@ def _parts(texture: Texture) -> Iterator[bytes]:
     else:
         flags |= _PITCH
         pitch_or_size = texture.width * texture.texel_format.unit_bytes
-    alpha = _ALPHA_OPAQUE
-    if texture.has_alpha:
-        alpha = _ALPHA_PREMULTIPLIED if texture.premultiplied else _ALPHA_STRAIGHT
     yield b"DDS "
     yield struct.pack(
         "<7I44x",
@@ -41,7 +38,7 @@ def _parts(texture: Texture) -> Iterator[bytes]:
     )
     yield struct.pack("<2I4s20x", 32, _FOUR_CC, b"DX10")
     yield struct.pack("<I16x", caps)
-    yield struct.pack("<5I", texture.code, _TEXTURE_2D, 0, 1, alpha)
+    yield struct.pack("<5I", texture.code, _TEXTURE_2D, 0, 1, _ALPHA_MODES[texture.alpha])
     yield from texture.levels
 
 

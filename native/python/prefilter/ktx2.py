@@ -12,11 +12,19 @@ from .version import VERSION
 _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 _HEADER_BYTES, _LEVEL_INDEX_BYTES = 80, 24
 _BASIC_FORMAT_VERSION = 2
+_MODELS = {"bc1": 128, "bc3": 130, "bc4": 131, "bc5": 132}
 _MODEL_RGBSDA = 1
 _PRIMARIES_BT709 = 1
 _TRANSFER_LINEAR, _TRANSFER_SRGB = 1, 2
 _FLAG_PREMULTIPLIED = 1
 _RED, _GREEN, _BLUE, _ALPHA = 0, 1, 2, 15
+_BLOCK_COLOR, _BLOCK_COLOR_AND_CUT_OUT = 0, 1
+_BLOCK_CHANNELS = {
+    "bc1": (_BLOCK_COLOR_AND_CUT_OUT,),
+    "bc3": (_ALPHA, _BLOCK_COLOR),
+    "bc4": (_RED,),
+    "bc5": (_RED, _GREEN),
+}
 _LINEAR, _SIGNED, _FLOAT = 0x10, 0x40, 0x80
 
 
@@ -56,15 +64,14 @@ def _descriptor(texture: Texture) -> bytes:
     samples = b"".join(_samples(texture))
     size = 24 + len(samples)
     block = 3 if texel_format.is_block else 0
-    premultiplied = texture.has_alpha and texture.premultiplied
     return (
         struct.pack("<I2I", 4 + size, 0, size << 16 | _BASIC_FORMAT_VERSION)
         + struct.pack(
             "<4B",
-            _MODEL_RGBSDA,
+            _MODELS.get(texel_format.name, _MODEL_RGBSDA),
             _PRIMARIES_BT709,
             _TRANSFER_SRGB if texture.is_srgb else _TRANSFER_LINEAR,
-            _FLAG_PREMULTIPLIED if premultiplied else 0,
+            _FLAG_PREMULTIPLIED if texture.alpha == "premultiplied" else 0,
         )
         + struct.pack("<4B", block, block, 0, 0)
         + struct.pack("<8B", texel_format.unit_bytes, *(0,) * 7)
@@ -74,8 +81,10 @@ def _descriptor(texture: Texture) -> bytes:
 
 def _samples(texture: Texture) -> Iterator[bytes]:
     texel_format = texture.texel_format
-    bits = 8 * texel_format.unit_bytes // texel_format.channels
-    channels = (_RED, _GREEN, _BLUE, _ALPHA)[: texel_format.channels]
+    channels = _BLOCK_CHANNELS.get(
+        texel_format.name, (_RED, _GREEN, _BLUE, _ALPHA)[: texel_format.channels]
+    )
+    bits = 8 * texel_format.unit_bytes // len(channels)
     for number, channel in enumerate(channels):
         if texel_format.is_float:
             channel |= _SIGNED | _FLOAT
@@ -83,7 +92,7 @@ def _samples(texture: Texture) -> Iterator[bytes]:
         else:
             if channel == _ALPHA and texture.is_srgb:
                 channel |= _LINEAR
-            limits = struct.pack("<2I", 0, (1 << bits) - 1)
+            limits = struct.pack("<2I", 0, (1 << min(bits, 32)) - 1)
         yield struct.pack("<H2B4x", bits * number, bits - 1, channel) + limits
 
 

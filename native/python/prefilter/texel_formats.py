@@ -51,8 +51,7 @@ class Texture:
         width: Of level 0, in texels.
         height: Of level 0, in texels.
         levels: Their texels or blocks, level 0 first, the top row first.
-        has_alpha: Whether the fourth channel says something.
-        premultiplied: Whether colours are multiplied by it.
+        alpha: What the fourth channel is: one of `ALPHAS`; None where there is none.
     """
 
     texel_format: TexelFormat
@@ -61,8 +60,7 @@ class Texture:
     width: int
     height: int
     levels: list[bytes]
-    has_alpha: bool
-    premultiplied: bool
+    alpha: str | None
 
 
 class Container(NamedTuple):
@@ -86,6 +84,18 @@ def _plain(
     return TexelFormat(name, channels, size, False, channel_type, dxgi, vulkan)
 
 
+def _blocks(
+    name: str,
+    channels: int,
+    unit_bytes: int,
+    dxgi: tuple[int, int | None],
+    vulkan: tuple[int, int | None],
+) -> TexelFormat:
+    return TexelFormat(name, channels, unit_bytes, True, np.uint8, dxgi, vulkan)
+
+
+ALPHAS = ("straight", "premultiplied", "independent")
+
 FORMATS = {
     texel_format.name: texel_format
     for texel_format in (
@@ -94,6 +104,10 @@ FORMATS = {
         _plain("rgba8", 4, np.uint8, (28, 29), (37, 43)),
         _plain("rgba16f", 4, np.float16, (10, None), (97, None)),
         _plain("rgba32f", 4, np.float32, (2, None), (109, None)),
+        _blocks("bc1", 4, 8, (71, 72), (133, 134)),
+        _blocks("bc3", 4, 16, (77, 78), (137, 138)),
+        _blocks("bc4", 1, 8, (80, None), (139, None)),
+        _blocks("bc5", 2, 16, (83, None), (141, None)),
     )
 }
 
@@ -154,11 +168,18 @@ def is_srgb(encoding: str) -> bool:
     return encoding == "srgb"
 
 
+def as_alpha(alpha: str) -> str:
+    if alpha not in ALPHAS:
+        raise ValueError(f"alpha: {alpha!r} is not one of {', '.join(ALPHAS)}")
+    return alpha
+
+
 def encoded(
     level: np.ndarray,
     texel_format: TexelFormat,
     srgb: bool,
     *,
+    weigh_by_alpha: bool,
     progress: ProgressCallback | None,
     threads: int,
 ) -> bytes:
@@ -170,7 +191,9 @@ def encoded(
         texels = flipped
     else:
         texels = _native.to_bytes(flipped, srgb, threads)
-    del progress
+    if texel_format.is_block:
+        rgba = _with_channels(texels, 4)
+        return _native.compress_blocks(rgba, texel_format.name, weigh_by_alpha, progress, threads)
     return _with_channels(texels, texel_format.channels).tobytes()
 
 

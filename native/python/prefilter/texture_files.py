@@ -14,7 +14,7 @@ from .arguments import ProgressCallback, as_progress
 from .arrays import as_threads
 from .dds import DDS
 from .ktx2 import KTX2
-from .texel_formats import Container, Texture, as_format, as_levels, encoded, is_srgb
+from .texel_formats import Container, Texture, as_alpha, as_format, as_levels, encoded, is_srgb
 
 _WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
@@ -25,7 +25,7 @@ def write_dds(
     *,
     format: str = "auto",
     encoding: str = "linear",
-    premultiplied: bool = False,
+    alpha: str = "straight",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
@@ -38,15 +38,20 @@ def write_dds(
         levels: (height, width, 1 to 4 channels) each, level 0 first, row 0 at v = 0, the bottom
             (the file holds the top row first); each has half the sides of the one before, rounded
             down. The last ones may be left out. Either uint8, or floats that are scene-linear.
-        format: How texels are stored: "r8", "rg8", "rgba8" in bytes, "rgba16f", "rgba32f" in
-            floats; "auto" keeps bytes and channels of bytes, and stores floats as "rgba16f".
-            Formats with fewer channels than the levels take the first ones; in those with four, one
-            channel is grey, and alpha is 1 where there is none.
+        format: How texels are stored: "r8", "rg8", "rgba8" in bytes; "bc1", "bc3", "bc4", "bc5" in
+            blocks of 4 x 4, compressed from bytes by libsquish; "rgba16f", "rgba32f" in floats.
+            "auto" keeps bytes and channels of bytes, and stores floats as "rgba16f". "r8" and "bc4"
+            take the first channel, "rg8" and "bc5" two; in the others one channel is grey, and
+            alpha is 1 where there is none. "bc1" knows an alpha of 0 or 1 only: below one half,
+            texels become black and transparent.
         encoding: How bytes stand for colours: "linear" or "srgb". It holds for levels of bytes and
-            for formats in bytes: levels of floats are encoded (values beyond [0, 1] are clipped),
-            and formats in floats get decoded, linear values. The fourth channel is linear always.
-        premultiplied: Whether colours are multiplied by alpha. It is said in the file; values are
-            stored as they are.
+            for formats in bytes and blocks: levels of floats are encoded (values beyond [0, 1] are
+            clipped), and formats in floats get decoded, linear values. The fourth channel is linear
+            always.
+        alpha: What the fourth channel of four is: "straight", "premultiplied" (colours are
+            multiplied by it) or "independent" (no alpha). Values are stored as they are; the file
+            says it, but for "independent" in KTX 2, which has no word for that. Colours that
+            straight alpha hides count little in the blocks of "bc3".
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. The file does not depend on it.
 
@@ -56,7 +61,7 @@ def write_dds(
         OSError: The file cannot be written.
         Cancelled: The progress callback returned False.
     """
-    _write(path, levels, format, encoding, premultiplied, progress, threads, DDS)
+    _write(path, levels, format, encoding, alpha, progress, threads, DDS)
 
 
 def write_ktx2(
@@ -65,7 +70,7 @@ def write_ktx2(
     *,
     format: str = "auto",
     encoding: str = "linear",
-    premultiplied: bool = False,
+    alpha: str = "straight",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
@@ -74,7 +79,7 @@ def write_ktx2(
     "r8" and "rg8" have an sRGB form here, which some graphics cards lack; "auto" stores such levels
     as "rgba8". The rest is as for `write_dds`.
     """
-    _write(path, levels, format, encoding, premultiplied, progress, threads, KTX2)
+    _write(path, levels, format, encoding, alpha, progress, threads, KTX2)
 
 
 def _write(
@@ -82,7 +87,7 @@ def _write(
     levels: Sequence[npt.ArrayLike],
     format: str,
     encoding: str,
-    premultiplied: bool,
+    alpha: str,
     progress: ProgressCallback | None,
     threads: int,
     container: Container,
@@ -101,6 +106,8 @@ def _write(
     report = as_progress(progress)
     count = as_threads(threads)
     height, width, channels = images[0].shape
+    has_alpha = channels == 4 and texel_format.channels == 4
+    alpha = as_alpha(alpha)
     texels = sum(image.shape[0] * image.shape[1] for image in images)
     payloads, done = [], 0
     for image in images:
@@ -109,7 +116,14 @@ def _write(
         if part is not None and part(0.0) is False:
             raise _native.Cancelled("cancelled")
         payloads.append(
-            encoded(image, texel_format, encoding == "srgb", progress=part, threads=count)
+            encoded(
+                image,
+                texel_format,
+                encoding == "srgb",
+                weigh_by_alpha=has_alpha and alpha == "straight",
+                progress=part,
+                threads=count,
+            )
         )
         done += size
     texture = Texture(
@@ -119,8 +133,7 @@ def _write(
         width=width,
         height=height,
         levels=payloads,
-        has_alpha=channels == 4 and texel_format.channels == 4,
-        premultiplied=bool(premultiplied),
+        alpha=alpha if has_alpha else None,
     )
     _replace(target, container.parts(texture))
     if report is not None:
