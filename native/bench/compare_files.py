@@ -1,11 +1,13 @@
 """Compares prefilter with maketx, picture file to mip-mapped file, in time and memory.
 
-Usage: scripts/run python3 native/bench/compare_files.py [--size N] [--rounds N] [--threads N]
+Usage: cmake --preset bench && cmake --build build/bench --target prefilter_bake_file
+       scripts/run python3 native/bench/compare_files.py [--size N] [--rounds N] [--threads N]
 
 The criteria, for 8-bit RGBA pictures of 1024 and 4096 texels, two threads each: pam-box takes no
 longer than maketx's box, pam-bilinear no longer than its lanczos3, pam-trilinear at most 3 times
-that; and pam-bilinear at 4096 no more than 450 MB. Every round runs each program once; ends with
-status 1 where a criterion does not hold.
+that; and pam-bilinear at 4096 no more than 450 MB. They are asked of prefilter_bake_file, in C++ as
+maketx is; bake_file.py does the same with the Python package, and shows what Python costs.
+Every round runs each program once; ends with status 1 where a criterion does not hold.
 """
 
 import argparse
@@ -16,7 +18,7 @@ from pathlib import Path
 
 from compare_maketx import HERE, SPOT, measure, medians_ratio, print_table
 from peers import run
-from peers.file_to_file import FileToFile
+from peers.file_to_file import IN_CPP, FileToFile
 from peers.maketx import Maketx
 
 LIMITS = (
@@ -34,6 +36,8 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5, help="how often (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=2, help="of each (default: %(default)s)")
     options = parser.parse_args()
+    if not IN_CPP.exists():
+        parser.error(f"there is no '{IN_CPP}'; build the target prefilter_bake_file first")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         spot = [str(SPOT)] if SPOT.is_dir() else []
@@ -48,11 +52,15 @@ def main() -> None:
             key: FileToFile(picture, folder, filter=key, threads=options.threads)
             for key, _, _ in LIMITS
         }
+        in_python = [
+            FileToFile(picture, folder, filter=key, threads=options.threads, python=True)
+            for key in ours
+        ]
         theirs = {
             key: Maketx(picture, folder, filter=key, threads=options.threads)
             for key in ("box", "lanczos3")
         }
-        results = measure([*theirs.values(), *ours.values()], options.rounds)
+        results = measure([*theirs.values(), *ours.values(), *in_python], options.rounds)
     print(f"{'spot' if spot else 'generated'}, {size} RGBA, {options.threads} threads each")
     print_table(results, theirs["lanczos3"].name)
     failed = False

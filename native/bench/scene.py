@@ -3,7 +3,8 @@
 usage: scene.py FOLDER [SPOT], where SPOT is the folder of the model spot; without it both are made.
 
 Leaves in FOLDER: picture.png (1024 x 1024, 8-bit RGBA), linear.npy (the same as scene-linear
-floats, row 0 at the bottom) and mesh.npz (the arguments of prefilter.Surface).
+floats, row 0 at the bottom), mesh.npz (the arguments of prefilter.Surface) and mesh.bin (the same:
+counts of vertices and triangles, positions, triangles and UVs, 64 bits each).
 """
 
 import sys
@@ -33,6 +34,10 @@ def main(folder: Path, spot: Path | None) -> None:
     values = pixels[::-1].astype(np.float32) / 255
     np.save(folder / "linear.npy", np.ascontiguousarray(prefilter.to_linear(values)))
     np.savez(folder / "mesh.npz", **mesh)
+    with (folder / "mesh.bin").open("wb") as file:
+        np.array([len(mesh["positions"]), len(mesh["triangles"])], np.int64).tofile(file)
+        for key, kind in (("positions", float), ("triangles", np.int64), ("uvs", float)):
+            mesh[key].astype(kind).tofile(file)
     height, width = pixels.shape[:2]
     print(f"{width} x {height} RGBA, {len(mesh['triangles'])} triangles")
 

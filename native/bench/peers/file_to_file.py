@@ -5,18 +5,28 @@ from pathlib import Path
 
 from . import Measurement, run
 
-PROGRAM = Path(__file__).resolve().parents[1] / "bake_file.py"
+ROOT = Path(__file__).resolve().parents[3]
+IN_CPP = ROOT / "build/bench/native/bench/prefilter_bake_file"
+IN_PYTHON = ROOT / "native/bench/bake_file.py"
 
 
 class FileToFile:
-    """bake_file.py, a process of its own each time, Python's start included."""
+    """A small program around the library, a process of its own each time."""
 
-    def __init__(self, picture: Path, folder: Path, *, filter: str, threads: int) -> None:
-        """Reads `picture` and mesh.npz of `folder`, and writes into it."""
-        self.name = f"prefilter {filter}"
+    def __init__(
+        self, picture: Path, folder: Path, *, filter: str, threads: int, python: bool = False
+    ) -> None:
+        """Reads `picture` and the mesh of `folder`, and writes into it.
+
+        `python` asks for the program around the Python package; else it is that around the C++
+        library.
+        """
+        self.name = f"prefilter {filter}" + (", Python" if python else "")
         self._target = folder / f"{filter}.tif"
-        self._command = [sys.executable, str(PROGRAM), str(picture), str(folder / "mesh.npz")]
-        self._command += [str(self._target), filter, str(threads)]
+        program = [sys.executable, str(IN_PYTHON)] if python else [str(IN_CPP)]
+        mesh = folder / ("mesh.npz" if python else "mesh.bin")
+        arguments = [picture, mesh, self._target, filter, threads]
+        self._command = [*program, *map(str, arguments)]
 
     def measure(self) -> Measurement:
         """See `Peer`."""
