@@ -90,7 +90,7 @@ def main() -> int:
         action="append",
         default=[],
         metavar="SOURCE",
-        help="source folder of a linked library, whose LICENSE.txt, and NOTICE.txt if any, go along",
+        help="source folder of a linked library, whose LICENSE.txt and NOTICE.txt go along",
     )
     parser.add_argument("--output", type=Path, required=True, help="folder to write the wheel in")
     options = parser.parse_args()
