@@ -17,7 +17,7 @@ import numpy as np
 import prefilter
 
 from . import contents
-from .bridge import files, images, materials, meshes
+from .bridge import engine_files, files, images, materials, meshes
 from .bridge.images import FloatArray, Picture
 from .wording import listed
 
@@ -89,6 +89,16 @@ CONTENTS = {
         "Cut-Out", "Color whose alpha test keeps as much of the surface at every level"
     ),
 }
+TEXTURE_FORMATS = {
+    "auto": Choice("Automatic", "Bytes for byte images, half floats for float images"),
+    "rgba8": Choice("8-Bit", "Four bytes a texel, uncompressed"),
+    "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes a texel, for high dynamic range"),
+    "rgba32f": Choice("Float", "Scene-linear, 16 bytes a texel"),
+    "bc1": Choice("BC1", "Compressed color, half a byte a texel; alpha is 0 or 1"),
+    "bc3": Choice("BC3", "Compressed color and alpha, a byte a texel"),
+    "bc4": Choice("BC4", "Compressed red channel, half a byte a texel: masks, roughness"),
+    "bc5": Choice("BC5", "Compressed red and green channels, a byte a texel: normal maps"),
+}
 ROUGHNESS_CHANNELS = {
     "all": Choice("All", "The image holds nothing but roughness"),
     "red": Choice("Red", "The red channel holds roughness"),
@@ -134,6 +144,7 @@ class Settings:
         roughness: The name of an image that gets what a normal map's levels lose; empty for none.
         roughness_channel: A key of `ROUGHNESS_CHANNELS`.
         roughness_filepath: A mip-mapped file of the roughness to write; empty for none.
+        texture_format: A key of `TEXTURE_FORMATS`: how a DDS or KTX 2 file holds texels.
     """
 
     filter: str = "pam-bilinear"
@@ -156,6 +167,7 @@ class Settings:
     roughness: str = ""
     roughness_channel: str = "all"
     roughness_filepath: str = ""
+    texture_format: str = "auto"
 
 
 @dataclass(frozen=True)
@@ -286,7 +298,17 @@ class Bake:
                 f"roughness: found '{settings.roughness}' for the tiled image '{image.name}'; it "
                 f"goes with images of one tile"
             )
+        threshold = settings.threshold if content == "cutout" else None
+        told = [
+            note
+            for picture, target in zip(pictures, targets, strict=False)
+            for note in engine_files.checked(picture, target, settings.texture_format, threshold)
+        ]
         roughness, roughness_target = _read_roughness(settings, content, pictures[0])
+        if roughness is not None:
+            told += engine_files.checked(
+                roughness.picture, roughness_target, _roughness_format(settings, roughness.picture)
+            )
         found = yield from _read_surfaces(image, objects, settings, depsgraph, all_faces=all_faces)
         needs_surface = needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
         if needs_surface and not found.surfaces:
@@ -302,6 +324,7 @@ class Bake:
         else:
             target = targets[0] if targets else None
             job = cls(pictures[0], found, settings, target, content, roughness, roughness_target)
+        job.warnings.extend(told)
         if content == "normal" and is_encoded:
             job.warnings.append(
                 f"image '{image.name}' has the color space {pictures[0].colorspace}; a shader "
@@ -398,13 +421,16 @@ class Bake:
             levels, rough = self._filtered(linear, lambda done: progress(_FILTERED * done))
         check = partial(_go_on, progress, _FILTERED)
         try:
-            self._levels = self._stage(self._picture, linear, levels, self._target, check)
+            self._levels = self._stage(
+                self._picture, linear, levels, self._target, self._settings.texture_format, check
+            )
             if self._roughness is not None:
                 self._roughness_levels = self._stage(
                     self._roughness.picture,
                     self._roughness.linear,
                     rough,
                     self._roughness_target,
+                    _roughness_format(self._settings, self._roughness.picture),
                     check,
                 )
             _go_on(progress, 1.0)
@@ -445,6 +471,7 @@ class Bake:
         linear: FloatArray,
         levels: list[FloatArray],
         target: Path | None,
+        texture_format: str,
         check: Callable[[], None],
     ) -> list[FloatArray]:
         """Stages a file of the levels; returns those above 0 as level images hold them."""
@@ -452,7 +479,13 @@ class Bake:
         stored.insert(0, picture.stored)
         if target is not None:
             levels[0] = linear
-            self._staged.append(files.stage(target, picture, levels, stored, self._wrap, check))
+            if engine_files.is_for_engines(target):
+                threads = self._settings.threads
+                self._staged += engine_files.stage(
+                    target, picture, levels, stored, texture_format, check, threads=threads
+                )
+            else:
+                self._staged.append(files.stage(target, picture, levels, stored, self._wrap, check))
         return stored[1 : self._settings.levels or None]
 
     def write(self) -> Outcome:
@@ -547,7 +580,7 @@ class Bake:
         if names:
             results.append(_count(names, "level image"))
         targets = (self._target, self._roughness_target)
-        results += [f"'{target}'" for target in targets if target is not None]
+        results += [files.shown(target) for target in targets if target is not None]
         parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
         return " ".join(parts)
 
@@ -746,6 +779,15 @@ def _read_roughness(
     contents.check_roughness(picture, rough)
     linear = images.scene_linear(rough)
     return contents.Roughness(rough, linear, settings.roughness_channel), target
+
+
+def _roughness_format(settings: Settings, picture: Picture) -> str:
+    """Returns the format of the roughness file: that of the normal map, unless channels lack."""
+    if settings.texture_format not in {"bc4", "bc5"}:
+        return settings.texture_format
+    if settings.roughness_channel == "all":
+        return "bc4"
+    return "bc3" if picture.stored.shape[2] == 4 else "bc1"
 
 
 def _go_on(progress: Progress, fraction: float) -> None:

@@ -15,7 +15,7 @@ import bpy
 
 from . import bake, texture_cache
 from .bake import Choice
-from .bridge import files, images, meshes
+from .bridge import engine_files, files, images, meshes
 from .view import errors, figure
 from .wording import listed
 
@@ -38,6 +38,7 @@ _TABLES = (
     _table("value ranges", bake.BOUNDS),
     _table("contents", bake.CONTENTS),
 )
+_FORMAT_TABLE = _table("texture formats, for .dds and .ktx2", bake.TEXTURE_FORMATS)
 _BAKE_NOTES = """\
 Without --image, the image that the meshes use is baked; name it where they use several. A picture
 file that no material uses is taken as the texture of all faces, with the active UV map.
@@ -45,7 +46,8 @@ file that no material uses is taken as the texture of all faces, with the active
 examples:
   prefilter bake scene.blend --image Wood --save
   prefilter bake spot.obj --image spot.png --output spot.exr
-  prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif"""
+  prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif
+  prefilter bake helmet.gltf --object Visor --output visor.ktx2 --texture-format bc3"""
 
 _PLOT_NOTES = """\
 The figure is that of the dissertation (7.7): solid lines are the root mean square errors over the
@@ -117,7 +119,7 @@ def _add_bake(commands: Any) -> None:
         "bake",
         help=_BAKE_HELP,
         description=f"{_BAKE_HELP[0].upper()}{_BAKE_HELP[1:]}.",
-        epilog="\n\n".join([*_TABLES, _BAKE_NOTES]),
+        epilog="\n\n".join([*_TABLES, _FORMAT_TABLE, _BAKE_NOTES]),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     _add_scene(parser)
@@ -134,6 +136,7 @@ def _add_bake(commands: Any) -> None:
             "CHANNEL",
             "where the roughness image holds roughness",
         ),
+        ("texture-format", bake.TEXTURE_FORMATS, "FORMAT", "how a .dds or .ktx2 file holds texels"),
     ):
         default = getattr(defaults, flag.replace("-", "_"))
         parser.add_argument(
@@ -168,7 +171,7 @@ def _add_bake(commands: Any) -> None:
         "--roughness-output",
         metavar="FILE",
         default="",
-        help="a tiled, mip-mapped file of the roughness to write",
+        help="a file of the roughness to write, like --output",
     )
     parser.add_argument(
         "--threads",
@@ -207,7 +210,8 @@ def _add_bake(commands: Any) -> None:
         "--output",
         metavar="FILE",
         default="",
-        help="a tiled, mip-mapped .exr, .tif or .tx file to write; it gets every level",
+        help="a file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 for "
+        "engines; .png makes NAME.0.png, NAME.1.png, ...",
     )
     parser.add_argument(
         "--save",
@@ -420,6 +424,11 @@ def _bake(options: argparse.Namespace) -> None:
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
     if not options.save and not options.output:
         options.usage_error("nothing to write: give --output FILE or --save")
+    paths = (options.output, options.roughness_output)
+    if options.texture_format != "auto" and not any(map(engine_files.has_formats, paths)):
+        options.usage_error(
+            f"--texture-format: found '{options.texture_format}', which is for .dds and .ktx2 files"
+        )
     path = os.path.abspath(options.file)
     objects = _chosen(_load(path, extension), options.object)
     if options.save:
@@ -443,6 +452,7 @@ def _bake(options: argparse.Namespace) -> None:
         roughness=_roughness_name(options.roughness),
         roughness_channel=options.roughness_channel,
         roughness_filepath=options.roughness_output,
+        texture_format=options.texture_format,
     )
     if options.frames:
         start, end, step = options.frames

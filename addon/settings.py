@@ -12,6 +12,7 @@ from bpy.props import (
 
 from . import bake
 from .bake import Choice
+from .bridge import engine_files
 
 
 def items(choices: dict[str, Choice]) -> list[tuple[str, str, str]]:
@@ -75,8 +76,8 @@ class BakeProperties:
     )
     roughness_filepath: StringProperty(
         name="Roughness File",
-        description="A tiled, mip-mapped file of the roughness to write: .exr, .tif or .tx; leave "
-        "empty for none",
+        description="A file of the roughness to write, like the one of the image; leave empty for "
+        "none",
         subtype="FILE_PATH",
         default=bake.Settings.roughness_filepath,
     )
@@ -138,9 +139,16 @@ class BakeProperties:
     )
     filepath: StringProperty(
         name="File",
-        description="A tiled, mip-mapped file to write: .exr, .tif or .tx; leave empty for none",
+        description="A file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 "
+        "for engines; .png makes a file a level. Leave empty for none",
         subtype="FILE_PATH",
         default=bake.Settings.filepath,
+    )
+    texture_format: EnumProperty(
+        name="Texture Format",
+        description="How a DDS or KTX 2 file holds texels",
+        items=items(bake.TEXTURE_FORMATS),
+        default=bake.Settings.texture_format,
     )
 
     def to_settings(self) -> bake.Settings:
@@ -191,6 +199,9 @@ class BakeProperties:
         layout.prop(self, "filepath")
         if has_roughness:
             layout.prop(self, "roughness_filepath")
+        paths = (self.filepath, self.roughness_filepath if has_roughness else "")
+        if any(engine_files.has_formats(path) for path in paths):
+            layout.prop(self, "texture_format")
 
 
 def copy_bake_properties(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct) -> None:

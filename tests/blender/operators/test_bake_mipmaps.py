@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import pytest
 import scenes
+from texture_readers import read_dds
 
 
 def bake(**options):
@@ -76,6 +77,14 @@ def test_file_beside_the_blend(tmp_path):
     assert "Paint.mip1" not in bpy.data.images
 
 
+def test_file_for_engines(tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
+    path = tmp_path / "out.dds"
+    options = {"image": "Paint", "filepath": str(path), "texture_format": "bc3"}
+    assert bake(**options, use_images=False) == {"FINISHED"}
+    assert read_dds(path).format == "BC3_SRGB"
+
+
 def test_poll_without_images():
     assert not bpy.ops.prefilter.bake_mipmaps.poll()
     with pytest.raises(RuntimeError, match="no image in this file"):
@@ -87,7 +96,7 @@ def test_poll_without_images():
     [
         ({}, "image: no name is given"),
         ({"image": "Pain"}, r"no image named 'Pain'.*'Paint'"),
-        ({"image": "Paint", "filepath": "/tmp/out.png"}, r"'\.png'"),
+        ({"image": "Paint", "filepath": "/tmp/out.jpg"}, r"'\.jpg'"),
         ({"image": "Paint", "use_images": False}, "nothing to write"),
         ({"image": "Paint", "levels": 9}, "levels"),
         ({"image": "Paint"}, None),
