@@ -44,7 +44,7 @@ FILTERS = (
     TRILINEAR,
 )
 LEVELS = range(1, 7)
-LEAST_SQUARES = (SUBJECT, TRILINEAR)
+LEAST_SQUARES = (SUBJECT, TRILINEAR)  # All others are rivals.
 GAIN = 0.12
 PAINTED_MODEL = "spot"
 PAINTED_GAIN = 0.25
@@ -93,10 +93,10 @@ def main() -> None:
             measure(report, summary, subject, filters, GAIN, options)
             if model == PAINTED_MODEL:
                 measure_painted(report, summary, subject, filters, options)
-    head = ["model", *(f"level {level}" for level in LEVELS), "mean", "least possible", "worst"]
+    head = ["model", *(f"level {level}" for level in LEVELS), "mean", "unbounded", "worst"]
     report.table(
-        f"Summary: {SUBJECT} / lanczos3; the least mean that any levels could have, without bounds; "
-        f"the worst {SUBJECT} / best but {TRILINEAR}",
+        f"Summary: {SUBJECT} / lanczos3; its mean without bounds, which no levels can go below; "
+        "the worst share of the best rival",
         head,
         summary.shares,
     )
@@ -240,7 +240,7 @@ def add_tables(
 ) -> None:
     """Adds the errors at the levels, and over all mip values, to the report."""
     ours = errors.levels[SUBJECT]
-    ratios = {"/ best other": ours / best, "/ lanczos3": ours / errors.levels["lanczos3"]}
+    ratios = {"/ best rival": ours / best, "/ lanczos3": ours / errors.levels["lanczos3"]}
     rows = [
         [
             str(level),

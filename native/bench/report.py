@@ -31,6 +31,11 @@ class Report:
         if not holds:
             self.failures.append(claim)
 
+    def note(self, text: str) -> None:
+        """Adds a sentence that is no criterion."""
+        print(f"  {text}", flush=True)
+        self.markdown.append(f"{text}.\n")
+
     def finish(self, markdown: Path | None) -> None:
         """Writes the tables to a file, and says which criteria do not hold.
 

@@ -1,6 +1,7 @@
 """Lookups with numpy at random points of a surface: shares nothing with the library."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +10,7 @@ Floats = NDArray[np.float64]
 Texels = NDArray[np.float32]
 
 BATCH = 1 << 18
+POINTS_PER_TEXEL = 8  # Along seams.
 
 
 class Taps:
@@ -24,6 +26,7 @@ class Taps:
         rows = [width * wrapped(row + dy, height, wrap) for dy in (0, 1)]
         self._texels = [row + column for row in rows for column in columns]
         self._weights = [(b * a)[:, None] for b in (1 - t, t) for a in (1 - s, s)]
+        self._count = height * width
 
     def of(self, texels: Texels) -> Floats:
         """Returns the lookups (n, channels) of an image of that shape."""
@@ -31,6 +34,14 @@ class Taps:
         return sum(
             w * flat.take(i, axis=0) for i, w in zip(self._texels, self._weights, strict=True)
         )
+
+    def matrix(self) -> Floats:
+        """Returns the shares (n, height * width) of all texels in the lookups: for few of them."""
+        shares = np.zeros((len(self._weights[0]), self._count))
+        for i, w in zip(self._texels, self._weights, strict=True):
+            # At a border two taps can be one texel.
+            shares[np.arange(len(i)), i] += w[:, 0]
+        return shares
 
 
 def lookup(texels: Texels, points: Floats, wrap: str) -> Floats:
@@ -72,6 +83,86 @@ def random_mip_values(count: int, last: int) -> Floats:
     """Returns numbers spread evenly at random over [0, last], in no order."""
     random = np.random.default_rng(2)
     return last * random.permutation((np.arange(count) + random.random(count)) / count)
+
+
+@dataclass(frozen=True)
+class SeamLines:
+    """The edges of triangles that lie at two places of the texture.
+
+    Attributes:
+        lengths: (n,) in space.
+        left: (n, 2, 2) texture coordinates of the ends on one side, and `right` of the same ends
+            on the other.
+        right: See `left`.
+        ends: (n, 2, 3) in space.
+    """
+
+    lengths: Floats
+    left: Floats
+    right: Floats
+    ends: Floats
+
+    def contrast(self, level: Texels, wrap: str) -> float:
+        """Returns the root mean square of the difference across, over length and channels."""
+        return float(np.sqrt(self.lengths @ self.squares(level, wrap) / self.lengths.sum()))
+
+    def squares(self, level: Texels, wrap: str) -> Floats:
+        """Returns the mean square (n,) of the difference across each."""
+        left, right, shares, seam = self._points(level.shape)
+        squares = (lookup(level, left, wrap) - lookup(level, right, wrap)) ** 2
+        sums = np.bincount(seam, shares * squares.mean(axis=1), len(self.lengths))
+        return sums / self.lengths
+
+    def where(self, chosen: NDArray[np.bool_]) -> "SeamLines":
+        """Returns some of them."""
+        return SeamLines(
+            self.lengths[chosen], self.left[chosen], self.right[chosen], self.ends[chosen]
+        )
+
+    def matrix(self, shape: tuple[int, ...], wrap: str) -> Floats:
+        """Returns that whose quadratic form is the square of the contrast, for one channel."""
+        left, right, shares, _ = self._points(shape)
+        steps = Taps(left, shape, wrap).matrix() - Taps(right, shape, wrap).matrix()
+        return steps.T @ (shares[:, None] * steps) / self.lengths.sum()
+
+    def _points(self, shape: tuple[int, ...]) -> tuple[Floats, Floats, Floats, NDArray[np.int64]]:
+        """Returns points on either side, the length that each stands for, and its seam."""
+        size = np.array([shape[1], shape[0]])
+        texels = [np.linalg.norm(np.diff(s * size, axis=1), axis=(1, 2)) for s in self._sides()]
+        counts = np.ceil(POINTS_PER_TEXEL * np.maximum(*texels) + 1).astype(int)
+        seam = np.repeat(np.arange(len(counts)), counts)
+        place = np.arange(len(seam)) - np.repeat(np.cumsum(counts) - counts, counts)
+        f = ((place + 0.5) / counts[seam])[:, None]
+        left, right = ((1 - f) * s[seam, 0] + f * s[seam, 1] for s in self._sides())
+        return left, right, (self.lengths / counts)[seam], seam
+
+    def _sides(self) -> tuple[Floats, Floats]:
+        return self.left, self.right
+
+
+def seam_lines(corners: Floats, uvs: Floats) -> SeamLines:
+    """Finds the seams of triangles (m, 3, 3) with texture coordinates (m, 3, 2).
+
+    Corners at the same position are one; edges of more than two triangles are none.
+    """
+    known, vertices = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    vertices = vertices.reshape(-1, 3)
+    edges = np.stack([vertices, np.roll(vertices, -1, axis=1)], axis=2).reshape(-1, 2)
+    sides = np.stack([uvs, np.roll(uvs, -1, axis=1)], axis=2).reshape(-1, 2, 2)
+    turned = edges[:, 0] > edges[:, 1]
+    edges[turned], sides[turned] = edges[turned, ::-1], sides[turned, ::-1]
+    real = edges[:, 0] != edges[:, 1]
+    edges, sides = edges[real], sides[real]
+    order = np.lexsort(edges.T)
+    edges, sides = edges[order], sides[order]
+    _, first, counts = np.unique(edges, axis=0, return_index=True, return_counts=True)
+    # lexsort and unique order edges differently, but keep equal ones together.
+    first = first[counts == 2]
+    left, right = sides[first], sides[first + 1]
+    apart = (left != right).any(axis=(1, 2))
+    ends = known[edges[first[apart]]]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    return SeamLines(lengths, left[apart], right[apart], ends)
 
 
 def squared_errors(
