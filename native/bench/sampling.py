@@ -11,6 +11,7 @@ Texels = NDArray[np.float32]
 
 BATCH = 1 << 18
 POINTS_PER_TEXEL = 8  # Along seams.
+SAME_UV = 1e-6  # Modifiers round coordinates of the faces beside an edge differently.
 
 
 class Taps:
@@ -159,7 +160,7 @@ def seam_lines(corners: Floats, uvs: Floats) -> SeamLines:
     # lexsort and unique order edges differently, but keep equal ones together.
     first = first[counts == 2]
     left, right = sides[first], sides[first + 1]
-    apart = (left != right).any(axis=(1, 2))
+    apart = (np.abs(left - right) > SAME_UV).any(axis=(1, 2))
     ends = known[edges[first[apart]]]
     lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     return SeamLines(lengths, left[apart], right[apart], ends)

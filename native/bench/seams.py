@@ -70,7 +70,8 @@ def measure(
     """Adds what was found of one subject to the report and the summary."""
     lines = sampling.seam_lines(subject.corners, subject.uvs)
     if not len(lines.lengths):
-        print(f"\n{subject.name}: has no seams")
+        (found,) = prefilter.seam_contrast([subject.image], subject.surfaces, wrap=subject.wrap)
+        report.verdict(found == 0, f"{subject.name}: has no seams, and the library finds none")
         return
     hidden = hidden_lines(subject, lines)
     weights = (0.0, *sorted({WEIGHT, *options.weights}))
