@@ -7,7 +7,7 @@ import pytest
 
 
 class Layout(SimpleNamespace):
-    """Stands for a layout of Blender's, and keeps the names of the properties that it is to show."""
+    """Stands for a layout of Blender's, and keeps the names of what it is to show."""
 
     def __init__(self):
         super().__init__(shown=[])
