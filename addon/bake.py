@@ -3,171 +3,29 @@
 The operator and the command are two ways to call this.
 """
 
-import os
 import re
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence, Sized
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 import bpy
 import numpy as np
 import prefilter
 
-from . import contents
+from . import contents, frames, udim
 from .bridge import engine_files, files, images, materials, meshes
 from .bridge.images import FloatArray, Picture
-from .wording import listed
+from .choices import CONTENTS, FILTERS, TEXTURE_SPACE_FILTERS, Settings
+from .jobs import Progress, go_on
+from .wording import counted, listed
 
 FAILURES = (ValueError, OSError, MemoryError)
 """What a bake raises for a reason that the user can act on."""
 
-Progress = Callable[[float], bool]
-
-
-class Choice(NamedTuple):
-    """One value of an option, and how to present it."""
-
-    label: str
-    description: str
-
-
-FILTERS = {
-    "pam-bilinear": Choice(
-        "PAM Bilinear", "Best fit over the surface, for readers that interpolate between texels"
-    ),
-    "pam-trilinear": Choice(
-        "PAM Trilinear",
-        "Best fit of all levels together, for readers that interpolate between levels too, as GPUs",
-    ),
-    "pam-box": Choice("PAM Box", "Average of the surface under each texel"),
-    "box": Choice("Box", "Average of four texels, whether a face uses them or not"),
-    "tent": Choice("Tent", "Smoother than Box, whether a face uses the texels or not"),
-    "lanczos3": Choice("Lanczos 3", "Sharper than Box, whether a face uses the texels or not"),
-    "box-covered": Choice("Box, Covered Texels", "Box over the texels that a face touches"),
-    "tent-covered": Choice("Tent, Covered Texels", "Tent over the texels that a face touches"),
-    "lanczos3-covered": Choice(
-        "Lanczos 3, Covered Texels", "Lanczos 3 over the texels that a face touches"
-    ),
-}
-TEXTURE_SPACE_FILTERS = frozenset({"box", "tent", "lanczos3"})
-
-_MODES = {
-    "clamp": Choice("Clamp", "The border texels go on"),
-    "repeat": Choice("Repeat", "The image tiles the plane"),
-    "border": Choice("Border", "Black and transparent"),
-}
-WRAPS = {
-    "auto": Choice("As in Material", "What the Image Texture nodes of the image say"),
-    **_MODES,
-}
-WRAPS_V = {"same": Choice("Same as U", "The same as along U"), **_MODES}
-BOUNDS = {
-    "auto": Choice(
-        "Automatic",
-        "0 to 1 for byte images, 0 and up for float images; less a limit that the image passes",
-    ),
-    "unit": Choice("0 to 1", "Values stay between 0 and 1"),
-    "positive": Choice("0 and Up", "Values stay at or above 0"),
-    "none": Choice("None", "Values may leave the range of the image"),
-}
-
-CONTENTS = {
-    "auto": Choice(
-        "Automatic",
-        "A normal map where a Normal Map node reads the image, data where its color space is "
-        "Non-Color, else color",
-    ),
-    "color": Choice("Color", "Filtered as light, with alpha as coverage"),
-    "data": Choice(
-        "Data", "Roughness, masks, packed channels: values as they are stored, each by itself"
-    ),
-    "normal": Choice("Normal Map", "Filtered as vectors, which keep the length 1"),
-    "cutout": Choice(
-        "Cut-Out", "Color whose alpha test keeps as much of the surface at every level"
-    ),
-}
-TEXTURE_FORMATS = {
-    "auto": Choice("Automatic", "Bytes for byte images, half floats for float images"),
-    "rgba8": Choice("8-Bit", "Four bytes a texel, uncompressed"),
-    "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes a texel, for high dynamic range"),
-    "rgba32f": Choice("Float", "Scene-linear, 16 bytes a texel"),
-    "bc1": Choice("BC1", "Compressed color, half a byte a texel; alpha is 0 or 1"),
-    "bc3": Choice("BC3", "Compressed color and alpha, a byte a texel"),
-    "bc4": Choice("BC4", "Compressed red channel, half a byte a texel: masks, roughness"),
-    "bc5": Choice("BC5", "Compressed red and green channels, a byte a texel: normal maps"),
-}
-ROUGHNESS_CHANNELS = {
-    "all": Choice("All", "The image holds nothing but roughness"),
-    "red": Choice("Red", "The red channel holds roughness"),
-    "green": Choice("Green", "The green channel holds roughness, as in glTF files"),
-    "blue": Choice("Blue", "The blue channel holds roughness"),
-}
-
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
 _LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
-_WRAP_OF_EXTENSION = {
-    "REPEAT": "repeat",
-    "EXTEND": "clamp",
-    "CLIP": "border",
-    "MIRROR": "clamp",
-}
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What to bake and where to put it.
-
-    Attributes:
-        filter: A key of `FILTERS`.
-        wrap: A key of `WRAPS`: what lies outside of the image along u.
-        wrap_v: A key of `WRAPS_V`: the same along v.
-        bounds: A key of `BOUNDS`.
-        levels: How many levels to make, the image itself included; 0 for all.
-        use_images: Whether to write an image datablock for each level.
-        filepath: A mip-mapped file to write; empty for none. It gets every level.
-        threads: How many threads to use; 0 for all.
-        use_subdivision_limit: Whether objects with a Catmull-Clark modifier on top count as their
-            limit surface.
-        importance: The name of a vertex group or attribute that areas are multiplied by; empty for
-            none.
-        seam_weight: How much it counts that the two sides of UV seams agree; see
-            `prefilter.mipmaps`.
-        use_frames: Whether to average over the frames below, instead of taking the current one.
-        frame_start: The first frame.
-        frame_end: The last frame.
-        frame_step: How far the frames are apart.
-        content: A key of `CONTENTS`: what the image holds.
-        threshold: The alpha from which on a cut-out is shown; above 0, at most 1.
-        roughness: The name of an image that gets what a normal map's levels lose; empty for none.
-        roughness_channel: A key of `ROUGHNESS_CHANNELS`.
-        roughness_filepath: A mip-mapped file of the roughness to write; empty for none.
-        texture_format: A key of `TEXTURE_FORMATS`: how a DDS or KTX 2 file holds texels.
-    """
-
-    filter: str = "pam-bilinear"
-    wrap: str = "auto"
-    wrap_v: str = "same"
-    bounds: str = "auto"
-    levels: int = 0
-    use_images: bool = True
-    filepath: str = ""
-    threads: int = 0
-    use_subdivision_limit: bool = True
-    importance: str = ""
-    seam_weight: float = 0.0
-    use_frames: bool = False
-    frame_start: int = 1
-    frame_end: int = 250
-    frame_step: int = 1
-    content: str = "auto"
-    threshold: float = 0.5
-    roughness: str = ""
-    roughness_channel: str = "all"
-    roughness_filepath: str = ""
-    texture_format: str = "auto"
 
 
 @dataclass(frozen=True)
@@ -223,7 +81,7 @@ class Bake:
         *,
         all_faces: bool = False,
         needs_surface: bool = False,
-    ) -> "Bake | TiledBake":
+    ) -> "Bake | udim.TiledBake":
         """Copies everything that the bake needs out of Blender.
 
         Args:
@@ -262,7 +120,7 @@ class Bake:
         *,
         all_faces: bool = False,
         needs_surface: bool = False,
-    ) -> Generator[float, None, "Bake | TiledBake"]:
+    ) -> Generator[float, None, "Bake | udim.TiledBake"]:
         """Does what `read` does, in steps of a frame.
 
         The scene is at other frames in between; closing the generator takes it back, as its end
@@ -275,7 +133,7 @@ class Bake:
             The bake.
         """
         numbers = images.tile_numbers(image)
-        targets = [files.check_target(path) for path in _paths(settings.filepath, numbers)]
+        targets = [files.check_target(path) for path in udim.paths(settings.filepath, numbers)]
         if not targets and not settings.use_images:
             raise ValueError("nothing to write: neither level images nor a file are asked for")
         pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
@@ -309,7 +167,9 @@ class Bake:
             told += engine_files.checked(
                 roughness.picture, roughness_target, _roughness_format(settings, roughness.picture)
             )
-        found = yield from _read_surfaces(image, objects, settings, depsgraph, all_faces=all_faces)
+        found = yield from frames.surfaces_over(
+            image, objects, settings, depsgraph, all_faces=all_faces
+        )
         needs_surface = needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
         if needs_surface and not found.surfaces:
             raise ValueError(_no_surface(image, objects, found.problems))
@@ -318,9 +178,11 @@ class Bake:
                 f"importance: '{settings.importance}' is 0 wherever objects "
                 f"{listed(dict.fromkeys(found.objects))} use the image"
             )
-        job: Bake | TiledBake
+        job: Bake | udim.TiledBake
         if numbers:
-            job = TiledBake.of(image, pictures, numbers, found, settings, targets, content)
+            tiles, warnings = udim.tiles(image.name, pictures, numbers, found, settings, targets)
+            bakes = [cls(one.picture, one.found, settings, one.target, content) for one in tiles]
+            job = udim.TiledBake(image.name, bakes, warnings)
         else:
             target = targets[0] if targets else None
             job = cls(pictures[0], found, settings, target, content, roughness, roughness_target)
@@ -368,7 +230,7 @@ class Bake:
 
     def linear(self, progress: Progress) -> FloatArray:
         """Returns the image's scene-linear values; raises what `compute` does."""
-        return images.scene_linear(self._picture, partial(_go_on, progress, 0.0))
+        return images.scene_linear(self._picture, partial(go_on, progress, 0.0))
 
     def filtered(
         self,
@@ -419,7 +281,7 @@ class Bake:
         linear = self.linear(progress)
         with self.naming_objects():
             levels, rough = self._filtered(linear, lambda done: progress(_FILTERED * done))
-        check = partial(_go_on, progress, _FILTERED)
+        check = partial(go_on, progress, _FILTERED)
         try:
             self._levels = self._stage(
                 self._picture, linear, levels, self._target, self._settings.texture_format, check
@@ -433,7 +295,7 @@ class Bake:
                     _roughness_format(self._settings, self._roughness.picture),
                     check,
                 )
-            _go_on(progress, 1.0)
+            go_on(progress, 1.0)
         except BaseException:
             self.discard()
             raise
@@ -549,7 +411,7 @@ class Bake:
         if wrap == "auto":
             wrap = "repeat"
             if extensions:
-                wrap = _WRAP_OF_EXTENSION[extensions[0]]
+                wrap = materials.WRAP_OF_EXTENSION[extensions[0]]
                 if len(extensions) > 1 or extensions[0] == "MIRROR":
                     self.warnings.append(
                         f"Image Texture nodes extend the image by {', '.join(extensions)}; "
@@ -573,110 +435,16 @@ class Bake:
             baked += f" as {CONTENTS[self._content].label}"
         parts = [f"{baked} with {FILTERS[self._settings.filter].label}"]
         if self._surfaces:
-            parts.append(f"over {_count(set(self._objects), 'object')}")
+            parts.append(f"over {counted(set(self._objects), 'object')}")
             if self._settings.use_frames:
-                parts.append(f"at {_count(_frames(self._settings), 'frame')}")
+                parts.append(f"at {counted(frames.chosen(self._settings), 'frame')}")
         results = []
         if names:
-            results.append(_count(names, "level image"))
+            results.append(counted(names, "level image"))
         targets = (self._target, self._roughness_target)
         results += [files.shown(target) for target in targets if target is not None]
         parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
         return " ".join(parts)
-
-
-class TiledBake:
-    """The bakes of the tiles of a UDIM image, as one; it is used like a `Bake`."""
-
-    def __init__(self, image_name: str, bakes: Sequence[Bake], warnings: list[str]) -> None:
-        """Takes the bakes over; use `Bake.read`."""
-        self.image_name = image_name
-        self.warnings = warnings
-        self._bakes = bakes
-
-    @classmethod
-    def of(
-        cls,
-        image: bpy.types.Image,
-        pictures: Sequence[Picture],
-        numbers: Sequence[int],
-        found: meshes.ImageSurfaces,
-        settings: Settings,
-        targets: Sequence[Path],
-        content: str,
-    ) -> "TiledBake":
-        """Makes a bake of each tile that some of the surface lies in.
-
-        Args:
-            image: The tiled image.
-            pictures: Of each tile.
-            numbers: Of each tile.
-            found: The surfaces on all of the tiles.
-            settings: What to bake.
-            targets: The file of each tile; empty for none.
-            content: What the image holds: a key of `CONTENTS`, other than "auto".
-
-        Raises:
-            ValueError: The surface lies in none of the tiles.
-        """
-        bakes, warnings = [], list(found.problems)
-        for index, (picture, number) in enumerate(zip(pictures, numbers, strict=True)):
-            # A lookup past the edge of a tile is one in the next.
-            inside = meshes.ImageSurfaces(extensions=["EXTEND"])
-            for surface, name in zip(found.surfaces, found.objects, strict=True):
-                part = surface.udim_tile(number)
-                if part is not None:
-                    inside.surfaces.append(part)
-                    inside.objects.append(name)
-            area = sum(part.area for part in inside.surfaces)
-            if area == 0 and settings.filter not in TEXTURE_SPACE_FILTERS:
-                warnings.append(f"tile {number} is left out: no surface lies in it")
-                continue
-            target = targets[index] if targets else None
-            bakes.append(Bake(picture, inside, settings, target, content))
-        if not bakes:
-            raise ValueError(
-                f"image '{image.name}': no surface lies in its tiles, {listed(map(str, numbers))}"
-            )
-        return cls(image.name, bakes, warnings)
-
-    def compute(self, progress: Progress) -> None:
-        """Computes tile by tile; see `Bake.compute`."""
-        try:
-            for index, one in enumerate(self._bakes):
-                one.compute(partial(self._advance, progress, index))
-        except BaseException:
-            self.discard()
-            raise
-
-    def write(self) -> Outcome:
-        """Writes all tiles, once everything is staged; see `Bake.write`."""
-        try:
-            for one in self._bakes:
-                one.stage_images()
-            outcomes = [one.commit() for one in self._bakes]
-        except BaseException:
-            self.discard()
-            raise
-        for outcome in outcomes:
-            self.warnings.extend(outcome.warnings)
-        names = [name for outcome in outcomes for name in outcome.images]
-        summary = f"{outcomes[0].summary}, and likewise its other tiles, {len(outcomes)} in all"
-        path = outcomes[0].filepath
-        return Outcome(
-            outcomes[0].summary if len(outcomes) == 1 else summary,
-            names,
-            path,
-            list(dict.fromkeys(self.warnings)),
-        )
-
-    def discard(self) -> None:
-        """Removes what was staged, if it was not put into place."""
-        for one in self._bakes:
-            one.discard()
-
-    def _advance(self, progress: Progress, index: int, fraction: float) -> bool:
-        return progress((index + fraction) / len(self._bakes))
 
 
 def bake(
@@ -692,55 +460,6 @@ def bake(
     job = Bake.read(image, objects, settings, depsgraph, all_faces=all_faces)
     job.compute(progress)
     return job.write()
-
-
-def _paths(path: str, tiles: Sequence[int]) -> list[str]:
-    """Returns the file of each tile: with its number for <UDIM>, or else before the extension."""
-    if not path or not tiles:
-        return [path] if path else []
-    if "<UDIM>" not in path:
-        stem, extension = os.path.splitext(path)
-        path = f"{stem}.<UDIM>{extension}"
-    return [path.replace("<UDIM>", str(number)) for number in tiles]
-
-
-def _read_surfaces(
-    image: bpy.types.Image,
-    objects: Sequence[bpy.types.Object],
-    settings: Settings,
-    depsgraph: bpy.types.Depsgraph,
-    *,
-    all_faces: bool,
-) -> Generator[float, None, meshes.ImageSurfaces]:
-    """Reads the surfaces of one frame or several, and yields the fraction done."""
-    options = meshes.SurfaceOptions(settings.use_subdivision_limit, settings.importance)
-    if not settings.use_frames:
-        return meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
-    frames = _frames(settings)
-    found = meshes.ImageSurfaces()
-    scene = depsgraph.scene
-    before = scene.frame_current, scene.frame_subframe
-    try:
-        for count, frame in enumerate(frames, start=1):
-            scene.frame_set(frame)
-            found.add_pose(
-                meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
-            )
-            yield count / len(frames)
-    finally:
-        scene.frame_set(before[0], subframe=before[1])
-    return found
-
-
-def _frames(settings: Settings) -> range:
-    if settings.frame_step < 1:
-        raise ValueError(f"frame_step: found {settings.frame_step}; 1 and up is needed")
-    if settings.frame_end < settings.frame_start:
-        raise ValueError(
-            f"frame_end: found {settings.frame_end}, which is before frame_start, "
-            f"{settings.frame_start}"
-        )
-    return range(settings.frame_start, settings.frame_end + 1, settings.frame_step)
 
 
 def _check_levels(picture: Picture, levels: int) -> None:
@@ -790,11 +509,6 @@ def _roughness_format(settings: Settings, picture: Picture) -> str:
     return "bc3" if picture.stored.shape[2] == 4 else "bc1"
 
 
-def _go_on(progress: Progress, fraction: float) -> None:
-    if not progress(fraction):
-        raise prefilter.Cancelled("cancelled")
-
-
 def _naming_objects(message: str, objects: Sequence[str]) -> str:
     """Returns a message of the library, with objects in the place of its surfaces."""
     one = re.match(r"surface (\d+)\b", message)
@@ -817,7 +531,3 @@ def _no_surface(
     if not found:
         return f"{start}; no object is selected"
     return f"{start}; no material on a face of a mesh uses it, among {found}"
-
-
-def _count(things: Sized, noun: str) -> str:
-    return f"{len(things)} {noun}{'' if len(things) == 1 else 's'}"

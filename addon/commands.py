@@ -13,32 +13,44 @@ from typing import Any
 
 import bpy
 
-from . import bake, texture_cache
-from .bake import Choice
+from . import bake, choices, texture_cache
 from .bridge import engine_files, files, images, meshes
+from .choices import Choice
 from .view import errors, figure
 from .wording import listed
 
 _PROGRAM = "blender --background --command prefilter"
 
 _BAKE_HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
-
-
 _PLOT_HELP = "plot the error of filters over the mip value, on the meshes that use an image"
 
 
-def _table(title: str, choices: dict[str, Choice]) -> str:
-    rows = (f"  {key:<18}{choice.description}" for key, choice in choices.items())
+def _table(title: str, options: dict[str, Choice]) -> str:
+    rows = (f"  {key:<18}{choice.description}" for key, choice in options.items())
     return "\n".join([f"{title}:", *rows])
 
 
 _TABLES = (
-    _table("filters", bake.FILTERS),
-    _table("wrap modes", bake.WRAPS | bake.WRAPS_V),
-    _table("value ranges", bake.BOUNDS),
-    _table("contents", bake.CONTENTS),
+    _table("filters", choices.FILTERS),
+    _table("wrap modes", choices.WRAPS | choices.WRAPS_V),
+    _table("value ranges", choices.BOUNDS),
+    _table("contents", choices.CONTENTS),
 )
-_FORMAT_TABLE = _table("texture formats, for .dds and .ktx2", bake.TEXTURE_FORMATS)
+_FORMAT_TABLE = _table("texture formats, for .dds and .ktx2", choices.TEXTURE_FORMATS)
+_CHOSEN = {
+    "filter": (choices.FILTERS, "FILTER", "how a texel of a level is made"),
+    "wrap": (choices.WRAPS, "MODE", "what lies outside of the image along u"),
+    "wrap-v": (choices.WRAPS_V, "MODE", "the same along v"),
+    "bounds": (choices.BOUNDS, "RANGE", "the values that texels of a level may have"),
+    "content": (choices.CONTENTS, "CONTENT", "what the image holds"),
+    "roughness-channel": (
+        choices.ROUGHNESS_CHANNELS,
+        "CHANNEL",
+        "where the roughness image holds roughness",
+    ),
+    "texture-format": (choices.TEXTURE_FORMATS, "FORMAT", "how a .dds or .ktx2 file holds texels"),
+}
+"""Options with a table of choices: the table, what stands for a value, and help."""
 _BAKE_NOTES = """\
 Without --image, the image that the meshes use is baked; name it where they use several. A picture
 file that no material uses is taken as the texture of all faces, with the active UV map.
@@ -114,38 +126,21 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_bake(commands: Any) -> None:
-    parser = commands.add_parser(
-        "bake",
-        help=_BAKE_HELP,
-        description=f"{_BAKE_HELP[0].upper()}{_BAKE_HELP[1:]}.",
-        epilog="\n\n".join([*_TABLES, _FORMAT_TABLE, _BAKE_NOTES]),
+def _add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
+    return commands.add_parser(
+        name,
+        help=purpose,
+        description=f"{purpose[0].upper()}{purpose[1:]}.",
+        epilog="\n\n".join(notes),
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+
+
+def _add_bake(commands: Any) -> None:
+    parser = _add_command(commands, "bake", _BAKE_HELP, *_TABLES, _FORMAT_TABLE, _BAKE_NOTES)
     _add_scene(parser)
-    defaults = bake.Settings()
-    for flag, choices, metavar, text in (
-        ("filter", bake.FILTERS, "FILTER", "how a texel of a level is made"),
-        ("wrap", bake.WRAPS, "MODE", "what lies outside of the image along u"),
-        ("wrap-v", bake.WRAPS_V, "MODE", "the same along v"),
-        ("bounds", bake.BOUNDS, "RANGE", "the values that texels of a level may have"),
-        ("content", bake.CONTENTS, "CONTENT", "what the image holds"),
-        (
-            "roughness-channel",
-            bake.ROUGHNESS_CHANNELS,
-            "CHANNEL",
-            "where the roughness image holds roughness",
-        ),
-        ("texture-format", bake.TEXTURE_FORMATS, "FORMAT", "how a .dds or .ktx2 file holds texels"),
-    ):
-        default = getattr(defaults, flag.replace("-", "_"))
-        parser.add_argument(
-            f"--{flag}",
-            choices=choices,
-            default=default,
-            metavar=metavar,
-            help=f"{text} (default: {default})",
-        )
+    defaults = choices.Settings()
+    _add_choices(parser, *_CHOSEN)
     parser.add_argument(
         "--levels",
         metavar="N",
@@ -173,13 +168,7 @@ def _add_bake(commands: Any) -> None:
         default="",
         help="a file of the roughness to write, like --output",
     )
-    parser.add_argument(
-        "--threads",
-        metavar="N",
-        type=_count,
-        default=defaults.threads,
-        help="how many threads to use; 0 uses all (default: 0)",
-    )
+    _add_threads(parser)
     parser.add_argument(
         "--importance",
         metavar="NAME",
@@ -221,6 +210,16 @@ def _add_bake(commands: Any) -> None:
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
 
+def _add_threads(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--threads",
+        metavar="N",
+        type=_count,
+        default=choices.Settings.threads,
+        help="how many threads to use; 0 uses all (default: 0)",
+    )
+
+
 def _add_scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a .blend, .glb, .gltf or .obj file")
     parser.add_argument(
@@ -238,37 +237,32 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _add_choices(parser: argparse.ArgumentParser, *flags: str) -> None:
+    defaults = choices.Settings()
+    for flag in flags:
+        table, metavar, text = _CHOSEN[flag]
+        default = getattr(defaults, flag.replace("-", "_"))
+        parser.add_argument(
+            f"--{flag}",
+            choices=table,
+            default=default,
+            metavar=metavar,
+            help=f"{text} (default: {default})",
+        )
+
+
 def _add_plot(commands: Any) -> None:
-    parser = commands.add_parser(
-        "plot",
-        help=_PLOT_HELP,
-        description=f"{_PLOT_HELP[0].upper()}{_PLOT_HELP[1:]}.",
-        epilog="\n\n".join([*_TABLES, _PLOT_NOTES]),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = _add_command(commands, "plot", _PLOT_HELP, *_TABLES, _PLOT_NOTES)
     _add_scene(parser)
     parser.add_argument(
         "--filters",
         metavar="FILTER",
         nargs="+",
-        choices=bake.FILTERS,
+        choices=choices.FILTERS,
         default=list(errors.DEFAULT_FILTERS),
         help=f"the filters to compare (default: {' '.join(errors.DEFAULT_FILTERS)})",
     )
-    defaults = bake.Settings()
-    for flag, choices, metavar, text in (
-        ("wrap", bake.WRAPS, "MODE", "what lies outside of the image along u"),
-        ("wrap-v", bake.WRAPS_V, "MODE", "the same along v"),
-        ("bounds", bake.BOUNDS, "RANGE", "the values that texels of a level may have"),
-    ):
-        default = getattr(defaults, flag.replace("-", "_"))
-        parser.add_argument(
-            f"--{flag}",
-            choices=choices,
-            default=default,
-            metavar=metavar,
-            help=f"{text} (default: {default})",
-        )
+    _add_choices(parser, "wrap", "wrap-v", "bounds")
     parser.add_argument("--output", metavar="FILE", default="", help="a .png file to write")
     parser.add_argument(
         "--table", metavar="FILE", default="", help="a .csv file to write the values to"
@@ -277,24 +271,12 @@ def _add_plot(commands: Any) -> None:
 
 
 def _add_bake_cache(commands: Any) -> None:
-    parser = commands.add_parser(
-        "bake-cache",
-        help=_CACHE_HELP,
-        description=f"{_CACHE_HELP[0].upper()}{_CACHE_HELP[1:]}.",
-        epilog=_CACHE_NOTES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
+    parser = _add_command(commands, "bake-cache", _CACHE_HELP, _CACHE_NOTES)
     parser.add_argument("file", metavar="FILE", help="a .blend file")
     parser.add_argument(
         "--scene", metavar="NAME", help="the scene that is rendered (default: the active one)"
     )
-    parser.add_argument(
-        "--threads",
-        metavar="N",
-        type=_count,
-        default=0,
-        help="how many threads to use; 0 uses all (default: 0)",
-    )
+    _add_threads(parser)
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
     )
@@ -390,7 +372,7 @@ def _plot(options: argparse.Namespace) -> None:
     source = bake.Bake.read(
         image,
         objects,
-        bake.Settings(wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds),
+        choices.Settings(wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds),
         bpy.context.evaluated_depsgraph_get(),
         all_faces=is_picture,
         needs_surface=True,
@@ -435,7 +417,7 @@ def _bake(options: argparse.Namespace) -> None:
         files.check_writable(Path(path))
     depsgraph = bpy.context.evaluated_depsgraph_get()
     image, is_picture = _image(options.image, objects, options.content)
-    settings = bake.Settings(
+    settings = choices.Settings(
         filter=options.filter,
         wrap=options.wrap,
         wrap_v=options.wrap_v,

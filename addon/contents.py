@@ -1,6 +1,6 @@
 """What an image holds, and how its levels are made accordingly."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,8 +8,8 @@ import numpy as np
 import prefilter
 
 from .bridge.images import Encoding, FloatArray, Picture
+from .jobs import Progress
 
-Progress = Callable[[float], bool]
 Bounds = tuple[float | None, float | None] | None
 
 CHANNELS = {"all": (0, 1, 2), "red": (0,), "green": (1,), "blue": (2,)}

@@ -1,20 +1,29 @@
-"""Long work off the main thread: progress, cancel, result."""
+"""Long work, mostly off the main thread: progress, cancel, result."""
 
 import threading
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
+import prefilter
+
 T = TypeVar("T")
+Progress = Callable[[float], bool]
+"""Gets the fraction done, in [0, 1]; returns False once the work should stop."""
+
+
+def go_on(progress: Progress, fraction: float) -> None:
+    """Tells how much is done; raises prefilter.Cancelled if that was to be the end."""
+    if not progress(fraction):
+        raise prefilter.Cancelled("cancelled")
 
 
 class Job(Generic[T]):
     """Runs a callable in a thread.
 
-    The callable gets a function that it calls with its progress in [0, 1], and that returns False
-    once it should stop. It must not touch Blender's data.
+    The callable gets a `Progress`. It must not touch Blender's data.
     """
 
-    def __init__(self, work: Callable[[Callable[[float], bool]], T]) -> None:
+    def __init__(self, work: Callable[[Progress], T]) -> None:
         """Starts the thread.
 
         Args:

@@ -10,14 +10,14 @@ from bpy.props import (
     StringProperty,
 )
 
-from . import bake
-from .bake import Choice
+from . import choices
 from .bridge import engine_files
+from .choices import Choice
 
 
-def items(choices: dict[str, Choice]) -> list[tuple[str, str, str]]:
+def items(table: dict[str, Choice]) -> list[tuple[str, str, str]]:
     """Returns the items of an enumeration."""
-    return [(key, choice.label, choice.description) for key, choice in choices.items()]
+    return [(key, choice.label, choice.description) for key, choice in table.items()]
 
 
 class BakeProperties:
@@ -26,38 +26,38 @@ class BakeProperties:
     filter: EnumProperty(
         name="Filter",
         description="How a texel of a level is made from the image",
-        items=items(bake.FILTERS),
-        default=bake.Settings.filter,
+        items=items(choices.FILTERS),
+        default=choices.Settings.filter,
     )
     wrap: EnumProperty(
         name="Wrap",
         description="What lies outside of the image along U",
-        items=items(bake.WRAPS),
-        default=bake.Settings.wrap,
+        items=items(choices.WRAPS),
+        default=choices.Settings.wrap,
     )
     wrap_v: EnumProperty(
         name="V",
         description="What lies outside of the image along V",
-        items=items(bake.WRAPS_V),
-        default=bake.Settings.wrap_v,
+        items=items(choices.WRAPS_V),
+        default=choices.Settings.wrap_v,
     )
     bounds: EnumProperty(
         name="Value Range",
         description="The range, in scene-linear values, that the texels of a level stay in",
-        items=items(bake.BOUNDS),
-        default=bake.Settings.bounds,
+        items=items(choices.BOUNDS),
+        default=choices.Settings.bounds,
     )
     content: EnumProperty(
         name="Content",
         description="What the image holds, which decides how its levels are made",
-        items=items(bake.CONTENTS),
-        default=bake.Settings.content,
+        items=items(choices.CONTENTS),
+        default=choices.Settings.content,
     )
     threshold: FloatProperty(
         name="Threshold",
         description="The alpha from which on the material shows the surface",
         subtype="FACTOR",
-        default=bake.Settings.threshold,
+        default=choices.Settings.threshold,
         min=0.001,
         max=1.0,
     )
@@ -65,27 +65,27 @@ class BakeProperties:
         name="Roughness",
         description="An image of the roughness of the same surface, whose levels get what those of "
         "the normal map lose. Leave empty for none",
-        default=bake.Settings.roughness,
+        default=choices.Settings.roughness,
     )
     roughness_channel: EnumProperty(
         name="Channel",
         description="Where the roughness image holds roughness; its other channels are filtered "
         "as data",
-        items=items(bake.ROUGHNESS_CHANNELS),
-        default=bake.Settings.roughness_channel,
+        items=items(choices.ROUGHNESS_CHANNELS),
+        default=choices.Settings.roughness_channel,
     )
     roughness_filepath: StringProperty(
         name="Roughness File",
         description="A file of the roughness to write, like the one of the image; leave empty for "
         "none",
         subtype="FILE_PATH",
-        default=bake.Settings.roughness_filepath,
+        default=choices.Settings.roughness_filepath,
     )
     levels: IntProperty(
         name="Levels",
         description="Number of levels, the image itself included; 0 makes all of them. "
         "A file always gets all",
-        default=bake.Settings.levels,
+        default=choices.Settings.levels,
         min=0,
         soft_max=16,
     )
@@ -93,19 +93,19 @@ class BakeProperties:
         name="Subdivision Limit",
         description="Objects with a Catmull-Clark modifier on top count as the smooth surface that "
         "subdividing forever would give",
-        default=bake.Settings.use_subdivision_limit,
+        default=choices.Settings.use_subdivision_limit,
     )
     importance: StringProperty(
         name="Importance",
         description="A vertex group or attribute that says where texels matter more: areas are "
         "multiplied by it; leave empty for none",
-        default=bake.Settings.importance,
+        default=choices.Settings.importance,
     )
     seam_weight: FloatProperty(
         name="Seams",
         description="How much it counts that the two sides of a UV seam agree in every level: 0 "
         "leaves seams alone, 1 halves what shows of them. For PAM Bilinear and PAM Trilinear",
-        default=bake.Settings.seam_weight,
+        default=choices.Settings.seam_weight,
         min=0.0,
         soft_max=2.0,
         step=10,
@@ -113,45 +113,45 @@ class BakeProperties:
     use_frames: BoolProperty(
         name="Frame Range",
         description="Average over frames of the animation instead of the current one only",
-        default=bake.Settings.use_frames,
+        default=choices.Settings.use_frames,
     )
     frame_start: IntProperty(
         name="Start",
         description="The first frame of the average",
-        default=bake.Settings.frame_start,
+        default=choices.Settings.frame_start,
     )
     frame_end: IntProperty(
         name="End",
         description="The last frame of the average",
-        default=bake.Settings.frame_end,
+        default=choices.Settings.frame_end,
     )
     frame_step: IntProperty(
         name="Step",
         description="How far the frames of the average are apart",
-        default=bake.Settings.frame_step,
+        default=choices.Settings.frame_step,
         min=1,
     )
     use_images: BoolProperty(
         name="Level Images",
         description="Keep each level as a packed image named after the image, with .mip1, .mip2 "
         "and so on",
-        default=bake.Settings.use_images,
+        default=choices.Settings.use_images,
     )
     filepath: StringProperty(
         name="File",
         description="A file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 "
         "for engines; .png makes a file a level. Leave empty for none",
         subtype="FILE_PATH",
-        default=bake.Settings.filepath,
+        default=choices.Settings.filepath,
     )
     texture_format: EnumProperty(
         name="Texture Format",
         description="How a DDS or KTX 2 file holds texels",
-        items=items(bake.TEXTURE_FORMATS),
-        default=bake.Settings.texture_format,
+        items=items(choices.TEXTURE_FORMATS),
+        default=choices.Settings.texture_format,
     )
 
-    def to_settings(self) -> bake.Settings:
+    def to_settings(self) -> choices.Settings:
         """Returns the values, with the file's path made absolute."""
         values = {name: getattr(self, name) for name in BakeProperties.__annotations__}
         values["filepath"] = bpy.path.abspath(self.filepath)
@@ -159,7 +159,7 @@ class BakeProperties:
         if not self._shows_roughness():
             # What an earlier choice has left in fields that are not shown.
             values["roughness"] = values["roughness_filepath"] = ""
-        return bake.Settings(**values)
+        return choices.Settings(**values)
 
     def _shows_roughness(self) -> bool:
         return self.content == "normal" or (self.content == "auto" and bool(self.roughness))

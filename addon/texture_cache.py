@@ -12,22 +12,15 @@ import bpy
 import numpy as np
 import prefilter
 
-from .bake import Progress
-from .bridge import images, meshes, rendered, tx_files
+from .bridge import images, materials, meshes, rendered, tx_files
 from .bridge.files import StagedFile
 from .bridge.images import FloatArray
+from .jobs import Progress, go_on
 from .wording import counted, listed
 
 NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
 
 _MADE = 0.2  # What the progress is once Blender has made its cache files.
-# A mirrored image goes on with its edge, as far as a lookup inside of it can see.
-_WRAP_OF_EXTENSION = {
-    "REPEAT": "repeat",
-    "EXTEND": "clamp",
-    "CLIP": "border",
-    "MIRROR": "clamp",
-}
 
 
 @dataclass(frozen=True)
@@ -136,7 +129,7 @@ class CacheBake:
             shared = self._make(progress)
             for index, (path, worn) in enumerate(shared.items()):
                 advance = partial(_advance, progress, index, len(shared))
-                _go_on(advance, 0.0)
+                go_on(advance, 0.0)
                 try:
                     if worn.obstacle:
                         raise ValueError(f"{worn.who}: {worn.obstacle}")
@@ -147,7 +140,7 @@ class CacheBake:
                 raise ValueError(
                     f"scene '{self._scene}': no image could be baked; {'; '.join(self.warnings)}"
                 )
-            _go_on(progress, 1.0)
+            go_on(progress, 1.0)
         except BaseException:
             self.discard()
             raise
@@ -179,7 +172,7 @@ class CacheBake:
         """Makes the cache files; images that share one are joined."""
         shared: dict[tx_files.Path, _Worn] = {}
         for index, worn in enumerate(self._worn):
-            _go_on(progress, _MADE * index / len(self._worn))
+            go_on(progress, _MADE * index / len(self._worn))
             try:
                 path = tx_files.make(worn.source)
             except OSError as error:
@@ -200,7 +193,7 @@ class CacheBake:
             levels = _levels(texture, worn, wrap, progress, self._threads)
         except ValueError as error:
             raise ValueError(f"{worn.who}: {error}") from error
-        check = partial(_go_on, progress, 1.0)
+        check = partial(go_on, progress, 1.0)
         self._staged.append((worn, tx_files.stage(texture, levels, check)))
 
     def _summary(self) -> str:
@@ -334,7 +327,7 @@ def _wrap(worn: _Worn) -> str:
         raise ValueError(
             f"{worn.who}: UVs leave it, where Image Texture nodes go on by {', '.join(modes)}"
         )
-    return _WRAP_OF_EXTENSION[modes[0]]
+    return materials.WRAP_OF_EXTENSION[modes[0]]
 
 
 def _is_inside(surfaces: Iterable[prefilter.Surface]) -> bool:
@@ -343,11 +336,6 @@ def _is_inside(surfaces: Iterable[prefilter.Surface]) -> bool:
 
 def _advance(progress: Progress, index: int, count: int, fraction: float) -> bool:
     return progress(_MADE + (1 - _MADE) * (index + fraction) / count)
-
-
-def _go_on(progress: Progress, fraction: float) -> None:
-    if not progress(fraction):
-        raise prefilter.Cancelled("cancelled")
 
 
 def _nothing(scene: bpy.types.Scene, warnings: Sequence[str]) -> str:

@@ -7,6 +7,15 @@ from typing import Any
 import bpy
 from mathutils import Euler, Matrix
 
+WRAP_OF_EXTENSION = {
+    "REPEAT": "repeat",
+    "EXTEND": "clamp",
+    "CLIP": "border",
+    # A mirrored image goes on with its edge, as far as a lookup inside of it can see.
+    "MIRROR": "clamp",
+}
+"""The library's wrap mode for what an Image Texture node does outside of its image."""
+
 _FACTORS = frozenset({"Fac", "Factor"})
 
 Groups = tuple[bpy.types.Node, ...]

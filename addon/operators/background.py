@@ -9,14 +9,44 @@ import prefilter
 
 from .. import bake
 from ..bridge import derived, images
-from ..jobs import Job
+from ..choices import Settings
+from ..jobs import Job, Progress
 
-Work = Callable[[bake.Progress], Any]
-_TICK_SECONDS = 0.1
+Work = Callable[[Progress], Any]
+TICK_SECONDS = 0.1
+"""How often a running operator looks at its thread."""
+
+
+def image_to_read(
+    context: bpy.types.Context, name: str, *, pictured: bool = False
+) -> bpy.types.Image:
+    """Returns the image of a name, or that of the editor if the name is empty.
+
+    Args:
+        context: The context.
+        name: The image's name, or empty.
+        pictured: Whether an image is meant where the editor shows a picture about it, such as its
+            error plot.
+
+    Raises:
+        ValueError: There is no such image.
+    """
+    if name:
+        return images.find(name)
+    shown = getattr(context.space_data, "image", None)
+    image = (derived.pictured(shown) if pictured else None) or shown
+    if image is None:
+        raise ValueError("image: no name is given, and the editor shows no image")
+    return image
+
+
+def selected_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Returns the objects that are selected or in Edit Mode."""
+    return [obj for obj in context.view_layer.objects if obj.select_get() or obj.mode == "EDIT"]
 
 
 def read_source(
-    context: bpy.types.Context, name: str, settings: bake.Settings, *, needs_surface: bool = True
+    context: bpy.types.Context, name: str, settings: Settings, *, needs_surface: bool = True
 ) -> bake.Bake:
     """Reads an image and the selected objects that wear it.
 
@@ -30,15 +60,11 @@ def read_source(
     Raises:
         ValueError: There is no such image, or no surface.
     """
-    shown = getattr(context.space_data, "image", None)
-    image = images.find(name) if name else derived.pictured(shown) or shown
-    if image is None:
-        raise ValueError("image: no name is given, and the editor shows no image")
+    image = image_to_read(context, name, pictured=True)
     images.check_untiled(image)
-    objects = [obj for obj in context.view_layer.objects if obj.select_get() or obj.mode == "EDIT"]
     return bake.Bake.read(
         image,
-        objects,
+        selected_objects(context),
         replace(
             settings, use_images=True, filepath="", levels=0, roughness="", roughness_filepath=""
         ),
@@ -106,13 +132,8 @@ class BackgroundOperator:
             work = self.read(context)
         except bake.FAILURES as error:
             return self._fail(error)
-        self._job = Job(work)
-        BackgroundOperator._running.add(self._key())
-        manager = context.window_manager
-        manager.progress_begin(0, 100)
-        self._timer = manager.event_timer_add(_TICK_SECONDS, window=context.window)
-        manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+        self._start(work)
+        return self._enter(context)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Shows progress, and writes the result once the thread is done."""
@@ -122,9 +143,7 @@ class BackgroundOperator:
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
         if not self._job.is_done:
-            percent = round(100 * self._job.progress)
-            context.window_manager.progress_update(percent)
-            context.workspace.status_text_set(f"{self.doing}: {percent} %   Esc: Cancel")
+            self._show(context, self.doing, self._job.progress)
             return {"PASS_THROUGH"}
         self._leave(context)
         try:
@@ -140,15 +159,20 @@ class BackgroundOperator:
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Stops the thread when Blender ends the operator, such as for another file."""
-        self._job.cancel()
         try:
-            self._job.result()
+            if self._job is not None:
+                self._job.cancel()
+                self._job.result()
         except prefilter.Cancelled:
             pass
         except bake.FAILURES as error:
             self.report({"WARNING"}, str(error))
         finally:
+            self.discard()
             self._leave(context)
+
+    def discard(self) -> None:
+        """Lets go of what was read and made, when `finish` is not to come."""
 
     def warn(self, source: bake.Bake) -> None:
         """Reports what was left out when the surfaces were read."""
@@ -161,6 +185,22 @@ class BackgroundOperator:
 
     def _key(self) -> str:
         return type(self).bl_idname
+
+    def _start(self, work: Work) -> None:
+        self._job = Job(work)
+
+    def _enter(self, context: bpy.types.Context) -> set[str]:
+        BackgroundOperator._running.add(self._key())
+        manager = context.window_manager
+        manager.progress_begin(0, 100)
+        self._timer = manager.event_timer_add(TICK_SECONDS, window=context.window)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def _show(self, context: bpy.types.Context, what: str, fraction: float) -> None:
+        percent = round(100 * fraction)
+        context.window_manager.progress_update(percent)
+        context.workspace.status_text_set(f"{what}: {percent} %   Esc: Cancel")
 
     def _leave(self, context: bpy.types.Context) -> None:
         BackgroundOperator._running.discard(self._key())

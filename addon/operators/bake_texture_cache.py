@@ -48,9 +48,6 @@ class PREFILTER_OT_bake_texture_cache(BackgroundOperator, bpy.types.Operator):
             self.report({"WARNING"}, warning)
         return outcome.summary
 
-    def cancel(self, context: bpy.types.Context) -> None:
-        """Stops the thread when Blender ends the operator; see `BackgroundOperator.cancel`."""
-        try:
-            super().cancel(context)
-        finally:
-            self._bake.discard()
+    def discard(self) -> None:
+        """Removes what was staged."""
+        self._bake.discard()

@@ -10,6 +10,7 @@ from bpy.props import BoolProperty, StringProperty
 from .. import bake
 from ..bridge import derived, images
 from ..bridge.images import FloatArray
+from ..jobs import Progress
 from .background import BackgroundOperator, Work, read_source, show_in_editor
 
 
@@ -53,7 +54,7 @@ class PREFILTER_OT_fill_unused(BackgroundOperator, bpy.types.Operator):
         return f"Filled {changed:.1%} of the texels in '{filled.name}'"
 
 
-def _fill(source: bake.Bake, progress: bake.Progress) -> FloatArray:
+def _fill(source: bake.Bake, progress: Progress) -> FloatArray:
     """Returns stored values; those of texels that are used are the image's own, bit for bit."""
     linear = source.linear(progress)
     with source.naming_objects():

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from .. import bake
+from .. import choices
 from ..bridge import derived
 from ..settings import items
 from ..view import errors, figure
@@ -30,7 +30,7 @@ class PREFILTER_OT_plot_error(BackgroundOperator, bpy.types.Operator):
     filters: EnumProperty(
         name="Filters",
         description="The filters to compare",
-        items=items(bake.FILTERS),
+        items=items(choices.FILTERS),
         options={"ENUM_FLAG"},
         default=set(errors.DEFAULT_FILTERS),
     )
@@ -39,7 +39,7 @@ class PREFILTER_OT_plot_error(BackgroundOperator, bpy.types.Operator):
         """Copies the image and its surfaces."""
         self._source = read_source(context, self.image, context.scene.prefilter_bake.to_settings())
         self.warn(self._source)
-        chosen = [name for name in bake.FILTERS if name in self.filters]
+        chosen = [name for name in choices.FILTERS if name in self.filters]
         return lambda progress: errors.measure(self._source, chosen, progress)
 
     def finish(self, context: bpy.types.Context, result: errors.ErrorCurves) -> str:

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import EnumProperty, StringProperty
 
-from .. import bake
+from .. import choices
 from ..bridge import images
 from ..settings import items
 from ..view import preview
@@ -30,14 +30,14 @@ class PREFILTER_OT_preview_levels(BackgroundOperator, bpy.types.Operator):
     compare: EnumProperty(
         name="Compare With",
         description="The filter on the left of the wipe",
-        items=items(bake.FILTERS),
+        items=items(choices.FILTERS),
         default="box",
     )
 
     def read(self, context: bpy.types.Context) -> Work:
         """Copies the image and its surfaces."""
         settings = context.scene.prefilter_bake.to_settings()
-        needs_surface = self.compare not in bake.TEXTURE_SPACE_FILTERS
+        needs_surface = self.compare not in choices.TEXTURE_SPACE_FILTERS
         source = read_source(context, self.image, settings, needs_surface=needs_surface)
         self.warn(source)
         self._name = source.image_name

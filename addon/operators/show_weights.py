@@ -8,6 +8,7 @@ from bpy.props import StringProperty
 
 from .. import bake
 from ..bridge import derived
+from ..jobs import Progress
 from ..view import weights
 from .background import BackgroundOperator, Work, read_source, show_in_editor
 
@@ -64,7 +65,7 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _weigh(source: bake.Bake, progress: bake.Progress) -> weights.Weights:
+def _weigh(source: bake.Bake, progress: Progress) -> weights.Weights:
     height, width = source.picture.stored.shape[:2]
     with source.naming_objects():
         found = prefilter.texel_weights(

@@ -7,7 +7,9 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
-from ..bake import FILTERS, Bake, Progress
+from ..bake import Bake
+from ..choices import FILTERS
+from ..jobs import Progress
 
 # Those of figure 7.7.
 DEFAULT_FILTERS = tuple(
@@ -23,7 +25,7 @@ class ErrorCurves:
 
     Attributes:
         image: The name of the image.
-        filters: Keys of `bake.FILTERS`.
+        filters: Keys of `choices.FILTERS`.
         mip_values: From 0 to the last level.
         errors: (filters, mip values), in scene-linear values.
     """
@@ -70,7 +72,7 @@ def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCu
 
     Args:
         source: What was read from Blender; it needs a surface.
-        filters: Keys of `bake.FILTERS`.
+        filters: Keys of `choices.FILTERS`.
         progress: Called with the fraction done.
 
     Raises:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..bake import FILTERS
 from ..bridge import lettering
 from ..bridge.images import FloatArray
+from ..choices import FILTERS
 from .canvas import Canvas, Color
 from .errors import ErrorCurves
 

@@ -14,7 +14,7 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from ..bake import FILTERS
+from ..choices import FILTERS
 from . import preview
 from .preview import Preview
 

@@ -10,8 +10,10 @@ import bpy
 import numpy as np
 from bpy.app.handlers import persistent
 
-from ..bake import Bake, Progress, Settings
+from ..bake import Bake
 from ..bridge.images import FloatArray
+from ..choices import Settings
+from ..jobs import Progress
 
 _WRAPS = ("clamp", "repeat", "border")
 
@@ -65,7 +67,7 @@ def compute(source: Bake, image_uid: int, filters: Iterable[str], progress: Prog
     Args:
         source: What was read from Blender.
         image_uid: The session_uid of its image.
-        filters: Keys of `bake.FILTERS`, that of the settings first.
+        filters: Keys of `choices.FILTERS`, that of the settings first.
         progress: Called with the fraction done.
     """
     linear = source.linear(progress)

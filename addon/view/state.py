@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty
 
-from .. import bake
+from .. import choices
 from ..settings import items
 from . import errors, preview
 
@@ -52,14 +52,14 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
     compare: EnumProperty(
         name="Compare With",
         description="The filter on the left of the wipe",
-        items=items(bake.FILTERS),
+        items=items(choices.FILTERS),
         default="box",
         update=_redraw,
     )
     plot_filters: EnumProperty(
         name="Filters",
         description="The filters to compare; Shift-click to choose several",
-        items=items(bake.FILTERS),
+        items=items(choices.FILTERS),
         options={"ENUM_FLAG"},
         default=set(errors.DEFAULT_FILTERS),
     )

@@ -8,10 +8,12 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import addon_utils
 import bpy
 import pytest
+import scenes
 
 # For texture_readers; behind this folder, as both have modules named scenes.
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
@@ -31,6 +33,24 @@ def empty_blender() -> None:
 def addon() -> Callable[[str], ModuleType]:
     """Returns a function that gives a module of the add-on by its name."""
     return lambda name: importlib.import_module(f"{PACKAGE}.{name}")
+
+
+@pytest.fixture
+def bake(addon: Callable[[str], ModuleType]) -> Callable[..., Any]:
+    """Returns a function that bakes with the settings given as keywords."""
+
+    def run(image, objects=(), *, all_faces=False, progress=lambda _: True, **settings):
+        module = addon("bake")
+        return module.bake(
+            image,
+            list(objects),
+            module.Settings(**settings),
+            scenes.depsgraph(),
+            all_faces=all_faces,
+            progress=progress,
+        )
+
+    return run
 
 
 @pytest.fixture
@@ -70,3 +90,33 @@ def display(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, str]
     finally:
         server.terminate()
         server.wait()
+
+
+@pytest.fixture(scope="module")
+def in_window(display: dict[str, str]) -> Callable[[Path, Path], None]:
+    """Returns a function that runs a session in a Blender with a window that nobody sees.
+
+    It takes the session's program and the argument that this gets; the session has to end well.
+    """
+
+    def run(session: Path, argument: Path) -> None:
+        result = subprocess.run(
+            [
+                bpy.app.binary_path,
+                "--factory-startup",
+                "--enable-event-simulate",
+                *("--window-geometry", "0", "0", "1280", "800"),
+                *("--python", session, "--", argument),
+            ],
+            env={**os.environ, **display},
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        output = result.stdout + result.stderr
+        assert result.returncode == 0, output
+        assert "Traceback" not in output, output
+        assert "Error" not in output, output
+
+    return run

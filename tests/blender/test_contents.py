@@ -8,23 +8,6 @@ import pytest
 import scenes
 
 
-@pytest.fixture
-def bake(addon):
-    """Returns a function that bakes with the settings given as keywords."""
-
-    def run(image, objects=(), *, progress=lambda _: True, **settings):
-        module = addon("bake")
-        return module.bake(
-            image,
-            list(objects),
-            module.Settings(**settings),
-            scenes.depsgraph(),
-            progress=progress,
-        )
-
-    return run
-
-
 def bumps(height, width, seed=1):
     """RGBA of an encoded normal map, in values that bytes hold."""
     slopes = np.random.default_rng(seed).normal(0, 0.4, (height, width, 2))

@@ -10,16 +10,6 @@ from texture_readers import read_dds
 LEFT = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
 
 
-@pytest.fixture
-def bake(addon):
-    module = addon("bake")
-
-    def run(image, objects, **settings):
-        return module.bake(image, objects, module.Settings(**settings), scenes.depsgraph())
-
-    return run
-
-
 def write_png(path, pixels):
     height, width = pixels.shape[:2]
     writer = oiio.ImageOutput.create(str(path))

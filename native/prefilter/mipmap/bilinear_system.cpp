@@ -59,10 +59,7 @@ void BilinearSystem<C>::add_dual_cell(const CellMoments<C>& moments, int column,
 
 template <int C>
 void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double weight) {
-  links_.clear();
-  for (const SeamLink& link : links) {
-    links_.push_back(texel_link(link, system_, static_cast<float>(weight * link.strip_area)));
-  }
+  links_ = texel_links(links, system_, weight);
 }
 
 template <int C>

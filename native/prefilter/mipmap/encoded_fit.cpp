@@ -143,10 +143,7 @@ auto EncodedFit<C>::assemble(int threads) -> std::array<double, kColours> {
 
 template <int C>
 void EncodedFit<C>::add_links(const std::vector<SeamLink>& links, double weight) {
-  links_.clear();
-  for (const SeamLink& link : links) {
-    links_.push_back(texel_link(link, system_, static_cast<float>(weight * link.strip_area)));
-  }
+  links_ = texel_links(links, system_, weight);
 }
 
 template <int C>

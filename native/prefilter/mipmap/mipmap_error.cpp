@@ -71,7 +71,52 @@ struct Integrals {
   double step_level = 0.0;   // of (M - L) L
   double step_image = 0.0;   // of (M - L) I
   double step_step = 0.0;    // of (M - L)^2
+
+  void operator+=(const Integrals& other) {
+    level_level += other.level_level;
+    level_image += other.level_image;
+    step_level += other.step_level;
+    step_image += other.step_image;
+    step_step += other.step_step;
+  }
 };
+
+// The integrals of the squared error h + 2 f c + f^2 s at the fraction f between two levels.
+struct Squares {
+  double here = 0.0;   // h, of (L - I)^2
+  double cross = 0.0;  // c, of (L - I) (M - L)
+  double step = 0.0;   // s, of (M - L)^2
+
+  void operator+=(const Squares& other) {
+    here += other.here;
+    cross += other.cross;
+    step += other.step;
+  }
+};
+
+// Of each level, the sum over the blocks; `parts` holds the levels of a block side by side.
+template <class Sums>
+std::vector<Sums> totals_of_levels(const std::vector<Sums>& parts, std::size_t level_count) {
+  std::vector<Sums> totals(level_count);
+  for (std::size_t i = 0; i < parts.size(); ++i) totals[i % level_count] += parts[i];
+  return totals;
+}
+
+// The root mean squares where the squares that were integrated weigh `mass` in all.
+std::vector<double> errors_at(const std::vector<double>& mip_values,
+                              const std::vector<Squares>& levels, double mass) {
+  const auto last = static_cast<double>(levels.size() - 1);
+  std::vector<double> errors;
+  for (const double mip_value : mip_values) {
+    const double value = std::clamp(mip_value, 0.0, last);
+    const auto level = static_cast<std::size_t>(value);
+    const double f = value - static_cast<double>(level);
+    const Squares& sums = levels[level];
+    const double squared = sums.here + 2.0 * f * sums.cross + f * f * sums.step;
+    errors.push_back(std::sqrt(std::max(squared, 0.0) / mass));
+  }
+  return errors;
+}
 
 template <int C>
 std::vector<double> measure(const std::vector<ImageView>& levels, const ImageView& image,
@@ -120,30 +165,13 @@ std::vector<double> measure(const std::vector<ImageView>& levels, const ImageVie
 
   double image_image = 0.0;
   for (const double part : image_parts) image_image += part;
-  std::vector<Integrals> totals(levels.size());
-  for (std::int64_t block = 0; block < block_count; ++block) {
-    for (int level = 0; level < level_count; ++level) {
-      const Integrals& part = parts[block * level_count + level];
-      totals[level].level_level += part.level_level;
-      totals[level].level_image += part.level_image;
-      totals[level].step_level += part.step_level;
-      totals[level].step_image += part.step_image;
-      totals[level].step_step += part.step_step;
-    }
+  std::vector<Squares> squares;
+  for (const Integrals& sums : totals_of_levels(parts, levels.size())) {
+    squares.push_back({sums.level_level - 2.0 * sums.level_image + image_image,
+                       sums.step_level - sums.step_image, sums.step_step});
   }
-
   progress.report(1.0);
-  std::vector<double> errors;
-  for (const double mip_value : mip_values) {
-    const double value = std::clamp(mip_value, 0.0, static_cast<double>(level_count - 1));
-    const int level = static_cast<int>(value);
-    const double f = value - level;
-    const Integrals& sums = totals[level];
-    const double squared = sums.level_level - 2.0 * sums.level_image + image_image +
-                           2.0 * f * (sums.step_level - sums.step_image) + f * f * sums.step_step;
-    errors.push_back(std::sqrt(std::max(squared, 0.0) / (triangles.total_mass * C)));
-  }
-  return errors;
+  return errors_at(mip_values, squares, triangles.total_mass * C);
 }
 
 // The same for a reader that decodes after the lookup: `levels` and `image` are encoded, and the
@@ -154,11 +182,6 @@ std::vector<double> measure_decoded(const std::vector<ImageView>& levels, const 
                                     const std::vector<double>& mip_values, WrapModes wrap,
                                     const Progress& progress, int threads) {
   const SrgbDecoder& decode = SrgbDecoder::instance();
-  struct Squares {
-    double here = 0.0;   // of L - I
-    double cross = 0.0;  // of (L - I) (M - L)
-    double step = 0.0;   // of M - L
-  };
   const std::size_t level_count = levels.size();
   const std::int64_t block_count = sweep_block_count(image.width, image.height);
   std::vector<Squares> parts(static_cast<std::size_t>(block_count) * level_count);
@@ -212,26 +235,8 @@ std::vector<double> measure_decoded(const std::vector<ImageView>& levels, const 
                      }
                    });
 
-  std::vector<Squares> totals(level_count);
-  for (std::int64_t block = 0; block < block_count; ++block) {
-    for (std::size_t level = 0; level < level_count; ++level) {
-      const Squares& part = parts[block * level_count + level];
-      totals[level].here += part.here;
-      totals[level].cross += part.cross;
-      totals[level].step += part.step;
-    }
-  }
   progress.report(1.0);
-  std::vector<double> errors;
-  for (const double mip_value : mip_values) {
-    const double value = std::clamp(mip_value, 0.0, static_cast<double>(level_count - 1));
-    const auto level = static_cast<std::size_t>(value);
-    const double f = value - static_cast<double>(level);
-    const Squares& sums = totals[level];
-    const double squared = sums.here + 2.0 * f * sums.cross + f * f * sums.step;
-    errors.push_back(std::sqrt(std::max(squared, 0.0) / (triangles.total_mass * C)));
-  }
-  return errors;
+  return errors_at(mip_values, totals_of_levels(parts, level_count), triangles.total_mass * C);
 }
 
 void check(const std::vector<ImageView>& levels, const ImageView& image,

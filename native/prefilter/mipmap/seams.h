@@ -53,17 +53,23 @@ void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surf
 std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, int height,
                                  WrapModes wrap);
 
-/// The link between the texels of a level's system; the same weight for all channels.
+/// The links between the texels of a level's system, each with its strip's area times `weight`, the
+/// same for all channels.
 template <typename System>
-TexelLink texel_link(const SeamLink& seam, const System& system, float weight) {
-  TexelLink link;
-  link.count = seam.count;
-  for (int k = 0; k < seam.count; ++k) {
-    link.texels[k] = system.at(seam.x[k], seam.y[k]);
-    link.shares[k] = seam.shares[k];
+std::vector<TexelLink> texel_links(const std::vector<SeamLink>& seams, const System& system,
+                                   double weight) {
+  std::vector<TexelLink> links(seams.size());
+  for (std::size_t i = 0; i < seams.size(); ++i) {
+    const SeamLink& seam = seams[i];
+    TexelLink& link = links[i];
+    link.count = seam.count;
+    for (int k = 0; k < seam.count; ++k) {
+      link.texels[k] = system.at(seam.x[k], seam.y[k]);
+      link.shares[k] = seam.shares[k];
+    }
+    link.weight.v = Lanes{} + static_cast<float>(weight * seam.strip_area);
   }
-  link.weight.v = Lanes{} + weight;
-  return link;
+  return links;
 }
 
 /// The root mean square, over the length of the seams and the channels, of the difference between

@@ -136,35 +136,41 @@ def quitting():
     return SimpleNamespace(window_manager=manager, workspace=None), calls
 
 
-def test_quitting_leaves_nothing(addon, quitting):
-    module = addon("operators.bake_mipmaps")
-    operator_class = module.PREFILTER_OT_bake_mipmaps
+@pytest.mark.parametrize("is_reading", [False, True])
+def test_quitting_leaves_nothing(addon, quitting, is_reading):
+    operator_class = addon("operators.bake_mipmaps").PREFILTER_OT_bake_mipmaps
+    background = addon("operators.background").BackgroundOperator
     context, calls = quitting
     operator = SimpleNamespace(
         _timer=None,
-        _job=addon("jobs").Job(lambda progress: None),
-        _bake=SimpleNamespace(discard=lambda: calls.append("discard")),
+        _job=None if is_reading else addon("jobs").Job(lambda progress: None),
+        _reading=SimpleNamespace(close=lambda: calls.append("close")),
+        _key=lambda: "prefilter.bake_mipmaps",
     )
-    operator._leave = lambda context: operator_class._leave(operator, context)
-    operator_class.cancel(operator, context)
-    assert calls == ["discard", "timer", "progress"]
+    if not is_reading:
+        operator._bake = SimpleNamespace(discard=lambda: calls.append("discard"))
+    operator.discard = partial(operator_class.discard, operator)
+    operator._leave = partial(background._leave, operator)
+    background.cancel(operator, context)
+    assert calls == ["close", *(["discard"] if not is_reading else []), "timer", "progress"]
 
 
 def test_thread_that_does_not_start_leaves_nothing(addon, monkeypatch):
-    module = addon("operators.bake_mipmaps")
+    module, background = addon("operators.bake_mipmaps"), addon("operators.background")
 
     def no_job(work):
         raise RuntimeError("no thread")
 
-    monkeypatch.setattr(module, "Job", no_job)
+    monkeypatch.setattr(background, "Job", no_job)
     monkeypatch.setattr(module, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
     operator_class = module.PREFILTER_OT_bake_mipmaps
     operator = SimpleNamespace(_what_to_read=lambda context: ())
+    operator._start = partial(operator_class._start, operator)
     operator._go_on_reading = partial(operator_class._go_on_reading, operator)
 
     def reading():
         yield 0.5
-        return SimpleNamespace(compute=None)
+        return SimpleNamespace(compute=None, image_name="Paint")
 
     monkeypatch.setattr(module.bake.Bake, "reading", reading)
     with pytest.raises(RuntimeError, match="no thread"):

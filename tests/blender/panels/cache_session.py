@@ -7,10 +7,8 @@ FOLDER gets result.json.
 """
 
 import json
-import os
 import sys
-import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import addon_utils
@@ -20,10 +18,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import cycles_scenes as cycles
 import scenes
+from window import play, until
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
-SECONDS_PER_STEP = 0.3
-MAX_WAITS = 200
 
 
 def session() -> Iterator[None]:
@@ -108,29 +105,4 @@ def contents() -> dict[str, int]:
     return {path.name: hash(path.read_bytes()) for path in sorted(folder.iterdir())}
 
 
-def until(condition: Callable[[], bool]) -> Iterator[None]:
-    """Yields until a condition holds."""
-    for _ in range(MAX_WAITS):
-        yield
-        if condition():
-            return
-    raise TimeoutError(f"waited {MAX_WAITS} times for {condition}")
-
-
-steps = session()
-
-
-def step() -> float:
-    """Runs the session up to its next wait; ends Blender after the last."""
-    try:
-        next(steps)
-    except StopIteration:
-        os._exit(0)
-    except BaseException:
-        traceback.print_exc()
-        os._exit(1)
-    return SECONDS_PER_STEP
-
-
-bpy.context.preferences.view.show_splash = False
-bpy.app.timers.register(step, first_interval=1.0, persistent=True)
+play(session())

@@ -1,38 +1,14 @@
 """The panel and the modal operator, in a window that nobody sees."""
 
 import json
-import os
-import subprocess
 from pathlib import Path
-
-import bpy
 
 SESSION = Path(__file__).with_name("window_session.py")
 
 
-def test_panel_and_modal_bake(display, tmp_path):
+def test_panel_and_modal_bake(in_window, tmp_path):
     result = tmp_path / "result.json"
-    session = subprocess.run(
-        [
-            bpy.app.binary_path,
-            "--factory-startup",
-            "--enable-event-simulate",
-            "--window-geometry",
-            *("0", "0", "1280", "800"),
-            "--python",
-            SESSION,
-            "--",
-            result,
-        ],
-        env={**os.environ, **display},
-        capture_output=True,
-        text=True,
-        timeout=240,
-        check=False,
-    )
-    output = session.stdout + session.stderr
-    assert session.returncode == 0, output
-    assert "Traceback" not in output
+    in_window(SESSION, result)
     found = json.loads(result.read_text())
     assert found["tab"] == "Prefilter"
     assert not found["polls_without_image"]

@@ -1,8 +1,6 @@
 """The panel and the modal bake into the texture cache, in a window that nobody sees."""
 
 import json
-import os
-import subprocess
 from pathlib import Path
 
 import bpy
@@ -12,28 +10,8 @@ SESSION = Path(__file__).with_name("cache_session.py")
 
 
 @pytest.mark.skipif(bpy.app.version < (5, 2, 0), reason="Blender 5.2 or later is needed")
-def test_panel_and_modal_bake_into_the_cache(display, tmp_path):
-    session = subprocess.run(
-        [
-            bpy.app.binary_path,
-            "--factory-startup",
-            "--enable-event-simulate",
-            "--window-geometry",
-            *("0", "0", "1280", "800"),
-            "--python",
-            SESSION,
-            "--",
-            tmp_path,
-        ],
-        env={**os.environ, **display},
-        capture_output=True,
-        text=True,
-        timeout=240,
-        check=False,
-    )
-    output = session.stdout + session.stderr
-    assert session.returncode == 0, output
-    assert "Traceback" not in output, output
+def test_panel_and_modal_bake_into_the_cache(in_window, tmp_path):
+    in_window(SESSION, tmp_path)
     found = json.loads((tmp_path / "result.json").read_text())
     assert found["started"] == ["RUNNING_MODAL"]
     assert not found["polls_while_running"]

@@ -6,8 +6,7 @@ Usage: blender --factory-startup --enable-event-simulate --python preview_sessio
 import importlib
 import os
 import sys
-import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import addon_utils
@@ -19,11 +18,10 @@ from mathutils import Matrix
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
+from window import play, until
 
 PACKAGE = "bl_ext.user_default.prefilter"
 RESULT = sys.argv[sys.argv.index("--") + 1]
-SECONDS_PER_STEP = 0.3
-MAX_WAITS = 100
 CHANNELS = ("COLOR_ALPHA", "COLOR", "ALPHA", "GREEN")
 SIDE = 48  # Of an offscreen picture.
 
@@ -192,29 +190,4 @@ def offscreen(preview: object, image: bpy.types.Image) -> Iterator[None]:
     bpy.types.SpaceImageEditor.draw_handler_remove(handle, "WINDOW")
 
 
-def until(condition: Callable[[], bool]) -> Iterator[None]:
-    """Yields until a condition holds."""
-    for _ in range(MAX_WAITS):
-        yield
-        if condition():
-            return
-    raise TimeoutError(f"waited {MAX_WAITS} times for {condition}")
-
-
-steps = session()
-
-
-def step() -> float:
-    """Runs the session up to its next wait; ends Blender after the last."""
-    try:
-        next(steps)
-    except StopIteration:
-        os._exit(0)
-    except BaseException:
-        traceback.print_exc()
-        os._exit(1)
-    return SECONDS_PER_STEP
-
-
-bpy.context.preferences.view.show_splash = False
-bpy.app.timers.register(step, first_interval=1.0, persistent=True)
+play(session())

@@ -1,7 +1,5 @@
 """Levels in the place of their image: what the editors draw, and when it is stale."""
 
-import os
-import subprocess
 from pathlib import Path
 
 import bpy
@@ -37,31 +35,10 @@ def stored():
 
 
 @pytest.fixture(scope="module")
-def shown(display, tmp_path_factory):
+def shown(in_window, tmp_path_factory):
     """Runs the session once, and returns what it found."""
     result = tmp_path_factory.mktemp("session") / "result.npz"
-    session = subprocess.run(
-        [
-            bpy.app.binary_path,
-            "--factory-startup",
-            "--enable-event-simulate",
-            "--window-geometry",
-            *("0", "0", "1280", "800"),
-            "--python",
-            SESSION,
-            "--",
-            result,
-        ],
-        env={**os.environ, **display},
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=False,
-    )
-    output = session.stdout + session.stderr
-    assert session.returncode == 0, output
-    assert "Traceback" not in output
-    assert "Error" not in output
+    in_window(SESSION, result)
     return dict(np.load(result))
 
 
