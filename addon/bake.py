@@ -192,6 +192,8 @@ class Bake:
                 f"image '{image.name}' has the color space {pictures[0].colorspace}; a shader "
                 f"reads normals right in Non-Color only"
             )
+        if settings.reader != "linear":
+            job.warnings.extend(_odd_readers(pictures[0], targets))
         if settings.roughness and roughness is None:
             job.warnings.append(
                 f"roughness '{settings.roughness}' is left out: '{image.name}' is no normal map"
@@ -228,6 +230,11 @@ class Bake:
         """What lookups read outside of the image along u and v."""
         return self._wrap
 
+    @property
+    def reader(self) -> str:
+        """How the levels are looked up, as `prefilter.mipmaps` names it."""
+        return self._settings.reader if reads_encoded(self._picture) else "linear"
+
     def linear(self, progress: Progress) -> FloatArray:
         """Returns the image's scene-linear values; raises what `compute` does."""
         return images.scene_linear(self._picture, partial(go_on, progress, 0.0))
@@ -257,6 +264,7 @@ class Bake:
                 bounds=self._bounds(linear),
                 levels=levels,
                 premultiplied=not self._picture.alpha_is_straight,
+                reader=self.reader,
                 seam_weight=self._settings.seam_weight,
                 progress=progress,
                 threads=self._settings.threads,
@@ -316,6 +324,7 @@ class Bake:
         if self._content == "normal":
             return contents.normal_levels(linear, surfaces, self._roughness, progress, **options)
         bounds = self._bounds(linear)
+        options["reader"] = self.reader
         options["seam_weight"] = settings.seam_weight
         if self._content == "cutout":
             levels = contents.cutout_levels(
@@ -447,6 +456,11 @@ class Bake:
         return " ".join(parts)
 
 
+def reads_encoded(picture: Picture) -> bool:
+    """Tells whether there are renderers that interpolate the picture's texels as encoded."""
+    return picture.encoding is images.Encoding.SRGB and not picture.is_float
+
+
 def bake(
     image: bpy.types.Image,
     objects: Sequence[bpy.types.Object],
@@ -460,6 +474,17 @@ def bake(
     job = Bake.read(image, objects, settings, depsgraph, all_faces=all_faces)
     job.compute(progress)
     return job.write()
+
+
+def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:
+    """Returns warnings where nothing that is baked is read as encoded."""
+    if not reads_encoded(picture):
+        return [f"reader: '{picture.name}' is no 8-bit sRGB image, so it is read as linear light"]
+    return [
+        f"reader: '{target}' holds linear light, but its levels are for a reader of encoded texels"
+        for target in targets
+        if target.suffix.lower() == ".exr"
+    ]
 
 
 def _check_levels(picture: Picture, levels: int) -> None:

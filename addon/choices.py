@@ -51,6 +51,17 @@ BOUNDS = {
     "none": Choice("None", "Values may leave the range of the image"),
 }
 
+READERS = {
+    "linear": Choice(
+        "Linear Light", "GPUs, and float textures everywhere: texels are decoded, then interpolated"
+    ),
+    "srgb-after": Choice(
+        "Encoded",
+        "Cycles on 8-bit sRGB images: encoded texels are interpolated, then decoded. Other images "
+        "are read as linear light all the same",
+    ),
+}
+
 CONTENTS = {
     "auto": Choice(
         "Automatic",
@@ -93,6 +104,7 @@ class Settings:
         wrap: A key of `WRAPS`: what lies outside of the image along u.
         wrap_v: A key of `WRAPS_V`: the same along v.
         bounds: A key of `BOUNDS`.
+        reader: A key of `READERS`: how the levels of an 8-bit sRGB image are looked up.
         levels: How many levels to make, the image itself included; 0 for all.
         use_images: Whether to write an image datablock for each level.
         filepath: A mip-mapped file to write; empty for none. It gets every level.
@@ -119,6 +131,7 @@ class Settings:
     wrap: str = "auto"
     wrap_v: str = "same"
     bounds: str = "auto"
+    reader: str = "linear"
     levels: int = 0
     use_images: bool = True
     filepath: str = ""

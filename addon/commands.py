@@ -34,6 +34,7 @@ _TABLES = (
     _table("filters", choices.FILTERS),
     _table("wrap modes", choices.WRAPS | choices.WRAPS_V),
     _table("value ranges", choices.BOUNDS),
+    _table("readers", choices.READERS),
     _table("contents", choices.CONTENTS),
 )
 _FORMAT_TABLE = _table("texture formats, for .dds and .ktx2", choices.TEXTURE_FORMATS)
@@ -42,6 +43,7 @@ _CHOSEN = {
     "wrap": (choices.WRAPS, "MODE", "what lies outside of the image along u"),
     "wrap-v": (choices.WRAPS_V, "MODE", "the same along v"),
     "bounds": (choices.BOUNDS, "RANGE", "the values that texels of a level may have"),
+    "reader": (choices.READERS, "READER", "what looks up the levels of an 8-bit sRGB image"),
     "content": (choices.CONTENTS, "CONTENT", "what the image holds"),
     "roughness-channel": (
         choices.ROUGHNESS_CHANNELS,
@@ -259,10 +261,10 @@ def _add_plot(commands: Any) -> None:
         metavar="FILTER",
         nargs="+",
         choices=choices.FILTERS,
-        default=list(errors.DEFAULT_FILTERS),
-        help=f"the filters to compare (default: {' '.join(errors.DEFAULT_FILTERS)})",
+        help=f"the filters to compare (default: {' '.join(errors.DEFAULT_FILTERS)}; without "
+        f"pam-trilinear for --reader srgb-after)",
     )
-    _add_choices(parser, "wrap", "wrap-v", "bounds")
+    _add_choices(parser, "wrap", "wrap-v", "bounds", "reader")
     parser.add_argument("--output", metavar="FILE", default="", help="a .png file to write")
     parser.add_argument(
         "--table", metavar="FILE", default="", help="a .csv file to write the values to"
@@ -368,11 +370,13 @@ def _plot(options: argparse.Namespace) -> None:
     objects = _chosen(_load(os.path.abspath(options.file), extension), options.object)
     image, is_picture = _image(options.image, objects, "auto")
     images.check_untiled(image)
-    filters = list(dict.fromkeys(options.filters))
+    filters = list(dict.fromkeys(options.filters or errors.default_filters(options.reader)))
     source = bake.Bake.read(
         image,
         objects,
-        choices.Settings(wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds),
+        choices.Settings(
+            wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds, reader=options.reader
+        ),
         bpy.context.evaluated_depsgraph_get(),
         all_faces=is_picture,
         needs_surface=True,
@@ -422,6 +426,7 @@ def _bake(options: argparse.Namespace) -> None:
         wrap=options.wrap,
         wrap_v=options.wrap_v,
         bounds=options.bounds,
+        reader=options.reader,
         levels=options.levels,
         use_images=options.save,
         filepath=options.output,

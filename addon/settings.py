@@ -47,6 +47,13 @@ class BakeProperties:
         items=items(choices.BOUNDS),
         default=choices.Settings.bounds,
     )
+    reader: EnumProperty(
+        name="Reader",
+        description="What looks up the levels; PAM Bilinear fits them to it, and the preview and "
+        "the error plot show what it sees",
+        items=items(choices.READERS),
+        default=choices.Settings.reader,
+    )
     content: EnumProperty(
         name="Content",
         description="What the image holds, which decides how its levels are made",
@@ -169,6 +176,9 @@ class BakeProperties:
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(self, "filter")
+        layout.prop(self, "reader")
+        if self.reader != "linear" and self.filter == "pam-trilinear":
+            layout.label(text="PAM Trilinear goes with Linear Light", icon="ERROR")
         column = layout.column(align=True)
         column.prop(self, "wrap", text="Wrap U")
         column.prop(self, "wrap_v")

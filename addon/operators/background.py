@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import bpy
 import prefilter
 
-from .. import bake
+from .. import bake, texture_cache
 from ..bridge import derived, images
 from ..choices import Settings
 from ..jobs import Job, Progress
@@ -174,8 +174,8 @@ class BackgroundOperator:
     def discard(self) -> None:
         """Lets go of what was read and made, when `finish` is not to come."""
 
-    def warn(self, source: bake.Bake) -> None:
-        """Reports what was left out when the surfaces were read."""
+    def warn(self, source: bake.Bake | bake.Outcome | texture_cache.Outcome) -> None:
+        """Reports what was left out when the surfaces were read, and the like."""
         for warning in source.warnings:
             self.report({"WARNING"}, warning)
 

@@ -49,8 +49,7 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, BackgroundOperator, bpy.types.Op
         """Puts the levels into place."""
         del context, result
         outcome = self._bake.write()
-        for warning in outcome.warnings:
-            self.report({"WARNING"}, warning)
+        self.warn(outcome)
         return outcome.summary
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

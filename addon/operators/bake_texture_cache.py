@@ -44,8 +44,7 @@ class PREFILTER_OT_bake_texture_cache(BackgroundOperator, bpy.types.Operator):
         """Puts the files into place."""
         del context, result
         outcome = self._bake.write()
-        for warning in outcome.warnings:
-            self.report({"WARNING"}, warning)
+        self.warn(outcome)
         return outcome.summary
 
     def discard(self) -> None:

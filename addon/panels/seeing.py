@@ -80,6 +80,9 @@ class PREFILTER_PT_error(_Panel, bpy.types.Panel):
         """Draws the panel."""
         settings = context.window_manager.prefilter_view
         self.layout.column(align=True).prop(settings, "plot_filters")
+        reader = context.scene.prefilter_bake.reader
+        if reader != "linear" and "pam-trilinear" in settings.plot_filters:
+            self.layout.label(text="PAM Trilinear goes with Linear Light", icon="ERROR")
         operator = self.layout.operator(PREFILTER_OT_plot_error.bl_idname, icon="FCURVE")
         operator.filters = settings.plot_filters
         _draw_back(self.layout, context)

@@ -67,6 +67,11 @@ class ErrorCurves:
         return f"Error of '{self.image}' over all mip values: {', '.join(parts)}"
 
 
+def default_filters(reader: str) -> tuple[str, ...]:
+    """Returns the filters to compare for a key of `choices.READERS`."""
+    return tuple(name for name in DEFAULT_FILTERS if reader == "linear" or name != "pam-trilinear")
+
+
 def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCurves:
     """Filters an image with each filter, and measures the levels.
 
@@ -100,6 +105,7 @@ def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCu
                     source.surfaces,
                     mip_values,
                     wrap=source.wrap,
+                    reader=source.reader,
                     progress=part(_FILTERING, 1.0),
                 )
             )

@@ -1,7 +1,8 @@
 """Draws levels over their image in the Image and UV editors.
 
 A texel is looked up as a renderer does, in single precision: bilinear within a level, linear
-between two levels, in scene-linear light. The shader encodes the result for an sRGB display, which
+between two levels, in scene-linear light; for readers that decode after the lookup, bilinear among
+encoded texels. The shader encodes the result for an sRGB display, which
 is how the editor shows an image unless its View as Render is on.
 """
 
@@ -41,27 +42,6 @@ int wrapped(int index, int size, int mode)
                    : clamp(index, 0, size - 1);
 }
 
-vec4 texel(sampler2D level, ivec2 index)
-{
-  ivec2 size = textureSize(level, 0);
-  bool outside = (wrap.x == 2 && (index.x < 0 || index.x >= size.x)) ||
-                 (wrap.y == 2 && (index.y < 0 || index.y >= size.y));
-  if (outside) {
-    return vec4(0.0);
-  }
-  return texelFetch(
-    level, ivec2(wrapped(index.x, size.x, wrap.x), wrapped(index.y, size.y, wrap.y)), 0);
-}
-
-vec4 bilinear(sampler2D level)
-{
-  vec2 place = uv * vec2(textureSize(level, 0)) - 0.5;
-  ivec2 low = ivec2(floor(place));
-  vec2 f = place - floor(place);
-  return mix(mix(texel(level, low), texel(level, low + ivec2(1, 0)), f.x),
-             mix(texel(level, low + ivec2(0, 1)), texel(level, low + ivec2(1, 1)), f.x), f.y);
-}
-
 float encoded(float light)
 {
   return light <= 0.0031308 ? light * 12.92 : 1.055 * pow(light, 1.0 / 2.4) - 0.055;
@@ -80,6 +60,34 @@ vec3 encoded(vec3 light)
 vec3 decoded(vec3 value)
 {
   return vec3(decoded(value.r), decoded(value.g), decoded(value.b));
+}
+
+vec4 texel(sampler2D level, ivec2 index)
+{
+  ivec2 size = textureSize(level, 0);
+  bool outside = (wrap.x == 2 && (index.x < 0 || index.x >= size.x)) ||
+                 (wrap.y == 2 && (index.y < 0 || index.y >= size.y));
+  if (outside) {
+    return vec4(0.0);
+  }
+  return texelFetch(
+    level, ivec2(wrapped(index.x, size.x, wrap.x), wrapped(index.y, size.y, wrap.y)), 0);
+}
+
+vec4 read(sampler2D level, ivec2 index)
+{
+  vec4 light = texel(level, index);
+  return decodesAfter ? vec4(encoded(light.rgb), light.a) : light;
+}
+
+vec4 bilinear(sampler2D level)
+{
+  vec2 place = uv * vec2(textureSize(level, 0)) - 0.5;
+  ivec2 low = ivec2(floor(place));
+  vec2 f = place - floor(place);
+  vec4 found = mix(mix(read(level, low), read(level, low + ivec2(1, 0)), f.x),
+                   mix(read(level, low + ivec2(0, 1)), read(level, low + ivec2(1, 1)), f.x), f.y);
+  return decodesAfter ? vec4(decoded(found.rgb), found.a) : found;
 }
 
 void main()
@@ -148,6 +156,7 @@ def draw_levels(
     shader.uniform_int("wrap", shown.wrap_numbers)
     shader.uniform_int("channels", _CHANNELS.get(channels, 0))
     shader.uniform_bool("blends", shown.blends)
+    shader.uniform_bool("decodesAfter", shown.decodes_after)
     theme = bpy.context.preferences.themes[0].user_interface
     shader.uniform_float("checker_first", (*theme.transparent_checker_primary[:3], 1.0))
     shader.uniform_float("checker_second", (*theme.transparent_checker_secondary[:3], 1.0))
@@ -170,6 +179,7 @@ def _compiled() -> gpu.types.GPUShader:
             ("FLOAT", "checker_size"),
             ("INT", "channels"),
             ("BOOL", "blends"),
+            ("BOOL", "decodesAfter"),
             # Blender sets it: whether the framebuffer encodes what is written to it.
             ("BOOL", "srgbTarget"),
         ):

@@ -29,6 +29,7 @@ class Preview:
             multiplied by alpha where that is coverage.
         wrap: What lookups read outside of the image along u and v.
         blends: Whether alpha is coverage.
+        decodes_after: Whether lookups interpolate encoded texels, and decode afterwards.
         objects: The names of the objects that wear the image.
         is_stale: Whether the image or an object has changed since.
     """
@@ -38,6 +39,7 @@ class Preview:
     levels: dict[str, list[FloatArray]]
     wrap: tuple[str, str]
     blends: bool
+    decodes_after: bool
     objects: frozenset[str]
     is_stale: bool = False
     textures: dict[tuple[str, int], object] = field(default_factory=dict)
@@ -92,6 +94,7 @@ def compute(source: Bake, image_uid: int, filters: Iterable[str], progress: Prog
         levels=levels,
         wrap=source.wrap,
         blends=picture.alpha_is_coverage,
+        decodes_after=source.reader != "linear",
         objects=frozenset(source.objects),
     )
 

@@ -209,10 +209,32 @@ def test_plot(blend, tmp_path):
     ]
 
 
+def test_reader(blend, tmp_path):
+    """Without --filters, the plot leaves out the filter that such a reader does not go with."""
+    table, target = tmp_path / "error.csv", tmp_path / "out.tif"
+    result = run("plot", blend, "--reader", "srgb-after", "--table", table)
+    assert result.returncode == 0, result.stderr
+    assert table.read_text().splitlines()[0] == "mip value,pam-bilinear,pam-box,box"
+    result = run("bake", blend, "--reader", "srgb-after", "--output", target)
+    assert result.returncode == 0, result.stderr
+    encoded = oiio.ImageBuf(str(target), 0, 1).get_pixels(oiio.UINT8)
+    assert run("bake", blend, "--output", target).returncode == 0
+    assert (oiio.ImageBuf(str(target), 0, 1).get_pixels(oiio.UINT8) != encoded).any()
+
+
 @pytest.mark.parametrize(
     ("arguments", "words", "status"),
     [
         ([], ["nothing to write"], 2),
+        (["--reader", "cycles", "--table", "error.csv"], ["'cycles'", "srgb-after"], 2),
+        (
+            [
+                *("--reader", "srgb-after", "--filters", "pam-trilinear"),
+                *("--table", "error.csv"),
+            ],
+            ["reader", "pam-bilinear"],
+            1,
+        ),
         (["--output", "error.jpg"], ["'.jpg'", ".png"], 1),
         (["--table", "error.png"], ["'.png'", ".csv"], 1),
         (["--output", "nowhere/error.png"], ["there is no folder"], 1),

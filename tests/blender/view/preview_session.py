@@ -99,7 +99,14 @@ def session() -> Iterator[None]:
     yield from shoot("byte.off")
     settings.use_preview = True
 
-    yield from offscreen(preview, images["byte"])
+    yield from offscreen(preview, images["byte"], "offscreen")
+    bpy.context.scene.prefilter_bake.reader = "srgb-after"
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.preview_levels("EXEC_DEFAULT", compare="tent")
+    yield from offscreen(preview, images["byte"], "encoded")
+    bpy.context.scene.prefilter_bake.reader = "linear"
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.preview_levels("EXEC_DEFAULT", compare="tent")
 
     for obj in bpy.data.objects:
         obj.select_set(False)
@@ -157,7 +164,7 @@ def session() -> Iterator[None]:
     np.savez(RESULT, **found)
 
 
-def offscreen(preview: object, image: bpy.types.Image) -> Iterator[None]:
+def offscreen(preview: object, image: bpy.types.Image, name: str) -> Iterator[None]:
     """Draws levels where nothing is rounded to bytes."""
     overlay = importlib.import_module(f"{PACKAGE}.view.overlay")
     shown = preview.find(image)
@@ -165,7 +172,7 @@ def offscreen(preview: object, image: bpy.types.Image) -> Iterator[None]:
     view = Matrix(((1.0, 0, 0, -0.5), (0, 1.0, 0, -0.5), (0, 0, 1, 0), (0, 0, 0, 1)))
 
     def draw() -> None:
-        if "offscreen 0" in found:
+        if f"{name} 0" in found:
             return
         target = gpu.types.GPUOffScreen(SIDE, SIDE, format="RGBA32F")
         for index, mip_value in enumerate((0.0, 1.0, 1.25, 99.0)):
@@ -181,12 +188,12 @@ def offscreen(preview: object, image: bpy.types.Image) -> Iterator[None]:
                 pixels = gpu.state.active_framebuffer_get().read_color(
                     0, 0, SIDE, SIDE, 4, 0, "FLOAT"
                 )
-            found[f"offscreen {index}"] = np.array(pixels.to_list())
+            found[f"{name} {index}"] = np.array(pixels.to_list())
         target.free()
 
     handle = bpy.types.SpaceImageEditor.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL")
     preview.redraw()
-    yield from until(lambda: "offscreen 3" in found)
+    yield from until(lambda: f"{name} 3" in found)
     bpy.types.SpaceImageEditor.draw_handler_remove(handle, "WINDOW")
 
 

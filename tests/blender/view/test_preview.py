@@ -51,7 +51,7 @@ def premultiplied(pixels, name):
     return light
 
 
-def levels(pixels, name, which="pam-bilinear"):
+def levels(pixels, name, which="pam-bilinear", reader="linear"):
     """Returns levels in premultiplied light, with four channels."""
     bounds = (0.0, None if name == "float" else 1.0)
     return prefilter.mipmaps(
@@ -60,6 +60,7 @@ def levels(pixels, name, which="pam-bilinear"):
         filter=which,
         bounds=bounds,
         premultiplied=True,
+        reader=reader,
     )
 
 
@@ -172,9 +173,14 @@ def test_uvs_stay_in_front(shown, stored):
         assert np.all(near.max(axis=1) > 25)
 
 
-def test_exact_where_nothing_is_rounded(shown, stored):
+@pytest.mark.parametrize("reader", ["linear", "srgb-after"])
+def test_exact_where_nothing_is_rounded(shown, stored, reader):
     """In a framebuffer of floats only the 16-bit floats of the textures are left."""
-    made = {which: levels(stored["byte"], "byte", which) for which in ("tent", "pam-bilinear")}
+    made = {
+        which: levels(stored["byte"], "byte", which, reader) for which in ("tent", "pam-bilinear")
+    }
+    if reader == "srgb-after":
+        made = {which: [scenes.to_srgb(level) for level in made[which]] for which in made}
     place = (np.arange(48) + 0.5) / 48
     u, v = np.meshgrid(2 * place - 0.5, 2 * place - 0.5)
     inside = (u > 0) & (u < 1) & (v > 0) & (v < 1)
@@ -185,10 +191,12 @@ def test_exact_where_nothing_is_rounded(shown, stored):
 
         def lookup(which, low=low, share=mip_value - low):
             fine, coarse = (scenes.bilinear(level, u, v) for level in made[which][low : low + 2])
+            if reader == "srgb-after":
+                fine, coarse = scenes.to_linear(fine), scenes.to_linear(coarse)
             return fine + share * (coarse - fine)
 
         light = np.where((place < 0.5)[:, None], lookup("tent"), lookup("pam-bilinear"))
-        found = shown[f"offscreen {index}"]
+        found = shown[f"{'offscreen' if reader == 'linear' else 'encoded'} {index}"]
         expected = scenes.to_srgb(light[..., :3])
         np.testing.assert_allclose(found[inside][:, :3], expected[inside], atol=6e-4)
         assert not found[~inside].any()
