@@ -195,7 +195,7 @@ def linear(image: bpy.types.Image) -> Texels:
 
 def unused(objects: Sequence[bpy.types.Object], image: bpy.types.Image) -> NDArray[np.bool_]:
     """Returns which texels no lookup on the objects reads: no triangle touches one beside them."""
-    _, uvs = subjects.read_triangles(objects, image, all_faces=False)
+    _, uvs, _ = subjects.read_triangles(objects, image, all_faces=False)
     width, height = image.size
     return ~subjects.dilated(subjects.touched_texels(uvs, width, height, "repeat"), "repeat")
 

@@ -31,7 +31,10 @@ class Taps:
 
     def of(self, texels: Texels) -> Floats:
         """Returns the lookups (n, channels) of an image of that shape."""
-        flat = texels.reshape(-1, texels.shape[2])
+        return self.of_flat(texels.reshape(-1, texels.shape[2]))
+
+    def of_flat(self, flat: Texels | Floats) -> Floats:
+        """Returns the lookups of the texels (height * width, channels) of such an image."""
         return sum(
             w * flat.take(i, axis=0) for i, w in zip(self._texels, self._weights, strict=True)
         )
@@ -43,6 +46,17 @@ class Taps:
             # At a border two taps can be one texel.
             shares[np.arange(len(i)), i] += w[:, 0]
         return shares
+
+    def normal_equations(self, values: Floats) -> tuple[Floats, Floats]:
+        """Returns those of the texels whose lookups are nearest to values (n, channels)."""
+        taps = list(zip(self._texels, self._weights, strict=True))
+        matrix = np.zeros((self._count, self._count))
+        right = np.zeros((self._count, values.shape[1]))
+        for i, w in taps:
+            np.add.at(right, i, w * values)
+            for j, v in taps:
+                np.add.at(matrix, (i, j), (w * v)[:, 0])
+        return matrix / len(values), right / len(values)
 
 
 def lookup(texels: Texels, points: Floats, wrap: str) -> Floats:
@@ -141,12 +155,16 @@ class SeamLines:
         return self.left, self.right
 
 
-def seam_lines(corners: Floats, uvs: Floats) -> SeamLines:
+def seam_lines(corners: Floats, uvs: Floats, parts: NDArray[np.int64] | None = None) -> SeamLines:
     """Finds the seams of triangles (m, 3, 3) with texture coordinates (m, 3, 2).
 
-    Corners at the same position are one; edges of more than two triangles are none.
+    Corners at the same position are one, if they are of the same of the parts (m,); edges of more
+    than two triangles are none.
     """
-    known, vertices = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    keys = np.zeros((len(corners), 3, 4))
+    keys[..., 0] = 0 if parts is None else parts[:, None]
+    keys[..., 1:] = corners
+    known, vertices = np.unique(keys.reshape(-1, 4), axis=0, return_inverse=True)
     vertices = vertices.reshape(-1, 3)
     edges = np.stack([vertices, np.roll(vertices, -1, axis=1)], axis=2).reshape(-1, 2)
     sides = np.stack([uvs, np.roll(uvs, -1, axis=1)], axis=2).reshape(-1, 2, 2)
@@ -161,7 +179,7 @@ def seam_lines(corners: Floats, uvs: Floats) -> SeamLines:
     first = first[counts == 2]
     left, right = sides[first], sides[first + 1]
     apart = (np.abs(left - right) > SAME_UV).any(axis=(1, 2))
-    ends = known[edges[first[apart]]]
+    ends = known[edges[first[apart]], 1:]
     lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     return SeamLines(lengths, left[apart], right[apart], ends)
 

@@ -34,9 +34,10 @@ RISE = 0.02
 HIDDEN = 0.1
 AGREEMENT = 0.01
 # Of the best trade.
-MOST_UNKNOWNS = 256
+MOST_UNKNOWNS = 1024
 POINTS = 1 << 16
-SWEEPS = 300
+MOST_SWEEPS = 500
+STILL = 1e-5
 
 
 def main() -> None:
@@ -68,7 +69,7 @@ def measure(
     report: Report, summary: list[list[str]], subject: Subject, options: argparse.Namespace
 ) -> None:
     """Adds what was found of one subject to the report and the summary."""
-    lines = sampling.seam_lines(subject.corners, subject.uvs)
+    lines = sampling.seam_lines(subject.corners, subject.uvs, subject.parts)
     if not len(lines.lengths):
         (found,) = prefilter.seam_contrast([subject.image], subject.surfaces, wrap=subject.wrap)
         report.verdict(found == 0, f"{subject.name}: has no seams, and the library finds none")
@@ -192,12 +193,12 @@ def add_best_trades(
         height, width, channels = levels[k].shape
         if height * width > MOST_UNKNOWNS:
             continue
-        rows = sampling.Taps(points, levels[k].shape, subject.wrap).matrix()
-        area, goal = rows.T @ rows / POINTS, rows.T @ truth / POINTS
+        taps = sampling.Taps(points, levels[k].shape, subject.wrap)
+        area, goal = taps.normal_equations(truth)
         across = lines.matrix(levels[k].shape, subject.wrap)
 
-        def error(texels: Floats, rows: Floats = rows) -> float:
-            return float(np.sqrt(((rows @ texels - truth) ** 2).mean()))
+        def error(texels: Floats, taps: sampling.Taps = taps) -> float:
+            return float(np.sqrt(((taps.of_flat(texels) - truth) ** 2).mean()))
 
         def contrast(texels: Floats, across: Floats = across) -> float:
             return float(np.sqrt((texels * (across @ texels)).sum() / texels.shape[1]))
@@ -224,10 +225,13 @@ def least_squares(matrix: Floats, goal: Floats, start: Floats) -> Floats:
     """Returns the texels in [0, 1] with the least square, by projected Gauss-Seidel."""
     texels = start.copy()
     (read,) = np.nonzero(np.diag(matrix) > 0)
-    for _ in range(SWEEPS):
+    for _ in range(MOST_SWEEPS):
+        before = texels.copy()
         for i in read:
             step = (goal[i] - matrix[i] @ texels) / matrix[i, i]
-            texels[i] = np.clip(texels[i] + step, 0, 1)
+            texels[i] = np.minimum(np.maximum(texels[i] + step, 0), 1)
+        if np.abs(texels - before).max() < STILL:
+            break
     return texels
 
 

@@ -46,6 +46,7 @@ class Subject:
         corners: (m, 3, 3) positions and `uvs` (m, 3, 2) of the same triangles, read without the
             add-on and the library.
         uvs: See `corners`.
+        parts: (m,) numbers of the objects that they belong to.
     """
 
     name: str
@@ -55,6 +56,7 @@ class Subject:
     wrap: str
     corners: Floats
     uvs: Floats
+    parts: NDArray[np.int64]
 
     def painted(self, name: str, unused: NDArray[np.bool_]) -> "Subject":
         """Returns the same with some texels magenta."""
@@ -137,13 +139,13 @@ def read(
     found = meshes.image_surfaces(objects, image, depsgraph, all_faces=all_faces)
     if wrap == "auto":
         wrap = WRAP_OF_EXTENSION[found.extensions[0]]
-    corners, uvs = read_triangles(objects, image, all_faces=all_faces)
+    corners, uvs, parts = read_triangles(objects, image, all_faces=all_faces)
     area = sum(surface.area for surface in found.surfaces)
     if not np.isclose(areas_of(corners).sum(), area, rtol=1e-5):
         raise ValueError(
             f"{name}: the add-on reads an area of {area}, not {areas_of(corners).sum()}"
         )
-    return Subject(name, picture, linear_values(picture), found.surfaces, wrap, corners, uvs)
+    return Subject(name, picture, linear_values(picture), found.surfaces, wrap, corners, uvs, parts)
 
 
 def linear_values(picture: images.Picture) -> Texels:
@@ -156,10 +158,10 @@ def linear_values(picture: images.Picture) -> Texels:
 
 def read_triangles(
     objects: Sequence[bpy.types.Object], image: bpy.types.Image, *, all_faces: bool
-) -> tuple[Floats, Floats]:
-    """Returns world positions (m, 3, 3) and UVs (m, 3, 2) of the faces that show an image."""
-    corners, uvs = [], []
-    for obj in objects:
+) -> tuple[Floats, Floats, NDArray[np.int64]]:
+    """Returns world positions (m, 3, 3), UVs (m, 3, 2) and objects of the faces with an image."""
+    corners, uvs, parts = [], [], []
+    for part, obj in enumerate(objects):
         mesh = obj.data
         mesh.calc_loop_triangles()
         layer = mesh.uv_layers.active
@@ -168,7 +170,8 @@ def read_triangles(
             if all_faces or triangle.material_index in slots:
                 corners.append([obj.matrix_world @ mesh.vertices[v].co for v in triangle.vertices])
                 uvs.append([layer.uv[loop].vector for loop in triangle.loops])
-    return np.array(corners, float), np.array(uvs, float)
+                parts.append(part)
+    return np.array(corners, float), np.array(uvs, float), np.array(parts)
 
 
 def shows(material: bpy.types.Material | None, image: bpy.types.Image) -> bool:
