@@ -3,7 +3,7 @@
 import numpy as np
 import prefilter
 import pytest
-from scenes import random_soup, square
+from scenes import random_soup
 
 SURFACE = random_soup(3, 20).surface
 FILTERS = ["box", "tent-covered", "pam-box", "pam-bilinear", "pam-trilinear"]
@@ -63,19 +63,3 @@ def test_results_do_not_depend_on_threads(threads):
         strict=True,
     ):
         np.testing.assert_array_equal(a, b)
-
-
-@pytest.mark.parametrize(
-    ("image", "options", "message"),
-    [
-        (np.zeros((4, 4), np.uint8), {}, r"image: shape \(4, 4\)"),
-        (np.zeros((0, 4, 3), np.uint8), {}, "image: .* no pixels"),
-        (np.zeros((4, 4, 5), np.uint8), {}, "image: 5 channels"),
-        (np.zeros((4, 4, 3), np.int32), {}, "image: dtype int32"),
-        (np.zeros((4, 4, 3), np.uint8), {"encoding": "gamma"}, "encoding: 'gamma' is not one of"),
-        (np.zeros((4, 4, 3), np.float32), {"encoding": "srgb"}, "encoding: 'srgb' goes with"),
-    ],
-)
-def test_refusals(image, options, message):
-    with pytest.raises(ValueError, match=message):
-        prefilter.mipmaps(image, square().surface, **options)

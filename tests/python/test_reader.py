@@ -133,11 +133,3 @@ def test_results_do_not_depend_on_threads():
     )
     for a, b in zip(one, many, strict=True):
         np.testing.assert_array_equal(a, b)
-
-
-def test_unknown_readers_are_refused():
-    image = random_image(1, 4, 4, 3)
-    with pytest.raises(ValueError, match="reader: 'gamma' is not one of linear, srgb-after"):
-        prefilter.mipmaps(image, square().surface, reader="gamma")
-    with pytest.raises(ValueError, match="reader"):
-        prefilter.mipmap_error([image], image, square().surface, [0], reader=None)

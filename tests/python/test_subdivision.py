@@ -370,7 +370,7 @@ BAD = [
     ({"creases": ([[0, 99]], [1.0])}, "creases: crease 0 names vertex 99, but there are 8"),
     ({"creases": ([[0, 1]], [-1.0])}, "creases: crease 0 has sharpness -1; 0 and up"),
     ({"creases": ([[0, 1]], [np.nan])}, "creases: crease 0 has sharpness nan"),
-    ({"creases": ([[0, 1]], [1.0, 2.0])}, r"creases: sharpness: shape \(2,\); \(1\)"),
+    ({"creases": ([[0, 1]], [1.0, 2.0])}, r"creases: sharpness: shape \(2,\); \(1,\)"),
     ({"creases": [[0, 1]]}, "creases: list; a pair"),
     ({"corners": ([-1], [1.0])}, "corners: corner 0 names vertex -1"),
     ({"corners": ([1], [-0.5])}, "corners: corner 0 has sharpness -0.5"),

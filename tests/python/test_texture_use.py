@@ -82,25 +82,3 @@ def test_progress_is_reported_and_can_cancel() -> None:
     ):
         with pytest.raises(prefilter.Cancelled):
             call()
-
-
-@pytest.mark.parametrize(
-    ("width", "height", "named"), [(0, 4, "width"), (4, -1, "height"), (2.5, 4, "width")]
-)
-def test_sizes_that_are_none_are_refused(width: int, height: int, named: str) -> None:
-    with pytest.raises(ValueError, match=named):
-        prefilter.texel_weights(scenes.square().surface, width, height)
-
-
-def test_surfaces_that_lie_nowhere_are_refused() -> None:
-    flat = scenes.soup(np.zeros((1, 3, 2)), np.zeros(1)).surface
-    away = scenes.square((2.0, 2.0), (3.0, 3.0)).surface
-    image = np.ones((4, 4, 1), np.float32)
-    with pytest.raises(ValueError, match="area of 0"):
-        prefilter.texel_weights(flat, 4, 4)
-    with pytest.raises(ValueError, match="surface: none of it"):
-        prefilter.texel_weights(away, 4, 4, wrap="border")
-    with pytest.raises(ValueError, match="surface: none of it"):
-        prefilter.fill_unused(image, away, wrap="border")
-    with pytest.raises(ValueError, match="surface: none was given"):
-        prefilter.fill_unused(image, [])

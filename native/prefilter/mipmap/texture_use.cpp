@@ -36,6 +36,7 @@ Image texel_weights(const std::vector<const Surface*>& surfaces, int width, int 
 
 Image fill_unused(const ImageView& image, const std::vector<const Surface*>& surfaces,
                   WrapModes wrap, const Progress& progress, int threads) {
+  check_mipmap_image(image);
   check(surfaces, image.width, image.height);
   const std::vector<unsigned char> read =
       looked_up_texels(surfaces, image.width, image.height, wrap, progress.part(0.0, 0.6), threads);

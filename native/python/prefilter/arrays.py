@@ -41,7 +41,7 @@ def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:
     """A float32 image of shape (height, width, channels)."""
     image = as_floats(name, array, ("height", "width", "channels"), np.float32)
     if 0 in image.shape:
-        raise ValueError(f"{name}: shape {image.shape} holds no pixels")
+        raise ValueError(f"{name}: shape {image.shape} holds no pixels; at least one is needed")
     return image
 
 
@@ -49,7 +49,7 @@ def as_bytes(name: str, image: np.ndarray) -> np.ndarray:
     """An uint8 image of shape (height, width, channels)."""
     check_shape(name, image, ("height", "width", "channels"))
     if 0 in image.shape:
-        raise ValueError(f"{name}: shape {image.shape} holds no pixels")
+        raise ValueError(f"{name}: shape {image.shape} holds no pixels; at least one is needed")
     return np.ascontiguousarray(image)
 
 
@@ -60,7 +60,7 @@ def check_shape(name: str, array: np.ndarray, shape: Sequence[int | str]) -> Non
         for found, wanted in zip(array.shape, shape, strict=True)
     )
     if not fits:
-        wanted = ", ".join(str(length) for length in shape)
+        wanted = ", ".join(str(length) for length in shape) + ("," if len(shape) == 1 else "")
         raise ValueError(f"{name}: shape {array.shape}; ({wanted}) is needed")
 
 

@@ -136,7 +136,7 @@ class Surface(_native.Surface):
                 as_name("scheme", scheme),
                 as_name("boundary", boundary),
                 as_name("uv_smooth", uv_smooth),
-                _small_int("level", level),
+                _small_int("level", level, "1 to 10 are allowed"),
                 as_progress(progress),
             )
         )
@@ -166,8 +166,12 @@ class Surface(_native.Surface):
             raise ValueError(
                 f"matrices: shape {np.shape(matrices)}; (4, 4), (3, 4) or several of them is needed"
             )
-        if maps.shape[1] == 4 and not np.all(maps[:, 3] == (0.0, 0.0, 0.0, 1.0)):
-            raise ValueError("matrices: the last row must be 0, 0, 0, 1")
+        if maps.shape[1] == 4:
+            for i, last in enumerate(maps[:, 3].tolist()):
+                if last != [0.0, 0.0, 0.0, 1.0]:
+                    raise ValueError(
+                        f"matrices: the last row of matrix {i} is {last}; 0, 0, 0, 1 is needed"
+                    )
         return self._take(super().placed(np.ascontiguousarray(maps[:, :3])))
 
     def udim_tile(self, number: int) -> Self | None:
@@ -185,7 +189,9 @@ class Surface(_native.Surface):
         Raises:
             ValueError: That is no tile's number.
         """
-        part = super().udim_tile(_small_int("number", number))
+        part = super().udim_tile(
+            _small_int("number", number, "a UDIM tile has a number from 1001 to 9999")
+        )
         return None if part is None else self._take(part)
 
     @classmethod
@@ -202,7 +208,12 @@ class Surface(_native.Surface):
 
         Returns:
             The surfaces in the order of the first of each kind.
+
+        Raises:
+            ValueError: Something is no Surface.
         """
+        if not isinstance(surfaces, Iterable):
+            raise ValueError(f"surfaces: a {type(surfaces).__name__}; a list of Surface is needed")
         kept: list[Surface] = []
         for surface in surfaces:
             if not isinstance(surface, Surface):
@@ -278,8 +289,9 @@ def _mask(name: str, mask: npt.ArrayLike | None, length: int) -> np.ndarray | No
     return np.ascontiguousarray(found)
 
 
-def _small_int(name: str, value: int) -> int:
+def _small_int(name: str, value: int, allowed: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         raise ValueError(f"{name}: {value!r}; a whole number is needed")
-    # What lies beyond is out of range as well, and is told so with the number.
-    return max(-(2**31), min(int(value), 2**31 - 1))
+    if not -(2**31) <= value < 2**31:
+        raise ValueError(f"{name}: {value}; {allowed}")
+    return int(value)

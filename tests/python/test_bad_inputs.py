@@ -1,0 +1,442 @@
+"""Bad input gets a message that names the argument, what was found and what is allowed.
+
+A row is a function, the arguments that differ from good ones, and what its message must hold: the
+argument's name first.
+"""
+
+import re
+
+import numpy as np
+import prefilter
+import pytest
+from scenes import random_image, soup, square
+
+IMAGE = random_image(0, 16, 16, 3)
+RGBA = random_image(1, 8, 8, 4)
+BYTES = np.zeros((4, 4, 3), np.uint8)
+MESH = square()
+SURFACE = MESH.surface
+FLAT = soup(np.zeros((1, 3, 2)), np.zeros(1)).surface
+AWAY = square((2, 2), (3, 3)).surface
+POINTS, TRIANGLES, UVS = MESH.positions, MESH.triangles, MESH.uvs
+QUAD = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)])
+NAN = np.nan
+
+
+def changed(array, index, value):
+    copy = np.array(array)
+    copy[index] = value
+    return copy
+
+
+def placed(matrices):
+    return SURFACE.placed(matrices)
+
+
+def udim_tile(number):
+    return SURFACE.udim_tile(number)
+
+
+FUNCTIONS = {
+    "Surface": (
+        prefilter.Surface,
+        {"positions": POINTS, "triangles": TRIANGLES, "uvs": UVS},
+    ),
+    "from_subdivision": (
+        prefilter.Surface.from_subdivision,
+        {
+            "positions": QUAD,
+            "face_sizes": np.array([4]),
+            "face_vertices": np.arange(4),
+            "face_uvs": QUAD[:, :2].copy(),
+        },
+    ),
+    "placed": (placed, {}),
+    "udim_tile": (udim_tile, {}),
+    "merged": (prefilter.Surface.merged, {}),
+    "mipmaps": (prefilter.mipmaps, {"image": IMAGE, "surface": SURFACE}),
+    "mipmap_error": (
+        prefilter.mipmap_error,
+        {"levels": [IMAGE], "image": IMAGE, "surface": SURFACE, "mip_values": [0.0]},
+    ),
+    "seam_contrast": (prefilter.seam_contrast, {"levels": [IMAGE], "surface": SURFACE}),
+    "normal_mipmaps": (
+        prefilter.normal_mipmaps,
+        {"normals": np.full((8, 8, 3), 0.5), "surface": SURFACE},
+    ),
+    "keep_coverage": (prefilter.keep_coverage, {"levels": [RGBA], "surface": SURFACE}),
+    "texel_weights": (prefilter.texel_weights, {"surface": SURFACE, "width": 4, "height": 4}),
+    "fill_unused": (prefilter.fill_unused, {"image": IMAGE, "surface": SURFACE}),
+    "to_linear": (prefilter.to_linear, {"image": IMAGE}),
+    "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
+}
+
+WRAPS = "is not one of clamp, repeat, border"
+FLOATS = "float32 or float64 is needed"
+THREADS = "a whole number is needed, 0 meaning all processors"
+
+ROWS = [
+    (
+        "Surface",
+        {"triangles": TRIANGLES[:0], "uvs": UVS[:0]},
+        ["triangles: ", "no faces", "at least one triangle is needed"],
+    ),
+    ("Surface", {"positions": POINTS[:, :2]}, ["positions: shape (6, 2)", "(vertices, 3) is"]),
+    ("Surface", {"positions": "abc"}, ["positions: dtype <U3", FLOATS]),
+    ("Surface", {"triangles": TRIANGLES[:, :2]}, ["triangles: shape (2, 2)", "(triangles, 3) is"]),
+    ("Surface", {"triangles": TRIANGLES * 1.0}, ["triangles: dtype float64", "integers are"]),
+    ("Surface", {"triangles": TRIANGLES + 1}, ["triangles: ", "vertex 6", "6 vertices (0 to 5)"]),
+    ("Surface", {"triangles": TRIANGLES - 1}, ["triangles: triangle 0 names vertex -1", "(0 to"]),
+    ("Surface", {"uvs": UVS[:1]}, ["uvs: shape (1, 3, 2)", "(2, 3, 2) is needed"]),
+    ("Surface", {"uvs": None}, ["uvs: dtype object", FLOATS]),
+    (
+        "Surface",
+        {"positions": changed(POINTS, (4, 1), NAN)},
+        ["positions: vertex 4", "nan", "finite"],
+    ),
+    (
+        "Surface",
+        {"positions": changed(POINTS, (2, 0), np.inf)},
+        ["positions: vertex 2", "inf", "finite"],
+    ),
+    ("Surface", {"uvs": changed(UVS, (1, 2, 0), NAN)}, ["uvs: triangle 1", "nan", "finite"]),
+    ("Surface", {"positions": POINTS * 1e200}, ["positions: the area of triangle 0", "too large"]),
+    (
+        "Surface",
+        {"weights": np.ones(3)},
+        ["weights: shape (3,) of float64", "(6,) for vertices, (2,) or (2, 1) for triangles"],
+    ),
+    ("Surface", {"weights": np.ones(6, int)}, ["weights: shape (6,) of int", "float32 or float64"]),
+    ("Surface", {"weights": "heavy"}, ["weights: shape () of", "float32 or float64"]),
+    (
+        "Surface",
+        {"weights": changed(np.ones(6), 1, -0.5)},
+        ["weights: vertex 1 has -0.5", "finite weights of 0 and up are needed"],
+    ),
+    ("Surface", {"weights": np.array([1.0, NAN])}, ["weights: triangle 1 has nan", "0 and up"]),
+    (
+        "Surface",
+        {"weights": np.array([[1.0, 1, 1], [1, 1, np.inf]])},
+        ["weights: triangle 1 has inf", "0 and up"],
+    ),
+    (
+        "Surface",
+        {"weights": np.array([1e308, 1.0]), "positions": POINTS * 10},
+        ["weights: the area of triangle 0", "too large"],
+    ),
+    (
+        "from_subdivision",
+        {"face_sizes": np.array([2, 2])},
+        ["face_sizes: face 0 has 2 corners", "3 to 65535 are allowed"],
+    ),
+    (
+        "from_subdivision",
+        {"face_sizes": np.array([5])},
+        ["face_sizes: add up to 5", "face_vertices has 4", "both must be equal"],
+    ),
+    (
+        "from_subdivision",
+        {"face_vertices": np.array([0, 1, 2, 9])},
+        ["face_vertices: face 0 names vertex 9", "(0 to 3)"],
+    ),
+    (
+        "from_subdivision",
+        {"face_vertices": np.array([0, 1, 2, 0])},
+        ["face_vertices: face 0 names vertex 0 twice", "needs different vertices"],
+    ),
+    ("from_subdivision", {"face_uvs": QUAD}, ["face_uvs: shape (4, 3)", "(corners, 2) is needed"]),
+    ("from_subdivision", {"level": 11}, ["level: 11", "1 to 10 are allowed"]),
+    ("from_subdivision", {"level": 10**30}, ["level: 1" + 30 * "0", "1 to 10 are allowed"]),
+    (
+        "from_subdivision",
+        {"creases": 5},
+        ["creases: int", "a pair (vertices, sharpness) is needed"],
+    ),
+    (
+        "from_subdivision",
+        {"creases": ([[0, 2]], [1.0])},
+        ["creases: crease 0 is between vertices 0 and 2", "an edge of a face is needed"],
+    ),
+    (
+        "from_subdivision",
+        {"creases": ([[0, 1]], [1.0, 2.0])},
+        ["creases: sharpness: shape (2,)", "(1,) is needed"],
+    ),
+    (
+        "from_subdivision",
+        {"corners": ([0], [-1.0])},
+        ["corners: corner 0 has sharpness -1", "0 and up is needed"],
+    ),
+    (
+        "from_subdivision",
+        {"scheme": "doo-sabin"},
+        ["scheme: 'doo-sabin'", "one of catmull-clark, loop, bilinear"],
+    ),
+    (
+        "from_subdivision",
+        {"faces": np.array([0])},
+        ["faces: shape (1,) of int64", "(1,) of bool is needed"],
+    ),
+    ("placed", {"matrices": np.eye(3)}, ["matrices: shape (3, 3)", "(4, 4), (3, 4) or several"]),
+    ("placed", {"matrices": np.empty((0, 4, 4))}, ["matrices: none", "at least one is needed"]),
+    (
+        "placed",
+        {"matrices": np.full((2, 4, 4), 1.0)},
+        ["matrices: the last row of matrix 0 is [1.0, 1.0, 1.0, 1.0]", "0, 0, 0, 1 is needed"],
+    ),
+    (
+        "placed",
+        {"matrices": np.full((2, 3, 4), NAN)},
+        ["matrices: matrix 0: row 0 holds nan", "finite"],
+    ),
+    (
+        "placed",
+        {"matrices": np.eye(4) * [1e200, 1e200, 1, 1]},
+        ["matrices: the area of triangle 0", "too large"],
+    ),
+    ("placed", {"matrices": [["a"]]}, ["matrices: found no array of numbers", "'a'"]),
+    *(
+        ("udim_tile", {"number": number}, [f"number: {number}; ", "from 1001 to 9999"])
+        for number in (1000, 0, -5, 10000, 10**30)
+    ),
+    *(
+        ("udim_tile", {"number": number}, [f"number: {number!r}; ", "a whole number is needed"])
+        for number in ("1001", 1001.0, True, None)
+    ),
+    ("merged", {"surfaces": 5}, ["surfaces: a int", "a list of Surface is needed"]),
+    ("merged", {"surfaces": [SURFACE, 3]}, ["surfaces: holds a int", "a Surface is needed"]),
+    *(
+        ("mipmaps", {"filter": filter, "image": image}, words)
+        for filter in ("box", "lanczos3-covered", "pam-box", "pam-bilinear", "pam-trilinear")
+        for image, words in (
+            (np.zeros((16, 16, 5), np.float32), ["image: 5 channels", "1 to 4 are allowed"]),
+            (IMAGE[..., 0], ["image: shape (16, 16)", "(height, width, channels) is needed"]),
+            (IMAGE[:0], ["image: shape (0, 16, 3) holds no pixels", "at least one is needed"]),
+            ([[1.0], [1.0, 2.0]], ["image: found no array", "inhomogeneous"]),
+            (np.zeros((16, 16, 3), np.int16), ["image: dtype int16", FLOATS]),
+            (None, ["image: dtype object", FLOATS]),
+            (
+                np.full((16, 16, 3), 1e300),
+                ["image: the texel in row 0, column 0 holds inf", "at most 1e30"],
+            ),
+            (
+                changed(IMAGE, (3, 5, 1), NAN),
+                ["image: the texel in row 3, column 5 holds nan in channel 1", "finite"],
+            ),
+        )
+    ),
+    ("mipmaps", {"image": BYTES[..., 0]}, ["image: shape (4, 4)", "(height, width, channels)"]),
+    ("mipmaps", {"image": BYTES[:0]}, ["image: shape (0, 4, 3) holds no pixels", "at least one"]),
+    (
+        "mipmaps",
+        {"image": np.zeros((4, 4, 5), np.uint8)},
+        ["image: 5 channels", "1 to 4 are allowed"],
+    ),
+    ("mipmaps", {"encoding": "gamma"}, ["encoding: 'gamma'", "one of linear, srgb"]),
+    (
+        "mipmaps",
+        {"encoding": "srgb"},
+        ["encoding: 'srgb' goes with images of bytes (uint8)", "decode others with to_linear"],
+    ),
+    (
+        "mipmaps",
+        {"filter": "pam"},
+        ["filter: 'pam'", "one of box, tent, lanczos3, box-covered", "pam-bilinear"],
+    ),
+    ("mipmaps", {"filter": 3}, ["filter: 3", "a name is needed"]),
+    ("mipmaps", {"filter": "\ud800"}, ["filter: '?' is not one of"]),
+    ("mipmaps", {"wrap": "mirror"}, ["wrap: 'mirror'", WRAPS]),
+    *(
+        ("mipmaps", {"wrap": wrap}, [f"wrap: {wrap!r}", "a pair of names for u and v, is needed"])
+        for wrap in (("clamp", "clamp", "clamp"), ("clamp", 3), None, 5)
+    ),
+    (
+        "mipmaps",
+        {"bounds": (1.0, 0.0)},
+        ["bounds: the low bound is 1 ", "high bound is 0; ", "low must not be above high"],
+    ),
+    ("mipmaps", {"bounds": (NAN, None)}, ["bounds: the low bound is nan", "high bound is open"]),
+    ("mipmaps", {"bounds": (1e39, None)}, ["bounds: the low bound is inf", "high bound is open"]),
+    (
+        "mipmaps",
+        {"bounds": (None, -np.inf)},
+        ["bounds: the low bound is open and the high bound is -inf"],
+    ),
+    *(
+        ("mipmaps", {"bounds": bounds}, ["bounds: ", "pair (low, high) of numbers"])
+        for bounds in ((0.0,), 5, ("a", "b"), (1j, None))
+    ),
+    *(
+        ("mipmaps", {"levels": levels}, [f"levels: {levels}", "a whole number of at least 1"])
+        for levels in (0, -2, 2.5)
+    ),
+    ("mipmaps", {"levels": 6}, ["levels: 6 asked for", "16 x 16 texels has 1 to 5"]),
+    ("mipmaps", {"levels": 10**30}, ["levels: ", "16 x 16 texels has 1 to 5"]),
+    *(
+        ("mipmaps", {"seam_weight": weight}, [f"seam_weight: {weight}", "of at least 0 is needed"])
+        for weight in (-1, NAN, np.inf)
+    ),
+    *(
+        ("mipmaps", {"seam_weight": weight}, [f"seam_weight: {weight!r}", "a number is needed"])
+        for weight in ("1", True, None)
+    ),
+    ("mipmaps", {"reader": "gamma"}, ["reader: 'gamma'", "one of linear, srgb-after"]),
+    (
+        "mipmaps",
+        {"reader": "srgb-after", "filter": "pam-trilinear"},
+        ["reader: 'srgb-after' goes with pam-bilinear", "use linear for pam-trilinear"],
+    ),
+    *(
+        ("mipmaps", {"threads": threads}, [f"threads: {threads!r}", THREADS])
+        for threads in (-1, 1.5, "a")
+    ),
+    ("mipmaps", {"progress": 5}, ["progress: 5", "a callable of one number is needed, or None"]),
+    ("mipmaps", {"surface": 5}, ["surface: a int", "a Surface or a list is needed"]),
+    *(
+        ("mipmaps", {"surface": none}, ["surface: none was given", "use box, tent or lanczos3"])
+        for none in (None, [])
+    ),
+    ("mipmaps", {"surface": [3]}, ["surface: holds a int", "a Surface is needed"]),
+    ("mipmaps", {"surface": FLAT}, ["surface: ", "area of 0 in all", "positive, finite one"]),
+    (
+        "mipmaps",
+        {"surface": AWAY, "wrap": "border"},
+        ["surface: none of it lies inside of the image"],
+    ),
+    (
+        "mipmaps",
+        {"surface": square((2, 2), (1e12, 3)).surface},
+        ["uvs: triangle 0 spans", "any other up to 2^30"],
+    ),
+    ("mipmap_error", {"levels": None}, ["levels: a NoneType", "a list of arrays is needed"]),
+    ("mipmap_error", {"levels": []}, ["levels: 0 were given", "16 x 16 texels has 1 to 5"]),
+    ("mipmap_error", {"levels": [IMAGE] * 6}, ["levels: 6 were given", "has 1 to 5"]),
+    (
+        "mipmap_error",
+        {"levels": [IMAGE, IMAGE]},
+        ["levels: level 1 has 16 x 16 texels of 3 channels", "8 x 8 of 3 are expected"],
+    ),
+    (
+        "mipmap_error",
+        {"levels": [IMAGE[..., :1]]},
+        ["levels: level 0 has 16 x 16 texels of 1 channels", "16 x 16 of 3 are expected"],
+    ),
+    (
+        "mipmap_error",
+        {"levels": [np.full_like(IMAGE, NAN)]},
+        ["levels: level 0: the texel in row 0", "holds nan", "finite"],
+    ),
+    (
+        "mipmap_error",
+        {"image": np.full_like(IMAGE, NAN)},
+        ["image: the texel in row 0, column 0 holds nan", "finite"],
+    ),
+    ("mipmap_error", {"mip_values": [0.5, NAN]}, ["mip_values: holds nan", "numbers are needed"]),
+    ("mipmap_error", {"mip_values": "a"}, ["mip_values: numbers are needed", "'a'"]),
+    ("mipmap_error", {"mip_values": [1j]}, ["mip_values: numbers are needed", "complex"]),
+    ("mipmap_error", {"surface": None}, ["surface: none was given", "at least one is needed"]),
+    ("mipmap_error", {"wrap": "tile"}, ["wrap: 'tile'", WRAPS]),
+    ("mipmap_error", {"reader": "gpu"}, ["reader: 'gpu'", "one of linear, srgb-after"]),
+    ("seam_contrast", {"levels": 5}, ["levels: a int", "a list of arrays is needed"]),
+    ("seam_contrast", {"levels": []}, ["levels: none were given", "at least one is needed"]),
+    (
+        "seam_contrast",
+        {"levels": [IMAGE, IMAGE[:8, :8, :1]]},
+        ["levels: level 1 has 1 channels and level 0 3", "must have the same"],
+    ),
+    ("seam_contrast", {"surface": None}, ["surface: none was given", "at least one is needed"]),
+    (
+        "normal_mipmaps",
+        {"normals": IMAGE[..., :2]},
+        ["normals: shape (16, 16, 2)", "(height, width, 3) is needed"],
+    ),
+    (
+        "normal_mipmaps",
+        {"normals": np.full((8, 8, 3), NAN)},
+        ["normals: the texel in row 0, column 0 holds nan", "finite"],
+    ),
+    ("normal_mipmaps", {"roughness": 2}, ["roughness: 2", "a number in [0, 1] or an image"]),
+    (
+        "normal_mipmaps",
+        {"roughness": np.zeros((4, 4, 1))},
+        ["roughness: shape (4, 4, 1)", "(8, 8, 1) is needed"],
+    ),
+    ("normal_mipmaps", {"levels": 9}, ["levels: 9 asked for", "8 x 8 texels has 1 to 4"]),
+    *(
+        (
+            "keep_coverage",
+            {"threshold": threshold},
+            [f"threshold: {threshold!r}", "a number above 0 and at most 1 is needed"],
+        )
+        for threshold in (0, 1.5, NAN, "a")
+    ),
+    ("keep_coverage", {"levels": []}, ["levels: an empty list", "level 0 first, is needed"]),
+    (
+        "keep_coverage",
+        {"levels": [IMAGE]},
+        ["levels: level 0 has 3 channels", "all need 4, the last of them alpha, or all 1"],
+    ),
+    (
+        "keep_coverage",
+        {"levels": [RGBA, RGBA[:4, :4] * NAN]},
+        ["levels: level 1 holds alpha that is not finite"],
+    ),
+    *(
+        ("texel_weights", {name: size}, [f"{name}: {size!r}", "a whole number from 1 to 1048576"])
+        for name, size in (("width", 0), ("height", -2), ("width", 2.5), ("height", 10**9))
+    ),
+    ("texel_weights", {"surface": FLAT}, ["surface: ", "area of 0 in all", "positive, finite"]),
+    (
+        "texel_weights",
+        {"surface": [], "wrap": "clamp"},
+        ["surface: none was given", "at least one"],
+    ),
+    (
+        "texel_weights",
+        {"surface": AWAY, "wrap": "border"},
+        ["surface: none of it lies inside of the image"],
+    ),
+    (
+        "fill_unused",
+        {"image": np.zeros((4, 4, 5), np.float32)},
+        ["image: 5 channels", "1 to 4 are allowed"],
+    ),
+    ("fill_unused", {"image": BYTES}, ["image: dtype uint8", FLOATS]),
+    ("fill_unused", {"surface": None}, ["surface: none was given", "at least one is needed"]),
+    (
+        "fill_unused",
+        {"surface": AWAY, "wrap": "border"},
+        ["surface: none of it lies inside of the image"],
+    ),
+    *(
+        (function, arguments, words)
+        for function in ("to_linear", "to_srgb")
+        for arguments, words in (
+            ({"image": BYTES}, ["image: dtype uint8", FLOATS]),
+            ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+        )
+    ),
+]
+
+
+@pytest.mark.parametrize(("function", "arguments", "words"), ROWS)
+def test_refusal(function, arguments, words):
+    call, good = FUNCTIONS[function]
+    with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+        call(**{**good, **arguments})
+    message = str(caught.value)
+    for word in words:
+        assert word in message
+
+
+@pytest.mark.parametrize("function", [name for name, (_, good) in FUNCTIONS.items() if good])
+def test_the_other_arguments_of_the_rows_are_good(function):
+    call, good = FUNCTIONS[function]
+    call(**good)
+
+
+def test_every_function_is_there():
+    public = {name for name in prefilter.__all__ if name not in {"Cancelled", "Surface"}}
+    assert public <= set(FUNCTIONS)
+    assert {row[0] for row in ROWS} == set(FUNCTIONS)
