@@ -15,7 +15,7 @@ import numpy as np
 import prefilter
 
 from . import contents, frames, udim
-from .bridge import files, images, materials, meshes
+from .bridge import engine_files, files, images, materials, meshes
 from .bridge.images import FloatArray, Picture
 from .choices import CONTENTS, FILTERS, TEXTURE_SPACE_FILTERS, Settings
 from .jobs import Progress, go_on
@@ -156,7 +156,17 @@ class Bake:
                 f"roughness: found '{settings.roughness}' for the tiled image '{image.name}'; it "
                 f"goes with images of one tile"
             )
+        threshold = settings.threshold if content == "cutout" else None
+        told = [
+            note
+            for picture, target in zip(pictures, targets, strict=False)
+            for note in engine_files.checked(picture, target, settings.texture_format, threshold)
+        ]
         roughness, roughness_target = _read_roughness(settings, content, pictures[0])
+        if roughness is not None:
+            told += engine_files.checked(
+                roughness.picture, roughness_target, _roughness_format(settings, roughness.picture)
+            )
         found = yield from frames.surfaces_over(
             image, objects, settings, depsgraph, all_faces=all_faces
         )
@@ -176,6 +186,7 @@ class Bake:
         else:
             target = targets[0] if targets else None
             job = cls(pictures[0], found, settings, target, content, roughness, roughness_target)
+        job.warnings.extend(told)
         if content == "normal" and is_encoded:
             job.warnings.append(
                 f"image '{image.name}' has the color space {pictures[0].colorspace}; a shader "
@@ -280,13 +291,16 @@ class Bake:
             levels, rough = self._filtered(linear, lambda done: progress(_FILTERED * done))
         check = partial(go_on, progress, _FILTERED)
         try:
-            self._levels = self._stage(self._picture, linear, levels, self._target, check)
+            self._levels = self._stage(
+                self._picture, linear, levels, self._target, self._settings.texture_format, check
+            )
             if self._roughness is not None:
                 self._roughness_levels = self._stage(
                     self._roughness.picture,
                     self._roughness.linear,
                     rough,
                     self._roughness_target,
+                    _roughness_format(self._settings, self._roughness.picture),
                     check,
                 )
             go_on(progress, 1.0)
@@ -328,6 +342,7 @@ class Bake:
         linear: FloatArray,
         levels: list[FloatArray],
         target: Path | None,
+        texture_format: str,
         check: Callable[[], None],
     ) -> list[FloatArray]:
         """Stages a file of the levels; returns those above 0 as level images hold them."""
@@ -335,7 +350,13 @@ class Bake:
         stored.insert(0, picture.stored)
         if target is not None:
             levels[0] = linear
-            self._staged.append(files.stage(target, picture, levels, stored, self._wrap, check))
+            if engine_files.is_for_engines(target):
+                threads = self._settings.threads
+                self._staged += engine_files.stage(
+                    target, picture, levels, stored, texture_format, check, threads=threads
+                )
+            else:
+                self._staged.append(files.stage(target, picture, levels, stored, self._wrap, check))
         return stored[1 : self._settings.levels or None]
 
     def write(self) -> Outcome:
@@ -430,7 +451,7 @@ class Bake:
         if names:
             results.append(counted(names, "level image"))
         targets = (self._target, self._roughness_target)
-        results += [f"'{target}'" for target in targets if target is not None]
+        results += [files.shown(target) for target in targets if target is not None]
         parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
         return " ".join(parts)
 
@@ -460,9 +481,9 @@ def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:
     if not reads_encoded(picture):
         return [f"reader: '{picture.name}' is no 8-bit sRGB image, so it is read as linear light"]
     return [
-        f"reader: '{target}' holds linear light, but its levels are for a reader of encoded texels"
+        f"reader: '{target}' is read as linear light, but its levels are for encoded texels"
         for target in targets
-        if target.suffix.lower() == ".exr"
+        if target.suffix.lower() in {".exr", ".dds", ".ktx2"}
     ]
 
 
@@ -502,6 +523,15 @@ def _read_roughness(
     contents.check_roughness(picture, rough)
     linear = images.scene_linear(rough)
     return contents.Roughness(rough, linear, settings.roughness_channel), target
+
+
+def _roughness_format(settings: Settings, picture: Picture) -> str:
+    """Returns the format of the roughness file: that of the normal map, unless channels lack."""
+    if settings.texture_format not in {"bc4", "bc5"}:
+        return settings.texture_format
+    if settings.roughness_channel == "all":
+        return "bc4"
+    return "bc3" if picture.stored.shape[2] == 4 else "bc1"
 
 
 def _naming_objects(message: str, objects: Sequence[str]) -> str:

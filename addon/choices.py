@@ -77,6 +77,16 @@ CONTENTS = {
         "Cut-Out", "Color whose alpha test keeps as much of the surface at every level"
     ),
 }
+TEXTURE_FORMATS = {
+    "auto": Choice("Automatic", "Bytes for byte images, half floats for float images"),
+    "rgba8": Choice("8-Bit", "Four bytes a texel, uncompressed"),
+    "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes a texel, for high dynamic range"),
+    "rgba32f": Choice("Float", "Scene-linear, 16 bytes a texel"),
+    "bc1": Choice("BC1", "Compressed color, half a byte a texel; alpha is 0 or 1"),
+    "bc3": Choice("BC3", "Compressed color and alpha, a byte a texel"),
+    "bc4": Choice("BC4", "Compressed red channel, half a byte a texel: masks, roughness"),
+    "bc5": Choice("BC5", "Compressed red and green channels, a byte a texel: normal maps"),
+}
 ROUGHNESS_CHANNELS = {
     "all": Choice("All", "The image holds nothing but roughness"),
     "red": Choice("Red", "The red channel holds roughness"),
@@ -114,6 +124,7 @@ class Settings:
         roughness: The name of an image that gets what a normal map's levels lose; empty for none.
         roughness_channel: A key of `ROUGHNESS_CHANNELS`.
         roughness_filepath: A mip-mapped file of the roughness to write; empty for none.
+        texture_format: A key of `TEXTURE_FORMATS`: how a DDS or KTX 2 file holds texels.
     """
 
     filter: str = "pam-bilinear"
@@ -137,3 +148,4 @@ class Settings:
     roughness: str = ""
     roughness_channel: str = "all"
     roughness_filepath: str = ""
+    texture_format: str = "auto"

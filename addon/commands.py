@@ -14,7 +14,7 @@ from typing import Any
 import bpy
 
 from . import bake, choices, texture_cache
-from .bridge import files, images, meshes
+from .bridge import engine_files, files, images, meshes
 from .choices import Choice
 from .view import errors, figure
 from .wording import listed
@@ -37,6 +37,7 @@ _TABLES = (
     _table("readers", choices.READERS),
     _table("contents", choices.CONTENTS),
 )
+_FORMAT_TABLE = _table("texture formats, for .dds and .ktx2", choices.TEXTURE_FORMATS)
 _CHOSEN = {
     "filter": (choices.FILTERS, "FILTER", "how a texel of a level is made"),
     "wrap": (choices.WRAPS, "MODE", "what lies outside of the image along u"),
@@ -49,6 +50,7 @@ _CHOSEN = {
         "CHANNEL",
         "where the roughness image holds roughness",
     ),
+    "texture-format": (choices.TEXTURE_FORMATS, "FORMAT", "how a .dds or .ktx2 file holds texels"),
 }
 """Options with a table of choices: the table, what stands for a value, and help."""
 _BAKE_NOTES = """\
@@ -58,7 +60,8 @@ file that no material uses is taken as the texture of all faces, with the active
 examples:
   prefilter bake scene.blend --image Wood --save
   prefilter bake spot.obj --image spot.png --output spot.exr
-  prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif"""
+  prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif
+  prefilter bake helmet.gltf --object Visor --output visor.ktx2 --texture-format bc3"""
 
 _PLOT_NOTES = """\
 The figure is that of the dissertation (7.7): solid lines are the root mean square errors over the
@@ -136,7 +139,7 @@ def _add_command(commands: Any, name: str, purpose: str, *notes: str) -> argpars
 
 
 def _add_bake(commands: Any) -> None:
-    parser = _add_command(commands, "bake", _BAKE_HELP, *_TABLES, _BAKE_NOTES)
+    parser = _add_command(commands, "bake", _BAKE_HELP, *_TABLES, _FORMAT_TABLE, _BAKE_NOTES)
     _add_scene(parser)
     defaults = choices.Settings()
     _add_choices(parser, *_CHOSEN)
@@ -165,7 +168,7 @@ def _add_bake(commands: Any) -> None:
         "--roughness-output",
         metavar="FILE",
         default="",
-        help="a tiled, mip-mapped file of the roughness to write",
+        help="a file of the roughness to write, like --output",
     )
     _add_threads(parser)
     parser.add_argument(
@@ -198,7 +201,8 @@ def _add_bake(commands: Any) -> None:
         "--output",
         metavar="FILE",
         default="",
-        help="a tiled, mip-mapped .exr, .tif or .tx file to write; it gets every level",
+        help="a file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 for "
+        "engines; .png makes NAME.0.png, NAME.1.png, ...",
     )
     parser.add_argument(
         "--save",
@@ -406,6 +410,11 @@ def _bake(options: argparse.Namespace) -> None:
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
     if not options.save and not options.output:
         options.usage_error("nothing to write: give --output FILE or --save")
+    paths = (options.output, options.roughness_output)
+    if options.texture_format != "auto" and not any(map(engine_files.has_formats, paths)):
+        options.usage_error(
+            f"--texture-format: found '{options.texture_format}', which is for .dds and .ktx2 files"
+        )
     path = os.path.abspath(options.file)
     objects = _chosen(_load(path, extension), options.object)
     if options.save:
@@ -430,6 +439,7 @@ def _bake(options: argparse.Namespace) -> None:
         roughness=_roughness_name(options.roughness),
         roughness_channel=options.roughness_channel,
         roughness_filepath=options.roughness_output,
+        texture_format=options.texture_format,
     )
     if options.frames:
         start, end, step = options.frames

@@ -11,6 +11,7 @@ from bpy.props import (
 )
 
 from . import choices
+from .bridge import engine_files
 from .choices import Choice
 
 
@@ -82,8 +83,8 @@ class BakeProperties:
     )
     roughness_filepath: StringProperty(
         name="Roughness File",
-        description="A tiled, mip-mapped file of the roughness to write: .exr, .tif or .tx; leave "
-        "empty for none",
+        description="A file of the roughness to write, like the one of the image; leave empty for "
+        "none",
         subtype="FILE_PATH",
         default=choices.Settings.roughness_filepath,
     )
@@ -145,9 +146,16 @@ class BakeProperties:
     )
     filepath: StringProperty(
         name="File",
-        description="A tiled, mip-mapped file to write: .exr, .tif or .tx; leave empty for none",
+        description="A file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 "
+        "for engines; .png makes a file a level. Leave empty for none",
         subtype="FILE_PATH",
         default=choices.Settings.filepath,
+    )
+    texture_format: EnumProperty(
+        name="Texture Format",
+        description="How a DDS or KTX 2 file holds texels",
+        items=items(choices.TEXTURE_FORMATS),
+        default=choices.Settings.texture_format,
     )
 
     def to_settings(self) -> choices.Settings:
@@ -201,6 +209,9 @@ class BakeProperties:
         layout.prop(self, "filepath")
         if has_roughness:
             layout.prop(self, "roughness_filepath")
+        paths = (self.filepath, self.roughness_filepath if has_roughness else "")
+        if any(engine_files.has_formats(path) for path in paths):
+            layout.prop(self, "texture_format")
 
 
 def copy_bake_properties(source: bpy.types.bpy_struct, target: bpy.types.bpy_struct) -> None:

@@ -17,6 +17,7 @@ build_dir=$source_dir/build
 cache_dir=${PREFILTER_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/prefilter}
 headers_dir=$cache_dir/python-headers
 opensubdiv_dir=$cache_dir/opensubdiv-3.6.0
+squish_dir=$cache_dir/squish-1.15
 log_dir=$cache_dir/logs
 
 caller_path=${PATH:-}
@@ -184,23 +185,40 @@ make_root() {
   mv "$root_dir.new" "$root_dir"
 }
 
+# fetch_source FOLDER POOL SHA256: unpacks the source of Debian's package, pool/main/POOL, in FOLDER.source.
+fetch_source() {
+  local mirror new=$1.source
+  mirror=$(debian_mirror)
+  note "fetching ${2##*/} from $mirror"
+  rm -rf "$new"
+  mkdir -p "$new"
+  logged source.log /usr/lib/apt/apt-helper download-file "${mirror%/}/pool/main/$2" "$new/source.tar" "SHA256:$3"
+  (cd "$new" && cmake -E tar xf source.tar)
+}
+
 # OpenSubdiv is linked in, and Debian has no static library of it: the source is that of Debian's package.
 ensure_opensubdiv() {
   [[ ! -e $opensubdiv_dir ]] || return 0
-  local mirror version=${opensubdiv_dir##*-} new=$opensubdiv_dir.new
-  mirror=$(debian_mirror)
-  note "fetching the source of OpenSubdiv $version from $mirror (35 MB)"
-  rm -rf "$new"
-  mkdir -p "$new"
-  logged opensubdiv.log /usr/lib/apt/apt-helper download-file \
-    "${mirror%/}/pool/main/o/opensubdiv/opensubdiv_$version.orig.tar.xz" "$new/source.tar.xz" \
-    SHA256:09dcab919207361addeba64792e9ebd07dae65881ef205a75be68b087989434e
-  (cd "$new" && cmake -E tar xf source.tar.xz)
-  mkdir "$new/kept" "$new/kept/opensubdiv"
-  mv "$new/opensubdiv-$version"/{LICENSE,NOTICE}.txt "$new/kept/"
-  mv "$new/opensubdiv-$version"/opensubdiv/{far,sdc,vtr,version.h} "$new/kept/opensubdiv/"
-  mv "$new/kept" "$opensubdiv_dir"
-  rm -rf "$new"
+  local version=${opensubdiv_dir##*-} source=$opensubdiv_dir.source
+  fetch_source "$opensubdiv_dir" "o/opensubdiv/opensubdiv_$version.orig.tar.xz" \
+    09dcab919207361addeba64792e9ebd07dae65881ef205a75be68b087989434e
+  mkdir "$source/kept" "$source/kept/opensubdiv"
+  mv "$source/opensubdiv-$version"/{LICENSE,NOTICE}.txt "$source/kept/"
+  mv "$source/opensubdiv-$version"/opensubdiv/{far,sdc,vtr,version.h} "$source/kept/opensubdiv/"
+  mv "$source/kept" "$opensubdiv_dir"
+  rm -rf "$source"
+}
+
+# libsquish is linked in likewise.
+ensure_squish() {
+  [[ ! -e $squish_dir ]] || return 0
+  local version=${squish_dir##*-} source=$squish_dir.source
+  fetch_source "$squish_dir" "libs/libsquish/libsquish_$version.orig.tar.gz" \
+    628796eeba608866183a61d080d46967c9dda6723bc0a3ec52324c85d2147269
+  mkdir "$source/kept"
+  mv "$source"/{LICENSE.txt,*.cpp,*.h,*.inl} "$source/kept/"
+  mv "$source/kept" "$squish_dir"
+  rm -rf "$source"
 }
 
 ensure_root() {
@@ -289,6 +307,7 @@ setup() {
   choose_blender
   ensure_packages "${host_packages[@]}"
   ensure_opensubdiv
+  ensure_squish
   if [[ $blender_kind == root ]]; then
     ensure_root
     ensure_root_headers
@@ -335,7 +354,7 @@ compile() {
 
 configure_release() {
   configure release "PREFILTER_PYTHON_HEADERS=$python_headers" \
-    "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir"
+    "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir" "PREFILTER_SQUISH_SOURCE=$squish_dir"
 }
 
 # build_packages: brings the Python package of every Python up to date.
@@ -395,7 +414,7 @@ package_extension() {
   for tag in "${python_tags[@]}"; do
     /usr/bin/python3 "$source_dir/scripts/make_wheel.py" --package "$build_dir/release/python/$tag/prefilter" \
       --tag "$tag" --version "$version" --license "$source_dir/LICENSE" \
-      --linked "$opensubdiv_dir" --output "$build_dir/wheels" >&2
+      --linked "$opensubdiv_dir" --linked "$squish_dir" --output "$build_dir/wheels" >&2
   done
   cp "$build_dir/wheels"/*.whl "$stage/wheels/"
   cp -R "$source_dir/addon/." "$stage/"

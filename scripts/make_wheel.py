@@ -112,8 +112,9 @@ def main() -> int:
     files[f"{info}/WHEEL"] = WHEEL.format(name=name, tag=tag).encode()
     licenses = {"LICENSE": options.license}
     for library in options.linked:
-        for text in ("LICENSE.txt", "NOTICE.txt"):
-            licenses[f"{library.name}/{text}"] = library / text
+        licenses[f"{library.name}/LICENSE.txt"] = library / "LICENSE.txt"
+        if (library / "NOTICE.txt").exists():
+            licenses[f"{library.name}/NOTICE.txt"] = library / "NOTICE.txt"
     files |= {f"{info}/licenses/{path}": source.read_bytes() for path, source in licenses.items()}
     files[f"{info}/METADATA"] = METADATA.format(
         name=name,

@@ -1,10 +1,11 @@
-"""Mip-mapped texture files, staged beside their target and renamed into place.
+"""Texture files, staged beside their target and renamed into place; here those for renderers.
 
 * OpenEXR: scene-linear, associated alpha, 16-bit floats unless 32 are asked for.
 * TIFF (.tif, .tiff, .tx): a byte image stays 8-bit and in its colour space, a float image is
   written as scene-linear 32-bit floats; associated alpha, as texture readers expect.
 
-A file always holds every level down to 1 x 1, in tiles of 64 x 64.
+A file always holds every level down to 1 x 1, in tiles of 64 x 64. Those for engines are written
+by `engine_files`.
 """
 
 import os
@@ -21,6 +22,9 @@ from . import images, openimageio
 from .images import FloatArray, Picture
 
 _FORMATS = {".exr": "openexr", ".tif": "tiff", ".tiff": "tiff", ".tx": "tiff"}
+# Those that `engine_files` writes; the last one gets a file a level.
+_OTHER_EXTENSIONS = (".dds", ".ktx2", ".png")
+_MOST_LEVELS = 31
 _WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
 _WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
@@ -51,12 +55,31 @@ def check_target(path: str) -> Path:
         OSError: The folder is missing, or the file or its folder is read-only.
     """
     target = Path(os.path.realpath(path))
-    if target.suffix.lower() not in _FORMATS:
+    extension = target.suffix.lower()
+    allowed = (*_FORMATS, *_OTHER_EXTENSIONS)
+    if extension not in allowed:
         raise ValueError(
-            f"file '{path}': found extension '{target.suffix}'; allowed are {', '.join(_FORMATS)}"
+            f"file '{path}': found extension '{target.suffix}'; allowed are {', '.join(allowed)}"
         )
-    _check_place(path, target)
+    if extension == ".png":
+        for number in range(_MOST_LEVELS):
+            level_file = numbered(target, number)
+            _check_place(str(level_file), level_file)
+    else:
+        _check_place(path, target)
     return target
+
+
+def numbered(target: Path, number: int) -> Path:
+    """Returns the file of a level where each has its own, symbolic links resolved."""
+    return Path(os.path.realpath(target.with_suffix(f".{number}{target.suffix}")))
+
+
+def shown(target: Path) -> str:
+    """Returns how to call a file, or the files of all levels."""
+    if target.suffix.lower() != ".png":
+        return f"'{target}'"
+    return f"'{target.with_suffix(f'.0{target.suffix}')}' and so on"
 
 
 def check_plain_target(path: str, ending: str) -> Path:

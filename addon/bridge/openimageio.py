@@ -72,6 +72,31 @@ def color_convert(
     return converted
 
 
+def write_picture(path: Path, pixels: NDArray[Any], color_space: str) -> None:
+    """Writes integers as a picture file, just as they are; a fourth channel is straight alpha.
+
+    Args:
+        path: The file, whose ending says its kind; replaced where it exists.
+        pixels: (h, w, c) array of uint8 or uint16, rows from the top.
+        color_space: What to say in `oiio:ColorSpace`.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    oiio = module()
+    height, width, channels = pixels.shape
+    spec = oiio.ImageSpec(width, height, channels, str(pixels.dtype))
+    spec.attribute("oiio:ColorSpace", color_space)
+    spec.attribute("oiio:UnassociatedAlpha", 1)
+    output = oiio.ImageOutput.create(str(path))
+    if output is None:
+        raise OSError(f"file '{path}': {oiio.geterror()}")
+    written = output.open(str(path), spec) and output.write_image(pixels)
+    message = output.geterror()
+    if not (output.close() and written):
+        raise OSError(f"file '{path}': cannot be written: {message or output.geterror()}")
+
+
 def write_texture(
     path: Path,
     levels: Sequence[FloatArray],

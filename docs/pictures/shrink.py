@@ -16,5 +16,6 @@ for name in sys.argv[2:]:
     if picture.width > WIDTH:
         height = round(picture.height * WIDTH / picture.width)
         picture = picture.resize((WIDTH, height), Image.Resampling.LANCZOS)
-    small = picture.quantize(256, dither=Image.Dither.FLOYDSTEINBERG)
+    # Pillow dithers with a given palette only.
+    small = picture.quantize(palette=picture.quantize(256), dither=Image.Dither.FLOYDSTEINBERG)
     small.save(folder / Path(name).name, optimize=True)

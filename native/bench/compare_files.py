@@ -40,7 +40,7 @@ def main() -> None:
         parser.error(f"there is no '{IN_CPP}'; build the target prefilter_bake_file first")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        spot = [str(SPOT)] if SPOT.is_dir() else []
+        spot = ["--spot", str(SPOT)] if SPOT.is_dir() else []
         run([sys.executable, str(HERE / "scene.py"), name, *spot])
         picture = folder / "sized.png"
         size = f"{options.size}x{options.size}"

@@ -39,7 +39,7 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        spot = [str(options.spot)] if options.spot.is_dir() else []
+        spot = ["--spot", str(options.spot)] if options.spot.is_dir() else []
         _, _, told = run([sys.executable, str(HERE / "scene.py"), name, *spot])
         print(f"{'spot' if spot else 'generated'}, {told.strip()}, {options.threads} threads each")
         ours = InMemory("prefilter", folder, filter="pam-bilinear", threads=options.threads)

@@ -21,11 +21,13 @@ from pathlib import Path
 import bpy
 import numpy as np
 import OpenImageIO as oiio
+import prefilter
 from mathutils import Euler, Vector
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-import quality
+import subjects
+from report import Report
 
 Texels = NDArray[np.float32]
 
@@ -49,7 +51,7 @@ class Frame:
 def main() -> None:
     """Measures the models of the command line."""
     options = parse()
-    report = quality.Report()
+    report = Report()
     rows = []
     for model in options.models:
         for painted in (False, True):
@@ -97,7 +99,7 @@ def measure(
     for image in dict.fromkeys(image for _, image in worn):
         pixels = linear(image)
         if painted:
-            pixels[unused(objects, image)] = (*quality.MAGENTA, 1.0)
+            pixels[unused(objects, image)] = (*subjects.MAGENTA, 1.0)
         emitted[image] = write(pixels, folder / f"{image.name}{KINDS[kind]}")
     for material, image in worn:
         emit(material, emitted[image])
@@ -123,7 +125,7 @@ def measure(
 
 
 def judge(
-    report: quality.Report,
+    report: Report,
     model: str,
     kind: str,
     errors: dict[int, dict[str, float]],
@@ -185,23 +187,23 @@ def base_colors(
 
 def linear(image: bpy.types.Image) -> Texels:
     """Returns an image's opaque scene-linear pixels."""
-    read = quality.images.read(image)
+    read = subjects.images.read(image)
     pixels = np.ones((*read.stored.shape[:2], 4), np.float32)
-    pixels[..., :3] = quality.images.scene_linear(read)[..., :3]
+    pixels[..., :3] = subjects.images.scene_linear(read)[..., :3]
     return pixels
 
 
 def unused(objects: Sequence[bpy.types.Object], image: bpy.types.Image) -> NDArray[np.bool_]:
     """Returns which texels no lookup on the objects reads: no triangle touches one beside them."""
-    _, uvs = quality.read_triangles(objects, image, all_faces=False)
+    _, uvs, _ = subjects.read_triangles(objects, image, all_faces=False)
     width, height = image.size
-    return ~quality.dilated(quality.touched_texels(uvs, width, height, "repeat"), "repeat")
+    return ~subjects.dilated(subjects.touched_texels(uvs, width, height, "repeat"), "repeat")
 
 
 def write(pixels: Texels, path: Path) -> bpy.types.Image:
     """Writes scene-linear pixels, row 0 at the bottom, to an EXR or an 8-bit sRGB file."""
     is_float = path.suffix == ".exr"
-    stored = pixels if is_float else quality.prefilter.to_srgb(pixels)
+    stored = pixels if is_float else prefilter.to_srgb(pixels)
     buffer = oiio.ImageBuf(np.ascontiguousarray(stored[::-1, :, :3]))
     if not buffer.write(str(path), "float" if is_float else "uint8"):
         raise OSError(buffer.geterror())

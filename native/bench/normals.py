@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-import quality
+import sampling
+import subjects
 
 FILTERS = ("box", "pam-bilinear")
 LEVELS = range(1, 7)
@@ -29,7 +30,7 @@ STEEPNESS = 0.3  # The standard deviation of the slopes.
 def main() -> None:
     """Measures the models of the command line."""
     parser = argparse.ArgumentParser(prog="normals.py", description=__doc__.splitlines()[0])
-    models = [*quality.REQUIRED_MODELS, *quality.FURTHER_MODELS]
+    models = subjects.MODELS
     parser.add_argument("models", nargs="*", default=models)
     data = Path(__file__).resolve().parents[3] / "shared" / "data" / "textured"
     parser.add_argument("--data", type=Path, default=data)
@@ -38,7 +39,7 @@ def main() -> None:
     print(f"| model | filter | {' | '.join(f'level {level}' for level in LEVELS)} |")
     print("| --- " * (len(LEVELS) + 2) + "|")
     for model in options.models:
-        for subject in quality.load(options.data / model, "auto"):
+        for subject in subjects.load(options.data / model, "auto"):
             errors = measured(subject)
             for name in FILTERS:
                 cells = " | ".join(f"{error:.2f}" for error in errors[name])
@@ -49,12 +50,12 @@ def main() -> None:
         raise SystemExit(1)
 
 
-def measured(subject: quality.Subject) -> dict[str, NDArray[np.float64]]:
+def measured(subject: subjects.Subject) -> dict[str, NDArray[np.float64]]:
     """Returns the root mean square of the angle, in degrees, for each filter and level."""
     wrap = subject.wrap
     normals = bumps(subject.image)
-    points = quality.random_points(subject, POINTS)
-    shown = unit(2 * quality.lookup(normals, points, wrap) - 1)
+    points = sampling.random_points(subject.corners, subject.uvs, POINTS)
+    shown = unit(2 * sampling.lookup(normals, points, wrap) - 1)
     errors = {}
     for name in FILTERS:
         made = prefilter.normal_mipmaps(normals, subject.surfaces, filter=name, wrap=wrap)
@@ -62,7 +63,7 @@ def measured(subject: quality.Subject) -> dict[str, NDArray[np.float64]]:
         for level in LEVELS:
             # Levels are kept in bytes.
             stored = np.round(made[level] * 255).astype(np.float32) / 255
-            found = unit(2 * quality.lookup(stored, points, wrap) - 1)
+            found = unit(2 * sampling.lookup(stored, points, wrap) - 1)
             cosines = np.clip((shown * found).sum(axis=1), -1, 1)
             squares.append((np.degrees(np.arccos(cosines)) ** 2).mean())
         errors[name] = np.sqrt(squares)

@@ -14,139 +14,110 @@ method that shares nothing with it: lookups with numpy at random points of the s
 
 import argparse
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
-import bpy
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import maketx_levels
 import numpy as np
 import prefilter
-from bl_ext.user_default.prefilter.bridge import images, meshes
-from numpy.typing import NDArray
-
-Floats = NDArray[np.float64]
-Texels = NDArray[np.float32]
+import sampling
+import subjects
+from report import Report
+from sampling import Floats, Texels
+from subjects import Subject
 
 SUBJECT = "pam-bilinear"
-RIVALS = ("box", "lanczos3", "box-covered", "pam-box")
-FILTERS = ("box", "tent", "lanczos3", "box-covered", "lanczos3-covered", "pam-box", SUBJECT)
+TRILINEAR = "pam-trilinear"
+MAKETX = ("maketx box", "maketx lanczos3")
+FILTERS = (
+    "box",
+    "tent",
+    "lanczos3",
+    *MAKETX,
+    "box-covered",
+    "tent-covered",
+    "lanczos3-covered",
+    "pam-box",
+    SUBJECT,
+    TRILINEAR,
+)
 LEVELS = range(1, 7)
-REQUIRED_MODELS = ("spot", "BoomBox", "IridescenceLamp", "DamagedHelmet")
-FURTHER_MODELS = ("AntiqueCamera", "Suzanne", "Duck")
+LEAST_SQUARES = (SUBJECT, TRILINEAR)  # All others are rivals.
+GAIN = 0.12
 PAINTED_MODEL = "spot"
-PAINTED_GAIN = 0.18
-MAGENTA = (1.0, 0.0, 1.0)
-SAMPLED_FILTERS = ("lanczos3", SUBJECT)
+PAINTED_GAIN = 0.25
 AGREEMENT = 5.0  # Standard errors by which the two methods may differ.
 
-WRAP_OF_EXTENSION = {"REPEAT": "repeat", "EXTEND": "clamp", "CLIP": "border"}
-BATCH = 1 << 18
 
-
-@dataclass(frozen=True)
-class Subject:
-    """An image on its surfaces.
+@dataclass
+class Errors:
+    """What was found of one subject.
 
     Attributes:
-        name: What to call it.
-        picture: The image as the add-on reads it.
-        image: Its scene-linear values, row 0 at the bottom.
-        surfaces: What the add-on gives the library.
-        wrap: The wrap mode that the materials ask for, or that of --wrap.
-        corners: (m, 3, 3) positions and `uvs` (m, 3, 2) of the same triangles, read without the
-            add-on and the library.
-        uvs: See `corners`.
+        levels: Of each filter, the errors at the whole levels 1 to 6.
+        all_values: Of each filter, the root mean square of the errors at all mip values, 0 to the
+            last level, of trilinear lookups.
     """
 
-    name: str
-    picture: images.Picture
-    image: Texels
-    surfaces: list[prefilter.Surface]
-    wrap: str
-    corners: Floats
-    uvs: Floats
-
-    def painted(self, name: str, unused: NDArray[np.bool_]) -> "Subject":
-        """Returns the same with some texels magenta."""
-        image = self.image.copy()
-        image[unused, :3] = MAGENTA
-        return replace(self, name=name, image=image)
-
-    def rounded(self, level: Texels) -> Texels:
-        """Returns a level as an 8-bit image datablock of the picture's colour space keeps it."""
-        stored = images.encoded(self.picture, level)
-        stored = np.round(255 * stored.clip(0, 1)).astype(np.float32) / 255
-        return images.scene_linear(replace(self.picture, stored=stored))
+    levels: dict[str, Floats] = field(default_factory=dict)
+    all_values: dict[str, float] = field(default_factory=dict)
 
 
-class Report:
-    """Prints tables, and keeps them as markdown; counts what does not hold."""
+@dataclass
+class Summary:
+    """Rows of the tables over all subjects.
 
-    def __init__(self) -> None:
-        """Starts empty."""
-        self.markdown: list[str] = []
-        self.failures: list[str] = []
-        self.summary: list[list[str]] = []
+    Attributes:
+        shares: The errors of pam-bilinear as shares of lanczos3, by level.
+        trilinear: The errors over all mip values, by filter.
+        means: The mean share of lanczos3 of each model, as it was gathered.
+    """
 
-    def table(self, title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-        """Adds a table; all columns but the first are aligned at the right."""
-        widths = [max(map(len, column)) for column in zip(head, *rows, strict=True)]
-        print(f"\n{title}")
-        for row in (head, *rows):
-            print("  " + "  ".join(c.rjust(w) for c, w in zip(row, widths, strict=True)))
-        sys.stdout.flush()
-        ruler = ["---:"] * len(head)
-        lines = (f"| {' | '.join(row)} |" for row in (head, ruler, *rows))
-        self.markdown.append("\n".join([f"**{title}**", "", *lines, ""]))
-
-    def verdict(self, holds: bool, claim: str) -> None:
-        """Adds whether a criterion holds."""
-        print(f"  {'holds' if holds else 'DOES NOT HOLD'}: {claim}", flush=True)
-        self.markdown.append(f"{'Holds' if holds else '**Does not hold**'}: {claim}.\n")
-        if not holds:
-            self.failures.append(claim)
+    shares: list[list[str]] = field(default_factory=list)
+    trilinear: list[list[str]] = field(default_factory=list)
+    means: list[float] = field(default_factory=list)
 
 
 def main() -> None:
     """Measures the models of the command line."""
     options = parse()
-    report = Report()
+    report, summary = Report(), Summary()
+    filters = FILTERS
+    if not maketx_levels.is_available():
+        print("maketx: not found, and left out")
+        filters = tuple(name for name in FILTERS if name not in MAKETX)
     for model in options.models:
-        for subject in load(options.data / model, options.wrap):
-            required = model in REQUIRED_MODELS
-            measure(report, subject, required, options)
+        for subject in subjects.load(options.data / model, options.wrap):
+            measure(report, summary, subject, filters, GAIN, options)
             if model == PAINTED_MODEL:
-                measure_painted(report, subject, options)
-    head = ["model", *(f"level {level}" for level in LEVELS), "mean", "worst / best other"]
-    report.table(f"Summary: {SUBJECT} / lanczos3", head, report.summary)
-    if options.markdown is not None:
-        options.markdown.write_text("\n".join(report.markdown))
-    print(
-        f"\n{len(report.failures)} of the criteria do not hold" if report.failures else "\nall hold"
+                measure_painted(report, summary, subject, filters, options)
+    head = ["model", *(f"level {level}" for level in LEVELS), "mean", "unbounded", "worst"]
+    report.table(
+        f"Summary: {SUBJECT} / lanczos3; its mean without bounds, which no levels can go below; "
+        "the worst share of the best rival",
+        head,
+        summary.shares,
     )
-    for failure in report.failures:
-        print(f"  {failure}")
-    if report.failures:
-        raise SystemExit(1)
+    report.table(
+        "Summary: RMSE over all mip values, trilinear lookups",
+        ["model", "mip values", *filters, "/ best other"],
+        summary.trilinear,
+    )
+    if summary.means:
+        mean = np.mean(summary.means)
+        report.verdict(
+            mean <= 1 - GAIN,
+            f"{SUBJECT} is at least {GAIN:.0%} below lanczos3 on average over the models "
+            f"(found {1 - mean:.1%})",
+        )
+    report.finish(options.markdown)
 
 
 def parse() -> argparse.Namespace:
     """Reads the arguments after Blender's `--`."""
-    arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else []
-    parser = argparse.ArgumentParser(prog="quality.py", description=__doc__.splitlines()[0])
-    parser.add_argument("models", nargs="*", default=[*REQUIRED_MODELS, *FURTHER_MODELS])
-    parser.add_argument(
-        "--data",
-        type=Path,
-        default=Path(__file__).resolve().parents[3] / "shared/data/textured",
-        help="the folder that holds a folder for each model (default: %(default)s)",
-    )
-    parser.add_argument(
-        "--wrap",
-        choices=["auto", *WRAP_OF_EXTENSION.values()],
-        default="auto",
-        help="the wrap mode; auto: that of the materials, as the add-on does (default: auto)",
-    )
+    parser = subjects.argument_parser("quality.py", __doc__)
     parser.add_argument(
         "--samples",
         type=int,
@@ -158,231 +129,196 @@ def parse() -> argparse.Namespace:
         action="store_true",
         help="round the levels as 8-bit images keep them; without it they are floats",
     )
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
-    options = parser.parse_args(arguments)
-    for model in options.models:
-        if not (options.data / model).is_dir():
-            parser.error(f"there is no folder '{options.data / model}'")
-    return options
-
-
-def load(folder: Path, wrap: str) -> Iterator[Subject]:
-    """Imports a model and yields each of its images that has pixels, with its surfaces."""
-    bpy.ops.wm.read_homefile(use_empty=True)
-    for path in folder.glob("*.gltf"):
-        bpy.ops.import_scene.gltf(filepath=str(path))
-    for path in folder.glob("*_triangulated.obj"):
-        bpy.ops.wm.obj_import(filepath=str(path))
-    objects = [obj for obj in bpy.context.view_layer.objects if obj.type == "MESH"]
-    found = meshes.images_of_objects(objects)
-    bare = not found
-    if bare:
-        found = [bpy.data.images.load(str(path)) for path in folder.glob("*.png")]
-    # Only some pictures of a model were gathered.
-    found = [image for image in found if image.size[0] > 0]
-    for image in found:
-        name = folder.name if len(found) == 1 else f"{folder.name}, {image.name}"
-        yield read(name, objects, image, wrap, all_faces=bare)
-
-
-def read(
-    name: str,
-    objects: Sequence[bpy.types.Object],
-    image: bpy.types.Image,
-    wrap: str,
-    *,
-    all_faces: bool,
-) -> Subject:
-    """Reads an image and its surfaces, through the add-on and without it."""
-    picture = images.read(image)
-    if picture.alpha_is_coverage:
-        raise ValueError(f"image '{image.name}': errors of images with coverage are not defined")
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    found = meshes.image_surfaces(objects, image, depsgraph, all_faces=all_faces)
-    if wrap == "auto":
-        wrap = WRAP_OF_EXTENSION[found.extensions[0]]
-    corners, uvs = read_triangles(objects, image, all_faces=all_faces)
-    area = sum(surface.area for surface in found.surfaces)
-    if not np.isclose(areas_of(corners).sum(), area, rtol=1e-5):
-        raise ValueError(
-            f"{name}: the add-on reads an area of {area}, not {areas_of(corners).sum()}"
-        )
-    return Subject(name, picture, images.scene_linear(picture), found.surfaces, wrap, corners, uvs)
-
-
-def read_triangles(
-    objects: Sequence[bpy.types.Object], image: bpy.types.Image, *, all_faces: bool
-) -> tuple[Floats, Floats]:
-    """Returns world positions (m, 3, 3) and UVs (m, 3, 2) of the faces that show an image."""
-    corners, uvs = [], []
-    for obj in objects:
-        mesh = obj.data
-        mesh.calc_loop_triangles()
-        layer = mesh.uv_layers.active
-        slots = {i for i, material in enumerate(mesh.materials) if shows(material, image)}
-        for triangle in mesh.loop_triangles:
-            if all_faces or triangle.material_index in slots:
-                corners.append([obj.matrix_world @ mesh.vertices[v].co for v in triangle.vertices])
-                uvs.append([layer.uv[loop].vector for loop in triangle.loops])
-    return np.array(corners, float), np.array(uvs, float)
-
-
-def shows(material: bpy.types.Material | None, image: bpy.types.Image) -> bool:
-    """Returns whether a material has a node with the image."""
-    if material is None or not material.use_nodes:
-        return False
-    return any(n.type == "TEX_IMAGE" and n.image == image for n in material.node_tree.nodes)
-
-
-def areas_of(corners: Floats) -> Floats:
-    """Returns the areas of triangles."""
-    a, b, c = corners.transpose(1, 0, 2)
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
+    return subjects.parse(parser)
 
 
 def measure(
-    report: Report, subject: Subject, required: bool, options: argparse.Namespace
-) -> dict[str, NDArray[np.float64]]:
-    """Adds the errors of one subject to the report, and returns them by filter."""
-    levels = {name: bake(subject, name) for name in FILTERS}
+    report: Report,
+    summary: Summary,
+    subject: Subject,
+    filters: tuple[str, ...],
+    gain: float,
+    options: argparse.Namespace,
+) -> None:
+    """Adds the errors of one subject to the report and the summary."""
+    mipmaps = {name: bake(subject, name) for name in filters}
     if options.bytes:
-        for made in levels.values():
+        for made in mipmaps.values():
             made[1:] = [subject.rounded(level) for level in made[1:]]
-    errors = {
-        name: prefilter.mipmap_error(
-            levels[name], subject.image, subject.surfaces, LEVELS, wrap=subject.wrap
-        )
-        for name in FILTERS
-    }
-    ours = errors[SUBJECT]
-    best = np.min([errors[name] for name in FILTERS if name != SUBJECT], axis=0)
-    ratios = {"/ best other": ours / best, "/ lanczos3": ours / errors["lanczos3"]}
-    rows = [
-        [
-            str(level),
-            *(f"{errors[name][k]:.5f}" for name in FILTERS),
-            *(f"{ratio[k]:.3f}" for ratio in ratios.values()),
-        ]
-        for k, level in enumerate(LEVELS)
-    ]
-    blanks = [""] * len(FILTERS)
-    rows.append(["mean", *blanks, *(f"{ratio.mean():.3f}" for ratio in ratios.values())])
-    height, width, channels = subject.image.shape
-    triangles = sum(surface.triangle_count for surface in subject.surfaces)
-    title = (
-        f"{subject.name}: {width} x {height} x {channels}, {triangles} triangles, "
-        f"wrap {subject.wrap}: "
-        f"RMSE over the surface{', levels in 8 bits' if options.bytes else ''}"
+    errors = exact_errors(subject, mipmaps)
+    ours, reference = errors.levels[SUBJECT], errors.levels["lanczos3"]
+    best = np.min([errors.levels[name] for name in filters if name not in LEAST_SQUARES], axis=0)
+    share = ours / reference
+    add_tables(report, subject, errors, best, rounded=options.bytes)
+    unbounded = prefilter.mipmap_error(
+        bake(subject, SUBJECT, bounds=None)[: LEVELS[-1] + 1],
+        subject.image,
+        subject.surfaces,
+        LEVELS,
+        wrap=subject.wrap,
     )
-    report.table(title, ["level", *FILTERS, *ratios], rows)
-    ratio = ratios["/ lanczos3"]
-    report.summary.append(
+    summary.shares.append(
         [
             subject.name,
-            *(f"{x:.3f}" for x in ratio),
-            f"{ratio.mean():.3f}",
+            *(f"{x:.3f}" for x in share),
+            f"{share.mean():.3f}",
+            f"{(unbounded / reference).mean():.3f}",
             f"{(ours / best).max():.3f}",
         ]
     )
-    if required:
-        least = min((errors[name] / ours).min() for name in RIVALS)
-        report.verdict(
-            least > 1,
-            f"{subject.name}: {SUBJECT} is below {', '.join(RIVALS)} at every level 1 to 6 "
-            f"(closest: {100 * (1 - 1 / least):.1f} % below)",
-        )
+    if gain == GAIN:
+        summary.means.append(share.mean())
+    name = subject.name
+    report.verdict(
+        all((ours < errors.levels[other]).all() for other in filters if other != SUBJECT),
+        f"{name}: {SUBJECT} has the lowest error at every level 1 to 6 "
+        f"({1 - (ours / best).max():.1%} at least below all but {TRILINEAR})",
+    )
+    report.verdict(
+        share.mean() <= 1 - gain,
+        f"{name}: {SUBJECT} is at least {gain:.0%} below lanczos3 on average over levels 1 to 6 "
+        f"(found {1 - share.mean():.1%})",
+    )
+    rest = {name: error for name, error in errors.all_values.items() if name != TRILINEAR}
+    closest = min(rest, key=rest.get)
+    ratio = errors.all_values[TRILINEAR] / rest[closest]
+    summary.trilinear.append(
+        [
+            name,
+            f"0 to {len(mipmaps[SUBJECT]) - 1}",
+            *(f"{errors.all_values[name]:.5f}" for name in filters),
+            f"{ratio:.4f}",
+        ]
+    )
+    report.verdict(
+        ratio < 1,
+        f"{name}: {TRILINEAR} has the lowest error over all mip values "
+        f"({1 - ratio:.2%} below {closest})",
+    )
     if options.samples:
-        check_by_sampling(report, subject, levels, errors, options.samples)
-    return errors
+        check_by_sampling(report, subject, mipmaps, errors, options.samples)
 
 
-def bake(subject: Subject, name: str) -> list[Texels]:
-    """Returns levels 0 to 6."""
+def bake(
+    subject: Subject, name: str, bounds: tuple[float, float] | None = (0.0, 1.0)
+) -> list[Texels]:
+    """Returns all levels, down to one texel."""
+    if name in MAKETX:
+        made = maketx_levels.levels(
+            subject.image, filter=name.removeprefix("maketx "), wrap=subject.wrap
+        )
+        # What other filters get too.
+        return [level.clip(*bounds) for level in made]
     return prefilter.mipmaps(
         subject.image,
         subject.surfaces,
         filter=name,
         wrap=subject.wrap,
-        levels=LEVELS[-1] + 1,
+        bounds=bounds,
         premultiplied=True,
     )
 
 
-def measure_painted(report: Report, subject: Subject, options: argparse.Namespace) -> None:
+def exact_errors(subject: Subject, mipmaps: dict[str, list[Texels]]) -> Errors:
+    """Returns the errors from moments."""
+    found = Errors()
+    for name, levels in mipmaps.items():
+        last = len(levels) - 1
+        halves = np.arange(2 * last + 1) / 2
+        errors = prefilter.mipmap_error(
+            levels, subject.image, subject.surfaces, halves, wrap=subject.wrap
+        )
+        found.levels[name] = errors[2 * LEVELS[0] : 2 * LEVELS[-1] + 1 : 2]
+        # Simpson's rule is exact: the square is quadratic in between two levels.
+        low, middle, high = errors[:-2:2] ** 2, errors[1:-1:2] ** 2, errors[2::2] ** 2
+        found.all_values[name] = float(np.sqrt(((low + 4 * middle + high) / 6).mean()))
+    return found
+
+
+def add_tables(
+    report: Report, subject: Subject, errors: Errors, best: Floats, *, rounded: bool
+) -> None:
+    """Adds the errors at the levels, and over all mip values, to the report."""
+    ours = errors.levels[SUBJECT]
+    ratios = {"/ best rival": ours / best, "/ lanczos3": ours / errors.levels["lanczos3"]}
+    rows = [
+        [
+            str(level),
+            *(f"{found[k]:.5f}" for found in errors.levels.values()),
+            *(f"{ratio[k]:.3f}" for ratio in ratios.values()),
+        ]
+        for k, level in enumerate(LEVELS)
+    ]
+    blanks = [""] * len(errors.levels)
+    rows.append(["mean", *blanks, *(f"{ratio.mean():.3f}" for ratio in ratios.values())])
+    rows.append(["all", *(f"{error:.5f}" for error in errors.all_values.values()), "", ""])
+    height, width, channels = subject.image.shape
+    triangles = sum(surface.triangle_count for surface in subject.surfaces)
+    title = (
+        f"{subject.name}: {width} x {height} x {channels}, {triangles} triangles, "
+        f"wrap {subject.wrap}: "
+        f"RMSE over the surface{', levels in 8 bits' if rounded else ''}"
+    )
+    report.table(title, ["level", *errors.levels, *ratios], rows)
+
+
+def measure_painted(
+    report: Report,
+    summary: Summary,
+    subject: Subject,
+    filters: tuple[str, ...],
+    options: argparse.Namespace,
+) -> None:
     """Measures a subject with its unused texels magenta, in two meanings of unused."""
     height, width = subject.image.shape[:2]
-    touched = touched_texels(subject.uvs, width, height, subject.wrap)
+    touched = subjects.touched_texels(subject.uvs, width, height, subject.wrap)
     # A bilinear lookup beside a chart's edge reads one texel further.
-    read = dilated(touched, subject.wrap)
+    read = subjects.dilated(touched, subject.wrap)
     for used, which in ((touched, "touches"), (read, "reads")):
         print(f"\nmagenta: the {(~used).mean():.1%} of texels that no triangle {which}")
         name = f"{subject.name}, texels that no triangle {which} magenta"
-        errors = measure(report, subject.painted(name, ~used), True, options)
-        gain = 1 - (errors[SUBJECT] / errors["lanczos3"]).mean()
-        report.verdict(
-            gain >= PAINTED_GAIN,
-            f"{name}: {SUBJECT} is at least {PAINTED_GAIN:.0%} below lanczos3 on average over "
-            f"levels 1 to 6 (found {100 * gain:.1f} %)",
-        )
-
-
-def touched_texels(uvs: Floats, width: int, height: int, wrap: str) -> NDArray[np.bool_]:
-    """Returns which texels' squares share an area with some triangle (separating axes)."""
-    touched = np.zeros((height, width), bool)
-    size = np.array([width, height])
-    for triangle in uvs * size:
-        edges = np.roll(triangle, -1, axis=0) - triangle
-        twice_area = edges[0, 0] * edges[1, 1] - edges[0, 1] * edges[1, 0]
-        if twice_area == 0:
-            continue
-        low = np.floor(triangle.min(axis=0)).astype(int)
-        high = np.ceil(triangle.max(axis=0)).astype(int)
-        x, y = np.meshgrid(np.arange(low[0], high[0]), np.arange(low[1], high[1]))
-        meets = np.ones(x.shape, bool)
-        for corner, edge in zip(triangle, edges * np.sign(twice_area), strict=True):
-            centre = edge[0] * (y + 0.5 - corner[1]) - edge[1] * (x + 0.5 - corner[0])
-            meets &= centre + np.abs(edge).sum() / 2 > 0
-        touched[wrapped(y[meets], height, wrap), wrapped(x[meets], width, wrap)] = True
-    return touched
-
-
-def dilated(mask: NDArray[np.bool_], wrap: str) -> NDArray[np.bool_]:
-    """Returns the mask with the eight neighbours of each texel."""
-    height, width = mask.shape
-    rows, columns = np.nonzero(mask)
-    result = mask.copy()
-    for dy in (-1, 0, 1):
-        for dx in (-1, 0, 1):
-            result[wrapped(rows + dy, height, wrap), wrapped(columns + dx, width, wrap)] = True
-    return result
+        painted = subject.painted(name, ~used)
+        measure(report, summary, painted, filters, PAINTED_GAIN, options)
 
 
 def check_by_sampling(
     report: Report,
     subject: Subject,
-    levels: dict[str, list[Texels]],
-    errors: dict[str, Floats],
+    mipmaps: dict[str, list[Texels]],
+    errors: Errors,
     samples: int,
 ) -> None:
     """Estimates the errors from random points, and adds both to the report."""
-    points = random_points(subject, samples)
-    exact_image = np.concatenate([lookup(subject.image, p, subject.wrap) for p in batches(points)])
+    points = sampling.random_points(subject.corners, subject.uvs, samples)
+    values = sampling.random_mip_values(samples, len(mipmaps[SUBJECT]) - 1)
     rows, worst = [], 0.0
-    for name in SAMPLED_FILTERS:
-        for k, level in enumerate(LEVELS):
-            texels = levels[name][level]
-            found = np.concatenate([lookup(texels, p, subject.wrap) for p in batches(points)])
-            squares = ((found - exact_image) ** 2).mean(axis=1)
-            estimate = np.sqrt(squares.mean())
-            deviation = squares.std() / np.sqrt(samples) / (2 * estimate)
-            off = (estimate - errors[name][k]) / deviation
-            worst = max(worst, abs(off))
-            exact = f"{errors[name][k]:.5f}"
-            rows.append(
-                [name, str(level), exact, f"{estimate:.5f}", f"{deviation:.5f}", f"{off:+.1f}"]
-            )
+    closest = {SUBJECT: np.inf, TRILINEAR: np.inf}
+    for level in (*LEVELS, None):
+        if level is None:
+            lowest, exact = TRILINEAR, errors.all_values
+            squares = sampling.squared_errors(mipmaps, points, subject.wrap, values)
+        else:
+            lowest = SUBJECT
+            exact = {name: found[level - LEVELS[0]] for name, found in errors.levels.items()}
+            squares = sampling.squared_errors(mipmaps, points, subject.wrap, level=level)
+        cells = ["all" if level is None else str(level)]
+        for name, found in squares.items():
+            estimate = np.sqrt(found.mean())
+            deviation = standard_error(found) / (2 * estimate)
+            worst = max(worst, abs(estimate - exact[name]) / deviation)
+            cells.append(f"{estimate:.5f}")
+            if name != lowest:
+                above = found - squares[lowest]
+                closest[lowest] = min(closest[lowest], above.mean() / standard_error(above))
+        rows.append(cells)
     title = f"{subject.name}: the same by {samples} random points"
-    report.table(title, ["filter", "level", "exact", "sampled", "std. error", "off by"], rows)
+    report.table(title, ["level", *mipmaps], rows)
+    for name, least in closest.items():
+        report.verdict(
+            least > 0,
+            f"{subject.name}: {name} has the lowest error in these, too "
+            f"(at least {least:.1f} standard errors of the difference below any other)",
+        )
     report.verdict(
         worst <= AGREEMENT,
         f"{subject.name}: the exact and the sampled errors agree "
@@ -390,48 +326,9 @@ def check_by_sampling(
     )
 
 
-def random_points(subject: Subject, count: int) -> Floats:
-    """Returns texture coordinates (count, 2) of points spread evenly at random over the surface."""
-    random = np.random.default_rng(1)
-    ends = np.cumsum(areas_of(subject.corners))
-    # One point in each of `count` equal shares of the area: less noise than free points.
-    shares = (np.arange(count) + random.random(count)) / count
-    chosen = np.minimum(np.searchsorted(ends, shares * ends[-1], side="right"), len(ends) - 1)
-    root, s = np.sqrt(random.random(count)), random.random(count)
-    weights = np.stack([1 - root, root * (1 - s), root * s], axis=1)
-    return np.einsum("nk,nkd->nd", weights, subject.uvs[chosen])
-
-
-def batches(points: Floats) -> Iterator[Floats]:
-    """Yields the points in parts that fit in memory with all that is made of them."""
-    for start in range(0, len(points), BATCH):
-        yield points[start : start + BATCH]
-
-
-def lookup(texels: Texels, points: Floats, wrap: str) -> Floats:
-    """Returns bilinear lookups of an image, as a GPU does them."""
-    height, width = texels.shape[:2]
-    x, y = (points * (width, height) - 0.5).T
-    column, row = np.floor(x).astype(int), np.floor(y).astype(int)
-    s, t = (x - column)[:, None], (y - row)[:, None]
-
-    def at(dx: int, dy: int) -> Floats:
-        return texels[wrapped(row + dy, height, wrap), wrapped(column + dx, width, wrap)].astype(
-            float
-        )
-
-    low = (1 - s) * at(0, 0) + s * at(1, 0)
-    high = (1 - s) * at(0, 1) + s * at(1, 1)
-    return (1 - t) * low + t * high
-
-
-def wrapped(index: NDArray[np.int64], size: int, wrap: str) -> NDArray[np.int64]:
-    """Returns which texel an index along an axis reads."""
-    if wrap == "repeat":
-        return index % size
-    if wrap == "clamp":
-        return np.clip(index, 0, size - 1)
-    raise ValueError(f"wrap: found '{wrap}'; the sampled check knows repeat and clamp")
+def standard_error(samples: Floats) -> float:
+    """Returns that of the mean of samples."""
+    return float(samples.std() / np.sqrt(len(samples)))
 
 
 if __name__ == "__main__":

@@ -1,13 +1,14 @@
 """Writes the picture and the mesh that programs are compared on.
 
-usage: scene.py FOLDER [SPOT], where SPOT is the folder of the model spot; without it both are made.
+usage: scene.py FOLDER [--spot SPOT] [--triangles N], where SPOT is the folder of the model spot;
+without it both are made, the mesh with about N triangles.
 
 Leaves in FOLDER: picture.png (1024 x 1024, 8-bit RGBA), linear.npy (the same as scene-linear
 floats, row 0 at the bottom), mesh.npz (the arguments of prefilter.Surface) and mesh.bin (the same:
 counts of vertices and triangles, positions, triangles and UVs, 64 bits each).
 """
 
-import sys
+import argparse
 from pathlib import Path
 
 import numpy as np
@@ -16,13 +17,13 @@ import prefilter
 from numpy.typing import NDArray
 
 SIZE = 1024
-CHARTS, QUADS = 8, 7  # Along each axis; 6272 triangles.
+CHARTS = 8  # Along each axis.
 
 
-def main(folder: Path, spot: Path | None) -> None:
+def main(folder: Path, spot: Path | None, triangles: int) -> None:
     """Writes the files."""
     if spot is None:
-        pixels, mesh = made_picture(), made_mesh()
+        pixels, mesh = made_picture(), made_mesh(max(1, round((triangles / 2) ** 0.5 / CHARTS)))
     else:
         pixels = read_rgba(spot / "spot_texture.png")
         mesh = read_obj(spot / "spot_triangulated.obj")
@@ -85,13 +86,13 @@ def made_picture() -> NDArray[np.uint8]:
     return np.round(255 * np.concatenate([colors, alpha], axis=2)).astype(np.uint8)
 
 
-def made_mesh() -> dict[str, NDArray]:
-    """Returns square charts of different scales, which cover half of the texture."""
+def made_mesh(quads: int) -> dict[str, NDArray]:
+    """Returns charts of `quads` x `quads`, of different scales, which cover half of the texture."""
     random = np.random.default_rng(2)
-    side = np.linspace(-0.5, 0.5, QUADS + 1)
+    side = np.linspace(-0.5, 0.5, quads + 1)
     s, t = (axis.ravel() for axis in np.meshgrid(side, side))
-    first = (np.arange(QUADS)[:, None] * (QUADS + 1) + np.arange(QUADS)).ravel()
-    quad = first[:, None] + [0, 1, QUADS + 2, QUADS + 1]
+    first = (np.arange(quads)[:, None] * (quads + 1) + np.arange(quads)).ravel()
+    quad = first[:, None] + [0, 1, quads + 2, quads + 1]
     local = np.concatenate([quad[:, [0, 1, 2]], quad[:, [0, 2, 3]]])
     positions, triangles, uvs = [], [], []
     for chart in range(CHARTS**2):
@@ -112,4 +113,9 @@ def made_mesh() -> dict[str, NDArray]:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]) if len(sys.argv) > 2 else None)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--spot", type=Path)
+    parser.add_argument("--triangles", type=int, default=6272)
+    options = parser.parse_args()
+    main(options.folder, options.spot, options.triangles)

@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
 #include "convert.h"
 #include "prefilter/color/transfer.h"
 
@@ -22,6 +26,20 @@ void bind_color(py::module_& m) {
   };
   bind("decode_srgb", decode_srgb);
   bind("encode_srgb", encode_srgb);
+  m.def(
+      "to_bytes",
+      [](const Array<float>& array, bool srgb, int threads) {
+        const ImageView image = view_of(array);
+        Array<std::uint8_t> bytes({image.height, image.width, image.channels});
+        std::vector<std::uint8_t> values;
+        {
+          const py::gil_scoped_release unlocked;
+          values = to_bytes(image, srgb, threads);
+        }
+        std::copy(values.begin(), values.end(), bytes.mutable_data());
+        return bytes;
+      },
+      py::arg("image"), py::arg("srgb"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

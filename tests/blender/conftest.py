@@ -4,6 +4,7 @@ import importlib
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import ModuleType
@@ -13,6 +14,9 @@ import addon_utils
 import bpy
 import pytest
 import scenes
+
+# For texture_readers; behind this folder, as both have modules named scenes.
+sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
 
 PACKAGE = "bl_ext.user_default.prefilter"
 TEXTURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "textured"

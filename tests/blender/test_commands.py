@@ -6,6 +6,7 @@ import OpenImageIO as oiio
 import pytest
 import scenes
 from command_line import assert_fails, run
+from texture_readers import read_ktx2
 
 
 @pytest.fixture
@@ -200,3 +201,18 @@ def test_reader(blend, tmp_path):
 def test_plot_refuses(blend, tmp_path, arguments, words, status):
     assert_fails(run("plot", blend, *arguments, cwd=tmp_path), *words, status=status)
     assert [path.name for path in tmp_path.iterdir()] == ["scene.blend"]
+
+
+def test_file_for_engines(obj_and_picture, tmp_path):
+    obj, picture = obj_and_picture
+    arguments = ["bake", obj, "--image", picture, "--output"]
+    result = run(*arguments, tmp_path / "out.ktx2", "--texture-format", "bc1")
+    assert result.returncode == 0, result.stderr
+    file = read_ktx2(tmp_path / "out.ktx2")
+    assert (file.format, file.width, file.height) == ("BC1_SRGB", 16, 8)
+    assert len(file.levels) == 5
+    result = run(*arguments, tmp_path / "out.tif", "--texture-format", "bc1")
+    assert_fails(result, "--texture-format", "'bc1'", ".dds", status=2)
+    assert_fails(run(*arguments, tmp_path / "out.dds", "--texture-format", "bc7"), "bc7", status=2)
+    assert not (tmp_path / "out.tif").exists()
+    assert not (tmp_path / "out.dds").exists()

@@ -77,15 +77,15 @@ def test_other_images_are_read_as_light(bake, options):
     np.testing.assert_array_equal(scenes.pixels("Paint.mip2"), expected)
 
 
-def test_a_file_of_light_gets_a_warning(bake, tmp_path):
+def test_a_file_that_is_read_as_light_gets_a_warning(bake, tmp_path):
     _, _, image = checks()
     options = {"reader": "srgb-after", "use_images": False}
-    for name, count in (("out.exr", 1), ("out.tif", 0)):
+    for name, count in (("out.exr", 1), ("out.dds", 1), ("out.tif", 0)):
         outcome = bake(
             image, bpy.context.selected_objects, filepath=str(tmp_path / name), **options
         )
         assert len(outcome.warnings) == count
-        assert all("out.exr' holds linear light" in warning for warning in outcome.warnings)
+        assert all(f"{name}' is read as linear light" in warning for warning in outcome.warnings)
 
 
 def test_trilinear_goes_with_light(bake, tmp_path):

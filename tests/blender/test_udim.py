@@ -5,6 +5,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 import scenes
+from texture_readers import read_dds
 
 LEFT = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
 
@@ -77,6 +78,19 @@ def test_a_file_a_tile(bake, tiles, tmp_path, name):
         spec = oiio.ImageBuf(str(path)).spec()
         sizes[path.name] = (spec.width, spec.height)
     assert sizes == {"out.1001.exr": (8, 8), "out.1012.exr": (16, 4)}
+
+
+def test_files_for_engines(bake, tiles, tmp_path):
+    image, strip, values = tiles
+    for name in ("out.dds", "out.png"):
+        bake(image, [strip], filepath=str(tmp_path / name), use_images=False)
+    for number, pixels in values.items():
+        file = read_dds(tmp_path / f"out.{number}.dds")
+        np.testing.assert_array_equal(file.levels[0], np.rint(255 * pixels))
+    found = sorted(path.name for path in tmp_path.glob("out*.png"))
+    assert found == [f"out.1001.{i}.png" for i in range(4)] + [
+        f"out.1012.{i}.png" for i in range(5)
+    ]
 
 
 def test_tiles_without_surface_are_left_out(bake, tiles):

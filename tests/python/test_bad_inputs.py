@@ -1,7 +1,7 @@
 """Bad input gets a message that names the argument, what was found and what is allowed.
 
 A row is a function, the arguments that differ from good ones, and what its message must hold: the
-argument's name first.
+argument's name first. The error is a ValueError, or an OSError where the disk is what is wrong.
 """
 
 import re
@@ -67,6 +67,8 @@ FUNCTIONS = {
     "keep_coverage": (prefilter.keep_coverage, {"levels": [RGBA], "surface": SURFACE}),
     "texel_weights": (prefilter.texel_weights, {"surface": SURFACE, "width": 4, "height": 4}),
     "fill_unused": (prefilter.fill_unused, {"image": IMAGE, "surface": SURFACE}),
+    "write_dds": (prefilter.write_dds, {"path": "out.dds", "levels": [RGBA]}),
+    "write_ktx2": (prefilter.write_ktx2, {"path": "out.ktx2", "levels": [RGBA]}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
 }
@@ -417,21 +419,69 @@ ROWS = [
             ({"threads": -1}, ["threads: -1", THREADS]),
         )
     ),
+    *(
+        (function, arguments, words)
+        for function in ("write_dds", "write_ktx2")
+        for arguments, words in (
+            ({"path": 3}, ["path: 3", "the path of a file is needed"]),
+            ({"levels": []}, ["levels: an empty list", "level 0 first, is needed"]),
+            (
+                {"levels": [RGBA, RGBA]},
+                ["levels: level 1 has 8 x 8 texels", "half of the one before", "is 4 x 4"],
+            ),
+            (
+                {"levels": [RGBA, RGBA[:4, :4, :3]]},
+                ["levels: level 1 has 3 channels of float32", "4 of float32", "must be alike"],
+            ),
+            ({"levels": [RGBA * NAN]}, ["levels: level 0", "holds nan", "finite"]),
+            ({"format": "bc7"}, ["format: 'bc7'", "one of auto, ", "bc5"]),
+            ({"encoding": "gamma"}, ["encoding: 'gamma'", "one of linear, srgb"]),
+            ({"alpha": "none"}, ["alpha: 'none'", "one of straight, premultiplied"]),
+        )
+    ),
+]
+# Where something stands in the way on the disk.
+PLACES = [
+    ("nowhere/out.dds", ["path: there is no folder", "nowhere"]),
+    ("folder.dds", ["path: ", "folder.dds' is a folder"]),
+    ("kept.dds", ["path: ", "kept.dds' is read-only"]),
 ]
 
 
-@pytest.mark.parametrize(("function", "arguments", "words"), ROWS)
-def test_refusal(function, arguments, words):
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The current folder: it holds a read-only file, and a folder that is named like a file."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "kept.dds").write_bytes(b"kept")
+    (tmp_path / "kept.dds").chmod(0o444)
+    (tmp_path / "folder.dds").mkdir()
+    return tmp_path
+
+
+def contents(folder):
+    return {path.name: path.is_file() and path.read_bytes() for path in folder.rglob("*")}
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "words", "error"),
+    [
+        *((*row, ValueError) for row in ROWS),
+        *(("write_dds", {"path": path}, words, OSError) for path, words in PLACES),
+        *(("write_ktx2", {"path": path}, words, OSError) for path, words in PLACES),
+    ],
+)
+def test_refusal(function, arguments, words, error, folder):
     call, good = FUNCTIONS[function]
-    with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+    before = contents(folder)
+    with pytest.raises(error, match=re.escape(words[0])) as caught:
         call(**{**good, **arguments})
-    message = str(caught.value)
     for word in words:
-        assert word in message
+        assert word in str(caught.value)
+    assert contents(folder) == before
 
 
 @pytest.mark.parametrize("function", [name for name, (_, good) in FUNCTIONS.items() if good])
-def test_the_other_arguments_of_the_rows_are_good(function):
+def test_the_other_arguments_of_the_rows_are_good(function, folder):
     call, good = FUNCTIONS[function]
     call(**good)
 

@@ -78,7 +78,7 @@ std::pair<int, int> lines_between(const std::vector<double>& lines, int low, int
 std::vector<float> cell_masses(const TexelTriangles& triangles, const std::vector<double>& x_lines,
                                const std::vector<double>& y_lines, const Progress& progress,
                                int threads) {
-  const Tiles tiles(triangles, progress.part(0.0, 0.3));
+  const Tiles tiles(triangles, progress.part(0.0, 0.3), threads);
   const std::size_t columns = x_lines.size() - 1;
   std::vector<float> masses(columns * (y_lines.size() - 1));
   parallel_for(tiles.count(), threads, progress.part(0.3, 1.0), [&](std::int64_t tile) {
@@ -109,9 +109,10 @@ std::vector<float> texel_masses(const TexelTriangles& triangles, const Progress&
 std::vector<unsigned char> touched_texels(const std::vector<const Surface*>& surfaces, int width,
                                           int height, WrapModes wrap, const Progress& progress,
                                           int threads) {
-  const std::vector<float> masses = texel_masses(
-      map_to_texels(surfaces, width, height, wrap, MassOf::kPresence, progress.part(0.0, 0.3)),
-      progress.part(0.3, 1.0), threads);
+  const std::vector<float> masses =
+      texel_masses(map_to_texels(surfaces, width, height, wrap, MassOf::kPresence,
+                                 progress.part(0.0, 0.3), threads),
+                   progress.part(0.3, 1.0), threads);
   std::vector<unsigned char> touched(masses.size());
   for (std::size_t i = 0; i < masses.size(); ++i) touched[i] = masses[i] > 0.0F ? 1 : 0;
   return touched;
@@ -121,9 +122,10 @@ std::vector<unsigned char> looked_up_texels(const std::vector<const Surface*>& s
                                             int height, WrapModes wrap, const Progress& progress,
                                             int threads) {
   // A half-texel cell is read through the two texels beside it along each axis.
-  const std::vector<float> halves = texel_masses(
-      map_to_texels(surfaces, 2 * width, 2 * height, wrap, MassOf::kArea, progress.part(0.0, 0.3)),
-      progress.part(0.3, 1.0), threads);
+  const std::vector<float> halves =
+      texel_masses(map_to_texels(surfaces, 2 * width, 2 * height, wrap, MassOf::kArea,
+                                 progress.part(0.0, 0.3), threads),
+                   progress.part(0.3, 1.0), threads);
   std::vector<unsigned char> read(static_cast<std::size_t>(width) * height);
   for (int hy = 0; hy < 2 * height; ++hy) {
     for (int hx = 0; hx < 2 * width; ++hx) {

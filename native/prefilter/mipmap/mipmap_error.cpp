@@ -306,7 +306,7 @@ std::vector<double> mipmap_error(const std::vector<ImageView>& levels, const Ima
                              progress.part(0.05, 0.1), threads, &owners[k]));
   }
   const TexelTriangles triangles = map_to_texels(surfaces, image.width, image.height, wrap,
-                                                 MassOf::kArea, progress.part(0.1, 0.15));
+                                                 MassOf::kArea, progress.part(0.1, 0.15), threads);
   check_mapped(triangles);
   std::vector<Image> encoded;
   if (reader == Reader::kSrgbAfter) {

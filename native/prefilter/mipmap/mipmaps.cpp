@@ -165,8 +165,8 @@ class Builder {
   }
 
   TexelTriangles mapped(const Progress& progress) const {
-    TexelTriangles triangles =
-        map_to_texels(surfaces_, width_, height_, options_.wrap, MassOf::kArea, progress);
+    TexelTriangles triangles = map_to_texels(surfaces_, width_, height_, options_.wrap,
+                                             MassOf::kArea, progress, options_.threads);
     check_mapped(triangles);
     return triangles;
   }

@@ -111,9 +111,10 @@ class TileMeasure final : public CellSink {
 
   void add_part(int column, int row, CellPiece piece) {
     if (!(piece.mass() > 0.0)) return;
-    // Areas stay as they are where (s, t) is the grid; positions go to the part's own coordinates.
+    // Positions go to the part's own coordinates.
+    if (!piece.is_barycentric) piece.mass_per_area *= x_parts_.width(column) * y_parts_.width(row);
     for (int i = 0; i < piece.count; ++i) {
-      PieceCorner& corner = piece.corners[i];
+      Point2& corner = piece.corners[i];
       corner.x = (corner.x - x_parts_.low(column)) / x_parts_.width(column);
       corner.y = (corner.y - y_parts_.low(row)) / y_parts_.width(row);
     }
@@ -308,7 +309,7 @@ class Sweep {
         options_(options),
         visit_(visit),
         progress_(progress),
-        tiles_(triangles, progress.part(0.0, 0.1)),
+        tiles_(triangles, progress.part(0.0, 0.1), options.threads),
         tile_levels_(last_tile_level(image.width, image.height)),
         x_cells_(image.width, full_level_count(image.width, image.height), Tiles::kSize,
                  tile_levels_ + 1),

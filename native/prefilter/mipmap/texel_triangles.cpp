@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
@@ -53,7 +55,8 @@ class Mapper final : public CellSink {
       const CellSpan rows = cell_span(v.low, v.high);
       cut_to_cells(triangle, {columns.first, rows.first, columns.last + 1, rows.last + 1}, this);
     } else {
-      cut(whole_piece(triangle), 0, wrap_.u, u, [&](const CellPiece& part) {
+      // Parts beyond the edge are moved to it, and keep their areas.
+      cut(whole_piece(triangle, true), 0, wrap_.u, u, [&](const CellPiece& part) {
         cut(part, 1, wrap_.v, v, [&](const CellPiece& inner) { push_fan(inner); });
       });
     }
@@ -123,14 +126,13 @@ class Mapper final : public CellSink {
 
   void push_fan(const CellPiece& piece) {
     for (int i = 2; i < piece.count; ++i) {
-      const PieceCorner& a = piece.corners[0];
-      const PieceCorner& b = piece.corners[i - 1];
-      const PieceCorner& c = piece.corners[i];
       CellPiece triangle = piece;
-      triangle.corners[1] = b;
-      triangle.corners[2] = c;
+      for (int k = 1; k < 3; ++k) {
+        triangle.corners[k] = piece.corners[i - 2 + k];
+        triangle.sources[k] = piece.sources[i - 2 + k];
+      }
       triangle.count = 3;
-      push({{{{a.x, a.y}, {b.x, b.y}, {c.x, c.y}}}, triangle.mass()});
+      push({{triangle.corners[0], triangle.corners[1], triangle.corners[2]}, triangle.mass()});
     }
   }
 
@@ -163,31 +165,56 @@ class Mapper final : public CellSink {
 }  // namespace
 
 TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int width, int height,
-                             WrapModes wrap, MassOf mass_of, const Progress& progress) {
+                             WrapModes wrap, MassOf mass_of, const Progress& progress,
+                             int threads) {
   double total_area = 0.0;
-  std::size_t count = 0;
-  for (const Surface* surface : surfaces) {
-    total_area += surface->total_area();
-    count += surface->triangle_count();
+  struct Run {
+    std::size_t surface, first, last;
+  };
+  constexpr std::size_t kTrianglesAtOnce = 1 << 14;
+  std::vector<Run> runs;
+  for (std::size_t s = 0; s < surfaces.size(); ++s) {
+    total_area += surfaces[s]->total_area();
+    const std::size_t count = surfaces[s]->triangle_count();
+    for (std::size_t first = 0; first < count; first += kTrianglesAtOnce) {
+      runs.push_back({s, first, std::min(first + kTrianglesAtOnce, count)});
+    }
   }
   // Scaled so that numbers stay of order 1 whatever the units of space.
   const double scale = total_area > 0.0 ? static_cast<double>(width) * height / total_area : 0.0;
 
-  TexelTriangles out;
-  out.width = width;
-  out.height = height;
-  out.triangles.reserve(count);
-  Mapper mapper(width, height, wrap, &out);
-  for (std::size_t s = 0; s < surfaces.size(); ++s) {
-    const Surface& surface = *surfaces[s];
-    for (std::size_t k = 0; k < surface.triangle_count(); ++k) {
+  std::vector<TexelTriangles> mapped(runs.size());
+  const auto run_count = static_cast<std::int64_t>(runs.size());
+  parallel_for(run_count, threads, progress.part(0.0, 0.9), [&](std::int64_t i) {
+    const Run& run = runs[i];
+    const Surface& surface = *surfaces[run.surface];
+    mapped[i].triangles.reserve(run.last - run.first);
+    Mapper mapper(width, height, wrap, &mapped[i]);
+    for (std::size_t k = run.first; k < run.last; ++k) {
       MassTriangle triangle;
       triangle.mass = mass_of == MassOf::kPresence ? 1.0 : surface.areas[k] * scale;
       if (!(triangle.mass > 0.0)) continue;
-      for (int i = 0; i < 3; ++i) triangle.corners[i] = {surface.uvs[k][i].u, surface.uvs[k][i].v};
-      mapper.add(triangle, s, k);
-      progress.report(static_cast<double>(k) / static_cast<double>(surface.triangle_count()));
+      for (int c = 0; c < 3; ++c) triangle.corners[c] = {surface.uvs[k][c].u, surface.uvs[k][c].v};
+      mapper.add(triangle, run.surface, k);
     }
+  });
+
+  TexelTriangles out;
+  if (mapped.size() == 1) out = std::move(mapped[0]);
+  out.width = width;
+  out.height = height;
+  if (mapped.size() > 1) {
+    std::vector<std::size_t> starts = {0};
+    for (const TexelTriangles& part : mapped) {
+      starts.push_back(starts.back() + part.triangles.size());
+      out.uniform_density += part.uniform_density;
+    }
+    out.triangles.resize(starts.back());
+    parallel_for(run_count, threads, progress.part(0.9, 1.0), [&](std::int64_t i) {
+      std::copy(mapped[i].triangles.begin(), mapped[i].triangles.end(),
+                out.triangles.begin() + static_cast<std::ptrdiff_t>(starts[i]));
+      std::vector<MassTriangle>().swap(mapped[i].triangles);
+    });
   }
   out.total_mass = out.uniform_mass();
   for (const MassTriangle& triangle : out.triangles) out.total_mass += triangle.mass;

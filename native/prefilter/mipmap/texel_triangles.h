@@ -35,6 +35,6 @@ enum class MassOf {
 /// Throws Error where a triangle spans more than 2^20 tiles of a repeated texture, or lies farther
 /// out than 2^20 (repeat) or 2^30 tiles.
 TexelTriangles map_to_texels(const std::vector<const Surface*>& surfaces, int width, int height,
-                             WrapModes wrap, MassOf mass_of, const Progress& progress);
+                             WrapModes wrap, MassOf mass_of, const Progress& progress, int threads);
 
 }  // namespace prefilter

@@ -27,7 +27,7 @@ Image texel_weights(const std::vector<const Surface*>& surfaces, int width, int 
                     WrapModes wrap, const Progress& progress, int threads) {
   check(surfaces, width, height);
   const TexelTriangles triangles =
-      map_to_texels(surfaces, width, height, wrap, MassOf::kArea, progress.part(0.0, 0.2));
+      map_to_texels(surfaces, width, height, wrap, MassOf::kArea, progress.part(0.0, 0.2), threads);
   check_mapped(triangles);
   Image weights(width, height, 1);
   weights.data = texel_masses(triangles, progress.part(0.2, 1.0), threads);

@@ -1,5 +1,8 @@
 #include "prefilter/mipmap/tiles.h"
 
+#include <array>
+#include <utility>
+
 namespace prefilter {
 namespace {
 
@@ -36,29 +39,37 @@ int tile_colour(int tile, int count, int size) {
   return tile % 2;
 }
 
-Tiles::Tiles(const TexelTriangles& triangles, const Progress& progress)
+Tiles::Tiles(const TexelTriangles& triangles, const Progress& progress, int threads)
     : width_(triangles.width),
       height_(triangles.height),
       columns_((triangles.width + kSize - 1) / kSize),
       rows_((triangles.height + kSize - 1) / kSize) {
-  starts_.assign(static_cast<std::size_t>(count()) + 1, 0);
-  const auto size = triangles.triangles.size();
-  const Progress counting = progress.part(0.0, 0.5);
-  for (std::size_t k = 0; k < size; ++k) {
-    for_each_tile(triangles.triangles[k], columns_, rows_,
-                  [&](std::int64_t tile) { ++starts_[tile + 1]; });
-    counting.report(static_cast<double>(k) / static_cast<double>(size));
-  }
-  for (std::size_t i = 1; i < starts_.size(); ++i) starts_[i] += starts_[i - 1];
-  members_.resize(static_cast<std::size_t>(starts_.back()));
-  std::vector<std::int64_t> next(starts_.begin(), starts_.end() - 1);
-  const Progress filling = progress.part(0.5, 1.0);
-  for (std::size_t k = 0; k < size; ++k) {
-    for_each_tile(triangles.triangles[k], columns_, rows_, [&](std::int64_t tile) {
-      members_[next[tile]++] = static_cast<std::uint32_t>(k);
+  // Runs of triangles are counted tile by tile, and then each run knows where its own go.
+  constexpr std::size_t kRuns = 16;
+  const std::size_t size = triangles.triangles.size();
+  const auto run_first = [size](std::int64_t run) { return size * run / kRuns; };
+  const auto for_each_member = [&](const Progress& part, const auto& use) {
+    parallel_for(kRuns, threads, part, [&](std::int64_t run) {
+      for (std::size_t k = run_first(run); k < run_first(run + 1); ++k) {
+        for_each_tile(triangles.triangles[k], columns_, rows_,
+                      [&](std::int64_t tile) { use(run, tile, k); });
+      }
     });
-    filling.report(static_cast<double>(k) / static_cast<double>(size));
+  };
+  std::array<std::vector<std::int64_t>, kRuns> next;
+  next.fill(std::vector<std::int64_t>(static_cast<std::size_t>(count())));
+  for_each_member(progress.part(0.0, 0.5),
+                  [&](std::int64_t run, std::int64_t tile, std::size_t) { ++next[run][tile]; });
+  std::int64_t total = 0;
+  for (std::int64_t tile = 0; tile < count(); ++tile) {
+    starts_.push_back(total);
+    for (std::vector<std::int64_t>& run : next) total += std::exchange(run[tile], total);
   }
+  starts_.push_back(total);
+  members_.resize(static_cast<std::size_t>(total));
+  for_each_member(progress.part(0.5, 1.0), [&](std::int64_t run, std::int64_t tile, std::size_t k) {
+    members_[next[run][tile]++] = static_cast<std::uint32_t>(k);
+  });
 }
 
 CellWindow Tiles::window(std::int64_t tile) const {

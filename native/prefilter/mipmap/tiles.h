@@ -23,7 +23,7 @@ class Tiles {
   // Half-texel moments of one tile take 64 * 64 * 80 bytes, which a second-level cache holds.
   static constexpr int kSize = 32;
 
-  Tiles(const TexelTriangles& triangles, const Progress& progress);
+  Tiles(const TexelTriangles& triangles, const Progress& progress, int threads);
 
   int columns() const { return columns_; }
   int rows() const { return rows_; }

@@ -1,6 +1,5 @@
 // Cutting follows section 7.2 (triangles cut so that their images meet only one cell); the moments
-// of a piece come from the 6-point rule of degree 4 over its fan, which is exact for x^2 y^2
-// (Strang and Fix, "An Analysis of the Finite Element Method", 1973, p. 184).
+// of a piece are closed forms, triangle by triangle of its fan.
 #include "prefilter/moments/triangle_cells.h"
 
 #include <algorithm>
@@ -9,46 +8,97 @@
 namespace prefilter {
 namespace {
 
-struct QuadraturePoint {
-  double b0, b1, b2;  // barycentric
-  double weight;      // they sum to 1
+// Along x and along y.
+using Both [[gnu::vector_size(2 * sizeof(double))]] = double;
+
+Both swapped(Both v) { return Both{v[1], v[0]}; }
+double sum(Both v) { return v[0] + v[1]; }
+
+// The coefficients of s^a t^b, a and b in {0, 1, 2}, of a product of power series
+// 1 / (1 - s x - t y), one for each of some points (x, y). Those that change places with x and y
+// are kept together.
+struct PointSeries {
+  double c00;
+  Both c10_01;
+  Both c20_02;
+  double c11;
+  Both c21_12;
+  double c22;
 };
 
-std::array<QuadraturePoint, 6> make_rule() {
-  const double root10 = std::sqrt(10.0);
-  const double inner = std::sqrt(38.0 - 44.0 * std::sqrt(0.4));
-  const double a[2] = {(8.0 - root10 + inner) / 18.0, (8.0 - root10 - inner) / 18.0};
-  const double root = std::sqrt(213125.0 - 53320.0 * root10);
-  const double w[2] = {(620.0 + root) / 3720.0, (620.0 - root) / 3720.0};
-  std::array<QuadraturePoint, 6> rule{};
-  for (int k = 0; k < 2; ++k) {
-    const double b = 1.0 - 2.0 * a[k];
-    rule[3 * k] = {b, a[k], a[k], w[k]};
-    rule[3 * k + 1] = {a[k], b, a[k], w[k]};
-    rule[3 * k + 2] = {a[k], a[k], b, w[k]};
+PointSeries series_of(Both point) {
+  const double xy = point[0] * point[1];
+  return {1.0, point, point * point, 2.0 * xy, 3.0 * xy * point, 6.0 * xy * xy};
+}
+
+// Division by 1 - s x - t y is a recurrence: each coefficient gets x times the new one before it in
+// s, and y times that before it in t.
+PointSeries with_point(PointSeries series, Both point) {
+  series.c10_01 += series.c00 * point;
+  series.c20_02 += point * series.c10_01;
+  series.c11 += sum(point * swapped(series.c10_01));
+  series.c21_12 += point * series.c11 + swapped(point) * series.c20_02;
+  series.c22 += sum(point * swapped(series.c21_12));
+  return series;
+}
+
+void add(double factor, const PointSeries& series, PointSeries* to) {
+  to->c00 += factor * series.c00;
+  to->c10_01 += factor * series.c10_01;
+  to->c20_02 += factor * series.c20_02;
+  to->c11 += factor * series.c11;
+  to->c21_12 += factor * series.c21_12;
+  to->c22 += factor * series.c22;
+}
+
+// The mean of x^a y^b over a triangle is 2 a! b! / (a + b + 2)! times the coefficient of s^a t^b of
+// the product for its corners: with barycentric coordinates b_i,
+// (s x + t y)^n = (sum_i b_i (s x_i + t y_i))^n, and the mean of b_0^i b_1^j b_2^k is
+// 2 i! j! k! / (i + j + k + 2)!, which cancels the multinomial coefficients.
+void add_means(const PointSeries& series, WeightMoments* moments) {
+  (*moments)[0] += series.c00;
+  (*moments)[1] += series.c10_01[0] * (1.0 / 3.0);
+  (*moments)[2] += series.c20_02[0] * (1.0 / 6.0);
+  (*moments)[3] += series.c10_01[1] * (1.0 / 3.0);
+  (*moments)[4] += series.c11 * (1.0 / 12.0);
+  (*moments)[5] += series.c21_12[0] * (1.0 / 30.0);
+  (*moments)[6] += series.c20_02[1] * (1.0 / 6.0);
+  (*moments)[7] += series.c21_12[1] * (1.0 / 30.0);
+  (*moments)[8] += series.c22 * (1.0 / 90.0);
+}
+
+double coordinate(const Point2& corner, int axis) { return axis == 0 ? corner.x : corner.y; }
+
+double twice_area(const Point2& a, const Point2& b, const Point2& c) {
+  return std::abs((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
+}
+
+Point2 between(const Point2& p, const Point2& q, double f) {
+  return {p.x + f * (q.x - p.x), p.y + f * (q.y - p.y)};
+}
+
+// Adds to both the point of the edge from corner i to corner k where the coordinate along `axis` is
+// `value`, and exactly that. The parameter is taken from the same end whichever way the edge runs,
+// so two triangles that share it agree.
+void add_crossing(const CellPiece& piece, int i, int k, int axis, double value, CellPiece* low,
+                  CellPiece* high) {
+  if (coordinate(piece.corners[i], axis) > coordinate(piece.corners[k], axis)) std::swap(i, k);
+  const Point2& p = piece.corners[i];
+  const Point2& q = piece.corners[k];
+  const double f = (value - coordinate(p, axis)) / (coordinate(q, axis) - coordinate(p, axis));
+  Point2 at = between(p, q, f);
+  (axis == 0 ? at.x : at.y) = value;
+  if (piece.is_barycentric) {
+    low->sources[low->count] = high->sources[high->count] =
+        between(piece.sources[i], piece.sources[k], f);
   }
-  return rule;
+  low->corners[low->count++] = at;
+  high->corners[high->count++] = at;
 }
 
-const std::array<QuadraturePoint, 6> kRule = make_rule();
-
-double coordinate(const PieceCorner& corner, int axis) { return axis == 0 ? corner.x : corner.y; }
-
-double twice_area(const PieceCorner& a, const PieceCorner& b, const PieceCorner& c) {
-  return std::abs((b.s - a.s) * (c.t - a.t) - (c.s - a.s) * (b.t - a.t));
-}
-
-// The point of the edge where the coordinate along `axis` is `value`, and exactly that. The
-// parameter is taken from the same end whichever way the edge runs, so two triangles that share it
-// agree.
-PieceCorner cross(PieceCorner p, PieceCorner q, int axis, double value) {
-  if (coordinate(p, axis) > coordinate(q, axis)) std::swap(p, q);
-  const double span = coordinate(q, axis) - coordinate(p, axis);
-  const double f = (value - coordinate(p, axis)) / span;
-  PieceCorner r{p.x + f * (q.x - p.x), p.y + f * (q.y - p.y), p.s + f * (q.s - p.s),
-                p.t + f * (q.t - p.t)};
-  (axis == 0 ? r.x : r.y) = value;
-  return r;
+void add_corner(const CellPiece& piece, int i, CellPiece* to) {
+  if (piece.is_barycentric) to->sources[to->count] = piece.sources[i];
+  to->corners[to->count++] = piece.corners[i];
 }
 
 struct Range {
@@ -105,9 +155,9 @@ void add_if_massive(int x, int y, const CellPiece& piece, CellSink* sink) {
   if (piece.mass() > 0.0) sink->add_piece(x, y, piece);
 }
 
-// Sends a piece of row y to the sink, column by column.
-void sweep_columns(const CellPiece& row, int y, const CellWindow& window, CellSink* sink) {
-  const Range range = extent(row, 0);
+// Sends a piece of row y, which extends over `range`, to the sink, column by column.
+void sweep_columns(const CellPiece& row, int y, const Range& range, const CellWindow& window,
+                   CellSink* sink) {
   const CellSpan span = cell_span(range.low, range.high);
   // Only a point or an upright segment can lie on the window's far side, which is not the window's.
   if (span.first >= window.x1) return;
@@ -123,60 +173,48 @@ void sweep_columns(const CellPiece& row, int y, const CellWindow& window, CellSi
 }
 
 void sweep_row(const CellPiece& row, int y, const CellWindow& window, CellSink* sink) {
-  const CellSpan full = row.flat ? CellSpan{0, -1} : full_cells(row, y);
+  const Range range = extent(row, 0);
+  const bool may_fill = !row.is_barycentric && range.high - range.low >= 1.0;
+  const CellSpan full = may_fill ? full_cells(row, y) : CellSpan{0, -1};
   if (full.last < full.first) {
-    sweep_columns(row, y, window, sink);
+    sweep_columns(row, y, range, window, sink);
     return;
   }
-  const Range range = extent(row, 0);
   CellPiece side;
   CellPiece rest;
-  if (range.low < full.first) {
-    split_piece(row, 0, full.first, &side, &rest);
-    sweep_columns(side, y, window, sink);
+  const double full_low = full.first;
+  const double full_high = full.last + 1;
+  if (range.low < full_low) {
+    split_piece(row, 0, full_low, &side, &rest);
+    sweep_columns(side, y, {range.low, full_low}, window, sink);
   }
   sink->add_full(y, full.first, full.last + 1, row.mass_per_area);
-  if (range.high > full.last + 1) {
-    split_piece(row, 0, full.last + 1, &rest, &side);
-    sweep_columns(side, y, window, sink);
+  if (range.high > full_high) {
+    split_piece(row, 0, full_high, &rest, &side);
+    sweep_columns(side, y, {full_high, range.high}, window, sink);
   }
 }
 
 }  // namespace
 
 double CellPiece::mass() const {
+  const std::array<Point2, kMaxCorners>& points = is_barycentric ? sources : corners;
   double doubled = 0.0;
-  for (int i = 2; i < count; ++i) doubled += twice_area(corners[0], corners[i - 1], corners[i]);
+  for (int i = 2; i < count; ++i) doubled += twice_area(points[0], points[i - 1], points[i]);
   return 0.5 * doubled * mass_per_area;
 }
 
 void CellPiece::add_moments(double cell_x, double cell_y, WeightMoments* moments) const {
-  WeightMoments sum{};
+  const std::array<Point2, kMaxCorners>& points = is_barycentric ? sources : corners;
+  const Both cell = {cell_x, cell_y};
+  const auto point = [&](int i) { return Both{corners[i].x, corners[i].y} - cell; };
+  // Triangles (0, i - 1, i) of the fan. What all have in common, corner 0, comes in at the end.
+  PointSeries total{};
   for (int i = 2; i < count; ++i) {
-    const PieceCorner& a = corners[0];
-    const PieceCorner& b = corners[i - 1];
-    const PieceCorner& c = corners[i];
-    const double mass = 0.5 * mass_per_area * twice_area(a, b, c);
-    if (mass == 0.0) continue;
-    for (const QuadraturePoint& q : kRule) {
-      const double x = q.b0 * a.x + q.b1 * b.x + q.b2 * c.x - cell_x;
-      const double y = q.b0 * a.y + q.b1 * b.y + q.b2 * c.y - cell_y;
-      const double w = q.weight * mass;
-      const double wx = w * x;
-      const double wxx = wx * x;
-      const double yy = y * y;
-      sum[0] += w;
-      sum[1] += wx;
-      sum[2] += wxx;
-      sum[3] += w * y;
-      sum[4] += wx * y;
-      sum[5] += wxx * y;
-      sum[6] += w * yy;
-      sum[7] += wx * yy;
-      sum[8] += wxx * yy;
-    }
+    const double mass = 0.5 * mass_per_area * twice_area(points[0], points[i - 1], points[i]);
+    add(mass, with_point(series_of(point(i - 1)), point(i)), &total);
   }
-  for (int i = 0; i < 9; ++i) (*moments)[i] += sum[i];
+  add_means(with_point(total, point(0)), moments);
 }
 
 CellSpan cell_span(double low, double high) {
@@ -189,32 +227,29 @@ void split_piece(const CellPiece& piece, int axis, double value, CellPiece* low,
   low->count = 0;
   high->count = 0;
   low->mass_per_area = high->mass_per_area = piece.mass_per_area;
-  low->flat = high->flat = piece.flat;
+  low->is_barycentric = high->is_barycentric = piece.is_barycentric;
   if (piece.count == 0) return;
-  const PieceCorner* previous = &piece.corners[piece.count - 1];
-  double previous_value = coordinate(*previous, axis);
+  int previous = piece.count - 1;
+  double previous_value = coordinate(piece.corners[previous], axis);
   for (int i = 0; i < piece.count; ++i) {
-    const PieceCorner* current = &piece.corners[i];
-    const double current_value = coordinate(*current, axis);
+    const double current_value = coordinate(piece.corners[i], axis);
     if ((previous_value < value && current_value > value) ||
         (previous_value > value && current_value < value)) {
-      const PieceCorner at = cross(*previous, *current, axis, value);
-      low->corners[low->count++] = at;
-      high->corners[high->count++] = at;
+      add_crossing(piece, previous, i, axis, value, low, high);
     }
-    if (current_value <= value) low->corners[low->count++] = *current;
-    if (current_value >= value) high->corners[high->count++] = *current;
-    previous = current;
+    if (current_value <= value) add_corner(piece, i, low);
+    if (current_value >= value) add_corner(piece, i, high);
+    previous = i;
     previous_value = current_value;
     assert(low->count <= CellPiece::kMaxCorners && high->count <= CellPiece::kMaxCorners);
   }
 }
 
-CellPiece whole_piece(const MassTriangle& triangle) {
+CellPiece whole_piece(const MassTriangle& triangle, bool is_barycentric) {
   const std::array<Point2, 3>& p = triangle.corners;
   CellPiece piece;
   piece.count = 3;
-  for (int i = 0; i < 3; ++i) piece.corners[i] = {p[i].x, p[i].y, p[i].x, p[i].y};
+  std::copy(p.begin(), p.end(), piece.corners.begin());
 
   // Rounding of the coordinates makes areas wrong by about 1e-16 of length times magnitude. Where
   // that could be more than 1e-7 of the area, areas are taken in barycentric space.
@@ -227,16 +262,14 @@ CellPiece whole_piece(const MassTriangle& triangle) {
     length = std::max({length, std::abs(b.x - a.x), std::abs(b.y - a.y)});
     magnitude = std::max({magnitude, std::abs(a.x), std::abs(a.y)});
   }
-  const double doubled = twice_area(piece.corners[0], piece.corners[1], piece.corners[2]);
-  piece.flat = doubled <= kFlat * length * magnitude;
-  if (piece.flat) {
-    constexpr double kBarycentric[3][2] = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}};
-    for (int i = 0; i < 3; ++i) {
-      piece.corners[i].s = kBarycentric[i][0];
-      piece.corners[i].t = kBarycentric[i][1];
-    }
+  const double doubled = twice_area(p[0], p[1], p[2]);
+  piece.is_barycentric = is_barycentric || doubled <= kFlat * length * magnitude;
+  if (piece.is_barycentric) {
+    piece.sources[0] = {0.0, 0.0};
+    piece.sources[1] = {1.0, 0.0};
+    piece.sources[2] = {0.0, 1.0};
   }
-  piece.mass_per_area = 2.0 * triangle.mass / (piece.flat ? 1.0 : doubled);
+  piece.mass_per_area = 2.0 * triangle.mass / (piece.is_barycentric ? 1.0 : doubled);
   return piece;
 }
 

@@ -14,8 +14,7 @@
 namespace prefilter {
 
 struct Point2 {
-  double x = 0.0;
-  double y = 0.0;
+  double x, y;
 };
 
 /// A triangle in grid units with a mass. Any winding.
@@ -32,20 +31,18 @@ struct CellWindow {
   int y1 = 0;
 };
 
-/// A corner of a piece: where it is in the grid, and where in the space in which mass is even.
-struct PieceCorner {
-  double x, y;
-  double s, t;
-};
-
 /// A convex piece of a triangle, cut to a cell or to a window of cells.
 struct CellPiece {
   // A triangle cut by four half-planes has at most seven corners.
   static constexpr int kMaxCorners = 7;
-  std::array<PieceCorner, kMaxCorners> corners;
+  std::array<Point2, kMaxCorners> corners;
+  // Where they are in the triangle, in two barycentric coordinates, if `is_barycentric`.
+  std::array<Point2, kMaxCorners> sources;
   int count = 0;
-  double mass_per_area = 0.0;  // mass per unit of area in (s, t)
-  bool flat = false;           // its image has no area, and (s, t) is barycentric, not (x, y)
+  // Mass by area, in the grid or, if `is_barycentric`, in those coordinates.
+  double mass_per_area = 0.0;
+  // Its corners in the grid do not tell its mass: it is all but flat there, or they were moved.
+  bool is_barycentric = false;
 
   double mass() const;
   /// Adds the mass and moments of the piece in the coordinates of the unit cell whose low corner is
@@ -83,7 +80,7 @@ CellSpan cell_span(double low, double high);
 /// line belong to both sides. Exposed for the cuts along texture tiles.
 void split_piece(const CellPiece& piece, int axis, double value, CellPiece* low, CellPiece* high);
 
-/// The piece that is the whole triangle.
-CellPiece whole_piece(const MassTriangle& triangle);
+/// The piece that is the whole triangle: barycentric where it is all but flat, or where asked for.
+CellPiece whole_piece(const MassTriangle& triangle, bool is_barycentric = false);
 
 }  // namespace prefilter

@@ -11,9 +11,11 @@ from .cutout import keep_coverage
 from .mipmap import mipmap_error, mipmaps, seam_contrast
 from .normals import normal_mipmaps
 from .surface import Surface
+from .texture_files import write_dds, write_ktx2
 from .texture_use import fill_unused, texel_weights
+from .version import VERSION
 
-__version__ = "0.1.0"
+__version__ = VERSION
 
 __all__ = [
     "Cancelled",
@@ -27,4 +29,6 @@ __all__ = [
     "texel_weights",
     "to_linear",
     "to_srgb",
+    "write_dds",
+    "write_ktx2",
 ]

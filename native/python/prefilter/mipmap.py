@@ -20,6 +20,7 @@ from .arguments import (
 )
 from .arrays import as_bytes, as_image, as_threads
 from .surface import Surface
+from .texel_formats import is_srgb
 
 
 def mipmaps(
@@ -85,7 +86,7 @@ def mipmaps(
         Cancelled: The progress callback returned False.
     """
     low, high = as_bounds(bounds)
-    srgb = _is_srgb(encoding)
+    srgb = is_srgb(encoding)
     arguments = (
         as_surfaces(surface),
         as_name("filter", filter),
@@ -111,12 +112,6 @@ def mipmaps(
     float_levels = _native.coarser_levels(stored, *arguments)
     # Copied once the memory for filtering is free again.
     return [stored.copy(), *float_levels]
-
-
-def _is_srgb(encoding: str) -> bool:
-    if encoding not in ("linear", "srgb"):
-        raise ValueError(f"encoding: {encoding!r} is not one of linear, srgb")
-    return encoding == "srgb"
 
 
 def mipmap_error(

@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import pytest
 import scenes
+from texture_readers import read_dds
 
 
 def bake(**options):
@@ -74,6 +75,14 @@ def test_file_beside_the_blend(tmp_path):
     bake(image="Paint", use_images=False, filepath="//paint.exr")
     assert (tmp_path / "paint.exr").exists()
     assert "Paint.mip1" not in bpy.data.images
+
+
+def test_file_for_engines(tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
+    path = tmp_path / "out.dds"
+    options = {"image": "Paint", "filepath": str(path), "texture_format": "bc3"}
+    assert bake(**options, use_images=False) == {"FINISHED"}
+    assert read_dds(path).format == "BC3_SRGB"
 
 
 def test_poll_without_images():

@@ -80,7 +80,8 @@ TEST_P(LevelTest, MeetsTheOptimalityConditions) {
   const WrapModes wrap{u, v};
   const Image image = testing::random_image(1, 8, 8, 1);
   const Surface surface = unit_square();
-  const TexelTriangles triangles = map_to_texels({&surface}, 8, 8, wrap, MassOf::kArea, Progress());
+  const TexelTriangles triangles =
+      map_to_texels({&surface}, 8, 8, wrap, MassOf::kArea, Progress(), 0);
   for (const ValueRange range : {ValueRange{-kInfinity, kInfinity}, ValueRange{0.35F, 0.65F}}) {
     BilinearSystem<1> system(width, height, wrap);
     sweep_moments<1>(triangles, image.view(), wrap, {.first_level = 1, .last_level = level},
@@ -127,7 +128,8 @@ INSTANTIATE_TEST_SUITE_P(Wraps, LevelTest,
 TEST(BilinearSystemTest, UnreadTexelsAreMarked) {
   const Surface corner = testing::one_triangle({{{0.01, 0.01}, {0.1, 0.01}, {0.01, 0.1}}});
   const Image image = testing::random_image(2, 16, 16, 1);
-  const TexelTriangles triangles = map_to_texels({&corner}, 16, 16, {}, MassOf::kArea, Progress());
+  const TexelTriangles triangles =
+      map_to_texels({&corner}, 16, 16, {}, MassOf::kArea, Progress(), 0);
   BilinearSystem<1> system(8, 8, {});
   sweep_moments<1>(triangles, image.view(), {}, {.first_level = 1, .last_level = 1}, Progress(),
                    [&](const MomentBlock<1>& block) { system.add(block); });

@@ -18,7 +18,7 @@ using Cells = std::map<Key, CellMoments<2>>;
 Cells sweep(const Surface& surface, const Image& image, WrapModes wrap, int first_level,
             int threads) {
   const TexelTriangles triangles =
-      map_to_texels({&surface}, image.width, image.height, wrap, MassOf::kArea, Progress());
+      map_to_texels({&surface}, image.width, image.height, wrap, MassOf::kArea, Progress(), 0);
   Cells cells;
   std::mutex mutex;
   const int last = full_level_count(image.width, image.height) - 1;

@@ -10,7 +10,7 @@ namespace prefilter {
 namespace {
 
 TexelTriangles map(const Surface& surface, Wrap u, Wrap v) {
-  return map_to_texels({&surface}, 8, 4, {u, v}, MassOf::kArea, Progress());
+  return map_to_texels({&surface}, 8, 4, {u, v}, MassOf::kArea, Progress(), 0);
 }
 
 TEST(MapToTexels, KeepsTheMassUnlessABorderDropsIt) {

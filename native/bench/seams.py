@@ -1,0 +1,239 @@
+"""Measures what the seam weight does to UV seams and to the error, over gathered models.
+
+Usage: blender --background --python-exit-code 1 --python native/bench/seams.py -- [MODEL...]
+       (--help lists the options)
+
+Models are imported by Blender's own importers, and read through the add-on's bridge, as in
+quality.py. Per level and weight: prefilter.seam_contrast, the contrast of only those seams that the
+image hides, and prefilter.mipmap_error. The first is checked by lookups with numpy along the seams,
+which are found without the library. Ends with status 1 if a criterion of docs/benchmarks.md does
+not hold.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+import numpy as np
+import prefilter
+import sampling
+import subjects
+from report import Report
+from sampling import Floats, Texels
+from subjects import Subject
+
+LEVELS = range(1, 7)
+JUDGED = slice(1, None)  # Levels 2 to 6.
+WEIGHT = 1.0
+FURTHER_WEIGHTS = (0.25, 0.5, 2.0)
+CONTRAST_LEFT = 0.5
+RISE = 0.02
+# Seams across which the image steps by less than that share of its standard deviation are hidden.
+HIDDEN = 0.1
+AGREEMENT = 0.01
+# Of the best trade.
+MOST_UNKNOWNS = 1024
+POINTS = 1 << 16
+MOST_SWEEPS = 500
+STILL = 1e-5
+
+
+def main() -> None:
+    """Measures the models of the command line."""
+    parser = subjects.argument_parser("seams.py", __doc__)
+    parser.add_argument(
+        "--weights",
+        type=float,
+        nargs="*",
+        default=FURTHER_WEIGHTS,
+        metavar="WEIGHT",
+        help=f"seam weights to measure beside 0 and {WEIGHT:g} (default: %(default)s)",
+    )
+    options = subjects.parse(parser)
+    report = Report()
+    summary: list[list[str]] = []
+    for model in options.models:
+        for subject in subjects.load(options.data / model, options.wrap):
+            measure(report, summary, subject, options)
+    report.table(
+        "Summary: contrast and RMSE as shares of those without the weight, at levels 2 to 6",
+        ["model", "hidden", "weight", "all seams", "hidden seams", "RMSE", "mean"],
+        summary,
+    )
+    report.finish(options.markdown)
+
+
+def measure(
+    report: Report, summary: list[list[str]], subject: Subject, options: argparse.Namespace
+) -> None:
+    """Adds what was found of one subject to the report and the summary."""
+    lines = sampling.seam_lines(subject.corners, subject.uvs, subject.parts)
+    if not len(lines.lengths):
+        (found,) = prefilter.seam_contrast([subject.image], subject.surfaces, wrap=subject.wrap)
+        report.verdict(found == 0, f"{subject.name}: has no seams, and the library finds none")
+        return
+    hidden = hidden_lines(subject, lines)
+    weights = (0.0, *sorted({WEIGHT, *options.weights}))
+    mipmaps = {weight: bake(subject, weight) for weight in weights}
+    of_all = {
+        weight: prefilter.seam_contrast(levels, subject.surfaces, wrap=subject.wrap)
+        for weight, levels in mipmaps.items()
+    }
+    of_hidden = {
+        weight: np.array([hidden.contrast(level, subject.wrap) for level in levels])
+        for weight, levels in mipmaps.items()
+    }
+    errors = {
+        weight: prefilter.mipmap_error(
+            levels, subject.image, subject.surfaces, LEVELS, wrap=subject.wrap
+        )
+        for weight, levels in mipmaps.items()
+    }
+    found = {
+        "all seams": {weight: of_all[weight][1:] for weight in weights},
+        "hidden seams": {weight: of_hidden[weight][1:] for weight in weights},
+        "RMSE": errors,
+    }
+    share_hidden = hidden.lengths.sum() / lines.lengths.sum()
+    own = of_all[0.0][0]
+    report.table(
+        f"{subject.name}: {len(lines.lengths)} edges on seams, {share_hidden:.0%} of their length "
+        f"hidden in the image, whose own contrast is {own:.5f}",
+        ["level", *(f"{name}, {w:g}" for name in found for w in weights)],
+        [
+            [str(level), *(f"{found[name][w][k]:.5f}" for name in found for w in weights)]
+            for k, level in enumerate(LEVELS)
+        ],
+    )
+    shares = {
+        name: {w: (values[w] / values[0.0])[JUDGED] for w in weights}
+        for name, values in found.items()
+        if share_hidden or name != "hidden seams"
+    }
+    for weight in weights[1:]:
+        row = [subject.name, f"{share_hidden:.0%}", f"{weight:g}"]
+        for name, digits in zip(found, (2, 2, 3), strict=True):
+            numbers = shares[name][weight] if name in shares else ()
+            row.append(" ".join(f"{x:.{digits}f}" for x in numbers))
+        summary.append([*row, f"{shares['RMSE'][weight].mean():.3f}"])
+    judge(report, subject.name, shares)
+    check_by_sampling(report, subject, lines, mipmaps, of_all)
+    if share_hidden:
+        add_best_trades(report, subject, hidden, mipmaps[0.0])
+
+
+def hidden_lines(subject: Subject, lines: sampling.SeamLines) -> sampling.SeamLines:
+    """Returns the seams along which the image has about the same colours on both sides."""
+    points = sampling.random_points(subject.corners, subject.uvs, POINTS)
+    variance = sampling.lookup(subject.image, points, subject.wrap).var(axis=0).mean()
+    return lines.where(lines.squares(subject.image, subject.wrap) <= HIDDEN**2 * variance)
+
+
+def bake(subject: Subject, weight: float) -> list[Texels]:
+    """Returns levels 0 to 6."""
+    return prefilter.mipmaps(
+        subject.image,
+        subject.surfaces,
+        wrap=subject.wrap,
+        levels=LEVELS[-1] + 1,
+        premultiplied=True,
+        seam_weight=weight,
+    )
+
+
+def judge(report: Report, name: str, shares: dict[str, dict[float, Floats]]) -> None:
+    """Adds whether the criteria hold."""
+    for seams in [found for found in shares if found != "RMSE"]:
+        left = shares[seams][WEIGHT].max()
+        report.verdict(
+            left <= CONTRAST_LEFT,
+            f"{name}, {seams}: weight {WEIGHT:g} leaves at most {CONTRAST_LEFT:g} of the contrast "
+            f"at levels 2 to 6 (found {left:.3f})",
+        )
+    more = shares["RMSE"][WEIGHT] - 1
+    report.verdict(
+        more.mean() <= RISE,
+        f"{name}: it raises the RMSE by at most {RISE:.0%} on average over them "
+        f"(found {more.mean():.2%}, {more.max():.2%} at the worst)",
+    )
+
+
+def check_by_sampling(
+    report: Report,
+    subject: Subject,
+    lines: sampling.SeamLines,
+    mipmaps: dict[float, list[Texels]],
+    contrasts: dict[float, Floats],
+) -> None:
+    """Adds whether lookups along the seams find the same contrast."""
+    worst = 0.0
+    for weight in (0.0, WEIGHT):
+        for k, level in enumerate(mipmaps[weight]):
+            found = lines.contrast(level, subject.wrap)
+            worst = max(worst, abs(found / contrasts[weight][k] - 1))
+    report.verdict(
+        worst <= AGREEMENT,
+        f"{subject.name}: lookups along the seams find the same contrast (within {worst:.2%})",
+    )
+
+
+def add_best_trades(
+    report: Report, subject: Subject, lines: sampling.SeamLines, levels: list[Texels]
+) -> None:
+    """Adds how much RMSE half of the contrast costs at the least, at levels of few texels.
+
+    Of all levels within the bounds, those that minimise error^2 + multiplier contrast^2 have the
+    lowest error for their contrast. So the multiplier that halves it gives the price.
+    """
+    points = sampling.random_points(subject.corners, subject.uvs, POINTS)
+    truth = sampling.lookup(subject.image, points, subject.wrap)
+    for k in LEVELS:
+        height, width, channels = levels[k].shape
+        if height * width > MOST_UNKNOWNS:
+            continue
+        taps = sampling.Taps(points, levels[k].shape, subject.wrap)
+        area, goal = taps.normal_equations(truth)
+        across = lines.matrix(levels[k].shape, subject.wrap)
+
+        def error(texels: Floats, taps: sampling.Taps = taps) -> float:
+            return float(np.sqrt(((taps.of_flat(texels) - truth) ** 2).mean()))
+
+        def contrast(texels: Floats, across: Floats = across) -> float:
+            return float(np.sqrt((texels * (across @ texels)).sum() / texels.shape[1]))
+
+        start = levels[k].reshape(-1, channels).astype(float)
+        texels = least_squares(area, goal, start)
+        before = error(texels), contrast(texels)
+        low, high = 1e-4, 1e4
+        while high / low > 1.05:
+            middle = np.sqrt(low * high)
+            texels = least_squares(area + middle * across, goal, texels)
+            if contrast(texels) > CONTRAST_LEFT * before[1]:
+                low = middle
+            else:
+                high = middle
+        report.note(
+            f"{subject.name}, level {k}: the least price of leaving "
+            f"{contrast(texels) / before[1]:.2f} of the contrast of hidden seams is "
+            f"{error(texels) / before[0] - 1:.1%} more RMSE"
+        )
+
+
+def least_squares(matrix: Floats, goal: Floats, start: Floats) -> Floats:
+    """Returns the texels in [0, 1] with the least square, by projected Gauss-Seidel."""
+    texels = start.copy()
+    (read,) = np.nonzero(np.diag(matrix) > 0)
+    for _ in range(MOST_SWEEPS):
+        before = texels.copy()
+        for i in read:
+            step = (goal[i] - matrix[i] @ texels) / matrix[i, i]
+            texels[i] = np.minimum(np.maximum(texels[i] + step, 0), 1)
+        if np.abs(texels - before).max() < STILL:
+            break
+    return texels
+
+
+if __name__ == "__main__":
+    main()

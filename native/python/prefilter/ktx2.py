@@ -1,0 +1,104 @@
+"""The KTX 2.0 container, and its basic data format descriptor (Khronos Data Format 1.3)."""
+
+import math
+import struct
+from collections.abc import Iterator
+
+import numpy as np
+
+from .texel_formats import Container, Texture
+from .version import VERSION
+
+_IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
+_HEADER_BYTES, _LEVEL_INDEX_BYTES = 80, 24
+_BASIC_FORMAT_VERSION = 2
+_MODELS = {"bc1": 128, "bc3": 130, "bc4": 131, "bc5": 132}
+_MODEL_RGBSDA = 1
+_PRIMARIES_BT709 = 1
+_TRANSFER_LINEAR, _TRANSFER_SRGB = 1, 2
+_FLAG_PREMULTIPLIED = 1
+_RED, _GREEN, _BLUE, _ALPHA = 0, 1, 2, 15
+_BLOCK_COLOR, _BLOCK_COLOR_AND_CUT_OUT = 0, 1
+_BLOCK_CHANNELS = {
+    "bc1": (_BLOCK_COLOR_AND_CUT_OUT,),
+    "bc3": (_ALPHA, _BLOCK_COLOR),
+    "bc4": (_RED,),
+    "bc5": (_RED, _GREEN),
+}
+_LINEAR, _SIGNED, _FLOAT = 0x10, 0x40, 0x80
+
+
+def _parts(texture: Texture) -> Iterator[bytes]:
+    descriptor = _descriptor(texture)
+    # Sorted by key, as it has to be. Rows go down, as most tools have them.
+    metadata = _entry("KTXorientation", "rd") + _entry("KTXwriter", f"prefilter {VERSION}")
+    descriptor_offset = _HEADER_BYTES + _LEVEL_INDEX_BYTES * len(texture.levels)
+    metadata_offset = descriptor_offset + len(descriptor)
+    end = metadata_offset + len(metadata)
+
+    alignment = math.lcm(texture.texel_format.unit_bytes, 4)
+    index: list[bytes] = []
+    data: list[bytes] = []
+    for level in reversed(texture.levels):
+        data.append(bytes(-end % alignment))
+        end += len(data[-1])
+        index.append(struct.pack("<3Q", end, len(level), len(level)))
+        data.append(level)
+        end += len(level)
+
+    yield _IDENTIFIER
+    channel_bytes = np.dtype(texture.texel_format.channel_type).itemsize
+    counts = (0, 0, 1, len(texture.levels), 0)  # depth, layers, faces, levels, supercompression
+    yield struct.pack("<9I", texture.code, channel_bytes, texture.width, texture.height, *counts)
+    yield struct.pack(
+        "<4I2Q", descriptor_offset, len(descriptor), metadata_offset, len(metadata), 0, 0
+    )
+    yield from reversed(index)
+    yield descriptor
+    yield metadata
+    yield from data
+
+
+def _descriptor(texture: Texture) -> bytes:
+    texel_format = texture.texel_format
+    samples = b"".join(_samples(texture))
+    size = 24 + len(samples)
+    block = 3 if texel_format.is_block else 0
+    return (
+        struct.pack("<I2I", 4 + size, 0, size << 16 | _BASIC_FORMAT_VERSION)
+        + struct.pack(
+            "<4B",
+            _MODELS.get(texel_format.name, _MODEL_RGBSDA),
+            _PRIMARIES_BT709,
+            _TRANSFER_SRGB if texture.is_srgb else _TRANSFER_LINEAR,
+            _FLAG_PREMULTIPLIED if texture.alpha == "premultiplied" else 0,
+        )
+        + struct.pack("<4B", block, block, 0, 0)
+        + struct.pack("<8B", texel_format.unit_bytes, *(0,) * 7)
+        + samples
+    )
+
+
+def _samples(texture: Texture) -> Iterator[bytes]:
+    texel_format = texture.texel_format
+    channels = _BLOCK_CHANNELS.get(
+        texel_format.name, (_RED, _GREEN, _BLUE, _ALPHA)[: texel_format.channels]
+    )
+    bits = 8 * texel_format.unit_bytes // len(channels)
+    for number, channel in enumerate(channels):
+        if texel_format.is_float:
+            channel |= _SIGNED | _FLOAT
+            limits = struct.pack("<2f", -1.0, 1.0)
+        else:
+            if channel == _ALPHA and texture.is_srgb:
+                channel |= _LINEAR
+            limits = struct.pack("<2I", 0, (1 << min(bits, 32)) - 1)
+        yield struct.pack("<H2B4x", bits * number, bits - 1, channel) + limits
+
+
+def _entry(key: str, value: str) -> bytes:
+    text = f"{key}\0{value}\0".encode()
+    return struct.pack("<I", len(text)) + text + bytes(-len(text) % 4)
+
+
+KTX2 = Container("KTX 2", lambda texel_format: texel_format.vulkan, _parts)

@@ -1,0 +1,239 @@
+"""How the texels of texture files for engines are laid out, and arrays brought into that layout."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from .arguments import ProgressCallback
+from .arrays import as_bytes, as_image
+from .color import to_linear
+
+
+@dataclass(frozen=True)
+class TexelFormat:
+    """A layout of texels, and what the containers call it.
+
+    Attributes:
+        name: As `write_dds` and `write_ktx2` take it.
+        channels: How many a texel has.
+        unit_bytes: Of a texel, or of a block of 4 x 4 texels.
+        is_block: Whether texels are compressed in blocks of 4 x 4.
+        channel_type: Of a channel; of what is compressed for blocks.
+        dxgi: The DXGI_FORMAT of linear and of sRGB colours; None where there is none.
+        vulkan: The VkFormat of the same.
+    """
+
+    name: str
+    channels: int
+    unit_bytes: int
+    is_block: bool
+    channel_type: type[np.uint8] | type[np.float16] | type[np.float32]
+    dxgi: tuple[int, int | None]
+    vulkan: tuple[int, int | None]
+
+    @property
+    def is_float(self) -> bool:
+        return self.channel_type is not np.uint8
+
+
+@dataclass(frozen=True)
+class Texture:
+    """What a container holds.
+
+    Attributes:
+        texel_format: Of every level.
+        code: What the container calls it.
+        is_srgb: Whether its colours are sRGB-encoded.
+        width: Of level 0, in texels.
+        height: Of level 0, in texels.
+        levels: Their texels or blocks, level 0 first, the top row first.
+        alpha: What the fourth channel is: one of `ALPHAS`; None where there is none.
+    """
+
+    texel_format: TexelFormat
+    code: int
+    is_srgb: bool
+    width: int
+    height: int
+    levels: list[bytes]
+    alpha: str | None
+
+
+class Container(NamedTuple):
+    """A kind of file."""
+
+    name: str
+    codes: Callable[[TexelFormat], tuple[int, int | None]]
+    """What it calls a format with linear and with sRGB colours; None where it cannot hold that."""
+    parts: Callable[[Texture], Iterator[bytes]]
+    """The file, piece by piece."""
+
+
+def _plain(
+    name: str,
+    channels: int,
+    channel_type: type[np.uint8] | type[np.float16] | type[np.float32],
+    dxgi: tuple[int, int | None],
+    vulkan: tuple[int, int | None],
+) -> TexelFormat:
+    size = channels * np.dtype(channel_type).itemsize
+    return TexelFormat(name, channels, size, False, channel_type, dxgi, vulkan)
+
+
+def _blocks(
+    name: str,
+    channels: int,
+    unit_bytes: int,
+    dxgi: tuple[int, int | None],
+    vulkan: tuple[int, int | None],
+) -> TexelFormat:
+    return TexelFormat(name, channels, unit_bytes, True, np.uint8, dxgi, vulkan)
+
+
+ALPHAS = ("straight", "premultiplied", "independent")
+
+FORMATS = {
+    texel_format.name: texel_format
+    for texel_format in (
+        _plain("r8", 1, np.uint8, (61, None), (9, 15)),
+        _plain("rg8", 2, np.uint8, (49, None), (16, 22)),
+        _plain("rgba8", 4, np.uint8, (28, 29), (37, 43)),
+        _plain("rgba16f", 4, np.float16, (10, None), (97, None)),
+        _plain("rgba32f", 4, np.float32, (2, None), (109, None)),
+        _blocks("bc1", 4, 8, (71, 72), (133, 134)),
+        _blocks("bc3", 4, 16, (77, 78), (137, 138)),
+        _blocks("bc4", 1, 8, (80, None), (139, None)),
+        _blocks("bc5", 2, 16, (83, None), (141, None)),
+    )
+}
+
+
+def as_levels(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
+    """The levels, all uint8 or all float32; raises ValueError unless each halves the one before."""
+    if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
+        found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
+        raise ValueError(f"levels: {found}; a list of images, level 0 first, is needed")
+    images: list[np.ndarray] = []
+    for number, level in enumerate(levels):
+        who = f"levels: level {number}"
+        if isinstance(level, np.ndarray) and level.dtype == np.uint8:
+            image = as_bytes(who, level)
+        else:
+            image = as_image(who, level)
+            _check_finite(who, image)
+        height, width, channels = image.shape
+        if channels > 4:
+            raise ValueError(f"{who} has {channels} channels; 1 to 4 are allowed")
+        if images:
+            before = images[-1]
+            if before.shape[:2] == (1, 1):
+                raise ValueError(f"{who} is one too many: the one before has 1 x 1 texel")
+            wanted = max(1, before.shape[0] // 2), max(1, before.shape[1] // 2)
+            if (height, width) != wanted:
+                raise ValueError(
+                    f"{who} has {width} x {height} texels; half of the one before, rounded down, "
+                    f"is {wanted[1]} x {wanted[0]}"
+                )
+            if channels != before.shape[2] or image.dtype != before.dtype:
+                raise ValueError(
+                    f"{who} has {channels} channels of {image.dtype}, the one before "
+                    f"{before.shape[2]} of {before.dtype}; they must be alike"
+                )
+        images.append(image)
+    return images
+
+
+def as_format(name: str, level: np.ndarray, *, needs_srgb: bool) -> TexelFormat:
+    """The format of that name; for "auto" the one that holds all of a level."""
+    if name == "auto":
+        if level.dtype != np.uint8:
+            return FORMATS["rgba16f"]
+        name = {1: "r8", 2: "rg8"}.get(level.shape[2], "rgba8")
+        return FORMATS["rgba8" if needs_srgb else name]
+    if not isinstance(name, str) or name not in FORMATS:
+        raise ValueError(f"format: {name!r} is not one of auto, {', '.join(FORMATS)}")
+    found = FORMATS[name]
+    if found.channels == 2 and level.shape[2] < 2:
+        raise ValueError(f"format: '{name}' needs 2 channels; the levels have {level.shape[2]}")
+    return found
+
+
+def is_srgb(encoding: str) -> bool:
+    if encoding not in ("linear", "srgb"):
+        raise ValueError(f"encoding: {encoding!r} is not one of linear, srgb")
+    return encoding == "srgb"
+
+
+def as_alpha(alpha: str) -> str:
+    if alpha not in ALPHAS:
+        raise ValueError(f"alpha: {alpha!r} is not one of {', '.join(ALPHAS)}")
+    return alpha
+
+
+def encoded(
+    level: np.ndarray,
+    texel_format: TexelFormat,
+    srgb: bool,
+    *,
+    weigh_by_alpha: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> bytes:
+    """A level as a file holds it, the top row first."""
+    flipped = np.ascontiguousarray(level[::-1])
+    if texel_format.is_float:
+        texels = _linear_floats(flipped, srgb, texel_format.channel_type, threads)
+    elif flipped.dtype == np.uint8:
+        texels = flipped
+    else:
+        texels = _native.to_bytes(flipped, srgb, threads)
+    if texel_format.is_block:
+        rgba = _with_channels(texels, 4)
+        return _native.compress_blocks(rgba, texel_format.name, weigh_by_alpha, progress, threads)
+    return _with_channels(texels, texel_format.channels).tobytes()
+
+
+def _linear_floats(
+    level: np.ndarray,
+    srgb: bool,
+    channel_type: type[np.uint8] | type[np.float16] | type[np.float32],
+    threads: int,
+) -> np.ndarray:
+    if level.dtype == np.uint8:
+        level = level.astype(np.float32) / np.float32(255)
+        if srgb:
+            level = to_linear(level, threads=threads)
+    with np.errstate(over="ignore"):
+        values = level.astype(channel_type)
+    if not np.isfinite(values).all():
+        raise ValueError(
+            f"levels: hold {level.ravel()[np.abs(level).argmax()]}, beyond the half floats of "
+            f"format 'rgba16f' (65504); 'rgba32f' is needed"
+        )
+    return values
+
+
+def _with_channels(texels: np.ndarray, channels: int) -> np.ndarray:
+    """The first channels; for four, grey becomes a colour, and what lacks is 0, but alpha 1."""
+    found = texels.shape[2]
+    if found >= channels:
+        return np.ascontiguousarray(texels[..., :channels])
+    full = 255 if texels.dtype == np.uint8 else 1
+    rgba = np.zeros((*texels.shape[:2], 4), texels.dtype)
+    rgba[..., : 3 if found == 1 else found] = texels
+    rgba[..., 3] = full
+    return rgba
+
+
+def _check_finite(who: str, image: np.ndarray) -> None:
+    bad = np.argwhere(~np.isfinite(image))
+    if len(bad):
+        row, column, channel = bad[0]
+        raise ValueError(
+            f"{who}: the texel in row {row}, column {column} holds {image[row, column, channel]}; "
+            f"finite values are needed"
+        )

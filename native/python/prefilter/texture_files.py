@@ -1,0 +1,179 @@
+"""Texture files that engines and viewers read: DDS and KTX 2, with all levels."""
+
+import os
+import secrets
+import shutil
+import stat
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy.typing as npt
+
+from . import _native
+from .arguments import ProgressCallback, as_progress
+from .arrays import as_threads
+from .dds import DDS
+from .ktx2 import KTX2
+from .texel_formats import Container, Texture, as_alpha, as_format, as_levels, encoded, is_srgb
+
+_WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
+
+
+def write_dds(
+    path: str | os.PathLike[str],
+    levels: Sequence[npt.ArrayLike],
+    *,
+    format: str = "auto",
+    encoding: str = "linear",
+    alpha: str = "straight",
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> None:
+    """Writes levels as a DDS file (DirectDraw Surface, with the header of Direct3D 10 and later).
+
+    The file is written beside `path` and renamed, so a failure leaves what was there.
+
+    Args:
+        path: The file; its folder must exist.
+        levels: (height, width, 1 to 4 channels) each, level 0 first, row 0 at v = 0, the bottom
+            (the file holds the top row first); each has half the sides of the one before, rounded
+            down. The last ones may be left out. Either uint8, or floats that are scene-linear.
+        format: How texels are stored: "r8", "rg8", "rgba8" in bytes; "bc1", "bc3", "bc4", "bc5" in
+            blocks of 4 x 4, compressed from bytes by libsquish; "rgba16f", "rgba32f" in floats.
+            "auto" keeps bytes and channels of bytes, and stores floats as "rgba16f". "r8" and "bc4"
+            take the first channel, "rg8" and "bc5" two; in the others one channel is grey, and
+            alpha is 1 where there is none. "bc1" knows an alpha of 0 or 1 only: below one half,
+            texels become black and transparent.
+        encoding: How bytes stand for colours: "linear" or "srgb". It holds for levels of bytes and
+            for formats in bytes and blocks: levels of floats are encoded (values beyond [0, 1] are
+            clipped), and formats in floats get decoded, linear values. The fourth channel is linear
+            always.
+        alpha: What the fourth channel of four is: "straight", "premultiplied" (colours are
+            multiplied by it) or "independent" (no alpha). Values are stored as they are; the file
+            says it, but for "independent" in KTX 2, which has no word for that. Colours that
+            straight alpha hides count little in the blocks of "bc3".
+        progress: Called with the fraction done, in [0, 1]; may return False to stop.
+        threads: How many to use; 0 = all processors. The file does not depend on it.
+
+    Raises:
+        ValueError: An argument is out of range, a value is not finite or too large for half floats,
+            or the format has no sRGB form in such files.
+        OSError: The file cannot be written.
+        Cancelled: The progress callback returned False.
+    """
+    _write(path, levels, format, encoding, alpha, progress, threads, DDS)
+
+
+def write_ktx2(
+    path: str | os.PathLike[str],
+    levels: Sequence[npt.ArrayLike],
+    *,
+    format: str = "auto",
+    encoding: str = "linear",
+    alpha: str = "straight",
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> None:
+    """Writes levels as a KTX 2.0 file (Khronos texture), without supercompression.
+
+    "r8" and "rg8" have an sRGB form here, which some graphics cards lack; "auto" stores such levels
+    as "rgba8". The rest is as for `write_dds`.
+    """
+    _write(path, levels, format, encoding, alpha, progress, threads, KTX2)
+
+
+def _write(
+    path: str | os.PathLike[str],
+    levels: Sequence[npt.ArrayLike],
+    format: str,
+    encoding: str,
+    alpha: str,
+    progress: ProgressCallback | None,
+    threads: int,
+    container: Container,
+) -> None:
+    images = as_levels(levels)
+    srgb = is_srgb(encoding)
+    texel_format = as_format(format, images[0], needs_srgb=srgb)
+    srgb = srgb and not texel_format.is_float
+    code = container.codes(texel_format)[srgb]
+    if code is None:
+        raise ValueError(
+            f"encoding: 'srgb' with the format '{texel_format.name}', which has no sRGB form in "
+            f"{container.name} files; 'linear' or another format is needed"
+        )
+    target = _as_target(path)
+    report = as_progress(progress)
+    count = as_threads(threads)
+    height, width, channels = images[0].shape
+    has_alpha = channels == 4 and texel_format.channels == 4
+    alpha = as_alpha(alpha)
+    texels = sum(image.shape[0] * image.shape[1] for image in images)
+    payloads, done = [], 0
+    for image in images:
+        size = image.shape[0] * image.shape[1]
+        part = _part(report, done / texels, size / texels)
+        if part is not None and part(0.0) is False:
+            raise _native.Cancelled("cancelled")
+        payloads.append(
+            encoded(
+                image,
+                texel_format,
+                encoding == "srgb",
+                weigh_by_alpha=has_alpha and alpha == "straight",
+                progress=part,
+                threads=count,
+            )
+        )
+        done += size
+    texture = Texture(
+        texel_format=texel_format,
+        code=code,
+        is_srgb=srgb,
+        width=width,
+        height=height,
+        levels=payloads,
+        alpha=alpha if has_alpha else None,
+    )
+    _replace(target, container.parts(texture))
+    if report is not None:
+        report(1.0)
+
+
+def _part(progress: ProgressCallback | None, start: float, share: float) -> ProgressCallback | None:
+    return None if progress is None else lambda fraction: progress(start + share * fraction)
+
+
+def _as_target(path: str | os.PathLike[str]) -> Path:
+    """The file that a path stands for, symbolic links resolved, if it can be written.
+
+    Root may write what has no write bits; that is left alone all the same.
+    """
+    try:
+        target = Path(os.path.realpath(os.fsdecode(path)))
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"path: {path!r}; the path of a file is needed") from error
+    if not target.parent.is_dir():
+        raise OSError(f"path: there is no folder '{target.parent}'")
+    if target.is_dir():
+        raise OSError(f"path: '{target}' is a folder")
+    for place in (target, target.parent) if target.exists() else (target.parent,):
+        writable = os.access(place, os.W_OK) and place.stat().st_mode & _WRITE_BITS
+        if not writable:
+            raise OSError(f"path: '{place}' is read-only")
+    return target
+
+
+def _replace(target: Path, parts: Iterable[bytes]) -> None:
+    """Writes a file beside its target, and renames it; it gets the mode of one that it replaces."""
+    new = target.with_name(f".prefilter-{secrets.token_hex(4)}{target.suffix}")
+    try:
+        with new.open("xb") as file:
+            for part in parts:
+                file.write(part)
+        if target.exists():
+            shutil.copymode(target, new)
+        os.replace(new, target)
+    except BaseException:
+        new.unlink(missing_ok=True)
+        raise

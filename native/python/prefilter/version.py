@@ -1,0 +1,3 @@
+"""The version of the package; also that of the extension."""
+
+VERSION = "0.1.0"

@@ -1,0 +1,7 @@
+// Goes before libsquish's SSE code, which starts from the processor's estimate of a reciprocal:
+// processors differ in it, and blocks are to be the same on all of them.
+#pragma once
+
+#include <xmmintrin.h>
+
+#define _mm_rcp_ps(value) _mm_div_ps(_mm_set1_ps(1.0F), (value))

@@ -1,0 +1,228 @@
+"""Readers of DDS and KTX 2 files, after their specifications; nothing here is shared with a writer.
+
+A file is read into a `File`, whose levels are as stored: the top row first.
+"""
+
+import struct
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+# name: (DXGI_FORMAT, VkFormat, channels, dtype or None for blocks, bytes a texel or block, is sRGB)
+FORMATS = {
+    "R8_UNORM": (61, 9, 1, np.uint8, 1, False),
+    "R8_SRGB": (None, 15, 1, np.uint8, 1, True),
+    "R8G8_UNORM": (49, 16, 2, np.uint8, 2, False),
+    "R8G8_SRGB": (None, 22, 2, np.uint8, 2, True),
+    "R8G8B8A8_UNORM": (28, 37, 4, np.uint8, 4, False),
+    "R8G8B8A8_SRGB": (29, 43, 4, np.uint8, 4, True),
+    "R16G16B16A16_SFLOAT": (10, 97, 4, np.float16, 8, False),
+    "R32G32B32A32_SFLOAT": (2, 109, 4, np.float32, 16, False),
+    "BC1_UNORM": (71, 133, 4, None, 8, False),
+    "BC1_SRGB": (72, 134, 4, None, 8, True),
+    "BC3_UNORM": (77, 137, 4, None, 16, False),
+    "BC3_SRGB": (78, 138, 4, None, 16, True),
+    "BC4_UNORM": (80, 139, 1, None, 8, False),
+    "BC5_UNORM": (83, 141, 2, None, 16, False),
+}
+
+
+@dataclass
+class File:
+    """What a texture file says."""
+
+    format: str
+    width: int
+    height: int
+    level_data: list[bytes]
+    alpha: str
+    samples: list[dict] = field(default_factory=list)
+    metadata: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def is_srgb(self) -> bool:
+        return FORMATS[self.format][5]
+
+    def level(self, number: int) -> np.ndarray:
+        """A level, the top row first; that of a block format in floats, as it is decoded."""
+        _, _, channels, dtype, _, _ = FORMATS[self.format]
+        height, width = max(1, self.height >> number), max(1, self.width >> number)
+        if dtype is None:
+            return decoded_blocks(self.level_data[number], self.format[:3], width, height)
+        values = np.frombuffer(self.level_data[number], np.dtype(dtype).newbyteorder("<"))
+        return values.reshape(height, width, channels)
+
+    @property
+    def levels(self) -> list[np.ndarray]:
+        """All levels, the bottom row first."""
+        return [self.level(number)[::-1] for number in range(len(self.level_data))]
+
+
+def level_bytes(name: str, width: int, height: int, number: int) -> int:
+    """How many bytes a level takes."""
+    width, height = max(1, width >> number), max(1, height >> number)
+    _, _, _, dtype, unit, _ = FORMATS[name]
+    if dtype is None:
+        width, height = (width + 3) // 4, (height + 3) // 4
+    return width * height * unit
+
+
+def read_dds(path: Path) -> File:
+    """Reads a DDS file with the DX10 header, and checks what its header has to say."""
+    data = path.read_bytes()
+    assert data[:4] == b"DDS "
+    size, flags, height, width, pitch, depth, mips = struct.unpack_from("<7I", data, 4)
+    assert (size, depth) == (124, 0)
+    pixel_size, pixel_flags, four_cc = struct.unpack_from("<2I4s", data, 76)
+    assert (pixel_size, pixel_flags, four_cc) == (32, 4, b"DX10")
+    caps, caps2, caps3, caps4, reserved = struct.unpack_from("<5I", data, 108)
+    assert (caps2, caps3, caps4, reserved) == (0, 0, 0, 0)
+    dxgi, dimension, misc, array_size, misc2 = struct.unpack_from("<5I", data, 128)
+    assert (dimension, misc, array_size) == (3, 0, 1)
+    name = next(name for name, entry in FORMATS.items() if entry[0] == dxgi)
+
+    assert flags & 0x1007 == 0x1007
+    assert mips >= 1
+    assert bool(flags & 0x20000) == (mips > 1)
+    assert caps == (0x1000 if mips == 1 else 0x401008)
+    if FORMATS[name][3] is None:
+        assert flags & 0x80008 == 0x80000
+        assert pitch == level_bytes(name, width, height, 0)
+    else:
+        assert flags & 0x80008 == 0x8
+        assert pitch == width * FORMATS[name][4]
+
+    offset, levels = 148, []
+    for number in range(mips):
+        count = level_bytes(name, width, height, number)
+        levels.append(data[offset : offset + count])
+        offset += count
+    assert offset == len(data)
+    alpha = {1: "straight", 2: "premultiplied", 3: "opaque", 4: "custom"}[misc2]
+    return File(name, width, height, levels, alpha)
+
+
+def read_ktx2(path: Path) -> File:
+    """Reads a KTX 2.0 file, and checks the rules of its specification on the way."""
+    data = path.read_bytes()
+    assert data[:12] == bytes([0xAB, 0x4B, 0x54, 0x58, 0x20, 0x32, 0x30, 0xBB, 13, 10, 26, 10])
+    vulkan, type_size, width, height, depth, layers, faces, count, scheme = struct.unpack_from(
+        "<9I", data, 12
+    )
+    assert (depth, layers, faces, scheme) == (0, 0, 1, 0)
+    assert 1 <= count <= max(width, height).bit_length()
+    name = next(name for name, entry in FORMATS.items() if entry[1] == vulkan)
+    _, _, _, dtype, unit, _ = FORMATS[name]
+    assert type_size == (1 if dtype is None else np.dtype(dtype).itemsize)
+
+    dfd_offset, dfd_length, kvd_offset, kvd_length = struct.unpack_from("<4I", data, 48)
+    assert struct.unpack_from("<2Q", data, 64) == (0, 0)
+    assert dfd_offset == 80 + 24 * count
+    assert kvd_offset == dfd_offset + dfd_length
+    index = [struct.unpack_from("<3Q", data, 80 + 24 * number) for number in range(count)]
+    # Data goes from the smallest level to the largest, each at the first multiple that is free.
+    free = kvd_offset + kvd_length
+    for number in reversed(range(count)):
+        offset, length, uncompressed = index[number]
+        while free % unit or free % 4:
+            assert data[free] == 0
+            free += 1
+        assert offset == free
+        assert length == uncompressed == level_bytes(name, width, height, number)
+        free += length
+    assert free == len(data)
+    levels = [data[offset : offset + length] for offset, length, _ in index]
+
+    alpha, samples = _read_descriptor(data[dfd_offset : dfd_offset + dfd_length], name)
+    metadata, keys = {}, []
+    at, end = kvd_offset, kvd_offset + kvd_length
+    while at < end:
+        (length,) = struct.unpack_from("<I", data, at)
+        key, value = data[at + 4 : at + 4 + length].split(b"\0", 1)
+        assert value.endswith(b"\0")
+        metadata[key.decode()] = value[:-1].decode()
+        keys.append(key)
+        at += 4 + (length + 3) // 4 * 4
+    assert at == end
+    assert keys == sorted(keys)
+    return File(name, width, height, levels, alpha, samples, metadata)
+
+
+def _read_descriptor(data: bytes, name: str) -> tuple[str, list[dict]]:
+    total, vendor_and_type, version, size = struct.unpack_from("<2I2H", data)
+    assert total == len(data)
+    assert (vendor_and_type, version, size) == (0, 2, total - 4)
+    model, primaries, transfer, flags = data[12:16]
+    _, _, _, dtype, unit, srgb = FORMATS[name]
+    assert primaries == 1
+    assert transfer == (2 if srgb else 1)
+    assert list(data[16:20]) == ([3, 3, 0, 0] if dtype is None else [0, 0, 0, 0])
+    assert list(data[20:28]) == [unit, 0, 0, 0, 0, 0, 0, 0]
+    samples = []
+    for start in range(28, total, 16):
+        offset, bits, channel, position, low, high = struct.unpack_from("<H2B3I", data, start)
+        assert position == 0
+        samples.append(
+            {
+                "bits": (offset, bits + 1),
+                "channel": channel & 0xF,
+                "qualifiers": channel & 0xF0,
+                "range": (low, high),
+            }
+        )
+    # Every bit of a texel or block belongs to one sample.
+    assert [sample["bits"][0] for sample in samples] == [
+        sum(sample["bits"][1] for sample in samples[:number]) for number in range(len(samples))
+    ]
+    assert sum(sample["bits"][1] for sample in samples) == 8 * unit
+    models = {"BC1": 128, "BC3": 130, "BC4": 131, "BC5": 132}
+    assert model == models.get(name[:3], 1)
+    return "premultiplied" if flags & 1 else "straight", samples
+
+
+def decoded_blocks(data: bytes, name: str, width: int, height: int) -> np.ndarray:
+    """Blocks of BC1, BC3, BC4 or BC5 as values from 0 to 255, after the formats' definitions."""
+    rows, columns = (height + 3) // 4, (width + 3) // 4
+    blocks = np.frombuffer(data, np.uint8).reshape(rows * columns, -1)
+    if name == "BC1":
+        texels = _decoded_colors(blocks, has_cut_out=True)
+    elif name == "BC3":
+        texels = _decoded_colors(blocks[:, 8:], has_cut_out=False)
+        texels[..., 3] = _decoded_channel(blocks[:, :8])
+    else:
+        halves = np.split(blocks, {"BC4": 1, "BC5": 2}[name], axis=1)
+        texels = np.stack([_decoded_channel(half) for half in halves], axis=2)
+    texels = texels.reshape(rows, columns, 4, 4, -1).swapaxes(1, 2)
+    return texels.reshape(4 * rows, 4 * columns, -1)[:height, :width]
+
+
+def _decoded_colors(blocks: np.ndarray, *, has_cut_out: bool) -> np.ndarray:
+    words = np.ascontiguousarray(blocks[:, :4]).view("<u2").astype(int)
+    ends = np.stack(
+        [(words >> 11) * 255 / 31, (words >> 5 & 63) * 255 / 63, (words & 31) * 255 / 31], axis=2
+    )
+    first, second = ends[:, 0], ends[:, 1]
+    colors = np.full((len(blocks), 4, 4), 255.0)
+    colors[:, 0, :3], colors[:, 1, :3] = first, second
+    colors[:, 2, :3], colors[:, 3, :3] = (2 * first + second) / 3, (first + 2 * second) / 3
+    if has_cut_out:
+        three = words[:, 0] <= words[:, 1]
+        colors[three, 2, :3] = ((first + second) / 2)[three]
+        colors[three, 3] = 0
+    bits = np.ascontiguousarray(blocks[:, 4:8]).view("<u4")
+    index = bits >> 2 * np.arange(16) & 3
+    return np.take_along_axis(colors, index[..., None].astype(int), axis=1)
+
+
+def _decoded_channel(blocks: np.ndarray) -> np.ndarray:
+    low, high = blocks[:, :1].astype(float), blocks[:, 1:2].astype(float)
+    six, four = np.arange(1, 7) / 7, np.arange(1, 5) / 5
+    eight_values = np.hstack([low, high, low + (high - low) * six])
+    limits = np.broadcast_to([0.0, 255.0], (len(blocks), 2))
+    six_values = np.hstack([low, high, low + (high - low) * four, limits])
+    values = np.where(low > high, eight_values, six_values)
+    padded = np.zeros((len(blocks), 8), np.uint8)
+    padded[:, :6] = blocks[:, 2:8]
+    index = padded.view("<u8") >> np.arange(0, 48, 3, dtype=np.uint64) & 7
+    return np.take_along_axis(values, index.astype(int), axis=1)
