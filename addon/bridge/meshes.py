@@ -1,5 +1,6 @@
 """Evaluated meshes to `prefilter.Surface`: the part of each mesh that wears an image."""
 
+import re
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -295,7 +296,9 @@ class _Reader:
                     surface = subdivision.limit_surface(mesh, chosen, uvs, weights, rules)
                 self.found.surfaces.append(surface.placed(matrices))
             except ValueError as error:
-                raise ValueError(f"object '{name}': {error}") from error
+                # What the library calls weights has another name here.
+                message = re.sub("^weights", f"importance '{self._options.importance}'", str(error))
+                raise ValueError(f"object '{name}': {message}") from error
             self.found.extensions.append(use.extension)
             self.found.objects.append(name)
             self.found.uses.append(use)

@@ -1,35 +1,12 @@
 """The command, in a Blender of its own."""
 
-import subprocess
-
 import bpy
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 import scenes
+from command_line import assert_fails, run
 from texture_readers import read_ktx2
-
-ARGUMENTS = ["--background", "--command", "prefilter"]
-
-
-def run(*arguments, cwd=None):
-    return subprocess.run(
-        [bpy.app.binary_path, *ARGUMENTS, *map(str, arguments)],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        cwd=cwd,
-        check=False,
-    )
-
-
-def assert_fails(result, *words, status=1):
-    assert result.returncode == status, result.stderr
-    assert "Traceback" not in result.stdout + result.stderr
-    last = result.stderr.strip().splitlines()[-1]
-    assert "error: " in last
-    for word in words:
-        assert word in last
 
 
 @pytest.fixture
@@ -105,27 +82,6 @@ def test_gltf(tmp_path):
     result = run("bake", path, "--output", tmp_path / "out.exr")
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "out.exr").exists()
-
-
-def test_wrong_arguments_exit_with_2(blend, obj_and_picture):
-    assert_fails(run("bake"), "FILE", status=2)
-    assert_fails(run("bake", blend), "--output", "--save", status=2)
-    assert_fails(run("bake", "scene.txt", "--save"), "scene.txt", ".blend", status=2)
-    assert_fails(run("bake", obj_and_picture[0], "--save"), "--save", "quad.obj", status=2)
-    assert_fails(run("bake", blend, "--save", "--filter", "best"), "best", status=2)
-    assert_fails(run("bake", blend, "--save", "--levels", "-1"), "-1", status=2)
-
-
-def test_failures_exit_with_1(blend, obj_and_picture, tmp_path):
-    obj, _ = obj_and_picture
-    target = tmp_path / "out.exr"
-    assert_fails(run("bake", tmp_path / "none.blend", "--save"), "none.blend")
-    assert_fails(run("bake", blend, "--save", "--image", "Pain"), "'Pain'", "'Paint'")
-    assert_fails(run("bake", blend, "--save", "--object", "Qua"), "'Qua'", "'Quad'")
-    assert_fails(run("bake", blend, "--save", "--levels", "9"), "levels", "9")
-    assert_fails(run("bake", obj, "--output", target), "--image", "none")
-    assert not target.exists()
-    assert (tmp_path / "scene.blend").exists()
 
 
 def test_more_threads_than_there_are(blend):

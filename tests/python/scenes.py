@@ -1,6 +1,7 @@
 """Small surfaces and images for tests, and lookups written without the library."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import prefilter
@@ -75,6 +76,45 @@ def surface_samples(mesh: Mesh, steps: int) -> tuple[np.ndarray, np.ndarray]:
     uvs = a + s * (b - a) + t * (c - a)
     weights = np.repeat(mesh.areas / steps**2, steps**2)
     return uvs.reshape(-1, 2), weights
+
+
+def samples_inside(mesh: Mesh, steps: int, wrap: tuple[str, str]) -> tuple[np.ndarray, np.ndarray]:
+    """The same of the part that weighs something: triangles are cut at the edges of a border.
+
+    The parts of a triangle get points as dense as the triangle would.
+    """
+    if "border" not in wrap:
+        return surface_samples(mesh, steps)
+    found = []
+    for uvs, area in zip(mesh.uvs, mesh.areas, strict=True):
+        whole = _area(uvs)
+        polygon = list(uvs)
+        for axis, mode in enumerate(wrap):
+            for edge, sign in ((0.0, 1.0), (1.0, -1.0)) if mode == "border" else ():
+                polygon = _cut(polygon, axis, edge, sign)
+        for second, third in pairwise(polygon[1:]):
+            part = np.array([polygon[0], second, third])
+            share = _area(part) / whole
+            dense = max(1, int(np.ceil(steps * np.sqrt(share))))
+            found.append(surface_samples(soup(part[None], [area * share]), dense))
+    return np.concatenate([uvs for uvs, _ in found]), np.concatenate([w for _, w in found])
+
+
+def _area(uvs: np.ndarray) -> float:
+    (u, v), (s, t) = uvs[1] - uvs[0], uvs[2] - uvs[0]
+    return abs(u * t - v * s) / 2
+
+
+def _cut(polygon: list[np.ndarray], axis: int, edge: float, sign: float) -> list[np.ndarray]:
+    """The part of a convex polygon where sign * (coordinate - edge) is not negative."""
+    kept = []
+    for start, end in zip(polygon, polygon[1:] + polygon[:1], strict=True):
+        a, b = sign * (start[axis] - edge), sign * (end[axis] - edge)
+        if a >= 0:
+            kept.append(start)
+        if a * b < 0:
+            kept.append(start + a / (a - b) * (end - start))
+    return kept
 
 
 def wrap_indices(index: np.ndarray, size: int, mode: str) -> tuple[np.ndarray, np.ndarray]:

@@ -344,5 +344,5 @@ class TestImportance:
 
     def test_negative_names_the_object(self, find, quad, picture):
         quad.data.attributes.new("Care", "FLOAT", "POINT").data[2].value = -1
-        with pytest.raises(ValueError, match="object 'Quad': weights: vertex 2 has -1"):
+        with pytest.raises(ValueError, match="object 'Quad': importance 'Care': vertex 2 has -1"):
             find([quad], picture, importance="Care")

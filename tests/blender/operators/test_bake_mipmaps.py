@@ -91,40 +91,6 @@ def test_poll_without_images():
         bake(image="Paint")
 
 
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({}, "image: no name is given"),
-        ({"image": "Pain"}, r"no image named 'Pain'.*'Paint'"),
-        ({"image": "Paint", "filepath": "/tmp/out.jpg"}, r"'\.jpg'"),
-        ({"image": "Paint", "use_images": False}, "nothing to write"),
-        ({"image": "Paint", "levels": 9}, "levels"),
-        ({"image": "Paint"}, None),
-    ],
-)
-def test_failures_are_reports(options, message):
-    scenes.textured_quad(scenes.image("Paint", scenes.noise(4, 4)))
-    before = {image.name for image in bpy.data.images}
-    if message is None:
-        bpy.ops.object.select_all(action="DESELECT")
-        message = "no object is selected"
-    with pytest.raises(RuntimeError, match=message) as caught:
-        bake(**options)
-    assert "Traceback" not in str(caught.value)
-    assert {image.name for image in bpy.data.images} == before
-
-
-def test_library_refusals_are_reports():
-    quad = scenes.textured_quad(scenes.image("Paint", scenes.noise(4, 4)))
-    quad.data.vertices[0].co.x = float("nan")
-    with pytest.raises(RuntimeError, match=r"object 'Quad': .*positions"):
-        bake(image="Paint")
-    quad.data.vertices[0].co.x = 0
-    quad.data.uv_layers[0].uv[0].vector.x = float("nan")
-    with pytest.raises(RuntimeError, match=r"object 'Quad': .*uvs"):
-        bake(image="Paint")
-
-
 @pytest.fixture
 def quitting():
     """Returns a context as Blender has it when it quits, and the names of what was called on it."""
