@@ -52,6 +52,20 @@ def test_contrast_without_a_seam_is_none():
     assert prefilter.seam_contrast([random_image(1, 8, 8, 1)], one).tolist() == [0.0]
 
 
+def test_coordinates_that_differ_by_rounding_are_no_seam():
+    positions = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 0, 0]], np.float64)
+    triangles = np.array([[0, 1, 2], [1, 3, 2]])
+    uvs = np.array([[(0.1, 0.1), (0.5, 0.1), (0.5, 0.9)], [(0.5, 0.1), (0.9, 0.1), (0.5, 0.9)]])
+    image = random_image(1, 8, 8, 1)
+    contrasts = []
+    for apart in (8 * np.finfo(np.float32).eps / 2, 1e-4):
+        moved = uvs + np.array([0, apart])[:, None, None]
+        surface = prefilter.Surface(positions, triangles, moved)
+        contrasts.append(prefilter.seam_contrast([image], surface)[0])
+    assert contrasts[0] == 0.0
+    assert contrasts[1] > 0.0
+
+
 def test_a_tile_of_a_repeated_texture_has_no_contrast():
     positions = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [2, 0, 0]], np.float64)
     triangles = np.array([[0, 1, 2], [1, 3, 2]])

@@ -13,8 +13,9 @@
 namespace prefilter {
 namespace {
 
-// Coordinates of two corners that are closer than this are the same: far less than a texel.
-constexpr double kSameUv = 1e-7;
+// Coordinates of two corners that are closer than this are the same: far less than a texel, and
+// more than floats make of them where a mesh is subdivided.
+constexpr double kSameUv = 1e-6;
 
 // In texels. A longer one is left out: it runs over a texture that is repeated very often.
 constexpr double kLongestSeam = 1 << 16;
