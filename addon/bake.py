@@ -6,7 +6,7 @@ The operator and the command are two ways to call this.
 import re
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -14,17 +14,18 @@ import bpy
 import numpy as np
 import prefilter
 
-from . import contents, frames, udim
+from . import contents, frames, seams, udim
 from .bridge import engine_files, files, images, materials, meshes
 from .bridge.images import FloatArray, Picture
 from .choices import CONTENTS, FILTERS, TEXTURE_SPACE_FILTERS, Settings
-from .jobs import Progress, go_on
+from .jobs import Progress, go_on, share
 from .wording import counted, listed
 
 FAILURES = (ValueError, OSError, MemoryError)
 """What a bake raises for a reason that the user can act on."""
 
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
+_FIRST_FILTERED = 0.6  # The same where they are then compared with others.
 _LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
 
 
@@ -36,6 +37,7 @@ class Outcome:
     images: list[str]
     filepath: str
     warnings: list[str]
+    notes: list[str] = field(default_factory=list)
 
 
 class Bake:
@@ -57,6 +59,7 @@ class Bake:
     ) -> None:
         """Keeps copies of what was read; use `Bake.read`."""
         self.warnings = list(found.problems)
+        self._notes: list[str] = []
         self._picture = picture
         self._surfaces = found.surfaces
         self._objects = found.objects
@@ -246,6 +249,7 @@ class Bake:
         progress: Progress,
         *,
         levels: int | None = None,
+        seam_weight: float | None = None,
     ) -> list[FloatArray]:
         """Returns scene-linear levels with any filter; raises what `compute` does.
 
@@ -254,7 +258,10 @@ class Bake:
             filter: A key of `FILTERS`.
             progress: Called with the fraction done.
             levels: How many, the image itself included; None for all.
+            seam_weight: See `prefilter.mipmaps`; None for that of the settings.
         """
+        if seam_weight is None:
+            seam_weight = self._settings.seam_weight
         with self.naming_objects():
             return prefilter.mipmaps(
                 linear,
@@ -265,7 +272,7 @@ class Bake:
                 levels=levels,
                 premultiplied=not self._picture.alpha_is_straight,
                 reader=self.reader,
-                seam_weight=self._settings.seam_weight,
+                seam_weight=seam_weight,
                 progress=progress,
                 threads=self._settings.threads,
             )
@@ -288,7 +295,10 @@ class Bake:
         """
         linear = self.linear(progress)
         with self.naming_objects():
-            levels, rough = self._filtered(linear, lambda done: progress(_FILTERED * done))
+            end = _FIRST_FILTERED if self._heeds_seams() else _FILTERED
+            levels, rough = self._filtered(linear, share(progress, 0.0, end))
+            if self._heeds_seams():
+                self._compare_seams(linear, levels, share(progress, end, _FILTERED))
         check = partial(go_on, progress, _FILTERED)
         try:
             self._levels = self._stage(
@@ -335,6 +345,35 @@ class Bake:
                 self._picture, linear, surfaces, bounds, progress, **options
             )
         return levels, []
+
+    def _heeds_seams(self) -> bool:
+        return (
+            self._settings.seam_weight > 0.0
+            and self._settings.filter in seams.FILTERS
+            and self._content in {"color", "data"}
+        )
+
+    def _compare_seams(
+        self, linear: FloatArray, levels: list[FloatArray], progress: Progress
+    ) -> None:
+        """Notes the contrast across seams of the levels, and of levels that do not heed them."""
+        others = self.filtered(
+            linear,
+            self._settings.filter,
+            share(progress, 0.0, 0.8),
+            levels=len(levels),
+            seam_weight=0.0,
+        )
+        without, weighed = (
+            prefilter.seam_contrast(made[1:], self._surfaces, wrap=self._wrap, progress=part)
+            for made, part in (
+                (others, share(progress, 0.8, 0.9)),
+                (levels, share(progress, 0.9, 1.0)),
+            )
+        )
+        note = seams.note(self.image_name, without, weighed)
+        if note:
+            self._notes.append(note)
 
     def _stage(
         self,
@@ -406,7 +445,9 @@ class Bake:
                 self.warnings.append(f"the level images are named {listed(made)}")
         self._staged_levels.clear()
         self.discard()
-        return Outcome(self._summary(names), names, str(self._target or ""), self.warnings)
+        return Outcome(
+            self._summary(names), names, str(self._target or ""), self.warnings, self._notes
+        )
 
     def discard(self) -> None:
         """Removes what was staged, if it was not put into place."""

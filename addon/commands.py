@@ -457,6 +457,8 @@ def _bake(options: argparse.Namespace) -> None:
         _save(path)
     for warning in outcome.warnings:
         print(f"prefilter: warning: {warning}", file=sys.stderr)
+    for note in outcome.notes:
+        print(note)
     print(outcome.summary)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import prefilter
 
 from .bridge.images import Encoding, FloatArray, Picture
-from .jobs import Progress
+from .jobs import Progress, share
 
 Bounds = tuple[float | None, float | None] | None
 
@@ -109,7 +109,7 @@ def cutout_levels(
         np.ascontiguousarray(linear[..., :1]) if is_mask else linear,
         surfaces,
         bounds,
-        _share(progress, 0.0, 0.6),
+        share(progress, 0.0, 0.6),
         **options,
     )
     kept = prefilter.keep_coverage(
@@ -118,7 +118,7 @@ def cutout_levels(
         threshold=threshold,
         wrap=options["wrap"],
         premultiplied=picture.alpha_is_coverage and not picture.alpha_is_straight,
-        progress=_share(progress, 0.6, 1.0),
+        progress=share(progress, 0.6, 1.0),
         threads=options["threads"],
     )
     return [np.repeat(level, 3, axis=2) for level in kept] if is_mask else kept
@@ -142,7 +142,7 @@ def normal_levels(
     steps = 4
     if roughness is None:
         made = prefilter.normal_mipmaps(
-            normals, surfaces, progress=_share(progress, 0.0, 3 / steps), **options
+            normals, surfaces, progress=share(progress, 0.0, 3 / steps), **options
         )
     else:
         rough = prefilter.mipmaps(
@@ -150,7 +150,7 @@ def normal_levels(
             surfaces,
             premultiplied=True,
             bounds=None if roughness.picture.is_float else (0.0, 1.0),
-            progress=_share(progress, 0.0, 1 / steps),
+            progress=share(progress, 0.0, 1 / steps),
             **options,
         )
         done: list[tuple[FloatArray, list[FloatArray]]] = []
@@ -163,7 +163,7 @@ def normal_levels(
                     normals,
                     surfaces,
                     roughness=values,
-                    progress=_share(progress, start, start + 0.5 / steps),
+                    progress=share(progress, start, start + 0.5 / steps),
                     **options,
                 )
                 done.append((values, levels))
@@ -175,7 +175,7 @@ def normal_levels(
             np.ascontiguousarray(linear[..., 3:]),
             surfaces,
             bounds=(0.0, 1.0),
-            progress=_share(progress, 3 / steps, 1.0),
+            progress=share(progress, 3 / steps, 1.0),
             **options,
         )
         made = [np.concatenate(pair, axis=2) for pair in zip(made, fourth, strict=True)]
@@ -184,7 +184,3 @@ def normal_levels(
 
 def _is_gray(stored: FloatArray) -> bool:
     return bool((stored[..., :1] == stored[..., 1:3]).all())
-
-
-def _share(progress: Progress, start: float, end: float) -> Progress:
-    return lambda fraction: progress(start + (end - start) * fraction)

@@ -17,6 +17,11 @@ def go_on(progress: Progress, fraction: float) -> None:
         raise prefilter.Cancelled("cancelled")
 
 
+def share(progress: Progress, start: float, end: float) -> Progress:
+    """Returns what reports the progress of a part of the work, from one fraction to another."""
+    return lambda fraction: progress(start + (end - start) * fraction)
+
+
 class Job(Generic[T]):
     """Runs a callable in a thread.
 

@@ -68,6 +68,7 @@ class TiledBake:
             summary=outcomes[0].summary if len(outcomes) == 1 else summary,
             images=names,
             warnings=list(dict.fromkeys(self.warnings)),
+            notes=[note for outcome in outcomes for note in outcome.notes],
         )
 
     def discard(self) -> None:

@@ -50,6 +50,8 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, BackgroundOperator, bpy.types.Op
         del context, result
         outcome = self._bake.write()
         self.warn(outcome)
+        for note in outcome.notes:
+            self.report({"INFO"}, note)
         return outcome.summary
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

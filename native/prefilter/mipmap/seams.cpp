@@ -134,20 +134,44 @@ double sum_of_squares(Lanes value) {
   return sum;
 }
 
-// The variance of the image over the surfaces, by the corners of their triangles.
+// Calls use(point) for the centres of n * n equal triangles that a triangle is cut into.
+template <typename Use>
+void for_each_part(const std::array<TextureCoordinate, 3>& triangle, int n, const Use& use) {
+  const auto at = [&](double b1, double b2) {
+    const double b0 = n - b1 - b2;
+    const auto& [p, q, r] = triangle;
+    return TextureCoordinate{(b0 * p.u + b1 * q.u + b2 * r.u) / n,
+                             (b0 * p.v + b1 * q.v + b2 * r.v) / n};
+  };
+  for (int i = 0; i < n; ++i) {
+    for (int j = 0; j < n - i; ++j) {
+      use(at(i + 1.0 / 3.0, j + 1.0 / 3.0));
+      if (i + j < n - 1) use(at(i + 2.0 / 3.0, j + 2.0 / 3.0));
+    }
+  }
+}
+
+// The variance of the image over the surfaces, by points that stand for about the same area each,
+// at least one a triangle.
 double variance_on(const std::vector<const Surface*>& surfaces, const ImageView& image,
                    WrapModes wrap) {
+  constexpr double kPoints = 1 << 14;
+  double area = 0.0;
+  for (const Surface* surface : surfaces) area += surface->total_area();
   double mass = 0.0;
   double squares = 0.0;
   std::array<double, kMaxChannels> mean{};
   for (const Surface* surface : surfaces) {
     for (std::size_t k = 0; k < surface->triangle_count(); ++k) {
-      for (const TextureCoordinate& corner : surface->uvs[k]) {
-        const Lanes value = lookup(corner, image, wrap);
-        mass += surface->areas[k];
-        squares += surface->areas[k] * sum_of_squares(value);
-        for (int c = 0; c < kMaxChannels; ++c) mean[c] += surface->areas[k] * value[c];
-      }
+      if (!(surface->areas[k] > 0.0)) continue;
+      const int n = static_cast<int>(std::ceil(std::sqrt(kPoints * surface->areas[k] / area)));
+      const double part = surface->areas[k] / (static_cast<double>(n) * n);
+      for_each_part(surface->uvs[k], n, [&](const TextureCoordinate& point) {
+        const Lanes value = lookup(point, image, wrap);
+        mass += part;
+        squares += part * sum_of_squares(value);
+        for (int c = 0; c < kMaxChannels; ++c) mean[c] += part * value[c];
+      });
     }
   }
   double variance = squares / mass;

@@ -43,7 +43,7 @@ struct SeamLink {
 /// Makes the area_scale of those seams small along which the image itself is not the same on the
 /// two sides, such as where two materials meet: there is nothing to hide there. The scale is
 /// divided by (1 + d / (v / 20))^2, d the mean square of the difference along the seam and v the
-/// variance of the image over the corners of the surfaces' triangles.
+/// variance of the image over the surfaces, from some thousand points.
 void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surfaces,
                  WrapModes wrap, std::vector<SeamEdge>* seams);
 
