@@ -11,7 +11,10 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
+
+#include "prefilter/base/progress.h"
 
 namespace prefilter {
 
@@ -58,5 +61,18 @@ struct CellTree {
     return count;
   }
 };
+
+/// The mean of a block.
+float block_mean(const OctantValues& values);
+
+/// Sets `first` of all blocks, from `split`.
+void link_blocks(TreeLevel* level);
+
+/// Calls body(begin, end) for ranges that cover the level's blocks, in no set order.
+void for_blocks(const TreeLevel& level, int threads, const Progress& progress,
+                const std::function<void(std::size_t, std::size_t)>& body);
+
+/// Sets the values of all cells that are split, and of the root where it is, from the leaves.
+void update_means(CellTree* tree, int threads);
 
 }  // namespace prefilter

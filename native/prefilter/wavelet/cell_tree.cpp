@@ -1,0 +1,56 @@
+#include "prefilter/wavelet/cell_tree.h"
+
+#include <algorithm>
+
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+namespace {
+constexpr std::size_t kBlocksPerTask = 1U << 15;
+
+// Means of cells that are split, from their octants as they are after clamping.
+void pass_up(const TreeLevel& next, std::size_t begin, std::size_t end, TreeLevel* level) {
+  for (std::size_t b = begin; b < end; ++b) {
+    std::size_t child = level->first[b];
+    for (unsigned bits = level->split[b]; bits != 0U; bits &= bits - 1U) {
+      level->blocks[b][std::countr_zero(bits)] = block_mean(next.blocks[child++]);
+    }
+  }
+}
+}  // namespace
+
+float block_mean(const OctantValues& v) {
+  return (((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]))) / 8.0F;
+}
+
+void link_blocks(TreeLevel* level) {
+  level->first.resize(level->size());
+  std::uint32_t next = 0;
+  for (std::size_t b = 0; b < level->size(); ++b) {
+    level->first[b] = next;
+    next += static_cast<std::uint32_t>(std::popcount(level->split[b]));
+  }
+}
+
+void for_blocks(const TreeLevel& level, int threads, const Progress& progress,
+                const std::function<void(std::size_t, std::size_t)>& body) {
+  const std::size_t count = level.size();
+  const std::size_t tasks = (count + kBlocksPerTask - 1) / kBlocksPerTask;
+  parallel_for(static_cast<std::int64_t>(tasks), threads, progress, [&](std::int64_t task) {
+    const std::size_t begin = static_cast<std::size_t>(task) * kBlocksPerTask;
+    body(begin, std::min(count, begin + kBlocksPerTask));
+  });
+}
+
+void update_means(CellTree* tree, int threads) {
+  if (tree->levels.empty()) return;
+  for (std::size_t k = tree->levels.size() - 1; k-- > 0;) {
+    TreeLevel& level = tree->levels[k];
+    for_blocks(level, threads, Progress(), [&](std::size_t begin, std::size_t end) {
+      pass_up(tree->levels[k + 1], begin, end, &level);
+    });
+  }
+  tree->root = block_mean(tree->levels.front().blocks.front());
+}
+
+}  // namespace prefilter

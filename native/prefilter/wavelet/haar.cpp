@@ -1,0 +1,76 @@
+// Synthesis: equation 3.4 evaluated cell by cell, from the root down, in the memory of the
+// coefficients.
+#include "prefilter/wavelet/haar.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+namespace {
+constexpr float kRounding = 1e-5F;
+
+// Values of cells that no boundary passes through are whole numbers but for rounding.
+float without_rounding(float value) {
+  const float whole = std::round(value);
+  return std::abs(value - whole) <= kRounding ? whole : value;
+}
+
+void to_values(TreeLevel* level, std::size_t begin, std::size_t end) {
+  for (std::size_t b = begin; b < end; ++b) {
+    OctantValues& values = level->blocks[b];
+    hadamard(&values);
+    const unsigned met = level->split[b];
+    for (int o = 0; o < 8; ++o) {
+      if (((met >> o) & 1U) == 0U) {
+        values[o] = std::clamp(without_rounding(values[o]), 0.0F, 1.0F);
+      }
+    }
+  }
+}
+
+void pass_down(const TreeLevel& level, std::size_t begin, std::size_t end, TreeLevel* next) {
+  for (std::size_t b = begin; b < end; ++b) {
+    std::size_t child = level.first[b];
+    for (unsigned bits = level.split[b]; bits != 0U; bits &= bits - 1U) {
+      next->blocks[child++][0] = level.blocks[b][std::countr_zero(bits)];
+    }
+  }
+}
+
+}  // namespace
+
+CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, int threads) {
+  CellTree tree;
+  tree.root = static_cast<float>(coefficients.mean);
+  tree.levels = std::move(coefficients.levels);
+  if (depth >= 0 && depth < tree.depth()) tree.levels.resize(static_cast<std::size_t>(depth));
+  if (tree.levels.empty()) {
+    tree.root = std::clamp(tree.root, 0.0F, 1.0F);
+    return tree;
+  }
+  const auto count = static_cast<double>(tree.levels.size());
+  tree.levels.front().blocks.front()[0] = tree.root;
+  for (std::size_t k = 0; k < tree.levels.size(); ++k) {
+    TreeLevel& level = tree.levels[k];
+    const bool is_last = k + 1 == tree.levels.size();
+    if (!is_last) link_blocks(&level);
+    const auto part =
+        progress.part(static_cast<double>(k) / count, (static_cast<double>(k) + 1) / count);
+    for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
+      to_values(&level, begin, end);
+      if (!is_last) pass_down(level, begin, end, &tree.levels[k + 1]);
+    });
+  }
+  TreeLevel& last = tree.levels.back();
+  for (OctantValues& values : last.blocks) {
+    for (float& value : values) value = std::clamp(value, 0.0F, 1.0F);
+  }
+  std::fill(last.split.begin(), last.split.end(), std::uint8_t{0});
+  last.first.assign(last.size(), 0U);
+  update_means(&tree, threads);
+  return tree;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,44 @@
+// The Haar basis on an octree (sections 3.2 and 3.2.3).
+//
+// On a cell, in coordinates that make it the unit cube, the wavelet e = ex + 2 ey + 4 ez is the
+// product over the axes in e of psi (1 on the lower half, -1 on the upper one). Without the factor
+// 2^(3j/2) of equation 3.4 the coefficient of f is the mean of f times the wavelet over the cell,
+// and an octant's mean is the cell's plus the sum of the seven coefficients, each with the sign of
+// its wavelet there: a Walsh-Hadamard transform of eight numbers.
+#pragma once
+
+#include "prefilter/base/progress.h"
+#include "prefilter/wavelet/cell_tree.h"
+
+namespace prefilter {
+
+/// In place: v[o] becomes the sum over e of v[e], negated where e and o share an odd number of
+/// bits. Twice in a row multiplies by eight.
+inline void hadamard(OctantValues* values) {
+  OctantValues& v = *values;
+  for (const int step : {1, 2, 4}) {
+    for (int i = 0; i < 8; ++i) {
+      if ((i & step) != 0) continue;
+      const float low = v[i];
+      const float high = v[i + step];
+      v[i] = low + high;
+      v[i + step] = low - high;
+    }
+  }
+}
+
+/// Haar coefficients of an indicator function, where its boundary is.
+struct HaarTree {
+  double mean = 0.0;  // over the root
+  // Blocks hold the coefficients of the cell that they split: [e] that of wavelet e; [0] is unused.
+  // On the last level the bits of `split` tell the cells that the boundary passes through.
+  std::vector<TreeLevel> levels;
+};
+
+/// The cell means of an indicator function, from its coefficients down to `depth` (-1: all of
+/// them). Cells that the boundary does not pass through hold 0 or 1 for closed surfaces; there,
+/// rounding within 1e-5 is taken back. Where surfaces overlap or are inside out, the sum of their
+/// winding numbers is not 0 or 1: values are clamped to [0, 1], so that overlaps count once.
+CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, int threads);
+
+}  // namespace prefilter

@@ -1,0 +1,296 @@
+// Every brick of 16^3 cells gets the triangles that meet it. A brick is cut into its cells, and its
+// fluxes are summed up to one; so is what the bricks left, level by level. Bricks are visited along
+// the Morton curve, and a brick adds its triangles in their order, so that no sum depends on the
+// number of threads.
+#include "prefilter/wavelet/triangle_analysis.h"
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/wavelet/boundary_flux.h"
+#include "prefilter/wavelet/morton.h"
+#include "prefilter/wavelet/root_mean.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kBrickDepth = 4;  // a brick is 2^4 cells wide
+constexpr std::size_t kTrianglesPerTask = 1U << 13;
+constexpr std::size_t kPairsPerTask = 1U << 11;
+constexpr double kScatterShare = 0.15;  // of the time
+
+// A triangle, and a brick that it meets.
+struct BrickTriangle {
+  std::uint32_t brick;  // along the Morton curve
+  std::uint32_t triangle;
+};
+
+CellPolygon triangle_of(const RootTriangles& mesh, std::size_t index, double scale) {
+  CellPolygon polygon;
+  for (const std::int32_t vertex : mesh.triangles[index]) {
+    const Point3& p = mesh.positions[static_cast<std::size_t>(vertex)];
+    polygon.add({p[0] * scale, p[1] * scale, p[2] * scale});
+  }
+  return polygon;
+}
+
+bool is_within(const CellPolygon& polygon, int axis, double low, double high) {
+  return polygon.lowest(axis) >= low && polygon.highest(axis) <= high;
+}
+
+// The bricks that some triangles meet, and those of the triangles that leave the root.
+struct Scattered {
+  std::vector<BrickTriangle> pairs;
+  std::vector<std::uint32_t> leaving;
+};
+
+void scatter(const RootTriangles& mesh, std::size_t begin, std::size_t end, int bricks_per_axis,
+             Scattered* result) {
+  const double side = bricks_per_axis;
+  const CellBox all = {{0, 0, 0}, {bricks_per_axis, bricks_per_axis, bricks_per_axis}};
+  for (std::size_t t = begin; t < end; ++t) {
+    CellPolygon polygon = triangle_of(mesh, t, side);
+    const auto triangle = static_cast<std::uint32_t>(t);
+    bool leaves = false;
+    for (int axis = 0; axis < 3 && polygon.count > 0; ++axis) {
+      if (is_within(polygon, axis, 0.0, side)) continue;
+      leaves = true;
+      clip_to_slab(axis, 0.0, side, &polygon);
+    }
+    if (leaves) result->leaving.push_back(triangle);
+    if (polygon.count == 0) continue;
+    cut_polygon(polygon, all, [&](const std::array<int, 3>& brick, const CellPolygon&) {
+      result->pairs.push_back({morton_index(brick), triangle});
+    });
+  }
+}
+
+// Stable, so that a brick keeps its triangles in order. Least significant digit first.
+void sort_by_brick(int key_bits, std::vector<BrickTriangle>* pairs) {
+  constexpr int kDigit = 11;
+  std::vector<BrickTriangle> sorted(pairs->size());
+  for (int shift = 0; shift < key_bits; shift += kDigit) {
+    std::vector<std::size_t> offsets((1U << kDigit) + 1U);
+    for (const BrickTriangle& pair : *pairs) {
+      ++offsets[((pair.brick >> shift) & ((1U << kDigit) - 1U)) + 1U];
+    }
+    for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
+    for (const BrickTriangle& pair : *pairs) {
+      sorted[offsets[(pair.brick >> shift) & ((1U << kDigit) - 1U)]++] = pair;
+    }
+    pairs->swap(sorted);
+  }
+}
+
+// A brick that some boundary passes through.
+struct BrickFlux {
+  std::uint32_t brick;
+  BoundaryFlux flux;
+};
+
+// The blocks of some bricks, the coarsest level first, and what they leave to their parents.
+struct BrickBlocks {
+  std::array<TreeLevel, kBrickDepth> levels;
+  std::vector<BrickFlux> bricks;
+};
+
+// The cells of one brick of 2^depth cells along an axis.
+class Brick {
+ public:
+  explicit Brick(int depth) : depth_(depth), side_(1 << depth) {
+    for (int k = 0; k < depth; ++k) {
+      met_[k].resize(std::size_t{1} << (3 * k));
+      fluxes_[k + 1].resize(std::size_t{1} << (3 * (k + 1)));
+    }
+  }
+
+  // Adds what a triangle, in units of cells, has within the brick with this low corner.
+  void add(CellPolygon triangle, const std::array<int, 3>& low) {
+    for (int axis = 0; axis < 3; ++axis) {
+      clip_to_slab(axis, low[axis], low[axis] + side_, &triangle);
+      if (triangle.count == 0) return;
+    }
+    const CellBox box = {low, {low[0] + side_, low[1] + side_, low[2] + side_}};
+    cut_polygon(triangle, box, [&](const std::array<int, 3>& cell, const CellPolygon& piece) {
+      const std::uint32_t index =
+          morton_index({cell[0] - low[0], cell[1] - low[1], cell[2] - low[2]});
+      fluxes_[depth_][index].add(
+          polygon_flux(piece, {static_cast<double>(cell[0]), static_cast<double>(cell[1]),
+                               static_cast<double>(cell[2])}));
+      met_[depth_ - 1][index >> 3] |= static_cast<std::uint8_t>(1U << (index & 7U));
+      is_empty_ = false;
+    });
+  }
+
+  bool is_empty() const { return is_empty_; }
+
+  // Appends the brick's blocks to the levels, and is empty again. Returns its flux.
+  BoundaryFlux take(std::array<TreeLevel, kBrickDepth>* levels) {
+    BoundaryFlux root;
+    for (int k = depth_ - 1; k >= 0; --k) {
+      TreeLevel& level = (*levels)[k];
+      for (std::size_t parent = 0; parent < met_[k].size(); ++parent) {
+        const std::uint8_t met = met_[k][parent];
+        if (met == 0) continue;
+        std::array<BoundaryFlux, 8> octants;
+        std::copy_n(fluxes_[k + 1].begin() + static_cast<std::ptrdiff_t>(8 * parent), 8,
+                    octants.begin());
+        level.blocks.push_back(details_of_octants(octants));
+        level.split.push_back(met);
+        const BoundaryFlux flux = flux_of_octants(octants);
+        if (k > 0) {
+          fluxes_[k][parent] = flux;
+          met_[k - 1][parent >> 3] |= static_cast<std::uint8_t>(1U << (parent & 7U));
+        } else {
+          root = flux;
+        }
+        std::fill_n(fluxes_[k + 1].begin() + static_cast<std::ptrdiff_t>(8 * parent), 8,
+                    BoundaryFlux());
+        met_[k][parent] = 0;
+      }
+    }
+    is_empty_ = true;
+    return root;
+  }
+
+ private:
+  int depth_;
+  int side_;
+  bool is_empty_ = true;
+  // Of the cells of depth k within the brick, along the Morton curve.
+  std::array<std::vector<BoundaryFlux>, kBrickDepth + 1> fluxes_;
+  // Bit o of a cell of depth k: a boundary passes through its octant o.
+  std::array<std::vector<std::uint8_t>, kBrickDepth> met_;
+};
+
+// All triangles' bricks, sorted by brick and then by triangle.
+Scattered scatter_all(const RootTriangles& mesh, int bricks_per_axis, const Progress& progress,
+                      int threads) {
+  const std::size_t count = mesh.triangles.size();
+  std::vector<Scattered> parts((count + kTrianglesPerTask - 1) / kTrianglesPerTask);
+  parallel_for(static_cast<std::int64_t>(parts.size()), threads, progress, [&](std::int64_t task) {
+    const std::size_t begin = static_cast<std::size_t>(task) * kTrianglesPerTask;
+    scatter(mesh, begin, std::min(count, begin + kTrianglesPerTask), bricks_per_axis,
+            &parts[static_cast<std::size_t>(task)]);
+  });
+  Scattered all;
+  std::size_t pair_count = 0;
+  for (const Scattered& part : parts) pair_count += part.pairs.size();
+  all.pairs.reserve(pair_count);
+  for (Scattered& part : parts) {
+    all.pairs.insert(all.pairs.end(), part.pairs.begin(), part.pairs.end());
+    all.leaving.insert(all.leaving.end(), part.leaving.begin(), part.leaving.end());
+    part = Scattered();
+  }
+  const int bits = 3 * std::bit_width(static_cast<unsigned>(bricks_per_axis - 1));
+  sort_by_brick(bits, &all.pairs);
+  return all;
+}
+
+// Where the tasks begin: at bricks, some kPairsPerTask apart. The last entry is the end.
+std::vector<std::size_t> task_starts(const std::vector<BrickTriangle>& pairs) {
+  std::vector<std::size_t> starts = {0};
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    if (i - starts.back() >= kPairsPerTask && pairs[i].brick != pairs[i - 1].brick) {
+      starts.push_back(i);
+    }
+  }
+  if (!pairs.empty()) starts.push_back(pairs.size());
+  return starts;
+}
+
+BrickBlocks analyse_bricks(const RootTriangles& mesh, std::span<const BrickTriangle> pairs,
+                           int brick_depth, double cells_per_axis) {
+  BrickBlocks blocks;
+  Brick brick(brick_depth);
+  for (std::size_t i = 0; i < pairs.size();) {
+    const std::uint32_t index = pairs[i].brick;
+    std::array<int, 3> low = morton_cell(index);
+    for (int& x : low) x <<= brick_depth;
+    for (; i < pairs.size() && pairs[i].brick == index; ++i) {
+      brick.add(triangle_of(mesh, pairs[i].triangle, cells_per_axis), low);
+    }
+    if (!brick.is_empty()) blocks.bricks.push_back({index, brick.take(&blocks.levels)});
+  }
+  return blocks;
+}
+
+// Moves the tasks' blocks together, one level after the other.
+void join(std::vector<BrickBlocks>* parts, int brick_depth, std::span<TreeLevel> levels) {
+  for (int k = 0; k < brick_depth; ++k) {
+    std::size_t count = 0;
+    for (const BrickBlocks& part : *parts) count += part.levels[k].size();
+    TreeLevel& level = levels[static_cast<std::size_t>(k)];
+    level.blocks.reserve(count);
+    level.split.reserve(count);
+    for (BrickBlocks& part : *parts) {
+      TreeLevel& from = part.levels[k];
+      level.blocks.insert(level.blocks.end(), from.blocks.begin(), from.blocks.end());
+      level.split.insert(level.split.end(), from.split.begin(), from.split.end());
+      from = TreeLevel();
+    }
+  }
+}
+
+// The blocks of the cells of which some of `cells` are octants; returns these parents.
+std::vector<BrickFlux> add_parents(const std::vector<BrickFlux>& cells, TreeLevel* level) {
+  std::vector<BrickFlux> parents;
+  for (std::size_t i = 0; i < cells.size();) {
+    const std::uint32_t parent = cells[i].brick >> 3U;
+    std::array<BoundaryFlux, 8> octants;
+    std::uint8_t met = 0;
+    for (; i < cells.size() && cells[i].brick >> 3U == parent; ++i) {
+      const std::uint32_t o = cells[i].brick & 7U;
+      octants[o] = cells[i].flux;
+      met |= static_cast<std::uint8_t>(1U << o);
+    }
+    level->blocks.push_back(details_of_octants(octants));
+    level->split.push_back(met);
+    parents.push_back({parent, flux_of_octants(octants)});
+  }
+  return parents;
+}
+}  // namespace
+
+HaarTree analyse_triangles(const RootTriangles& mesh, int depth, const Progress& progress,
+                           int threads) {
+  const int brick_depth = std::min(depth, kBrickDepth);
+  const int coarse_depth = depth - brick_depth;
+  const Scattered scattered =
+      scatter_all(mesh, 1 << coarse_depth, progress.part(0.0, kScatterShare), threads);
+
+  const std::vector<std::size_t> starts = task_starts(scattered.pairs);
+  std::vector<BrickBlocks> parts(starts.size() - 1);
+  parallel_for(static_cast<std::int64_t>(parts.size()), threads, progress.part(kScatterShare, 1.0),
+               [&](std::int64_t task) {
+                 const auto i = static_cast<std::size_t>(task);
+                 const std::span<const BrickTriangle> pairs(scattered.pairs);
+                 parts[i] =
+                     analyse_bricks(mesh, pairs.subspan(starts[i], starts[i + 1] - starts[i]),
+                                    brick_depth, static_cast<double>(1 << depth));
+               });
+
+  std::vector<BrickFlux> cells;
+  for (BrickBlocks& part : parts) {
+    cells.insert(cells.end(), part.bricks.begin(), part.bricks.end());
+  }
+  RootMean mean;
+  for (const std::uint32_t triangle : scattered.leaving) {
+    mean.add_outside(triangle_of(mesh, triangle, 1.0));
+  }
+  HaarTree tree;
+  if (!cells.empty()) {
+    tree.levels.resize(static_cast<std::size_t>(depth));
+    join(&parts, brick_depth, std::span(tree.levels).subspan(coarse_depth));
+    for (int k = coarse_depth - 1; k >= 0; --k) {
+      cells = add_parents(cells, &tree.levels[static_cast<std::size_t>(k)]);
+    }
+    mean.add_inside(cells.front().flux);
+  }
+  tree.mean = mean.median();
+  return tree;
+}
+
+}  // namespace prefilter
