@@ -16,6 +16,7 @@ void bind_cutout(py::module_& m);
 void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
 void bind_surface(py::module_& m);
+void bind_voxel(py::module_& m);
 
 ImageView view_of(const Array<float>& array) {
   return {array.data(), static_cast<int>(array.shape(1)), static_cast<int>(array.shape(0)),
@@ -72,6 +73,8 @@ PYBIND11_MODULE(_native, m) {
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kCancelled) {
         PyErr_SetString(cancelled->ptr(), error.what());
+      } else if (error.code() == ErrorCode::kOutOfMemory) {
+        PyErr_SetString(PyExc_MemoryError, error.what());
       } else {
         PyErr_SetString(PyExc_ValueError, error.what());
       }
@@ -83,4 +86,5 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_normals(m);
   prefilter::python::bind_surface(m);
   prefilter::python::bind_mipmap(m);
+  prefilter::python::bind_voxel(m);
 }

@@ -12,6 +12,7 @@ namespace prefilter {
 enum class ErrorCode {
   kInvalidArgument,  // a value that the caller can mend
   kCancelled,        // the progress callback asked to stop
+  kOutOfMemory,      // the result would not fit into memory
 };
 
 class Error : public std::runtime_error {

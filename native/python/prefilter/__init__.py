@@ -14,11 +14,13 @@ from .surface import Surface
 from .texture_files import write_dds, write_ktx2
 from .texture_use import fill_unused, texel_weights
 from .version import VERSION
+from .voxel import Octree, voxelize
 
 __version__ = VERSION
 
 __all__ = [
     "Cancelled",
+    "Octree",
     "Surface",
     "fill_unused",
     "keep_coverage",
@@ -29,6 +31,7 @@ __all__ = [
     "texel_weights",
     "to_linear",
     "to_srgb",
+    "voxelize",
     "write_dds",
     "write_ktx2",
 ]

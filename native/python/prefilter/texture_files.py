@@ -1,11 +1,8 @@
 """Texture files that engines and viewers read: DDS and KTX 2, with all levels."""
 
 import os
-import secrets
-import shutil
-import stat
-from collections.abc import Iterable, Sequence
-from pathlib import Path
+from collections.abc import Sequence
+from typing import BinaryIO
 
 import numpy.typing as npt
 
@@ -14,9 +11,8 @@ from .arguments import ProgressCallback, as_progress
 from .arrays import as_threads
 from .dds import DDS
 from .ktx2 import KTX2
+from .output import as_target, replace_file
 from .texel_formats import Container, Texture, as_alpha, as_format, as_levels, encoded, is_srgb
-
-_WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 
 def write_dds(
@@ -102,7 +98,7 @@ def _write(
             f"encoding: 'srgb' with the format '{texel_format.name}', which has no sRGB form in "
             f"{container.name} files; 'linear' or another format is needed"
         )
-    target = _as_target(path)
+    target = as_target(path)
     report = as_progress(progress)
     count = as_threads(threads)
     height, width, channels = images[0].shape
@@ -135,45 +131,15 @@ def _write(
         levels=payloads,
         alpha=alpha if has_alpha else None,
     )
-    _replace(target, container.parts(texture))
+
+    def write_parts(file: BinaryIO) -> None:
+        for part in container.parts(texture):
+            file.write(part)
+
+    replace_file(target, write_parts)
     if report is not None:
         report(1.0)
 
 
 def _part(progress: ProgressCallback | None, start: float, share: float) -> ProgressCallback | None:
     return None if progress is None else lambda fraction: progress(start + share * fraction)
-
-
-def _as_target(path: str | os.PathLike[str]) -> Path:
-    """The file that a path stands for, symbolic links resolved, if it can be written.
-
-    Root may write what has no write bits; that is left alone all the same.
-    """
-    try:
-        target = Path(os.path.realpath(os.fsdecode(path)))
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"path: {path!r}; the path of a file is needed") from error
-    if not target.parent.is_dir():
-        raise OSError(f"path: there is no folder '{target.parent}'")
-    if target.is_dir():
-        raise OSError(f"path: '{target}' is a folder")
-    for place in (target, target.parent) if target.exists() else (target.parent,):
-        writable = os.access(place, os.W_OK) and place.stat().st_mode & _WRITE_BITS
-        if not writable:
-            raise OSError(f"path: '{place}' is read-only")
-    return target
-
-
-def _replace(target: Path, parts: Iterable[bytes]) -> None:
-    """Writes a file beside its target, and renames it; it gets the mode of one that it replaces."""
-    new = target.with_name(f".prefilter-{secrets.token_hex(4)}{target.suffix}")
-    try:
-        with new.open("xb") as file:
-            for part in parts:
-                file.write(part)
-        if target.exists():
-            shutil.copymode(target, new)
-        os.replace(new, target)
-    except BaseException:
-        new.unlink(missing_ok=True)
-        raise

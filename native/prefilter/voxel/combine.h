@@ -1,0 +1,28 @@
+// Set operations on occupancy octrees (section 3.1).
+#pragma once
+
+#include "prefilter/base/progress.h"
+#include "prefilter/voxel/octree.h"
+
+namespace prefilter {
+
+enum class SetOperation {
+  kUnion,         // max(a, b)
+  kIntersection,  // min(a, b)
+  kDifference,    // min(a, 1 - b)
+};
+
+/// The operation cell by cell, in memory proportional to the surfaces. Trees may be of any depths
+/// and bounds.
+///
+/// Where bounds differ, b is resampled on the cells of a, down to the first depth at which they are
+/// no larger than b's; for a union the root of a is doubled until it holds all of b that is not
+/// empty. Throws Error where that would be deeper than kMaxTreeDepth; Error(kCancelled).
+///
+/// Where both surfaces run through a cell and the result would be 1/2, where contours are, it is
+/// rounded so that faces that coincide leave neither a film of matter (difference, intersection)
+/// nor a crack (union).
+Octree combine(const Octree& a, const Octree& b, SetOperation operation, const Progress& progress,
+               int threads);
+
+}  // namespace prefilter

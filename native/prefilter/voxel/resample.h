@@ -1,0 +1,23 @@
+// Occupancy octrees on other cells.
+#pragma once
+
+#include <optional>
+
+#include "prefilter/base/progress.h"
+#include "prefilter/voxel/octree.h"
+
+namespace prefilter {
+
+/// The same shape on the cells of another box, down to `depth`: exact where its cells lie within
+/// leaves or are made up of them, and otherwise the mean of what they cover. Throws
+/// Error(kCancelled).
+Octree resampled(const Octree& octree, const Box& bounds, int depth, const Progress& progress);
+
+/// An octree of a larger root, twice as wide each time, that has the same cells and holds `box` as
+/// well. Throws Error where its finest cells would be deeper than kMaxTreeDepth.
+Octree grown(Octree octree, const Box& box);
+
+/// The box of the leaves that are not empty; none where all are.
+std::optional<Box> occupied_box(const Octree& octree);
+
+}  // namespace prefilter

@@ -1,0 +1,39 @@
+// Meshes to occupancy octrees (chapter 3).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "prefilter/base/progress.h"
+#include "prefilter/voxel/octree.h"
+
+namespace prefilter {
+
+/// Triangles, counter-clockwise seen from outside.
+struct SolidMesh {
+  std::span<const std::array<double, 3>> positions;
+  std::span<const std::array<std::int64_t, 3>> triangles;
+};
+
+struct VoxelizeOptions {
+  int depth = 8;              // 1 to kMaxTreeDepth: 2^depth cells along an axis
+  std::optional<Box> bounds;  // the root; none: a cube around the mesh
+  int threads = 0;            // 0: all processors
+  Progress progress;
+};
+
+/// The occupancy of every cell: the exact volume of the mesh's inside in it over the cell's own.
+///
+/// The mesh may be anything: open, leaky, intersecting itself. Inside is where it winds around once
+/// or more; values are clamped to [0, 1]. A hole disturbs the cells around it alone (see
+/// analyse_triangles). Without `bounds` the root is the cube around the mesh's box that leaves a
+/// margin of two cells on all sides (n / 8 of them where the grid is less than n = 16 cells wide).
+///
+/// Throws Error for a depth out of range, a mesh without triangles or where all have zero area, an
+/// index that names no vertex, a position that is not finite, and bounds of no volume;
+/// Error(kOutOfMemory) for a tree that would not fit into memory; Error(kCancelled).
+Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options);
+
+}  // namespace prefilter

@@ -1,0 +1,170 @@
+#include <pybind11/stl.h>
+
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "convert.h"
+#include "prefilter/base/error.h"
+#include "prefilter/voxel/combine.h"
+#include "prefilter/voxel/octree.h"
+#include "prefilter/voxel/queries.h"
+#include "prefilter/voxel/voxelize.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+namespace {
+
+using Corners = std::pair<std::array<double, 3>, std::array<double, 3>>;
+
+Box to_box(const Corners& corners) { return {corners.first, corners.second}; }
+
+// An array of shape (rows, 3), seen as rows.
+template <typename T>
+std::span<const std::array<T, 3>> rows_of(const Array<T>& array) {
+  return {reinterpret_cast<const std::array<T, 3>*>(array.data()),
+          static_cast<std::size_t>(array.shape(0))};
+}
+
+template <typename T>
+Array<T> to_flat_array(std::vector<T> values, std::vector<py::ssize_t> shape) {
+  auto owner = std::make_unique<std::vector<T>>(std::move(values));
+  const std::vector<T>& held = *owner;
+  const py::capsule capsule(owner.release(),
+                            [](void* pointer) { delete static_cast<std::vector<T>*>(pointer); });
+  return Array<T>(std::move(shape), held.data(), capsule);
+}
+
+SetOperation set_operation(const std::string& name) {
+  if (name == "union") return SetOperation::kUnion;
+  if (name == "intersection") return SetOperation::kIntersection;
+  if (name == "difference") return SetOperation::kDifference;
+  throw_invalid("operation: '" + name + "' is not one of union, intersection, difference");
+}
+
+Octree bound_voxelize(const Array<double>& positions, const Array<std::int64_t>& triangles,
+                      int depth, const std::optional<Corners>& bounds, const py::object& progress,
+                      int threads) {
+  VoxelizeOptions options;
+  options.depth = depth;
+  if (bounds) options.bounds = to_box(*bounds);
+  options.threads = threads;
+  options.progress = to_progress(progress);
+  const SolidMesh mesh{rows_of(positions), rows_of(triangles)};
+  const py::gil_scoped_release unlocked;
+  return voxelize(mesh, options);
+}
+
+Octree bound_combine(const Octree& a, const Octree& b, const std::string& name,
+                     const py::object& callback, int threads) {
+  const SetOperation operation = set_operation(name);
+  const Progress progress = to_progress(callback);
+  const py::gil_scoped_release unlocked;
+  return combine(a, b, operation, progress, threads);
+}
+
+Array<float> bound_dense(const Octree& octree, int depth, const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  std::vector<float> values;
+  {
+    const py::gil_scoped_release unlocked;
+    values = dense_values(octree, depth, progress, threads);
+  }
+  const py::ssize_t n = py::ssize_t{1} << depth;
+  return to_flat_array(std::move(values), {n, n, n});
+}
+
+Array<float> bound_values(const Octree& octree, const Array<double>& points, int threads) {
+  std::vector<float> values;
+  {
+    const py::gil_scoped_release unlocked;
+    values = values_at(octree, rows_of(points), threads);
+  }
+  return to_flat_array(std::move(values), {points.shape(0)});
+}
+
+Array<std::int8_t> bound_classify(const Octree& octree, const Array<double>& points,
+                                  double tolerance, int threads) {
+  std::vector<std::int8_t> sides;
+  {
+    const py::gil_scoped_release unlocked;
+    sides = classify(octree, rows_of(points), tolerance, threads);
+  }
+  return to_flat_array(std::move(sides), {points.shape(0)});
+}
+
+// Level by level, the blocks' values and their bits of split octants.
+std::vector<std::pair<Array<float>, Array<std::uint8_t>>> bound_levels(const Octree& octree) {
+  std::vector<std::pair<Array<float>, Array<std::uint8_t>>> levels;
+  for (const TreeLevel& level : octree.cells.levels) {
+    const auto count = static_cast<py::ssize_t>(level.size());
+    Array<float> blocks({count, py::ssize_t{8}});
+    std::memcpy(blocks.mutable_data(), level.blocks.data(), level.size() * sizeof(OctantValues));
+    Array<std::uint8_t> split(count);
+    std::memcpy(split.mutable_data(), level.split.data(), level.size());
+    levels.emplace_back(std::move(blocks), std::move(split));
+  }
+  return levels;
+}
+
+Octree bound_make_octree(const std::vector<std::pair<Array<float>, Array<std::uint8_t>>>& arrays,
+                         float root, const Corners& bounds, int depth) {
+  std::vector<TreeLevel> levels(arrays.size());
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    const auto& [blocks, split] = arrays[k];
+    levels[k].blocks.resize(static_cast<std::size_t>(blocks.shape(0)));
+    std::memcpy(levels[k].blocks.data(), blocks.data(),
+                levels[k].blocks.size() * sizeof(OctantValues));
+    levels[k].split.assign(split.data(), split.data() + split.shape(0));
+  }
+  const py::gil_scoped_release unlocked;
+  return make_octree(std::move(levels), root, to_box(bounds), depth);
+}
+
+std::size_t byte_count(const Octree& octree) {
+  std::size_t bytes = sizeof(Octree);
+  for (const TreeLevel& level : octree.cells.levels) {
+    bytes += level.size() * (sizeof(OctantValues) + sizeof(std::uint8_t) + sizeof(std::uint32_t));
+  }
+  return bytes;
+}
+
+}  // namespace
+
+void bind_voxel(py::module_& m) {
+  py::class_<Octree>(m, "Octree")
+      .def(py::init([](Octree& taken) { return std::move(taken); }), py::arg("taken"))
+      .def("dense", &bound_dense, py::arg("depth"), py::arg("progress"), py::arg("threads"))
+      .def("values", &bound_values, py::arg("points"), py::arg("threads"))
+      .def("classify", &bound_classify, py::arg("points"), py::arg("tolerance"), py::arg("threads"))
+      .def(
+          "box_occupancy",
+          [](const Octree& octree, const Corners& box) {
+            return box_occupancy(octree, to_box(box));
+          },
+          py::arg("box"))
+      .def("combine", &bound_combine, py::arg("other"), py::arg("operation"), py::arg("progress"),
+           py::arg("threads"))
+      .def("coarsened", &coarsened, py::arg("depth"))
+      .def("levels", &bound_levels)
+      .def_property_readonly("volume", &volume)
+      .def_property_readonly("root", [](const Octree& octree) { return octree.cells.root; })
+      .def_property_readonly("depth", [](const Octree& octree) { return octree.depth; })
+      .def_property_readonly("bounds",
+                             [](const Octree& octree) {
+                               return Corners{octree.bounds.low, octree.bounds.high};
+                             })
+      .def_property_readonly("node_count",
+                             [](const Octree& octree) { return octree.cells.cell_count(); })
+      .def_property_readonly("nbytes", &byte_count);
+  m.def("voxelize", &bound_voxelize, py::arg("positions"), py::arg("triangles"), py::arg("depth"),
+        py::arg("bounds"), py::arg("progress"), py::arg("threads"));
+  m.def("make_octree", &bound_make_octree, py::arg("levels"), py::arg("root"), py::arg("bounds"),
+        py::arg("depth"));
+}
+
+}  // namespace prefilter::python

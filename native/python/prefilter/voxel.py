@@ -1,0 +1,270 @@
+"""Voxels: how much of each cell of a grid is inside of a shape."""
+
+import os
+import zipfile
+from collections.abc import Sequence
+from typing import BinaryIO, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from .arguments import ProgressCallback, as_number, as_progress
+from .arrays import as_floats, as_indices, as_threads
+from .output import as_target, replace_file
+
+Corner = Sequence[float] | npt.NDArray[np.floating]
+Box = tuple[Corner, Corner]
+
+MAX_DEPTH = 12
+_FORMAT = "prefilter octree 1"
+
+
+class Octree(_native.Octree):
+    """The occupancies of the cells of a box, finely along the surface of a shape.
+
+    Cells of depth k are the 2^k x 2^k x 2^k parts of the box; a leaf's value is the share of it
+    that is inside of the shape, from 0 to 1. Made by `voxelize`, `load`, and the set operations.
+
+    Attributes:
+        depth: 2^depth cells along an axis are the finest that there may be.
+        bounds: (low corner, high corner) of the box.
+        volume: Of the shape, in cubed units of length.
+        node_count: Cells of all depths, the root included.
+        nbytes: What the octree takes in memory.
+    """
+
+    def dense(
+        self,
+        depth: int | None = None,
+        *,
+        progress: ProgressCallback | None = None,
+        threads: int = 0,
+    ) -> npt.NDArray[np.float32]:
+        """The occupancies of all cells of a depth.
+
+        Args:
+            depth: 0 to 12; None stands for the octree's own. Means where the tree is finer, and the
+                leaf's value where it is coarser.
+            progress: Called with the fraction done; returning False stops the work.
+            threads: 0 means all processors.
+
+        Returns:
+            (n, n, n) float32, n = 2^depth, indexed [x, y, z].
+
+        Raises:
+            ValueError: `depth` is out of range.
+            MemoryError: The grid would not fit into memory.
+            Cancelled: `progress` returned False.
+        """
+        wanted = self.depth if depth is None else as_depth(depth, 0)
+        return super().dense(wanted, as_progress(progress), as_threads(threads))
+
+    def values(self, points: npt.ArrayLike, *, threads: int = 0) -> npt.NDArray[np.float32]:
+        """The occupancies of the leaves that hold the points; 0 outside of the bounds.
+
+        Args:
+            points: (points, 3).
+            threads: 0 means all processors.
+        """
+        return super().values(_as_points(points), as_threads(threads))
+
+    def classify(
+        self, points: npt.ArrayLike, *, tolerance: float = 1e-5, threads: int = 0
+    ) -> npt.NDArray[np.int8]:
+        """Whether points are inside (1), outside (-1) or near the surface (0).
+
+        Near is where a leaf's occupancy is further than `tolerance` from both 0 and 1: the surface
+        passes through it, or the mesh is open close by.
+
+        Args:
+            points: (points, 3).
+            tolerance: From 0 up to, but not including, 0.5.
+            threads: 0 means all processors.
+        """
+        limit = as_number("tolerance", tolerance)
+        if not 0.0 <= limit < 0.5:
+            raise ValueError(f"tolerance: {tolerance!r}; a number from 0 to below 0.5 is needed")
+        return super().classify(_as_points(points), limit, as_threads(threads))
+
+    def box_occupancy(self, low: Corner, high: Corner) -> float:
+        """The share of a box that is inside of the shape: the exact integral over the cells.
+
+        Args:
+            low: The low corner, (3,).
+            high: The high corner, above it along each axis. The box may leave the bounds; nothing
+                is inside there.
+        """
+        return super().box_occupancy(_as_box("box", (low, high)))
+
+    def union(
+        self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
+    ) -> "Octree":
+        """What is inside of either: max(a, b), cell by cell.
+
+        Depths and bounds may differ. Where bounds do, the other's cells are carried over to this
+        one's, exactly where the two grids have corners in common and as means elsewhere, and the
+        box is doubled until it holds both.
+
+        Raises:
+            ValueError: `other` is no Octree, or the box would need a depth of more than 12.
+            Cancelled: `progress` returned False.
+        """
+        return self._combined(other, "union", progress, threads)
+
+    def intersection(
+        self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
+    ) -> "Octree":
+        """What is inside of both: min(a, b), cell by cell, in this one's bounds. See `union`."""
+        return self._combined(other, "intersection", progress, threads)
+
+    def difference(
+        self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
+    ) -> "Octree":
+        """What is inside of this one alone: min(a, 1 - b), in this one's bounds. See `union`."""
+        return self._combined(other, "difference", progress, threads)
+
+    def coarsened(self, depth: int) -> "Octree":
+        """The octree down to a depth of 0 to 12: means of what was finer."""
+        return Octree(super().coarsened(as_depth(depth, 0)))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the octree as a compressed NumPy archive (.npz).
+
+        It is written beside `path` and renamed, so a failure leaves what was there.
+
+        Raises:
+            OSError: The file can't be written.
+        """
+        arrays: dict[str, np.ndarray] = {
+            "format": np.array(_FORMAT),
+            "depth": np.array(self.depth),
+            "bounds": np.array(self.bounds),
+            "root": np.array(self.root, np.float32),
+        }
+        for k, (blocks, split) in enumerate(self.levels()):
+            arrays[f"values{k}"] = blocks
+            arrays[f"split{k}"] = split
+
+        def write(file: BinaryIO) -> None:
+            np.savez_compressed(file, **arrays)
+
+        replace_file(as_target(path), write)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Reads what `save` wrote.
+
+        Raises:
+            OSError: The file can't be read.
+            ValueError: It is no octree, or a damaged one.
+        """
+        try:
+            source = os.fsdecode(path)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"path: {path!r}; the path of a file is needed") from error
+        try:
+            with np.load(source, allow_pickle=False) as archive:
+                arrays = {name: archive[name] for name in archive.files}
+        except (zipfile.BadZipFile, ValueError, EOFError) as error:
+            raise ValueError(f"path: {source!r} holds no octree: {error}") from error
+        try:
+            return cls(_octree_of(arrays))
+        except (KeyError, ValueError, TypeError) as error:
+            raise ValueError(f"path: {source!r} holds no octree: {error}") from error
+
+    def _combined(
+        self,
+        other: "Octree",
+        operation: str,
+        progress: ProgressCallback | None,
+        threads: int,
+    ) -> "Octree":
+        if not isinstance(other, _native.Octree):
+            raise ValueError(f"other: a {type(other).__name__}; an Octree is needed")
+        return Octree(super().combine(other, operation, as_progress(progress), as_threads(threads)))
+
+
+def voxelize(
+    positions: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    *,
+    depth: int = 8,
+    bounds: Box | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> Octree:
+    """The occupancy of every cell of a grid: how much of it is inside of a mesh.
+
+    Values are exact (Haar wavelet coefficients by integrals over the surface, section 3.2.3), in
+    memory and time proportional to the surface. The mesh may be anything: open, leaky, intersecting
+    itself; inside is where it winds around at least once. A hole disturbs the cells around it
+    alone. A mesh that is inside out encloses nothing.
+
+    Args:
+        positions: (vertices, 3), in any unit of length.
+        triangles: (triangles, 3) integer indices of vertices, counter-clockwise from outside.
+        depth: 1 to 12; the grid has 2^depth cells along each axis.
+        bounds: (low corner, high corner) of the grid; its cells need not be cubes. What is outside
+            of it is cut off. None stands for a cube around the mesh, with two cells to spare.
+        progress: Called with the fraction done; returning False stops the work.
+        threads: 0 means all processors. The result does not depend on it.
+
+    Raises:
+        ValueError: A shape or type is wrong, `depth` is out of range, there is no triangle or none
+            with an area, an index names no vertex, a value is not finite, or `bounds` have no
+            volume.
+        MemoryError: The octree would not fit into memory.
+        Cancelled: `progress` returned False.
+    """
+    points = as_floats("positions", positions, ("vertices", 3), np.float64)
+    indices = as_indices("triangles", triangles, ("triangles", 3))
+    box = None if bounds is None else _as_box("bounds", bounds)
+    return Octree(
+        _native.voxelize(
+            points, indices, as_depth(depth, 1), box, as_progress(progress), as_threads(threads)
+        )
+    )
+
+
+def as_depth(depth: int, lowest: int) -> int:
+    if (
+        isinstance(depth, bool)
+        or not isinstance(depth, int | np.integer)
+        or not lowest <= depth <= MAX_DEPTH
+    ):
+        raise ValueError(f"depth: {depth!r}; a whole number from {lowest} to {MAX_DEPTH} is needed")
+    return int(depth)
+
+
+def _as_points(points: npt.ArrayLike) -> np.ndarray:
+    found = as_floats("points", points, ("points", 3), np.float64)
+    if not np.isfinite(found).all():
+        row = int(np.argmin(np.isfinite(found).all(axis=1)))
+        raise ValueError(f"points: row {row} is {found[row]}; all values must be finite")
+    return found
+
+
+def _as_box(name: str, box: Box) -> tuple[list[float], list[float]]:
+    try:
+        corners = np.asarray(box, np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: {box!r}; two corners of 3 numbers are needed") from error
+    if corners.shape != (2, 3):
+        raise ValueError(f"{name}: shape {corners.shape}; two corners, (2, 3), are needed")
+    return corners[0].tolist(), corners[1].tolist()
+
+
+def _octree_of(arrays: dict[str, np.ndarray]) -> _native.Octree:
+    if str(arrays["format"]) != _FORMAT:
+        raise ValueError(f"its format is {str(arrays['format'])!r}; {_FORMAT!r} is needed")
+    levels = []
+    while f"values{len(levels)}" in arrays:
+        k = len(levels)
+        values = as_floats(f"values{k}", arrays[f"values{k}"], ("blocks", 8), np.float32)
+        split = arrays[f"split{k}"]
+        if split.dtype != np.uint8 or split.shape != values.shape[:1]:
+            raise ValueError(f"split{k} has not a byte for each block")
+        levels.append((values, np.ascontiguousarray(split)))
+    bounds = _as_box("bounds", arrays["bounds"])
+    return _native.make_octree(levels, float(arrays["root"]), bounds, int(arrays["depth"]))
