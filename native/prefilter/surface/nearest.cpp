@@ -111,11 +111,31 @@ std::uint64_t spread_bits(std::uint64_t n) {
   return n;
 }
 
+// The indices of points along the Morton curve through their box.
+std::vector<std::size_t> morton_order(std::span<const Vector> points) {
+  Bounds all = kEmpty;
+  for (const Vector& point : points) include({point, point}, &all);
+  std::vector<std::pair<std::uint64_t, std::size_t>> keys(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint64_t key = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double size = all.high[a] - all.low[a];
+      const double place = size > 0.0 ? (points[i][a] - all.low[a]) / size : 0.0;
+      key |= spread_bits(static_cast<std::uint64_t>(place * 0x1FFFFF)) << a;
+    }
+    keys[i] = {key, i};
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::size_t> order(points.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].second;
+  return order;
+}
+
 class TriangleTree {
  public:
   TriangleTree(std::span<const Vector> positions,
                std::span<const std::array<std::int64_t, 3>> triangles)
-      : positions_(positions), triangles_(triangles), order_(triangles.size()) {
+      : positions_(positions), triangles_(triangles) {
     sort_triangles();
     while ((order_.size() >> depth_) > kLeafTriangles) ++depth_;
     nodes_.assign((std::size_t{2} << depth_) - 1, kEmpty);
@@ -142,25 +162,14 @@ class TriangleTree {
   }
 
   void sort_triangles() {
-    std::vector<Bounds> bounds(triangles_.size());
-    Bounds all = kEmpty;
-    for (std::size_t t = 0; t < bounds.size(); ++t) {
-      bounds[t] = bounds_of(t);
-      include(bounds[t], &all);
-    }
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(bounds.size());
-    for (std::size_t t = 0; t < bounds.size(); ++t) {
-      std::uint64_t key = 0;
+    std::vector<Vector> centres(triangles_.size());
+    for (std::size_t t = 0; t < centres.size(); ++t) {
+      const Bounds bounds = bounds_of(t);
       for (int a = 0; a < 3; ++a) {
-        const double size = all.high[a] - all.low[a];
-        const double middle = bounds[t].low[a] + (bounds[t].high[a] - bounds[t].low[a]) / 2.0;
-        const double place = size > 0.0 ? (middle - all.low[a]) / size : 0.0;
-        key |= spread_bits(static_cast<std::uint64_t>(place * 0x1FFFFF)) << a;
+        centres[t][a] = bounds.low[a] + (bounds.high[a] - bounds.low[a]) / 2.0;
       }
-      keys[t] = {key, static_cast<std::uint32_t>(t)};
     }
-    std::sort(keys.begin(), keys.end());
-    for (std::size_t i = 0; i < keys.size(); ++i) order_[i] = keys[i].second;
+    order_ = morton_order(centres);
   }
 
   void build(std::size_t node, std::size_t begin, std::size_t end, int level) {
@@ -218,7 +227,7 @@ class TriangleTree {
 
   std::span<const Vector> positions_;
   std::span<const std::array<std::int64_t, 3>> triangles_;
-  std::vector<std::uint32_t> order_;
+  std::vector<std::size_t> order_;
   int depth_ = 0;
   std::vector<Bounds> nodes_;
 };
@@ -239,9 +248,6 @@ std::vector<SurfacePoint> nearest_points(std::span<const Vector> points,
                                          std::span<const std::array<std::int64_t, 3>> triangles,
                                          const Progress& progress, int threads) {
   if (triangles.empty()) throw_invalid("triangles: none; at least one is needed");
-  if (triangles.size() > std::numeric_limits<std::uint32_t>::max()) {
-    throw_invalid("triangles: too many; 2^32 are the most");
-  }
   check_values(positions, "positions");
   check_values(points, "points");
   const auto count = static_cast<std::int64_t>(positions.size());
@@ -254,16 +260,18 @@ std::vector<SurfacePoint> nearest_points(std::span<const Vector> points,
     }
   }
   const TriangleTree tree(positions, triangles);
+  // Along the curve a point's neighbours come before it: theirs is a good first guess, and what was
+  // read for them is at hand.
+  const std::vector<std::size_t> order = morton_order(points);
   std::vector<SurfacePoint> found(points.size());
   const std::size_t tasks = (points.size() + kPointsPerTask - 1) / kPointsPerTask;
   parallel_for(static_cast<std::int64_t>(tasks), threads, progress, [&](std::int64_t task) {
     const std::size_t begin = static_cast<std::size_t>(task) * kPointsPerTask;
     const std::size_t end = std::min(points.size(), begin + kPointsPerTask);
-    // Points in a row are mostly neighbours.
     SurfacePoint guess;
     for (std::size_t i = begin; i < end; ++i) {
-      guess = tree.nearest(points[i], guess);
-      found[i] = guess;
+      guess = tree.nearest(points[order[i]], guess);
+      found[order[i]] = guess;
     }
   });
   return found;
