@@ -27,9 +27,9 @@ Visit octant_of(const ContourTree& tree, const Visit& visit, int o) {
            2 * visit.at[2] + ((o >> 2) & 1)}};
 }
 
-bool meets_surface(const ContourTree& tree, const Visit& visit) {
-  unsigned sides = tree.sides(visit.cell);
-  for (const CellNode& neighbour : visit.neighbours) sides |= tree.sides(neighbour);
+bool meets_surface(const Visit& visit) {
+  unsigned sides = visit.cell.sides;
+  for (const CellNode& neighbour : visit.neighbours) sides |= neighbour.sides;
   return sides == kBothSides;
 }
 
@@ -100,7 +100,7 @@ class VertexMaker {
       const FaceNeighbours neighbours = octant_neighbours(tree_, visit.cell, visit.neighbours, o);
       for (int face = 0; face < 6; ++face) {
         const CellNode& neighbour = neighbours[face];
-        if (!owns(leaf, neighbour, face) || tree_.sides(leaf) == tree_.sides(neighbour)) continue;
+        if (!owns(leaf, neighbour, face) || leaf.sides == neighbour.sides) continue;
         cuts |= std::uint64_t{1} << (6 * o + face);
         task->positions.push_back(position(visit, o, face, leaf, neighbour));
       }
@@ -109,7 +109,7 @@ class VertexMaker {
     for (int o = 0; o < 8; ++o) {
       if (!tree_.octant(visit.cell, o).is_split) continue;
       const Visit octant = octant_of(tree_, visit, o);
-      if (meets_surface(tree_, octant)) descend(octant);
+      if (meets_surface(octant)) descend(octant);
     }
   }
 

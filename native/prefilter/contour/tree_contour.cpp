@@ -34,7 +34,7 @@ class TriangleMaker {
     unsigned inside = 0;
     bool is_uniform = true;
     for (int i = 0; i < 8; ++i) {
-      if (tree_.sides(leaves[i]) == kInside) inside |= 1U << i;
+      if (leaves[i].sides == kInside) inside |= 1U << i;
       is_uniform = is_uniform && leaves[i].depth == leaves[0].depth;
     }
     const MarchingCase& found = cases_[inside];
