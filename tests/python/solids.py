@@ -234,11 +234,12 @@ class FarWinding:
     Of each cluster two terms of the expansion by Barill et al. (2018) count.
     """
 
-    NEAR = 2.5  # Radii of a cluster within which its triangles count one by one.
+    NEAR = 1.5  # Radii of a cluster within which its triangles count one by one.
     TOGETHER = 64  # Points that share what is near and what is far.
 
-    def __init__(self, solid: Solid, clusters: int = 24) -> None:
+    def __init__(self, solid: Solid) -> None:
         self._corners = solid.corners
+        clusters = max(4, round(np.sqrt(len(self._corners) / 75)))  # Along the longest side.
         a, b, c = np.moveaxis(self._corners, 1, 0)
         middles = self._corners.mean(axis=1)
         areas = 0.5 * np.cross(b - a, c - a)
@@ -309,8 +310,8 @@ class Estimate:
     error: float
 
 
-def estimated_volume(solids: list[Solid], inside, low, high, *, n: int = 64) -> Estimate:
-    """The volume within a box where `inside` says so of the solids' winding numbers.
+def estimated_volumes(solids: list[Solid], insides, low, high, *, n: int = 64) -> list[Estimate]:
+    """The volumes within a box where each of `insides` says so of the solids' winding numbers.
 
     Each stratum has its own random points: two for each of the n^3 cells that may hold some of a
     surface, one for the largest cells that cannot. So the estimate has no bias, and the error
@@ -326,7 +327,7 @@ def estimated_volume(solids: list[Solid], inside, low, high, *, n: int = 64) -> 
     while len(levels[-1]) > 4:
         m = len(levels[-1]) // 2
         levels.append(levels[-1].reshape(m, 2, m, 2, m, 2).any(axis=(1, 3, 5)))
-    volume, variance, parent = 0.0, 0.0, None
+    volumes, variances, parent = np.zeros(len(insides)), np.zeros(len(insides)), None
     for level in reversed(levels):
         m = len(level)
         share = np.prod(high - low) / m**3
@@ -335,14 +336,15 @@ def estimated_volume(solids: list[Solid], inside, low, high, *, n: int = 64) -> 
 
         def sample(cells: np.ndarray, m: int = m) -> np.ndarray:
             places = low + (cells + random.random(cells.shape)) / m * (high - low)
-            return inside(*(number(places) for number in numbers)).astype(float)
+            found = [number(places) for number in numbers]
+            return np.array([inside(*found) for inside in insides], float)
 
-        volume += share * sample(np.argwhere((open_cells > 0) & ~level)).sum()
+        volumes += share * sample(np.argwhere((open_cells > 0) & ~level)).sum(axis=1)
         if m == n:
             first, second = (sample(np.argwhere(level)) for _ in range(2))
-            volume += share * (first + second).sum() / 2
-            variance = share**2 * ((first - second) ** 2).sum() / 4
-    return Estimate(float(volume), float(np.sqrt(variance)))
+            volumes += share * (first + second).sum(axis=1) / 2
+            variances = share**2 * ((first - second) ** 2).sum(axis=1) / 4
+    return [Estimate(*found) for found in zip(volumes, np.sqrt(variances), strict=True)]
 
 
 def touched_cells(corners: np.ndarray, low, high, n: int) -> np.ndarray:

@@ -218,6 +218,7 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
     result.bounds = a.bounds;
     result.depth = std::max(a.depth, b.depth);
     result.cells = merge_trees(a.cells, b.cells, operation, progress, threads);
+    progress.report(1.0);
     return result;
   }
   Octree first = a;
@@ -231,6 +232,7 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
   result.depth = std::max(first.depth, depth);
   result.cells =
       merge_trees(first.cells, second.cells, operation, progress.part(0.7, 1.0), threads);
+  progress.report(1.0);
   return result;
 }
 
