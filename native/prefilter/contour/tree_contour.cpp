@@ -7,6 +7,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/contour/dual_cells.h"
+#include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/marching_table.h"
 #include "prefilter/contour/surface_vertices.h"
 
@@ -190,13 +191,16 @@ TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
     return contour_tree(split, frame, options);
   }
   const ContourTree tree(cells, options.isovalue, options.threads);
-  SurfaceVertices vertices(tree, frame, options.interpolant, options.progress.part(0.0, 0.4),
+  SurfaceVertices vertices(tree, frame, options.interpolant, options.progress.part(0.0, 0.3),
                            options.threads);
+  if (options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F) {
+    fit_vertices(tree, frame, options.progress.part(0.3, 0.6), options.threads, &vertices);
+  }
   const DualCells dual(tree);
   const TriangleMaker maker(tree, vertices);
   std::vector<TaskTriangles> tasks((dual.part_count() + kPartsPerTask - 1) / kPartsPerTask);
   parallel_for(static_cast<std::int64_t>(tasks.size()), options.threads,
-               options.progress.part(0.4, 1.0), [&](std::int64_t i) {
+               options.progress.part(0.6, 1.0), [&](std::int64_t i) {
                  TaskTriangles& task = tasks[static_cast<std::size_t>(i)];
                  const std::size_t begin = static_cast<std::size_t>(i) * kPartsPerTask;
                  const std::size_t end = std::min(dual.part_count(), begin + kPartsPerTask);
