@@ -1,0 +1,376 @@
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "contour/mesh_checks.h"
+#include "prefilter/base/error.h"
+#include "prefilter/contour/clean_up.h"
+#include "prefilter/contour/edge_crossing.h"
+#include "prefilter/contour/grid_contour.h"
+#include "prefilter/contour/height_crossing.h"
+#include "prefilter/contour/marching_table.h"
+#include "prefilter/contour/tree_contour.h"
+
+namespace prefilter {
+namespace {
+
+using testing::fault_of;
+using testing::volume_of;
+
+constexpr std::array<Interpolant, 3> kInterpolants = {Interpolant::kOccupancy, Interpolant::kPlane,
+                                                      Interpolant::kLinear};
+
+ContourOptions options_of(Interpolant interpolant, int threads = 1) {
+  ContourOptions options;
+  options.interpolant = interpolant;
+  options.threads = threads;
+  return options;
+}
+
+// The share of the unit cell with its low corner at (x, y) that is below the line a x + b y = c, by
+// Simpson's rule on the pieces between which its height over the cell is linear.
+double share_below(double x, double y, double a, double b, double c) {
+  if (b == 0.0) return std::clamp((a > 0.0 ? c / a - x : x + 1.0 - c / a), 0.0, 1.0);
+  std::vector<double> cuts = {x, x + 1.0};
+  if (a != 0.0) {
+    for (const double level : {y, y + 1.0}) {
+      const double at = (c - b * level) / a;
+      if (at > x && at < x + 1.0) cuts.push_back(at);
+    }
+  }
+  std::sort(cuts.begin(), cuts.end());
+  const auto height = [&](double at) {
+    const double line = (c - a * at) / b;
+    const double below = std::clamp(line - y, 0.0, 1.0);
+    return b > 0.0 ? below : 1.0 - below;
+  };
+  double sum = 0.0;
+  for (std::size_t i = 1; i < cuts.size(); ++i) {
+    sum += (cuts[i] - cuts[i - 1]) * (height(cuts[i]) + height(cuts[i - 1])) / 2.0;
+  }
+  return sum;
+}
+
+TEST(EdgeCrossing, IsExactForLines) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  int count = 0;
+  while (count < 20000) {
+    const double a = uniform(random);
+    const double b = uniform(random);
+    // Through the line between the centres (1/2, 1/2) and (3/2, 1/2).
+    const double t = std::abs(uniform(random));
+    const double c = a * (0.5 + t) + b * 0.5;
+    const double first = share_below(0.0, 0.0, a, b, c);
+    const double second = share_below(1.0, 0.0, a, b, c);
+    if ((first < 0.5) == (second < 0.5) || std::abs(first - second) < 1e-3) continue;
+    ++count;
+    ASSERT_NEAR(occupancy_crossing(static_cast<float>(first), static_cast<float>(second)), t,
+                1e-4 / std::abs(first - second) * 1e-1)
+        << first << " " << second;
+  }
+}
+
+TEST(EdgeCrossing, OfFullAndEmptyCellsIsBetweenThem) {
+  EXPECT_EQ(occupancy_crossing(0.0F, 1.0F), 0.5F);
+  EXPECT_EQ(occupancy_crossing(1.0F, 0.0F), 0.5F);
+  EXPECT_EQ(occupancy_crossing(0.0F, 0.5F), 1.0F);
+  EXPECT_EQ(occupancy_crossing(0.5F, 0.0F), 0.0F);
+  EXPECT_EQ(linear_crossing(0.0F, 1.0F, 0.25F), 0.25F);
+}
+
+TEST(MarchingCases, AllLoopsAreTriangulatedWithoutDiagonalsInFaces) {
+  for (unsigned inside = 0; inside < 256; ++inside) {
+    const MarchingCase& found = marching_cases()[inside];
+    std::size_t triangles = 0;
+    std::array<int, 12> uses{};
+    for (const MarchingLoop& loop : found.loops) {
+      triangles += loop.size() - 2;
+      for (const int edge : loop) ++uses[static_cast<std::size_t>(edge)];
+    }
+    EXPECT_EQ(found.triangles.size(), triangles);
+    for (int edge = 0; edge < 12; ++edge) {
+      const bool is_cut =
+          (((inside >> low_corner(edge)) ^ (inside >> high_corner(edge))) & 1U) != 0U;
+      EXPECT_EQ(uses[static_cast<std::size_t>(edge)], is_cut ? 1 : 0);
+    }
+    std::map<std::pair<int, int>, int> sides;
+    for (const auto& t : found.triangles) {
+      for (std::size_t i = 0; i < 3; ++i) ++sides[{t[i], t[(i + 1) % 3]}];
+    }
+    for (const auto& [side, count] : sides) {
+      EXPECT_EQ(count, 1);
+      const bool is_diagonal = sides.contains({side.second, side.first});
+      if (is_diagonal) {
+        EXPECT_EQ(faces_of_edge(side.first) & faces_of_edge(side.second), 0U);
+      }
+    }
+  }
+}
+
+// All pairs of cubes that share a face, and more: grids of every kind of corner.
+TEST(ContourGrid, RandomSamplesGiveClosedManifolds) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
+  const std::vector<std::array<int, 3>> sizes = {{1, 1, 1}, {2, 1, 3}, {5, 5, 5}, {9, 4, 6}};
+  for (int trial = 0; trial < 120; ++trial) {
+    GridView grid;
+    grid.size = sizes[static_cast<std::size_t>(trial) % sizes.size()];
+    std::vector<float> values(static_cast<std::size_t>(grid.size[0] * grid.size[1] * grid.size[2]));
+    for (float& value : values) {
+      value = uniform(random);
+      if (trial % 3 == 1) value = std::round(value);
+      if (trial % 3 == 2) value = std::round(4.0F * value) / 4.0F;  // 1/2 itself
+    }
+    grid.values = values.data();
+    for (const Interpolant interpolant : kInterpolants) {
+      ASSERT_EQ(fault_of(contour_grid(grid, {}, options_of(interpolant))), "") << trial;
+    }
+  }
+}
+
+CellTree random_tree(unsigned seed, int depth) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
+  CellTree tree;
+  std::size_t blocks = 1;
+  for (int k = 0; k < depth && blocks > 0; ++k) {
+    TreeLevel level;
+    level.blocks.resize(blocks);
+    blocks = 0;
+    for (OctantValues& block : level.blocks) {
+      std::uint8_t split = 0;
+      for (std::size_t o = 0; o < 8; ++o) {
+        const float draw = uniform(random);
+        block[o] = draw < 0.3F ? 0.0F : draw > 0.7F ? 1.0F : uniform(random);
+        if (k + 1 < depth && uniform(random) < 0.4F) split |= static_cast<std::uint8_t>(1U << o);
+      }
+      level.split.push_back(split);
+      blocks += static_cast<std::size_t>(std::popcount(split));
+    }
+    link_blocks(&level);
+    tree.levels.push_back(std::move(level));
+  }
+  update_means(&tree, 1);
+  return tree;
+}
+
+TEST(ContourTree, LeavesOfAnySizesGiveClosedManifolds) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    const CellTree tree = random_tree(seed, 1 + static_cast<int>(seed % 5));
+    for (const Interpolant interpolant : kInterpolants) {
+      ContourOptions options = options_of(interpolant);
+      options.clean_up = seed % 4 == 3;
+      ASSERT_EQ(fault_of(contour_tree(tree, {}, options)), "") << seed;
+    }
+  }
+}
+
+TEST(ContourTree, HasNoZeroAreaFarFromTheOrigin) {
+  const CellTree tree = random_tree(7, 5);
+  const RootFrame frame{{1000.0, -2000.0, 500.0}, {1.0, 2.0, 0.5}};
+  EXPECT_EQ(fault_of(contour_tree(tree, frame, options_of(Interpolant::kOccupancy))), "");
+}
+
+TEST(ContourTree, ThreadsDoNotChangeTheResult) {
+  const CellTree tree = random_tree(11, 7);
+  for (const Interpolant interpolant : kInterpolants) {
+    const TriangleMesh one = contour_tree(tree, {}, options_of(interpolant, 1));
+    const TriangleMesh three = contour_tree(tree, {}, options_of(interpolant, 3));
+    EXPECT_EQ(one.positions, three.positions);
+    EXPECT_EQ(one.triangles, three.triangles);
+  }
+}
+
+TEST(ContourTree, FullAndEmptyRoots) {
+  CellTree tree;
+  EXPECT_TRUE(contour_tree(tree, {}, {}).triangles.empty());
+  tree.root = 1.0F;
+  const TriangleMesh cube = contour_tree(tree, {}, {});
+  EXPECT_EQ(fault_of(cube), "");
+  // The root's faces, and what is cut off at its edges and corners.
+  EXPECT_NEAR(volume_of(cube), 17.0 / 24.0, 1e-6);
+  ContourOptions stop;
+  stop.progress = Progress([](double) { return false; });
+  EXPECT_THROW(contour_tree(tree, {}, stop), Error);
+}
+
+// The share of the unit cell below the plane n . p = d, n >= 0, by inclusion and exclusion.
+double share_below(const std::array<double, 3>& n, double d) {
+  if (d <= 0.0) return 0.0;
+  if (d >= n[0] + n[1] + n[2]) return 1.0;
+  double sum = 0.0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    double rest = d;
+    for (unsigned a = 0; a < 3; ++a) rest -= ((corner >> a) & 1U) != 0U ? n[a] : 0.0;
+    const double cube = std::pow(std::max(rest, 0.0), 3);
+    sum += std::popcount(corner) % 2 == 0 ? cube : -cube;
+  }
+  return sum / (6.0 * n[0] * n[1] * n[2]);
+}
+
+TEST(ContourGrid, PlaneReproducesPlanes) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+  constexpr int kSize = 14;
+  std::array<double, 3> mean{};
+  std::size_t count = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    std::array<double, 3> n = {normal(random), normal(random), normal(random)};
+    const double length = std::hypot(n[0], n[1], n[2]);
+    for (double& x : n) x /= length;
+    if (std::min({std::abs(n[0]), std::abs(n[1]), std::abs(n[2])}) < 0.02) continue;
+    double d = 0.0;
+    for (const double x : n) d += x * (kSize / 2.0 + uniform(random));
+    std::vector<float> values;
+    for (int i = 0; i < kSize * kSize * kSize; ++i) {
+      const std::array<int, 3> cell = {i / (kSize * kSize), i / kSize % kSize, i % kSize};
+      std::array<double, 3> facing;
+      double rest = d;
+      for (std::size_t a = 0; a < 3; ++a) {
+        facing[a] = std::abs(n[a]);
+        rest -= n[a] * (n[a] > 0.0 ? cell[a] : cell[a] + 1.0);
+      }
+      values.push_back(static_cast<float>(share_below(facing, rest)));
+    }
+    const GridView grid{values.data(), {kSize, kSize, kSize}};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const TriangleMesh mesh = contour_grid(grid, {}, options_of(kInterpolants[i]));
+      for (const auto& p : mesh.positions) {
+        double off = -d;
+        bool is_inner = true;
+        for (std::size_t a = 0; a < 3; ++a) {
+          off += n[a] * static_cast<double>(p[a]);
+          is_inner = is_inner && p[a] > 4.0F && p[a] < kSize - 4.0F;
+        }
+        if (!is_inner) continue;
+        mean[i] += std::abs(off);
+        if (i == 0) ++count;
+        if (kInterpolants[i] == Interpolant::kPlane) {
+          ASSERT_LT(std::abs(off), 3e-5);
+        }
+      }
+    }
+  }
+  ASSERT_GT(count, 1000U);
+  EXPECT_LT(mean[1] / static_cast<double>(count), 2e-6);  // plane
+  EXPECT_LT(mean[0], mean[2] / 20.0);                     // occupancy against linear
+}
+
+TEST(HeightCrossing, IsOfFourthOrderAcrossAParabola) {
+  // The surface z = 7.3 + x^2 k / 2 over columns of cells; their means in closed form.
+  constexpr int kSize = 16;
+  const double k = 0.05;
+  std::vector<float> values(kSize * kSize * kSize);
+  const auto mean_height = [&](double x) { return 7.3 + k / 2.0 * (x * x + 1.0 / 12.0); };
+  for (int i = 0; i < kSize * kSize * kSize; ++i) {
+    const int x = i / (kSize * kSize);
+    const int z = i % kSize;
+    // Between full and empty cells only the mean of the column counts.
+    values[static_cast<std::size_t>(i)] =
+        static_cast<float>(std::clamp(mean_height(x - 7.5) - z, 0.0, 1.0));
+  }
+  const std::array<std::ptrdiff_t, 3> strides = {kSize * kSize, kSize, 1};
+  for (int x = 7; x <= 9; ++x) {
+    const float* cell = values.data() + x * kSize * kSize + 8 * kSize + 6;
+    const std::optional<float> t = height_crossing(cell, strides, 5);
+    ASSERT_TRUE(t);
+    EXPECT_NEAR(6.5 + *t, 7.3 + k / 2.0 * (x - 7.5) * (x - 7.5), 1e-5);
+  }
+}
+
+TEST(HeightCrossing, SaysWhereItKnowsNothing) {
+  std::vector<float> values(16 * 16 * 16, 0.4F);
+  values[7 * 256 + 8 * 16 + 8] = 0.6F;
+  const std::array<std::ptrdiff_t, 3> strides = {256, 16, 1};
+  EXPECT_FALSE(height_crossing(values.data() + 7 * 256 + 8 * 16 + 8, strides, 1));
+}
+
+TEST(ContourGrid, NamesWhatIsWrong) {
+  std::vector<float> values(8, 0.5F);
+  values[3] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(contour_grid({values.data(), {2, 2, 2}}, {}, {}), Error);
+  EXPECT_THROW(contour_grid({values.data(), {0, 2, 2}}, {}, {}), Error);
+  EXPECT_THROW(contour_grid({values.data(), {5000, 1, 1}}, {}, {}), Error);
+}
+
+TEST(ContourImage, OutlinesAreClosedAndExactForHalfPlanes) {
+  constexpr int kSize = 20;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0.0, 6.28);
+  for (int trial = 0; trial < 50; ++trial) {
+    const double angle = uniform(random);
+    const double a = std::cos(angle);
+    const double b = std::sin(angle);
+    const double c = a * 10.2 + b * 9.7;
+    std::vector<float> values;
+    for (int x = 0; x < kSize; ++x) {
+      for (int y = 0; y < kSize; ++y) {
+        values.push_back(static_cast<float>(share_below(x, y, a, b, c)));
+      }
+    }
+    const std::vector<Polyline> lines =
+        contour_image({values.data(), {kSize, kSize, 1}}, {}, options_of(Interpolant::kOccupancy));
+    ASSERT_EQ(lines.size(), 1U);
+    double area = 0.0;
+    for (std::size_t i = 0; i < lines[0].size(); ++i) {
+      const auto& p = lines[0][i];
+      const auto& q = lines[0][(i + 1) % lines[0].size()];
+      area += static_cast<double>(p[0]) * q[1] - static_cast<double>(p[1]) * q[0];
+      const bool is_inner = p[0] > 2 && p[0] < kSize - 2 && p[1] > 2 && p[1] < kSize - 2;
+      if (is_inner) {
+        EXPECT_NEAR(a * p[0] + b * p[1], c, 2e-5);
+      }
+    }
+    EXPECT_GT(area, 0.0);  // the inside to the left
+  }
+}
+
+TEST(ContourImage, CheckersAreApart) {
+  const std::vector<float> values = {1.0F, 0.0F, 0.0F, 1.0F};
+  EXPECT_EQ(contour_image({values.data(), {2, 2, 1}}, {}, {}).size(), 2U);
+  const std::vector<float> none(4, 0.0F);
+  EXPECT_TRUE(contour_image({none.data(), {2, 2, 1}}, {}, {}).empty());
+}
+
+TEST(CleanUp, KeepsTheShapeAndWidensAngles) {
+  constexpr int kSize = 24;
+  std::vector<float> values;
+  for (int i = 0; i < kSize * kSize * kSize; ++i) {
+    const double distance =
+        std::hypot(i / (kSize * kSize) - 11.7, i / kSize % kSize - 12.1, i % kSize - 11.4);
+    values.push_back(static_cast<float>(std::clamp(9.0 - distance + 0.5, 0.0, 1.0)));
+  }
+  const TriangleMesh before = contour_grid({values.data(), {kSize, kSize, kSize}}, {}, {});
+  const TriangleMesh after = clean_up(before, Progress());
+  EXPECT_EQ(fault_of(after), "");
+  EXPECT_NEAR(volume_of(after), volume_of(before), 0.005 * volume_of(before));
+  const auto thin_share = [](const TriangleMesh& mesh) {
+    int thin = 0;
+    for (const auto& t : mesh.triangles) {
+      std::array<double, 3> sides;
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto& p = mesh.positions[static_cast<std::size_t>(t[i])];
+        const auto& q = mesh.positions[static_cast<std::size_t>(t[(i + 1) % 3])];
+        sides[i] = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+      }
+      const auto [least, most] = std::minmax_element(sides.begin(), sides.end());
+      if (*least < 0.2 * *most) ++thin;
+    }
+    return thin / static_cast<double>(mesh.triangles.size());
+  };
+  EXPECT_GT(thin_share(before), 0.1);
+  EXPECT_LT(thin_share(after), thin_share(before) / 10.0);
+}
+
+TEST(CleanUp, LeavesATetrahedronAlone) {
+  TriangleMesh thin;
+  thin.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0.01F, 0}, {0.5F, 0, 1}};
+  thin.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  EXPECT_EQ(clean_up(thin, Progress()).triangles, thin.triangles);
+}
+
+}  // namespace
+}  // namespace prefilter
