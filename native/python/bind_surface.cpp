@@ -2,10 +2,13 @@
 
 #include <cstring>
 #include <optional>
+#include <span>
+#include <tuple>
 #include <utility>
 
 #include "convert.h"
 #include "prefilter/base/error.h"
+#include "prefilter/surface/nearest.h"
 #include "prefilter/surface/subdivision.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/surface/udim_tile.h"
@@ -111,6 +114,35 @@ Surface bound_subdivide(const Array<double>& positions, const Array<std::int64_t
   return subdivide(mesh, options);
 }
 
+template <typename T>
+std::span<const std::array<T, 3>> triples(const Array<T>& array) {
+  return {reinterpret_cast<const std::array<T, 3>*>(array.data()), length(array)};
+}
+
+std::tuple<Array<std::int64_t>, Array<double>, Array<double>> bound_nearest(
+    const Array<double>& points, const Array<double>& positions,
+    const Array<std::int64_t>& triangles, const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  std::vector<SurfacePoint> found;
+  {
+    const py::gil_scoped_release unlocked;
+    found =
+        nearest_points(triples(points), triples(positions), triples(triangles), progress, threads);
+  }
+  const auto count = static_cast<py::ssize_t>(found.size());
+  Array<std::int64_t> faces(count);
+  Array<double> weights({count, py::ssize_t{3}});
+  Array<double> distances(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const SurfacePoint& point = found[static_cast<std::size_t>(i)];
+    faces.mutable_at(i) = point.triangle;
+    for (int c = 0; c < 3; ++c)
+      weights.mutable_at(i, c) = point.weights[static_cast<std::size_t>(c)];
+    distances.mutable_at(i) = point.distance;
+  }
+  return {std::move(faces), std::move(weights), std::move(distances)};
+}
+
 }  // namespace
 
 void bind_surface(py::module_& m) {
@@ -132,6 +164,8 @@ void bind_surface(py::module_& m) {
                                return rows<double>(s.uvs, {3, 2});
                              })
       .def_property_readonly("areas", [](const Surface& s) { return rows<double>(s.areas, {}); });
+  m.def("nearest_points", &bound_nearest, py::arg("points"), py::arg("positions"),
+        py::arg("triangles"), py::arg("progress"), py::arg("threads"));
   m.def("subdivide", &bound_subdivide, py::arg("positions"), py::arg("face_sizes"),
         py::arg("face_vertices"), py::arg("face_uvs"), py::arg("crease_edges"),
         py::arg("crease_sharpness"), py::arg("corner_vertices"), py::arg("corner_sharpness"),

@@ -9,6 +9,7 @@ from ._native import Cancelled
 from .color import to_linear, to_srgb
 from .cutout import keep_coverage
 from .mipmap import mipmap_error, mipmaps, seam_contrast
+from .nearest import nearest_points
 from .normals import normal_mipmaps
 from .surface import Surface
 from .texture_files import write_dds, write_ktx2
@@ -26,6 +27,7 @@ __all__ = [
     "keep_coverage",
     "mipmap_error",
     "mipmaps",
+    "nearest_points",
     "normal_mipmaps",
     "seam_contrast",
     "texel_weights",

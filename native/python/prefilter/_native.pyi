@@ -37,6 +37,13 @@ class Surface:
     @property
     def areas(self) -> npt.NDArray[np.float64]: ...
 
+def nearest_points(
+    points: npt.NDArray[np.float64],
+    positions: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int64],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
 def subdivide(
     positions: npt.NDArray[np.float64],
     face_sizes: npt.NDArray[np.int64],

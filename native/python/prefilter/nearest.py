@@ -1,0 +1,43 @@
+"""The points of a mesh nearest to others."""
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from .arguments import ProgressCallback, as_progress
+from .arrays import as_floats, as_indices, as_threads
+
+
+def nearest_points(
+    points: npt.ArrayLike,
+    positions: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    *,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+    """Where a mesh is nearest to points: what attributes are carried from surface to surface by.
+
+    Args:
+        points: (points, 3).
+        positions: (vertices, 3).
+        triangles: (triangles, 3) integer indices of vertices; zero area is allowed.
+        progress: Called with the fraction done; returning False stops the work.
+        threads: 0 means all processors. The result does not depend on it.
+
+    Returns:
+        For each point the index of the triangle, (points,) int64; the weights of its corners at the
+        nearest point, (points, 3) float64, which sum to 1; and the distance, (points,) float64.
+
+    Raises:
+        ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, or a
+            value is not finite or above 1e150.
+        Cancelled: `progress` returned False.
+    """
+    return _native.nearest_points(
+        as_floats("points", points, ("points", 3), np.float64),
+        as_floats("positions", positions, ("vertices", 3), np.float64),
+        as_indices("triangles", triangles, ("triangles", 3)),
+        as_progress(progress),
+        as_threads(threads),
+    )
