@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from .bridge import contours, files, solids, volumes
 from .bridge.contours import Contour
-from .bridge.nearest import NearestSurface
 from .jobs import Progress, go_on, share
 from .solid_meshes import SolidMesh, join, solid_mesh
 from .voxel_choices import BooleanSettings, VoxelizeSettings, VoxelSettings
@@ -435,16 +434,22 @@ def _transferred(
     colors: dict[str, tuple[str, NDArray[np.float32]]] = {}
     if not with_materials and not with_colors:
         return face_materials, colors
-    go_on(progress, 0.0)
-    surface = NearestSurface(mesh.positions, mesh.triangles)
+    # One call for both, as each prepares the mesh anew.
+    points = [
+        *([positions[triangles].mean(axis=1)] if with_materials else []),
+        *([positions] if with_colors else []),
+    ]
+    nearest, weights, _ = prefilter.nearest_points(
+        np.concatenate(points),
+        mesh.positions,
+        mesh.triangles,
+        progress=progress,
+        threads=settings.threads,
+    )
     if with_materials:
-        middles = positions[triangles].mean(axis=1)
-        nearest, _ = surface.find(middles, share(progress, 0.1, 0.6 if with_colors else 1.0))
-        face_materials = mesh.materials[nearest]
+        face_materials = mesh.materials[nearest[: len(triangles)]]
     if with_colors:
-        nearest, weights = surface.find(
-            positions, share(progress, 0.6 if with_materials else 0.1, 1.0)
-        )
+        nearest, weights = nearest[-len(positions) :], weights[-len(positions) :]
         for name, color in mesh.colors.items():
             corners = color.values[color.corners[nearest]]
             blended = np.einsum("ij,ijk->ik", weights, corners).astype(np.float32)
