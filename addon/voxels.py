@@ -157,6 +157,7 @@ class Voxelization:
             part = share(progress, i / count, (i + 1) / count)
             with _naming(place.name):
                 self._results.append(self._compute_one(i, place, solid, part))
+        go_on(progress, 1.0)
         self._read.clear()
 
     def write(self) -> Outcome:
@@ -302,6 +303,7 @@ class Boolean:
                 self._settings,
                 share(progress, _VOXELIZED, 1.0),
             )
+        go_on(progress, 1.0)
         self._read.clear()
 
     def write(self) -> Outcome:

@@ -34,7 +34,7 @@ EXPORTERS: dict[str, Callable[[str], Any]] = {
 def load(paths: Sequence[str]) -> list[list[bpy.types.Object]]:
     """Loads files into one scene.
 
-    A .blend file that comes first is opened, others are appended.
+    A .blend file that comes first is opened; what the first scene of others shows is appended.
 
     Args:
         paths: Their endings are ".blend" or keys of `IMPORTERS`.
@@ -111,9 +111,17 @@ def _load_one(path: str, *, is_first: bool) -> None:
     elif is_first:
         bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
     else:
-        with bpy.data.libraries.load(path, link=False) as (there, here):
-            here.objects = there.objects
-        for obj in here.objects:
-            if obj is not None:
-                bpy.context.scene.collection.objects.link(obj)
+        _append_visible(path)
     bpy.context.view_layer.update()
+
+
+def _append_visible(path: str) -> None:
+    """Adds what the first scene of a .blend file shows."""
+    with bpy.data.libraries.load(path, link=False) as (there, here):
+        here.scenes = there.scenes[:1]
+    for scene in here.scenes:
+        layer = scene.view_layers[0]
+        for obj in layer.objects:
+            if obj.visible_get(view_layer=layer):
+                bpy.context.scene.collection.objects.link(obj)
+        bpy.data.scenes.remove(scene)

@@ -59,6 +59,11 @@ def turned(obj: bpy.types.Object) -> None:
     changed(obj, lambda bm: bmesh.ops.reverse_faces(bm, faces=bm.faces))
 
 
+def welded(obj: bpy.types.Object) -> None:
+    """Joins vertices at the same place, such as those that files split."""
+    changed(obj, lambda bm: bmesh.ops.remove_doubles(bm, verts=bm.verts, dist=1e-6))
+
+
 def volume(obj: bpy.types.Object) -> float:
     """Returns the signed volume in world space."""
     bm = bmesh.new()
