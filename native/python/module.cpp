@@ -12,6 +12,7 @@ namespace prefilter::python {
 
 void bind_blocks(py::module_& m);
 void bind_color(py::module_& m);
+void bind_contour(py::module_& m);
 void bind_cutout(py::module_& m);
 void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
@@ -87,4 +88,5 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_surface(m);
   prefilter::python::bind_mipmap(m);
   prefilter::python::bind_voxel(m);
+  prefilter::python::bind_contour(m);
 }

@@ -192,3 +192,11 @@ def make_octree(
     bounds: tuple[list[float], list[float]],
     depth: int,
 ) -> Octree: ...
+def contour_octree(
+    octree: Octree,
+    interpolant: str,
+    isovalue: float,
+    clean_up: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]: ...

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import ProgressCallback, as_number, as_progress
+from .arguments import ProgressCallback, as_name, as_number, as_progress
 from .arrays import as_floats, as_indices, as_threads
 from .output import as_target, replace_file
 
@@ -123,6 +123,51 @@ class Octree(_native.Octree):
     ) -> "Octree":
         """What is inside of this one alone: min(a, 1 - b), in this one's bounds. See `union`."""
         return self._combined(other, "difference", progress, threads)
+
+    def contour(
+        self,
+        *,
+        interpolant: str = "occupancy",
+        isovalue: float = 0.5,
+        cleanup: bool = False,
+        progress: ProgressCallback | None = None,
+        threads: int = 0,
+    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]:
+        """The surface of the shape: marching cubes on the dual grid of the leaves (chapter 5).
+
+        The mesh is closed and two-manifold whatever the octree, and leaves of different sizes leave
+        no cracks. What is outside of the bounds is empty.
+
+        Args:
+            interpolant: Where a vertex lies between the centres of two leaves. "occupancy" leaves
+                each of the two its share of a half-space (section 5.2); "plane" fits the surface to
+                the leaves around, and reproduces planes; "linear" is marching cubes.
+            isovalue: Above 0 and up to 1. Leaves of at least that are inside. For other values than
+                0.5, interpolation is linear.
+            cleanup: Collapse short edges, for triangles that are not thin.
+            progress: Called with the fraction done; returning False stops the work.
+            threads: 0 means all processors. The result does not depend on it.
+
+        Returns:
+            Positions (vertices, 3), in the units of the bounds, and triangles (triangles, 3) int32,
+            counter-clockwise seen from outside.
+
+        Raises:
+            ValueError: `interpolant` is no such name, or `isovalue` is out of range.
+            MemoryError: The surface would not fit into memory.
+            Cancelled: `progress` returned False.
+        """
+        level = as_number("isovalue", isovalue)
+        if not 0.0 < level <= 1.0:
+            raise ValueError(f"isovalue: {isovalue!r}; a number above 0 and up to 1 is needed")
+        return _native.contour_octree(
+            self,
+            as_name("interpolant", interpolant),
+            level,
+            bool(cleanup),
+            as_progress(progress),
+            as_threads(threads),
+        )
 
     def coarsened(self, depth: int) -> "Octree":
         """The octree down to a depth of 0 to 12: means of what was finer."""

@@ -1,0 +1,98 @@
+// A tree of cell means as contours see it: leaves inside and outside, and their neighbours.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/wavelet/cell_tree.h"
+
+namespace prefilter {
+
+/// A cell of a tree, or one of the empty cells, as large as the root, that surround it.
+struct CellNode {
+  std::uint32_t block = 0;    // that holds it, on level depth - 1
+  std::uint32_t octants = 0;  // its own block, on level depth, where it is split
+  std::int8_t depth = 0;      // 0 is the root, -1 what surrounds it
+  std::uint8_t octant = 0;
+  bool is_split = false;
+
+  bool is_outside() const { return depth < 0; }
+};
+
+inline constexpr CellNode kSurroundings = {0, 0, -1, 0, false};
+
+/// Sides of the surface that leaves of a cell are on, as bits.
+inline constexpr unsigned kInside = 1;
+inline constexpr unsigned kOutside = 2;
+inline constexpr unsigned kBothSides = kInside | kOutside;
+
+/// A tree with an iso-value. Leaves of at least that are inside.
+class ContourTree {
+ public:
+  ContourTree(const CellTree& cells, float isovalue, int threads);
+
+  const CellTree& cells() const { return cells_; }
+  float isovalue() const { return isovalue_; }
+  CellNode root() const { return {0, 0, 0, 0, !cells_.levels.empty()}; }
+
+  /// The octant of a cell that is split; a leaf is its own octants.
+  CellNode octant(const CellNode& node, int o) const {
+    if (!node.is_split) return node;
+    const TreeLevel& level = cells_.levels[static_cast<std::size_t>(node.depth)];
+    CellNode result;
+    result.block = node.octants;
+    result.depth = static_cast<std::int8_t>(node.depth + 1);
+    result.octant = static_cast<std::uint8_t>(o);
+    result.is_split = level.is_split(node.octants, o);
+    if (result.is_split) {
+      result.octants = static_cast<std::uint32_t>(level.child(node.octants, o));
+    }
+    return result;
+  }
+
+  float value(const CellNode& node) const {
+    if (node.depth > 0) {
+      return cells_.levels[static_cast<std::size_t>(node.depth - 1)]
+          .blocks[node.block][node.octant];
+    }
+    return node.is_outside() ? std::min(0.0F, isovalue_) : cells_.root;
+  }
+
+  /// The sides that leaves of the cell are on.
+  unsigned sides(const CellNode& node) const {
+    if (node.depth > 0) {
+      const unsigned of_block = sides_[static_cast<std::size_t>(node.depth - 1)][node.block];
+      return (of_block >> (2 * node.octant)) & kBothSides;
+    }
+    return node.is_outside() ? kOutside : root_sides_;
+  }
+
+ private:
+  const CellTree& cells_;
+  float isovalue_;
+  // Of each block, two bits an octant.
+  std::vector<std::vector<std::uint16_t>> sides_;
+  unsigned root_sides_ = kOutside;
+};
+
+/// The cell that a face of a cell of the same depth leads to, or the leaf that holds it. Faces are
+/// numbered 2 a for the one across axis a at its low side, and 2 a + 1 for that at its high side.
+using FaceNeighbours = std::array<CellNode, 6>;
+
+/// The neighbours of an octant, from the neighbours of the cell.
+inline FaceNeighbours octant_neighbours(const ContourTree& tree, const CellNode& cell,
+                                        const FaceNeighbours& of_cell, int octant) {
+  FaceNeighbours result;
+  for (int face = 0; face < 6; ++face) {
+    const int bit = 1 << (face / 2);
+    const bool towards_high = (face & 1) != 0;
+    const bool is_high = (octant & bit) != 0;
+    const CellNode& parent = towards_high == is_high ? of_cell[face] : cell;
+    result[face] = tree.octant(parent, octant ^ bit);
+  }
+  return result;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,197 @@
+// The dual grid of an octree's leaves: around every corner of a leaf there is a cell with the
+// centres of the eight leaves, or fewer, that meet there (Ju, Losasso, Schaefer and Warren 2002;
+// Schaefer and Warren 2004).
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "prefilter/contour/contour_tree.h"
+
+namespace prefilter {
+
+/// Eight cells that meet at a point: cell i lies at the high side along x where bit 0 of i is set,
+/// along y for bit 1, along z for bit 2. Where larger cells meet there, some are the same.
+using Meeting = std::array<CellNode, 8>;
+
+/// Finds the meetings of leaves that the surface passes through: in parts that can be visited one
+/// by one, in any order.
+class DualCells {
+ public:
+  explicit DualCells(const ContourTree& tree);
+
+  std::size_t part_count() const { return parts_.size(); }
+
+  /// Calls visit(meeting) for each meeting of a part; the eight are leaves, on both sides.
+  template <typename Visit>
+  void for_part(std::size_t part, const Visit& visit) const {
+    const Part& p = parts_[part];
+    switch (p.kind) {
+      case Kind::kCell:
+        in_cell(p.cells[0], visit);
+        break;
+      case Kind::kFace:
+        at_face(p.axis, p.cells[0], p.cells[1], visit);
+        break;
+      case Kind::kEdge:
+        at_edge(p.axis, {p.cells[0], p.cells[1], p.cells[2], p.cells[3]}, visit);
+        break;
+      case Kind::kPoint:
+        at_point(p.cells, visit);
+        break;
+    }
+  }
+
+ private:
+  enum class Kind { kCell, kFace, kEdge, kPoint };
+  struct Part {
+    Kind kind;
+    int axis;
+    Meeting cells;
+  };
+
+  template <typename Visit>
+  void in_cell(const CellNode& cell, const Visit& visit) const;
+  template <typename Visit>
+  void at_face(int axis, const CellNode& low, const CellNode& high, const Visit& visit) const;
+  /// Cell k lies at the high side along axis + 1 where bit 0 of k is set, along axis + 2 for bit 1.
+  template <typename Visit>
+  void at_edge(int axis, const std::array<CellNode, 4>& around, const Visit& visit) const;
+  template <typename Visit>
+  void at_point(Meeting cells, const Visit& visit) const;
+
+  /// The faces, edges and points between eight octants that meet, those across or along `axis` only
+  /// if asked for.
+  template <typename Visit>
+  void faces_across(int axis, const Meeting& cells, const Visit& visit) const {
+    const int b = 1 << ((axis + 1) % 3);
+    const int c = 1 << ((axis + 2) % 3);
+    const int a = 1 << axis;
+    for (const int k : {0, b, c, b | c}) at_face(axis, cells[k], cells[k | a], visit);
+  }
+  template <typename Visit>
+  void edges_along(int axis, const Meeting& cells, const Visit& visit) const {
+    const int b = 1 << ((axis + 1) % 3);
+    const int c = 1 << ((axis + 2) % 3);
+    for (const int a : {0, 1 << axis}) {
+      at_edge(axis, {cells[a], cells[a | b], cells[a | c], cells[a | b | c]}, visit);
+    }
+  }
+  bool is_on_both_sides(const CellNode* cells, int count) const {
+    unsigned sides = 0;
+    for (int i = 0; i < count; ++i) sides |= tree_.sides(cells[i]);
+    return sides == kBothSides;
+  }
+
+  // Work on cells of this depth is left to the parts.
+  static constexpr int kPartDepth = 3;
+  static int depth_of(const CellNode* cells, int count) {
+    int depth = -1;
+    for (int i = 0; i < count; ++i) depth = std::max(depth, static_cast<int>(cells[i].depth));
+    return depth;
+  }
+
+  const ContourTree& tree_;
+  std::vector<Part> parts_;
+  // While parts are being found: where they go.
+  std::vector<Part>* found_ = nullptr;
+};
+
+template <typename Visit>
+void DualCells::in_cell(const CellNode& cell, const Visit& visit) const {
+  if (!cell.is_split || tree_.sides(cell) != kBothSides) return;
+  if (found_ != nullptr && cell.depth == kPartDepth) {
+    found_->push_back({Kind::kCell, 0, {cell}});
+    return;
+  }
+  Meeting octants;
+  for (int o = 0; o < 8; ++o) octants[o] = tree_.octant(cell, o);
+  for (const CellNode& octant : octants) in_cell(octant, visit);
+  for (int axis = 0; axis < 3; ++axis) faces_across(axis, octants, visit);
+  for (int axis = 0; axis < 3; ++axis) edges_along(axis, octants, visit);
+  at_point(octants, visit);
+}
+
+template <typename Visit>
+void DualCells::at_face(int axis, const CellNode& low, const CellNode& high,
+                        const Visit& visit) const {
+  if (!low.is_split && !high.is_split) return;
+  const std::array<CellNode, 2> pair = {low, high};
+  if (!is_on_both_sides(pair.data(), 2)) return;
+  if (found_ != nullptr && depth_of(pair.data(), 2) == kPartDepth) {
+    found_->push_back({Kind::kFace, axis, {low, high}});
+    return;
+  }
+  const int bit = 1 << axis;
+  Meeting octants;
+  for (int o = 0; o < 8; ++o) octants[o] = tree_.octant((o & bit) == 0 ? low : high, o ^ bit);
+  faces_across(axis, octants, visit);
+  edges_along((axis + 1) % 3, octants, visit);
+  edges_along((axis + 2) % 3, octants, visit);
+  at_point(octants, visit);
+}
+
+template <typename Visit>
+void DualCells::at_edge(int axis, const std::array<CellNode, 4>& around, const Visit& visit) const {
+  bool has_split = false;
+  for (const CellNode& cell : around) has_split = has_split || cell.is_split;
+  if (!has_split || !is_on_both_sides(around.data(), 4)) return;
+  if (found_ != nullptr && depth_of(around.data(), 4) == kPartDepth) {
+    found_->push_back({Kind::kEdge, axis, {around[0], around[1], around[2], around[3]}});
+    return;
+  }
+  const int b = (axis + 1) % 3;
+  const int c = (axis + 2) % 3;
+  Meeting octants;
+  for (int o = 0; o < 8; ++o) {
+    const int k = ((o >> b) & 1) | (((o >> c) & 1) << 1);
+    octants[o] = tree_.octant(around[k], o ^ (1 << b) ^ (1 << c));
+  }
+  edges_along(axis, octants, visit);
+  at_point(octants, visit);
+}
+
+template <typename Visit>
+void DualCells::at_point(Meeting cells, const Visit& visit) const {
+  if (!is_on_both_sides(cells.data(), 8)) return;
+  if (found_ != nullptr) {
+    found_->push_back({Kind::kPoint, 0, cells});
+    return;
+  }
+  for (bool has_split = true; has_split;) {
+    has_split = false;
+    for (int i = 0; i < 8; ++i) {
+      cells[i] = tree_.octant(cells[i], 7 ^ i);
+      has_split = has_split || cells[i].is_split;
+    }
+  }
+  if (is_on_both_sides(cells.data(), 8)) visit(cells);
+}
+
+inline DualCells::DualCells(const ContourTree& tree) : tree_(tree) {
+  std::vector<Part> found;
+  found_ = &found;
+  const auto nothing = [](const Meeting&) {};
+  const CellNode root = tree.root();
+  const CellNode outside = kSurroundings;
+  in_cell(root, nothing);
+  for (int axis = 0; axis < 3; ++axis) {
+    at_face(axis, outside, root, nothing);
+    at_face(axis, root, outside, nothing);
+    for (std::size_t k = 0; k < 4; ++k) {
+      std::array<CellNode, 4> around = {outside, outside, outside, outside};
+      around[k] = root;
+      at_edge(axis, around, nothing);
+    }
+  }
+  for (std::size_t i = 0; i < 8; ++i) {
+    Meeting cells;
+    cells.fill(outside);
+    cells[i] = root;
+    at_point(cells, nothing);
+  }
+  found_ = nullptr;
+  parts_ = std::move(found);
+}
+
+}  // namespace prefilter

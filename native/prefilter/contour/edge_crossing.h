@@ -1,0 +1,28 @@
+// Where the surface cuts the line between the centres of two cells (section 5.2).
+#pragma once
+
+namespace prefilter {
+
+enum class Interpolant {
+  kOccupancy,  // a line that leaves each of two cells its share: chapter 5
+  kPlane,      // the surface that leaves the cells around theirs
+  kLinear,     // samples of a smooth function: marching cubes
+};
+
+/// Crossings keep this distance from samples, so that no triangle has zero area.
+inline constexpr float kLeastDistance = 1e-3F;
+
+/// Where between the samples a (t = 0) and b (t = 1), on two sides of the iso-value, a linear
+/// function takes it.
+float linear_crossing(float a, float b, float isovalue);
+
+/// Where the line that divides two neighbouring unit squares, so that shares a and b of them are
+/// inside, cuts the line between their centres: t from 0 at the centre of a to 1 at that of b.
+/// Exact where there is such a line (equations 5.2, 5.4, 5.6 and 5.8, chosen as in 5.2.5). One of a
+/// and b is below 1/2, the other is not, and both are in [0, 1].
+float occupancy_crossing(float a, float b);
+
+/// Keeps t within [kLeastDistance, 1 - kLeastDistance].
+float keep_distance(float t);
+
+}  // namespace prefilter

@@ -1,0 +1,185 @@
+#include "prefilter/contour/surface_vertices.h"
+
+#include <cmath>
+#include <limits>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kTaskDepth = 3;
+
+using CellCoordinates = std::array<std::int32_t, 3>;
+
+// A cell that is split, with what surrounds it.
+struct Visit {
+  CellNode cell;
+  FaceNeighbours neighbours;
+  CellCoordinates at;  // in cells of its depth
+};
+
+Visit octant_of(const ContourTree& tree, const Visit& visit, int o) {
+  return {tree.octant(visit.cell, o),
+          octant_neighbours(tree, visit.cell, visit.neighbours, o),
+          {2 * visit.at[0] + (o & 1), 2 * visit.at[1] + ((o >> 1) & 1),
+           2 * visit.at[2] + ((o >> 2) & 1)}};
+}
+
+bool meets_surface(const ContourTree& tree, const Visit& visit) {
+  unsigned sides = tree.sides(visit.cell);
+  for (const CellNode& neighbour : visit.neighbours) sides |= tree.sides(neighbour);
+  return sides == kBothSides;
+}
+
+// Whether the vertex between a leaf and its neighbour across a face, if there is one, is the
+// leaf's.
+bool owns(const CellNode& leaf, const CellNode& neighbour, int face) {
+  if (neighbour.is_split) return false;
+  return neighbour.depth < leaf.depth || (face & 1) != 0;
+}
+
+// The distance, in sides of the leaf, from its centre to the surface on the way to the neighbour.
+float crossing(const ContourTree& tree, const CellNode& leaf, const CellNode& neighbour,
+               Interpolant interpolant) {
+  const float a = tree.value(leaf);
+  const float b = tree.value(neighbour);
+  const float isovalue = tree.isovalue();
+  const bool are_occupancies = a >= 0.0F && a <= 1.0F && b >= 0.0F && b <= 1.0F && isovalue == 0.5F;
+  // A coarser leaf that is full or empty holds cells of this size that are; between fractions of
+  // different cells there is but the line through the centres.
+  const bool is_fraction = b > 0.0F && b < 1.0F;
+  if (is_fraction && neighbour.depth < leaf.depth) {
+    const float apart = 0.5F * (1.0F + static_cast<float>(1 << (leaf.depth - neighbour.depth)));
+    return keep_distance(linear_crossing(a, b, isovalue)) * apart;
+  }
+  if (interpolant == Interpolant::kLinear || !are_occupancies) {
+    return keep_distance(linear_crossing(a, b, isovalue));
+  }
+  return keep_distance(occupancy_crossing(a, b));
+}
+
+// What a task makes of its blocks: vertices in order, and the blocks of each level that it saw.
+struct TaskVertices {
+  std::vector<std::array<float, 3>> positions;
+  struct Range {
+    std::size_t begin = std::numeric_limits<std::size_t>::max();
+    std::size_t end = 0;
+  };
+  std::vector<Range> ranges;
+};
+
+class VertexMaker {
+ public:
+  VertexMaker(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
+              std::vector<std::vector<std::uint64_t>>* cuts,
+              std::vector<std::vector<std::uint32_t>>* firsts)
+      : tree_(tree), frame_(frame), interpolant_(interpolant), cuts_(*cuts), firsts_(*firsts) {}
+
+  // The octants of a cell that are leaves get their vertices; descend(octant) is called for others
+  // that the surface meets.
+  template <typename Descend>
+  void visit_block(const Visit& visit, TaskVertices* task, const Descend& descend) const {
+    const auto level = static_cast<std::size_t>(visit.cell.depth);
+    const std::size_t block = visit.cell.octants;
+    TaskVertices::Range& range = task->ranges[level];
+    range.begin = std::min(range.begin, block);
+    range.end = std::max(range.end, block + 1);
+    firsts_[level][block] = static_cast<std::uint32_t>(task->positions.size());
+    std::uint64_t cuts = 0;
+    for (int o = 0; o < 8; ++o) {
+      const CellNode leaf = tree_.octant(visit.cell, o);
+      if (leaf.is_split) continue;
+      const FaceNeighbours neighbours = octant_neighbours(tree_, visit.cell, visit.neighbours, o);
+      for (int face = 0; face < 6; ++face) {
+        const CellNode& neighbour = neighbours[face];
+        if (!owns(leaf, neighbour, face) || tree_.sides(leaf) == tree_.sides(neighbour)) continue;
+        cuts |= std::uint64_t{1} << (6 * o + face);
+        task->positions.push_back(position(visit, o, face, leaf, neighbour));
+      }
+    }
+    cuts_[level][block] = cuts;
+    for (int o = 0; o < 8; ++o) {
+      if (!tree_.octant(visit.cell, o).is_split) continue;
+      const Visit octant = octant_of(tree_, visit, o);
+      if (meets_surface(tree_, octant)) descend(octant);
+    }
+  }
+
+  void visit_all(const Visit& visit, TaskVertices* task) const {
+    visit_block(visit, task, [&](const Visit& octant) { visit_all(octant, task); });
+  }
+
+ private:
+  std::array<float, 3> position(const Visit& visit, int o, int face, const CellNode& leaf,
+                                const CellNode& neighbour) const {
+    const float t = crossing(tree_, leaf, neighbour, interpolant_);
+    std::array<float, 3> result;
+    for (int a = 0; a < 3; ++a) {
+      double x = 2.0 * visit.at[a] + ((o >> a) & 1) + 0.5;
+      if (a == face / 2) x += (face & 1) != 0 ? static_cast<double>(t) : -static_cast<double>(t);
+      result[a] =
+          static_cast<float>(frame_.origin[a] + std::ldexp(x, -leaf.depth) * frame_.size[a]);
+    }
+    return result;
+  }
+
+  const ContourTree& tree_;
+  const RootFrame& frame_;
+  Interpolant interpolant_;
+  std::vector<std::vector<std::uint64_t>>& cuts_;
+  std::vector<std::vector<std::uint32_t>>& firsts_;
+};
+}  // namespace
+
+SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame,
+                                 Interpolant interpolant, const Progress& progress, int threads) {
+  const std::vector<TreeLevel>& levels = tree.cells().levels;
+  for (const TreeLevel& level : levels) {
+    cuts_.emplace_back(level.size());
+    firsts_.emplace_back(level.size());
+  }
+  const VertexMaker maker(tree, frame, interpolant, &cuts_, &firsts_);
+
+  // The first task is what lies above the others.
+  std::vector<TaskVertices> tasks(1);
+  tasks[0].ranges.resize(levels.size());
+  std::vector<Visit> roots;
+  const auto above = [&](const auto& self, const Visit& visit) -> void {
+    if (visit.cell.depth == kTaskDepth) {
+      roots.push_back(visit);
+      return;
+    }
+    maker.visit_block(visit, tasks.data(), [&](const Visit& octant) { self(self, octant); });
+  };
+  FaceNeighbours surroundings;
+  surroundings.fill(kSurroundings);
+  above(above, {tree.root(), surroundings, {0, 0, 0}});
+  tasks.resize(roots.size() + 1);
+  parallel_for(static_cast<std::int64_t>(roots.size()), threads, progress, [&](std::int64_t i) {
+    TaskVertices& task = tasks[static_cast<std::size_t>(i) + 1];
+    task.ranges.resize(levels.size());
+    maker.visit_all(roots[static_cast<std::size_t>(i)], &task);
+  });
+
+  std::size_t count = 0;
+  for (const TaskVertices& task : tasks) count += task.positions.size();
+  if (count > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+    throw Error(ErrorCode::kOutOfMemory, "the contour has more than 2^31 vertices");
+  }
+  positions_.reserve(count);
+  for (TaskVertices& task : tasks) {
+    const auto offset = static_cast<std::uint32_t>(positions_.size());
+    for (std::size_t k = 0; k < levels.size(); ++k) {
+      // Blocks of a task lie together; the ones in between that it did not visit have no vertices.
+      for (std::size_t b = task.ranges[k].begin; b < task.ranges[k].end; ++b) {
+        firsts_[k][b] += offset;
+      }
+    }
+    positions_.insert(positions_.end(), task.positions.begin(), task.positions.end());
+    task = TaskVertices();
+  }
+}
+
+}  // namespace prefilter

@@ -1,0 +1,210 @@
+#include "prefilter/contour/tree_contour.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
+#include "prefilter/contour/dual_cells.h"
+#include "prefilter/contour/marching_table.h"
+#include "prefilter/contour/surface_vertices.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::size_t kPartsPerTask = 8;
+
+using Triangle = std::array<std::int32_t, 3>;
+
+// The triangles of some dual cells. Vertices of its own, in the middle of loops, are numbered from
+// -1 downwards.
+struct TaskTriangles {
+  std::vector<Triangle> triangles;
+  std::vector<std::array<float, 3>> middles;
+};
+
+class TriangleMaker {
+ public:
+  TriangleMaker(const ContourTree& tree, const SurfaceVertices& vertices)
+      : tree_(tree), vertices_(vertices), cases_(marching_cases()) {}
+
+  void add(const Meeting& leaves, TaskTriangles* task) const {
+    unsigned inside = 0;
+    bool is_uniform = true;
+    for (int i = 0; i < 8; ++i) {
+      if (tree_.sides(leaves[i]) == kInside) inside |= 1U << i;
+      is_uniform = is_uniform && leaves[i].depth == leaves[0].depth;
+    }
+    const MarchingCase& found = cases_[inside];
+    const unsigned joined = is_uniform ? 0U : joined_faces(leaves, inside, found.ambiguous_faces);
+    const std::vector<MarchingLoop> other_loops =
+        joined == 0U ? std::vector<MarchingLoop>() : marching_loops(inside, joined);
+    const std::vector<MarchingLoop>& loops = joined == 0U ? found.loops : other_loops;
+    std::array<std::int32_t, 12> on_edge;
+    for (const MarchingLoop& loop : loops) {
+      for (const int edge : loop) {
+        on_edge[edge] =
+            vertices_.between(leaves[low_corner(edge)], leaves[high_corner(edge)], edge / 4);
+      }
+    }
+    std::array<unsigned, 12> faces;
+    if (is_uniform || (!has_shared_corners(leaves, loops, &faces) && joined == 0U)) {
+      for (const auto& [a, b, c] : found.triangles) {
+        task->triangles.push_back({on_edge[a], on_edge[b], on_edge[c]});
+      }
+      return;
+    }
+    for (const MarchingLoop& loop : loops) add_loop(loop, on_edge, faces, task);
+  }
+
+ private:
+  // The ambiguous faces on which the inside is to be joined: where one of the four leaves around
+  // the edge that the face stands for is smaller than the others, and outside. Other small leaves
+  // may follow it along the edge, of either side. The leaf opposite of them is cut off from them
+  // all, so that the segment around it is one, and not one for every other small leaf.
+  static unsigned joined_faces(const Meeting& leaves, unsigned inside, unsigned ambiguous) {
+    unsigned joined = 0;
+    for (int face = 0; face < 6; ++face) {
+      if (((ambiguous >> face) & 1U) == 0U) continue;
+      const std::array<int, 4> corners = face_corners(face / 2, (face & 1) != 0);
+      int finest = corners[0];
+      for (const int corner : corners) {
+        if (leaves[corner].depth > leaves[finest].depth) finest = corner;
+      }
+      int count = 0;
+      for (const int corner : corners) {
+        if (leaves[corner].depth == leaves[finest].depth) ++count;
+      }
+      if (count == 1 && ((inside >> finest) & 1U) == 0U) joined |= 1U << face;
+    }
+    return joined;
+  }
+
+  // The faces of the dual cell that both leaves of each edge reach: as a leaf may be several of its
+  // corners, more than those that the edge lies in. True where there are more of any.
+  //
+  // Two vertices whose leaves all reach one face are in the dual cell behind it, too, and only
+  // then: the four boxes have more than this point in common.
+  static bool has_shared_corners(const Meeting& leaves, const std::vector<MarchingLoop>& loops,
+                                 std::array<unsigned, 12>* faces) {
+    std::array<unsigned, 8> reached{};
+    for (int i = 0; i < 8; ++i) {
+      for (int j = 0; j < 8; ++j) {
+        if (leaves[i].depth != leaves[j].depth || leaves[i].block != leaves[j].block ||
+            leaves[i].octant != leaves[j].octant) {
+          continue;
+        }
+        for (int axis = 0; axis < 3; ++axis) reached[i] |= 1U << (2 * axis + ((j >> axis) & 1));
+      }
+    }
+    bool has_more = false;
+    for (const MarchingLoop& loop : loops) {
+      for (const int edge : loop) {
+        (*faces)[edge] = reached[low_corner(edge)] & reached[high_corner(edge)];
+        has_more = has_more || (*faces)[edge] != faces_of_edge(edge);
+      }
+    }
+    return has_more;
+  }
+
+  // A loop in which edges between the same two leaves, which are one vertex, follow each other.
+  void add_loop(const MarchingLoop& loop, const std::array<std::int32_t, 12>& on_edge,
+                const std::array<unsigned, 12>& faces_of, TaskTriangles* task) const {
+    std::array<std::int32_t, 12> corners;
+    std::array<unsigned, 12> faces;
+    int count = 0;
+    for (const std::uint8_t edge : loop) {
+      const std::int32_t vertex = on_edge[edge];
+      if (count > 0 && corners[count - 1] == vertex) {
+        faces[count - 1] |= faces_of[edge];
+      } else {
+        corners[count] = vertex;
+        faces[count] = faces_of[edge];
+        ++count;
+      }
+    }
+    while (count > 1 && corners[count - 1] == corners[0]) {
+      --count;
+      faces[0] |= faces[count];
+    }
+    if (count < 3) return;
+    std::vector<std::array<std::uint8_t, 3>> triangles;
+    const bool is_done = triangulate_loop(
+        count, [&](int i, int j) { return (faces[i] & faces[j]) == 0U; }, &triangles);
+    for (const auto& [i, j, k] : triangles) {
+      task->triangles.push_back({corners[i], corners[j], corners[k]});
+    }
+    if (is_done) return;
+    // No diagonal is free: a fan around the middle needs none.
+    std::array<float, 3> middle{};
+    for (int i = 0; i < count; ++i) {
+      const auto& p = vertices_.positions()[static_cast<std::size_t>(corners[i])];
+      for (int a = 0; a < 3; ++a) middle[a] += p[a] / static_cast<float>(count);
+    }
+    task->middles.push_back(middle);
+    const auto centre = -static_cast<std::int32_t>(task->middles.size());
+    for (int i = 0; i < count; ++i) {
+      task->triangles.push_back({centre, corners[i], corners[(i + 1) % count]});
+    }
+  }
+
+  const ContourTree& tree_;
+  const SurfaceVertices& vertices_;
+  const std::array<MarchingCase, 256>& cases_;
+};
+
+TriangleMesh join(SurfaceVertices* vertices, std::vector<TaskTriangles>* tasks) {
+  TriangleMesh mesh;
+  mesh.positions = vertices->take_positions();
+  std::size_t count = 0;
+  for (const TaskTriangles& task : *tasks) count += task.triangles.size();
+  mesh.triangles.reserve(count);
+  for (TaskTriangles& task : *tasks) {
+    const auto base = static_cast<std::int32_t>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), task.middles.begin(), task.middles.end());
+    if (!task.middles.empty()) {
+      for (Triangle& triangle : task.triangles) {
+        for (std::int32_t& vertex : triangle) {
+          if (vertex < 0) vertex = base - 1 - vertex;
+        }
+      }
+    }
+    mesh.triangles.insert(mesh.triangles.end(), task.triangles.begin(), task.triangles.end());
+    task = TaskTriangles();
+  }
+  return mesh;
+}
+}  // namespace
+
+TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
+                          const ContourOptions& options) {
+  if (cells.levels.empty()) {
+    CellTree split;
+    split.root = cells.root;
+    split.levels.resize(1);
+    split.levels[0].blocks.emplace_back();
+    split.levels[0].blocks[0].fill(cells.root);
+    split.levels[0].split.push_back(0);
+    link_blocks(split.levels.data());
+    return contour_tree(split, frame, options);
+  }
+  const ContourTree tree(cells, options.isovalue, options.threads);
+  SurfaceVertices vertices(tree, frame, options.interpolant, options.progress.part(0.0, 0.4),
+                           options.threads);
+  const DualCells dual(tree);
+  const TriangleMaker maker(tree, vertices);
+  std::vector<TaskTriangles> tasks((dual.part_count() + kPartsPerTask - 1) / kPartsPerTask);
+  parallel_for(static_cast<std::int64_t>(tasks.size()), options.threads,
+               options.progress.part(0.4, 1.0), [&](std::int64_t i) {
+                 TaskTriangles& task = tasks[static_cast<std::size_t>(i)];
+                 const std::size_t begin = static_cast<std::size_t>(i) * kPartsPerTask;
+                 const std::size_t end = std::min(dual.part_count(), begin + kPartsPerTask);
+                 for (std::size_t part = begin; part < end; ++part) {
+                   dual.for_part(part, [&](const Meeting& leaves) { maker.add(leaves, &task); });
+                 }
+               });
+  return join(&vertices, &tasks);
+}
+
+}  // namespace prefilter

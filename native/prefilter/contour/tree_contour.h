@@ -1,0 +1,23 @@
+// Occupancy octrees to closed meshes (chapter 5).
+#pragma once
+
+#include "prefilter/base/triangle_mesh.h"
+#include "prefilter/contour/contour_options.h"
+#include "prefilter/wavelet/cell_tree.h"
+
+namespace prefilter {
+
+/// The surface between leaves inside and outside: marching cubes on the dual grid of the leaves, of
+/// any depths side by side. What is outside of the root is empty.
+///
+/// The mesh is closed and two-manifold, whatever the tree: each edge has two triangles, in opposite
+/// directions, and the triangles around a vertex are one fan. Vertices are shared; the outside is
+/// where triangles are counter-clockwise. Memory and time are proportional to the surface. The same
+/// for any number of threads. Where interpolants are not defined (values outside of [0, 1], or an
+/// iso-value other than 1/2) crossings are linear.
+///
+/// Throws Error(kCancelled), and Error(kOutOfMemory) for more than 2^31 vertices.
+TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
+                          const ContourOptions& options);
+
+}  // namespace prefilter
