@@ -3,12 +3,11 @@
 The operators and the commands are two ways to call this.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from functools import reduce
+from functools import partial, reduce
 from pathlib import Path
-from typing import Any
 
 import bpy
 import numpy as np
@@ -26,12 +25,6 @@ from .wording import counted, listed
 
 _VOXELIZED, _CONTOURED = 0.5, 0.75
 """What the progress is once the tree is made, and once there is a surface."""
-
-_COMBINE: dict[str, Callable[[Any, Any], Any]] = {
-    "union": lambda a, b: a.union(b),
-    "intersection": lambda a, b: a.intersection(b),
-    "difference": lambda a, b: a.difference(b),
-}
 
 
 @dataclass
@@ -208,7 +201,9 @@ class Voxelization:
         if self._targets:
             staged = files.stage_with(
                 self._targets[index],
-                lambda path: volumes.write_grid(path, tree.dense(), grid.low, grid.spacing),
+                lambda path: volumes.write_grid(
+                    path, tree.dense(threads=self._settings.threads), grid.low, grid.spacing
+                ),
             )
             return _Result(place, grid, tree.volume, 0, staged=staged)
         return _contoured(
@@ -290,9 +285,14 @@ class Boolean:
             start, end = (_VOXELIZED * k / len(meshes) for k in (i, i + 1))
             with _naming(solid.name):
                 trees.append(_voxelized(mesh, grid, self._settings, share(progress, start, end)))
-        tree = reduce(_COMBINE[self._settings.operation], trees)
+        combine = getattr(prefilter.Octree, self._settings.operation)
+        tree = reduce(
+            partial(
+                combine, progress=lambda _: progress(_VOXELIZED), threads=self._settings.threads
+            ),
+            trees,
+        )
         del trees
-        go_on(progress, _VOXELIZED)
         with _naming(self._place.name):
             self._result = _contoured(
                 tree,
@@ -510,7 +510,7 @@ def _still_there(name: str) -> bpy.types.Object:
 
 
 @contextmanager
-def _naming(name: str) -> Iterable[None]:
+def _naming(name: str) -> Iterator[None]:
     """Puts the name of an object before messages."""
     try:
         yield

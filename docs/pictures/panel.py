@@ -173,7 +173,6 @@ def show_voxels() -> None:
         parts = [part for part in window.screen.areas if part.type == "VIEW_3D"]
         left, right = sorted(parts, key=lambda part: part.x)
         right.type = "PROPERTIES"
-        right.spaces.active.context = "DATA"
         left.spaces.active.overlay.show_overlays = False
         left.spaces.active.shading.studio_light = "check_rim_light.exr"
         left.spaces.active.shading.light = "MATCAP"
@@ -182,7 +181,12 @@ def show_voxels() -> None:
             bpy.ops.view3d.view_axis(type="FRONT")
             bpy.ops.view3d.view_orbit(angle=0.7, type="ORBITUP")
             bpy.ops.view3d.view_all()
-        bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=4.0)
+
+        def show_data() -> None:  # Once the editor is drawn, and knows what it can show.
+            right.spaces.active.context = "DATA"
+            bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
+
+        bpy.app.timers.register(show_data, first_interval=2.0)
 
     bpy.app.timers.register(arrange, first_interval=2.0)
 
