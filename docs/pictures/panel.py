@@ -129,9 +129,10 @@ def open_panel(panel: type) -> None:
 
 
 def show_voxels() -> None:
-    """Inside Blender: an open monkey beside its voxelized copy, with the panels under Remesh."""
+    """Inside Blender: a leaky monkey beside its voxelized copy, with the panels under Remesh."""
     import bmesh
     import bpy
+    from mathutils import Euler
 
     bpy.context.preferences.view.show_splash = False
     for obj in list(bpy.data.objects):
@@ -139,16 +140,19 @@ def show_voxels() -> None:
     for x in (1.4, -1.4):
         bpy.ops.mesh.primitive_monkey_add(location=(x, 0.0, 0.0))
         monkey = bpy.context.object
+        monkey.modifiers.new("Subdivision", "SUBSURF").levels = 3
+        bpy.ops.object.modifier_apply(modifier="Subdivision")
         bpy.ops.object.shade_smooth()
         mesh = bmesh.new()
         mesh.from_mesh(monkey.data)
-        hole = [face for face in mesh.faces if face.calc_center_median().z > 0.55]
-        bmesh.ops.delete(mesh, geom=hole, context="FACES")
+        chosen = np.random.default_rng(1).random(len(mesh.faces)) < 0.02
+        holes = [face for face, is_hole in zip(mesh.faces, chosen, strict=True) if is_hole]
+        bmesh.ops.delete(mesh, geom=holes, context="FACES")
         mesh.to_mesh(monkey.data)
         mesh.free()
     for other in bpy.data.objects:
         other.select_set(other != monkey)
-    bpy.ops.prefilter.voxelize(depth=7)
+    bpy.ops.prefilter.voxelize(depth=8)
     bpy.context.view_layer.objects.active = bpy.context.selected_objects[0]
     window = bpy.context.window_manager.windows[0]
     area = max(window.screen.areas, key=lambda area: area.width * area.height)
@@ -174,13 +178,11 @@ def show_voxels() -> None:
         left, right = sorted(parts, key=lambda part: part.x)
         right.type = "PROPERTIES"
         left.spaces.active.overlay.show_overlays = False
-        left.spaces.active.shading.studio_light = "check_rim_light.exr"
         left.spaces.active.shading.light = "MATCAP"
-        region = next(region for region in left.regions if region.type == "WINDOW")
-        with bpy.context.temp_override(window=window, area=left, region=region):
-            bpy.ops.view3d.view_axis(type="FRONT")
-            bpy.ops.view3d.view_orbit(angle=0.7, type="ORBITUP")
-            bpy.ops.view3d.view_all()
+        view = left.spaces.active.region_3d
+        view.view_rotation = Euler((1.0, 0.0, 0.0)).to_quaternion()
+        view.view_location, view.view_distance = (0.0, 0.0, 0.0), 5.5
+        view.view_perspective = "ORTHO"
 
         def show_data() -> None:  # Once the editor is drawn, and knows what it can show.
             right.spaces.active.context = "DATA"
