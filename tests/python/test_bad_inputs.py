@@ -10,6 +10,7 @@ import numpy as np
 import prefilter
 import pytest
 from scenes import random_image, soup, square
+from solids import box
 
 IMAGE = random_image(0, 16, 16, 3)
 RGBA = random_image(1, 8, 8, 4)
@@ -21,6 +22,8 @@ AWAY = square((2, 2), (3, 3)).surface
 POINTS, TRIANGLES, UVS = MESH.positions, MESH.triangles, MESH.uvs
 QUAD = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)])
 NAN = np.nan
+BOX = box()
+OCTREE = prefilter.voxelize(BOX.positions, BOX.triangles, depth=3)
 
 
 def changed(array, index, value):
@@ -35,6 +38,10 @@ def placed(matrices):
 
 def udim_tile(number):
     return SURFACE.udim_tile(number)
+
+
+def octree_method(name, *arguments, **options):
+    return getattr(OCTREE, name)(*arguments, **options)
 
 
 FUNCTIONS = {
@@ -69,6 +76,15 @@ FUNCTIONS = {
     "fill_unused": (prefilter.fill_unused, {"image": IMAGE, "surface": SURFACE}),
     "write_dds": (prefilter.write_dds, {"path": "out.dds", "levels": [RGBA]}),
     "write_ktx2": (prefilter.write_ktx2, {"path": "out.ktx2", "levels": [RGBA]}),
+    "voxelize": (
+        prefilter.voxelize,
+        {"positions": BOX.positions, "triangles": BOX.triangles, "depth": 3},
+    ),
+    "nearest_points": (
+        prefilter.nearest_points,
+        {"points": QUAD, "positions": BOX.positions, "triangles": BOX.triangles},
+    ),
+    "Octree": (octree_method, {"name": "union", "other": OCTREE}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
 }
@@ -448,6 +464,69 @@ ROWS = [
         )
     ),
 ]
+VOXEL_ROWS = [
+    *(
+        ("voxelize", arguments, words)
+        for arguments, words in (
+            ({"positions": BOX.positions[:, :2]}, ["positions: shape (8, 2)", "(vertices, 3) is"]),
+            (
+                {"positions": changed(BOX.positions, (3, 1), NAN)},
+                ["positions: row 3", "nan", "finite"],
+            ),
+            ({"positions": changed(BOX.positions, (3, 1), np.inf)}, ["positions: row 3", "inf"]),
+            ({"positions": "abc"}, ["positions: dtype <U3", FLOATS]),
+            ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one is needed"]),
+            ({"triangles": BOX.triangles[:, :2]}, ["triangles: shape (12, 2)", "(triangles, 3)"]),
+            ({"triangles": BOX.triangles * 1.0}, ["triangles: dtype float64", "integers are"]),
+            ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8", "from 0 on"]),
+            ({"triangles": BOX.triangles - 1}, ["triangles: triangle ", "vertex -1", "from 0 on"]),
+            ({"triangles": BOX.triangles * 0}, ["triangles: all 12 have zero area"]),
+            ({"positions": BOX.positions * 0}, ["triangles: all 12 have zero area"]),
+            ({"depth": 0}, ["depth: 0", "from 1 to 12"]),
+            ({"depth": 13}, ["depth: 13", "from 1 to 12"]),
+            ({"depth": 8.0}, ["depth: 8.0", "a whole number from 1 to 12"]),
+            ({"depth": True}, ["depth: True", "a whole number"]),
+            ({"bounds": ((0, 0, 0), (1, 1, 0))}, ["bounds: ", "along z"]),
+            ({"bounds": ((0, 0, 0), (-1, 1, 1))}, ["bounds: ", "along x"]),
+            ({"bounds": ((0, 0, 0), (1, 1, NAN))}, ["bounds: ", "nan"]),
+            ({"bounds": (0, 1)}, ["bounds: shape (2,)", "(2, 3)"]),
+            ({"bounds": "all"}, ["bounds: 'all'", "two corners"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+            ({"progress": 3}, ["progress: "]),
+        )
+    ),
+    *(
+        ("Octree", {"name": name, **arguments}, words)
+        for name, arguments, words in (
+            ("union", {"other": None}, ["other: a NoneType", "an Octree is needed"]),
+            ("difference", {"other": BOX}, ["other: a Solid", "an Octree is needed"]),
+            ("intersection", {"other": np.zeros((8, 8, 8))}, ["other: a ndarray", "an Octree"]),
+        )
+    ),
+]
+QUERY_ROWS = [
+    ("dense", {"depth": -1}, ["depth: -1", "from 0 to 12"]),
+    ("dense", {"depth": 2.5}, ["depth: 2.5", "from 0 to 12"]),
+    ("coarsened", {"depth": 13}, ["depth: 13", "from 0 to 12"]),
+    ("values", {"points": np.zeros((2, 2))}, ["points: shape (2, 2)", "(points, 3)"]),
+    ("values", {"points": np.full((2, 3), NAN)}, ["points: row 0", "nan", "finite"]),
+    ("classify", {"points": np.zeros((1, 3)), "tolerance": 0.5}, ["tolerance: 0.5", "below 0.5"]),
+    ("classify", {"points": np.zeros((1, 3)), "tolerance": NAN}, ["tolerance: nan", "below 0.5"]),
+    ("box_occupancy", {"low": (0, 0, 0), "high": (0, 1, 1)}, ["box: ", "along x"]),
+    ("box_occupancy", {"low": (0, 0), "high": (1, 1)}, ["box: shape (2, 2)", "(2, 3)"]),
+    ("save", {"path": 3}, ["path: 3"]),
+]
+NEAREST_ROWS = [
+    ("nearest_points", arguments, words)
+    for arguments, words in (
+        ({"points": QUAD[:, :2]}, ["points: shape (4, 2)", "(points, 3)"]),
+        ({"points": changed(QUAD, (2, 1), NAN)}, ["points: row 2", "nan"]),
+        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: row 3", "nan"]),
+        ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
+        ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
+    )
+]
+ROWS += VOXEL_ROWS + NEAREST_ROWS
 # Where something stands in the way on the disk.
 PLACES = [
     ("nowhere/out.dds", ["path: there is no folder", "nowhere"]),
@@ -486,6 +565,32 @@ def test_refusal(function, arguments, words, error, folder):
     for word in words:
         assert word in str(caught.value)
     assert contents(folder) == before
+
+
+@pytest.mark.parametrize(("name", "arguments", "words"), QUERY_ROWS)
+def test_refusal_of_a_query(name, arguments, words):
+    with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+        octree_method(name, **arguments)
+    for word in words:
+        assert word in str(caught.value)
+
+
+def test_a_grid_that_would_not_fit_is_refused_before_it_is_made():
+    deep = prefilter.voxelize(BOX.positions, BOX.triangles, depth=3)
+    with pytest.raises(MemoryError, match="depth"):
+        deep.dense(12)
+
+
+@pytest.mark.parametrize("content", [b"", b"PK", b"no octree", b"\x93NUMPY"])
+def test_a_file_that_is_no_octree(content, tmp_path):
+    (tmp_path / "other.npz").write_bytes(content)
+    with pytest.raises(ValueError, match=r"path: '.*other.npz' holds no octree"):
+        prefilter.Octree.load(tmp_path / "other.npz")
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(OSError, match="absent"):
+        prefilter.Octree.load(tmp_path / "absent.npz")
 
 
 @pytest.mark.parametrize("function", [name for name, (_, good) in FUNCTIONS.items() if good])

@@ -20,11 +20,13 @@ class Measurement:
         seconds: Wall time.
         peak_mib: The most memory that was resident [MiB], of the whole process.
         start_mib: What was resident already when the clock was started.
+        cpu_seconds: CPU time of all threads, where it was looked at.
     """
 
     seconds: float
     peak_mib: float
     start_mib: float = 0.0
+    cpu_seconds: float = 0.0
 
 
 class Peer(Protocol):

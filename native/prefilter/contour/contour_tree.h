@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -17,16 +18,16 @@ struct CellNode {
   std::int8_t depth = 0;      // 0 is the root, -1 what surrounds it
   std::uint8_t octant = 0;
   bool is_split = false;
+  std::uint8_t sides = 0;  // of the surface, that its leaves are on: kInside, kOutside, or both
 
   bool is_outside() const { return depth < 0; }
 };
 
-inline constexpr CellNode kSurroundings = {0, 0, -1, 0, false};
+inline constexpr std::uint8_t kInside = 1;
+inline constexpr std::uint8_t kOutside = 2;
+inline constexpr std::uint8_t kBothSides = kInside | kOutside;
 
-/// Sides of the surface that leaves of a cell are on, as bits.
-inline constexpr unsigned kInside = 1;
-inline constexpr unsigned kOutside = 2;
-inline constexpr unsigned kBothSides = kInside | kOutside;
+inline constexpr CellNode kSurroundings = {0, 0, -1, 0, false, kOutside};
 
 /// A tree with an iso-value. Leaves of at least that are inside.
 class ContourTree {
@@ -35,19 +36,21 @@ class ContourTree {
 
   const CellTree& cells() const { return cells_; }
   float isovalue() const { return isovalue_; }
-  CellNode root() const { return {0, 0, 0, 0, !cells_.levels.empty()}; }
+  CellNode root() const { return {0, 0, 0, 0, !cells_.levels.empty(), root_sides_}; }
 
   /// The octant of a cell that is split; a leaf is its own octants.
   CellNode octant(const CellNode& node, int o) const {
     if (!node.is_split) return node;
-    const TreeLevel& level = cells_.levels[static_cast<std::size_t>(node.depth)];
+    const Block& block = blocks_[static_cast<std::size_t>(node.depth)][node.octants];
     CellNode result;
     result.block = node.octants;
     result.depth = static_cast<std::int8_t>(node.depth + 1);
     result.octant = static_cast<std::uint8_t>(o);
-    result.is_split = level.is_split(node.octants, o);
+    result.sides = static_cast<std::uint8_t>((block.sides >> (2 * o)) & kBothSides);
+    result.is_split = ((block.split >> o) & 1U) != 0U;
     if (result.is_split) {
-      result.octants = static_cast<std::uint32_t>(level.child(node.octants, o));
+      const unsigned before = block.split & ((1U << o) - 1U);
+      result.octants = block.first + static_cast<std::uint32_t>(std::popcount(before));
     }
     return result;
   }
@@ -60,21 +63,18 @@ class ContourTree {
     return node.is_outside() ? std::min(0.0F, isovalue_) : cells_.root;
   }
 
-  /// The sides that leaves of the cell are on.
-  unsigned sides(const CellNode& node) const {
-    if (node.depth > 0) {
-      const unsigned of_block = sides_[static_cast<std::size_t>(node.depth - 1)][node.block];
-      return (of_block >> (2 * node.octant)) & kBothSides;
-    }
-    return node.is_outside() ? kOutside : root_sides_;
-  }
-
  private:
+  // What walks through the tree read of a block, in one place.
+  struct Block {
+    std::uint32_t first;
+    std::uint16_t sides;  // two bits an octant
+    std::uint8_t split;
+  };
+
   const CellTree& cells_;
   float isovalue_;
-  // Of each block, two bits an octant.
-  std::vector<std::vector<std::uint16_t>> sides_;
-  unsigned root_sides_ = kOutside;
+  std::vector<std::vector<Block>> blocks_;
+  std::uint8_t root_sides_ = kOutside;
 };
 
 /// The cell that a face of a cell of the same depth leads to, or the leaf that holds it. Faces are

@@ -79,7 +79,7 @@ class DualCells {
   }
   bool is_on_both_sides(const CellNode* cells, int count) const {
     unsigned sides = 0;
-    for (int i = 0; i < count; ++i) sides |= tree_.sides(cells[i]);
+    for (int i = 0; i < count; ++i) sides |= cells[i].sides;
     return sides == kBothSides;
   }
 
@@ -99,7 +99,7 @@ class DualCells {
 
 template <typename Visit>
 void DualCells::in_cell(const CellNode& cell, const Visit& visit) const {
-  if (!cell.is_split || tree_.sides(cell) != kBothSides) return;
+  if (!cell.is_split || cell.sides != kBothSides) return;
   if (found_ != nullptr && cell.depth == kPartDepth) {
     found_->push_back({Kind::kCell, 0, {cell}});
     return;

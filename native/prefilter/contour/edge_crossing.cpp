@@ -43,6 +43,4 @@ float occupancy_crossing(float a, float b) {
   return static_cast<float>(std::clamp(t, 0.0, 1.0));
 }
 
-float keep_distance(float t) { return std::clamp(t, kLeastDistance, 1.0F - kLeastDistance); }
-
 }  // namespace prefilter

@@ -9,9 +9,6 @@ enum class Interpolant {
   kLinear,     // samples of a smooth function: marching cubes
 };
 
-/// Crossings keep this distance from samples, so that no triangle has zero area.
-inline constexpr float kLeastDistance = 1e-3F;
-
 /// Where between the samples a (t = 0) and b (t = 1), on two sides of the iso-value, a linear
 /// function takes it.
 float linear_crossing(float a, float b, float isovalue);
@@ -21,8 +18,5 @@ float linear_crossing(float a, float b, float isovalue);
 /// Exact where there is such a line (equations 5.2, 5.4, 5.6 and 5.8, chosen as in 5.2.5). One of a
 /// and b is below 1/2, the other is not, and both are in [0, 1].
 float occupancy_crossing(float a, float b);
-
-/// Keeps t within [kLeastDistance, 1 - kLeastDistance].
-float keep_distance(float t);
 
 }  // namespace prefilter

@@ -27,9 +27,9 @@ Visit octant_of(const ContourTree& tree, const Visit& visit, int o) {
            2 * visit.at[2] + ((o >> 2) & 1)}};
 }
 
-bool meets_surface(const ContourTree& tree, const Visit& visit) {
-  unsigned sides = tree.sides(visit.cell);
-  for (const CellNode& neighbour : visit.neighbours) sides |= tree.sides(neighbour);
+bool meets_surface(const Visit& visit) {
+  unsigned sides = visit.cell.sides;
+  for (const CellNode& neighbour : visit.neighbours) sides |= neighbour.sides;
   return sides == kBothSides;
 }
 
@@ -40,9 +40,15 @@ bool owns(const CellNode& leaf, const CellNode& neighbour, int face) {
   return neighbour.depth < leaf.depth || (face & 1) != 0;
 }
 
-// The distance, in sides of the leaf, from its centre to the surface on the way to the neighbour.
-float crossing(const ContourTree& tree, const CellNode& leaf, const CellNode& neighbour,
-               Interpolant interpolant) {
+// On the way from a leaf's centre to its neighbour's, in sides of the leaf: where the surface is,
+// and where the neighbour's centre is.
+struct Crossing {
+  float t;
+  float distance;
+};
+
+Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode& neighbour,
+                  Interpolant interpolant) {
   const float a = tree.value(leaf);
   const float b = tree.value(neighbour);
   const float isovalue = tree.isovalue();
@@ -52,12 +58,12 @@ float crossing(const ContourTree& tree, const CellNode& leaf, const CellNode& ne
   const bool is_fraction = b > 0.0F && b < 1.0F;
   if (is_fraction && neighbour.depth < leaf.depth) {
     const float apart = 0.5F * (1.0F + static_cast<float>(1 << (leaf.depth - neighbour.depth)));
-    return keep_distance(linear_crossing(a, b, isovalue)) * apart;
+    return {linear_crossing(a, b, isovalue) * apart, apart};
   }
   if (interpolant == Interpolant::kLinear || !are_occupancies) {
-    return keep_distance(linear_crossing(a, b, isovalue));
+    return {linear_crossing(a, b, isovalue), 1.0F};
   }
-  return keep_distance(occupancy_crossing(a, b));
+  return {occupancy_crossing(a, b), 1.0F};
 }
 
 // What a task makes of its blocks: vertices in order, and the blocks of each level that it saw.
@@ -94,7 +100,7 @@ class VertexMaker {
       const FaceNeighbours neighbours = octant_neighbours(tree_, visit.cell, visit.neighbours, o);
       for (int face = 0; face < 6; ++face) {
         const CellNode& neighbour = neighbours[face];
-        if (!owns(leaf, neighbour, face) || tree_.sides(leaf) == tree_.sides(neighbour)) continue;
+        if (!owns(leaf, neighbour, face) || leaf.sides == neighbour.sides) continue;
         cuts |= std::uint64_t{1} << (6 * o + face);
         task->positions.push_back(position(visit, o, face, leaf, neighbour));
       }
@@ -103,7 +109,7 @@ class VertexMaker {
     for (int o = 0; o < 8; ++o) {
       if (!tree_.octant(visit.cell, o).is_split) continue;
       const Visit octant = octant_of(tree_, visit, o);
-      if (meets_surface(tree_, octant)) descend(octant);
+      if (meets_surface(octant)) descend(octant);
     }
   }
 
@@ -114,13 +120,13 @@ class VertexMaker {
  private:
   std::array<float, 3> position(const Visit& visit, int o, int face, const CellNode& leaf,
                                 const CellNode& neighbour) const {
-    const float t = crossing(tree_, leaf, neighbour, interpolant_);
+    const Crossing found = crossing(tree_, leaf, neighbour, interpolant_);
     std::array<float, 3> result;
     for (int a = 0; a < 3; ++a) {
-      double x = 2.0 * visit.at[a] + ((o >> a) & 1) + 0.5;
-      if (a == face / 2) x += (face & 1) != 0 ? static_cast<double>(t) : -static_cast<double>(t);
-      result[a] =
-          static_cast<float>(frame_.origin[a] + std::ldexp(x, -leaf.depth) * frame_.size[a]);
+      const double centre = 2.0 * visit.at[a] + ((o >> a) & 1) + 0.5;
+      result[a] = a == face / 2 ? frame_.crossing(face, centre, static_cast<double>(found.t),
+                                                  static_cast<double>(found.distance), leaf.depth)
+                                : frame_.position(a, centre, leaf.depth);
     }
     return result;
   }

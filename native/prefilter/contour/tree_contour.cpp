@@ -6,7 +6,9 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/contour/clean_up.h"
 #include "prefilter/contour/dual_cells.h"
+#include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/marching_table.h"
 #include "prefilter/contour/surface_vertices.h"
 
@@ -33,7 +35,7 @@ class TriangleMaker {
     unsigned inside = 0;
     bool is_uniform = true;
     for (int i = 0; i < 8; ++i) {
-      if (tree_.sides(leaves[i]) == kInside) inside |= 1U << i;
+      if (leaves[i].sides == kInside) inside |= 1U << i;
       is_uniform = is_uniform && leaves[i].depth == leaves[0].depth;
     }
     const MarchingCase& found = cases_[inside];
@@ -189,14 +191,19 @@ TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
     link_blocks(split.levels.data());
     return contour_tree(split, frame, options);
   }
+  const Progress cutting = options.clean_up ? options.progress.part(0.0, 0.3) : options.progress;
+  const Progress cleaning = options.progress.part(0.3, 1.0);
   const ContourTree tree(cells, options.isovalue, options.threads);
-  SurfaceVertices vertices(tree, frame, options.interpolant, options.progress.part(0.0, 0.4),
+  SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.0, 0.3),
                            options.threads);
+  if (options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F) {
+    fit_vertices(tree, frame, cutting.part(0.3, 0.6), options.threads, &vertices);
+  }
   const DualCells dual(tree);
   const TriangleMaker maker(tree, vertices);
   std::vector<TaskTriangles> tasks((dual.part_count() + kPartsPerTask - 1) / kPartsPerTask);
-  parallel_for(static_cast<std::int64_t>(tasks.size()), options.threads,
-               options.progress.part(0.4, 1.0), [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(tasks.size()), options.threads, cutting.part(0.6, 1.0),
+               [&](std::int64_t i) {
                  TaskTriangles& task = tasks[static_cast<std::size_t>(i)];
                  const std::size_t begin = static_cast<std::size_t>(i) * kPartsPerTask;
                  const std::size_t end = std::min(dual.part_count(), begin + kPartsPerTask);
@@ -204,7 +211,9 @@ TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
                    dual.for_part(part, [&](const Meeting& leaves) { maker.add(leaves, &task); });
                  }
                });
-  return join(&vertices, &tasks);
+  TriangleMesh mesh = join(&vertices, &tasks);
+  if (options.clean_up) mesh = clean_up(std::move(mesh), cleaning);
+  return mesh;
 }
 
 }  // namespace prefilter

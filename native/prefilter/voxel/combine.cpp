@@ -69,6 +69,11 @@ struct Cell {
     const bool splits = level.is_split(block, o);
     return {tree, splits, splits ? level.child(block, o) : 0, level.blocks[block][o]};
   }
+
+  /// Whether its octants are the finest there are here: the surface passes through them.
+  bool is_finest(int depth) const {
+    return is_split && tree->levels[static_cast<std::size_t>(depth)].split[block] == 0U;
+  }
 };
 
 // What became of a cell.
@@ -108,8 +113,11 @@ class Merger {
       if (octant.is_split) level.split[block] |= static_cast<std::uint8_t>(1U << o);
     }
     const OctantValues values = level.blocks[block];
+    // A surface along the borders of cells leaves them uniform, and they have to stay fine: between
+    // larger cells a contour would cut the corners off.
     const bool is_uniform =
-        level.split[block] == 0 && !is_fraction(values[0]) &&
+        !a.is_finest(depth) && !b.is_finest(depth) && level.split[block] == 0 &&
+        !is_fraction(values[0]) &&
         std::all_of(values.begin(), values.end(), [&](float value) { return value == values[0]; });
     if (is_uniform) {
       level.blocks.pop_back();
@@ -218,6 +226,7 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
     result.bounds = a.bounds;
     result.depth = std::max(a.depth, b.depth);
     result.cells = merge_trees(a.cells, b.cells, operation, progress, threads);
+    progress.report(1.0);
     return result;
   }
   Octree first = a;
@@ -231,6 +240,7 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
   result.depth = std::max(first.depth, depth);
   result.cells =
       merge_trees(first.cells, second.cells, operation, progress.part(0.7, 1.0), threads);
+  progress.report(1.0);
   return result;
 }
 

@@ -7,6 +7,7 @@ message that names the argument, what was found and what is allowed.
 
 from ._native import Cancelled
 from .color import to_linear, to_srgb
+from .contours import contour
 from .cutout import keep_coverage
 from .mipmap import mipmap_error, mipmaps, seam_contrast
 from .nearest import nearest_points
@@ -23,6 +24,7 @@ __all__ = [
     "Cancelled",
     "Octree",
     "Surface",
+    "contour",
     "fill_unused",
     "keep_coverage",
     "mipmap_error",

@@ -200,3 +200,21 @@ def contour_octree(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]: ...
+def contour_grid(
+    grid: npt.NDArray[np.float32],
+    interpolant: str,
+    isovalue: float,
+    spacing: list[float],
+    origin: list[float],
+    clean_up: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]: ...
+def contour_image(
+    image: npt.NDArray[np.float32],
+    interpolant: str,
+    isovalue: float,
+    spacing: list[float],
+    origin: list[float],
+    progress: ProgressCallback | None,
+) -> list[npt.NDArray[np.float32]]: ...

@@ -1,0 +1,129 @@
+#include "prefilter/contour/height_crossing.h"
+
+#include <cmath>
+
+namespace prefilter {
+namespace {
+
+constexpr float kFull = 1.0F - 1e-5F;
+constexpr float kEmpty = 1e-5F;
+constexpr int kMostSteps = 5;
+// Second differences above this are a crease, not a curve.
+constexpr float kMostCurvature = 0.5F;
+constexpr float kSlack = 0.05F;
+
+// The height of the surface over the low side of a column's cell, in cells; `up` leads towards the
+// empty end.
+std::optional<float> column_height(const float* cell, std::ptrdiff_t up) {
+  float height = 0.0F;
+  int steps = 0;
+  for (const float* at = cell; *at > kEmpty; at += up) {
+    if (++steps > kMostSteps) return std::nullopt;
+    height += *at;
+  }
+  steps = 0;
+  for (const float* at = cell - up; *at < kFull; at -= up) {
+    if (++steps > kMostSteps) return std::nullopt;
+    height -= 1.0F - *at;
+  }
+  return height;
+}
+
+struct Profile {
+  float slope = 0.0F;
+  float curvature = 0.0F;
+  bool has_slope = false;
+};
+
+// Along one axis across the columns.
+Profile profile(const float* cell, std::ptrdiff_t across, std::ptrdiff_t up, float height) {
+  const std::optional<float> low = column_height(cell - across, up);
+  const std::optional<float> high = column_height(cell + across, up);
+  Profile result;
+  if (low && high) {
+    result.slope = (*high - *low) / 2.0F;
+    result.curvature = *high - 2.0F * height + *low;
+    result.has_slope = true;
+    if (std::abs(result.curvature) > kMostCurvature) result.curvature = 0.0F;
+  } else if (low || high) {
+    result.slope = high ? *high - height : height - *low;
+    result.has_slope = true;
+  }
+  return result;
+}
+
+// The axis along which the occupancies around the two cells change most.
+int steepest_axis(const float* cell, const float* neighbour,
+                  const std::array<std::ptrdiff_t, 3>& strides, float* change) {
+  int steepest = 0;
+  float most = -1.0F;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::ptrdiff_t step = strides[axis];
+    float difference = 0.0F;
+    for (const float* centre : {cell, neighbour}) {
+      difference += 2.0F * (centre[step] - centre[-step]);
+      for (int across = 0; across < 3; ++across) {
+        if (across == axis) continue;
+        const std::ptrdiff_t side = strides[across];
+        difference += centre[side + step] - centre[side - step];
+        difference += centre[step - side] - centre[-step - side];
+      }
+    }
+    if (std::abs(difference) > most) {
+      most = std::abs(difference);
+      steepest = axis;
+      *change = difference;
+    }
+  }
+  return steepest;
+}
+
+// The crossing as seen from one of the cells, on the way to the other: `along` leads there.
+std::optional<float> crossing_from(const float* cell, std::ptrdiff_t along, std::ptrdiff_t up,
+                                   const std::array<std::ptrdiff_t, 2>& across) {
+  const std::optional<float> height = column_height(cell, up);
+  if (!height) return std::nullopt;
+  const Profile first = profile(cell, across[0], up, *height);
+  const Profile second = profile(cell, across[1], up, *height);
+  // From the mean over the column to the height at its centre, above the cell's centre.
+  const float at_centre = *height - (first.curvature + second.curvature) / 24.0F - 0.5F;
+  if (along == up) return at_centre;
+  if (along == -up) return -at_centre;
+  const bool is_first = along == across[0] || along == -across[0];
+  const Profile& profile_along = is_first ? first : second;
+  if (!profile_along.has_slope) return std::nullopt;
+  const bool is_forward = along == across[0] || along == across[1];
+  const float slope = is_forward ? profile_along.slope : -profile_along.slope;
+  const float curvature = profile_along.curvature;
+  // Where at_centre + slope t + curvature t^2 / 2 is 0. The root near that of the line.
+  if (slope == 0.0F) return std::nullopt;
+  float t = -at_centre / slope;
+  for (int i = 0; i < 3; ++i) {
+    const float derivative = slope + curvature * t;
+    if (std::abs(derivative) < 0.25F * std::abs(slope)) return -at_centre / slope;
+    t -= (at_centre + slope * t + 0.5F * curvature * t * t) / derivative;
+  }
+  return t;
+}
+}  // namespace
+
+std::optional<float> height_crossing(const float* cell,
+                                     const std::array<std::ptrdiff_t, 3>& strides, int face) {
+  const int along_axis = face / 2;
+  const std::ptrdiff_t along = (face & 1) != 0 ? strides[along_axis] : -strides[along_axis];
+  const float* neighbour = cell + along;
+  float change = 0.0F;
+  const int axis = steepest_axis(cell, neighbour, strides, &change);
+  const std::ptrdiff_t up = change < 0.0F ? strides[axis] : -strides[axis];
+  const std::array<std::ptrdiff_t, 2> across = {strides[(axis + 1) % 3], strides[(axis + 2) % 3]};
+  std::optional<float> t = crossing_from(cell, along, up, across);
+  if (axis != along_axis && (!t || *t > 0.5F)) {
+    // The other cell is nearer.
+    const std::optional<float> back = crossing_from(neighbour, -along, up, across);
+    if (back) t = 1.0F - *back;
+  }
+  if (!t || !(*t >= -kSlack && *t <= 1.0F + kSlack)) return std::nullopt;
+  return t;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,26 @@
+// Where the surface that leaves the cells around theirs cuts the line between two cells' centres.
+//
+// Beyond the text, whose two samples cannot fix a plane in space. Along the axis that the surface
+// faces most, the occupancies of a column of cells, from full ones to empty ones, add up to the
+// mean height of the surface over the column. Means of five columns, a cross, give a quadratic:
+// exact for planes, and of fourth order on smooth surfaces where the line is such a column (height
+// functions of the volume-of-fluid literature, Cummins et al. 2005).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+namespace prefilter {
+
+/// Cells that may be read on all sides of the two.
+inline constexpr int kHeightReach = 7;
+
+/// The crossing between a cell, at `cell`, and its neighbour across a face (2 a for the low one
+/// across axis a, 2 a + 1 for the high one), as the distance from the cell's centre in [0, 1]; one
+/// of the two is at least 1/2. `strides` lead to the next cell along the axes. None where columns
+/// do not run from full to empty cells within reach: at thin parts, sharp corners and noise.
+std::optional<float> height_crossing(const float* cell,
+                                     const std::array<std::ptrdiff_t, 3>& strides, int face);
+
+}  // namespace prefilter

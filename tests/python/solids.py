@@ -1,0 +1,401 @@
+"""Solids for tests of voxels: meshes, and what is true of them by methods of their own.
+
+Nothing here calls the library, nor shares a method with it: occupancies are exact integrals of
+heights over columns of cells, and inside is where generalized winding numbers say so.
+"""
+
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "native/bench"))
+import meshes
+
+DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "meshes"
+
+
+@dataclass(frozen=True)
+class Solid:
+    """The arguments of prefilter.voxelize."""
+
+    positions: np.ndarray
+    triangles: np.ndarray
+
+    @property
+    def corners(self) -> np.ndarray:
+        return self.positions[self.triangles]
+
+    @property
+    def volume(self) -> float:
+        return mesh_volume(self.positions, self.triangles)
+
+    def transformed(self, matrix, offset=(0.0, 0.0, 0.0)) -> "Solid":
+        """Turned, scaled and moved; a mirror turns the inside out."""
+        return Solid(self.positions @ np.asarray(matrix, float).T + offset, self.triangles)
+
+    def flipped(self) -> "Solid":
+        return Solid(self.positions, self.triangles[:, ::-1])
+
+    def without(self, removed) -> "Solid":
+        return Solid(self.positions, np.delete(self.triangles, removed, axis=0))
+
+    def fitted(self, low, high) -> "Solid":
+        """Scaled evenly and moved so that it has its middle where the box has it, and fits in."""
+        low, high = np.asarray(low, float), np.asarray(high, float)
+        own_low, own_high = self.positions.min(axis=0), self.positions.max(axis=0)
+        scale = np.min((high - low) / (own_high - own_low))
+        middle = (own_low + own_high) / 2
+        return Solid((self.positions - middle) * scale + (low + high) / 2, self.triangles)
+
+
+def join(*solids: Solid) -> Solid:
+    starts = np.cumsum([0] + [len(s.positions) for s in solids[:-1]])
+    return Solid(
+        np.concatenate([s.positions for s in solids]),
+        np.concatenate([s.triangles + k for s, k in zip(solids, starts, strict=True)]),
+    )
+
+
+def load(name: str) -> Solid:
+    """One of the models gathered beside the checkout; skips the test where it is absent."""
+    path = DATA / name
+    if not path.exists():
+        pytest.skip(f"the model {name} is not there")
+    read = meshes.read(path)
+    return Solid(read.positions, read.triangles)
+
+
+def box(low=(0.0, 0.0, 0.0), high=(1.0, 1.0, 1.0)) -> Solid:
+    corners = np.array([[(i >> a) & 1 for a in range(3)] for i in range(8)], float)
+    quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    return Solid(np.asarray(low) + corners * np.subtract(high, low), np.array(triangles))
+
+
+def torus(major: float, minor: float, around: int, across: int) -> Solid:
+    u, v = np.meshgrid(
+        np.arange(around) * 2 * np.pi / around,
+        np.arange(across) * 2 * np.pi / across,
+        indexing="ij",
+    )
+    ring = major + minor * np.cos(v)
+    positions = np.stack([ring * np.cos(u), ring * np.sin(u), minor * np.sin(v)], axis=-1)
+    i, j = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
+    a, b = i * across + j, (i + 1) % around * across + j
+    c, d = (i + 1) % around * across + (j + 1) % across, i * across + (j + 1) % across
+    quads = np.stack([a, b, c, d], axis=-1).reshape(-1, 4)
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    return Solid(positions.reshape(-1, 3), triangles)
+
+
+def sphere(radius: float = 1.0, rounds: int = 4, center=(0.0, 0.0, 0.0)) -> Solid:
+    """An octahedron whose triangles are split into four, again and again."""
+    positions = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    points = np.array(positions, float)
+    triangles = np.array(
+        [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    )
+    for _ in range(rounds):
+        edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        unique, which = np.unique(edges, axis=0, return_inverse=True)
+        middles = points[unique].sum(axis=1)
+        middles /= np.linalg.norm(middles, axis=1, keepdims=True)
+        ab, bc, ca = (len(points) + which.reshape(-1, 3)).T
+        a, b, c = triangles.T
+        points = np.concatenate([points, middles])
+        triangles = np.concatenate(
+            [np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+        )
+    return Solid(points * radius + center, triangles)
+
+
+def crumpled(seed: int, rounds: int = 2, strength: float = 0.35) -> Solid:
+    """A closed surface without a symmetry, with a winding number of 1 inside and slanted slivers.
+
+    Each vertex of a sphere is moved along its ray.
+    """
+    random = np.random.default_rng(seed)
+    made = sphere(1.0, rounds)
+    moved = made.positions * (1 + strength * random.uniform(-1, 1, (len(made.positions), 1)))
+    turned = Solid(moved, made.triangles).transformed(random_rotation(seed))
+    return turned.transformed(0.31 * np.eye(3), random.uniform(0.45, 0.55, 3))
+
+
+def random_rotation(seed: int) -> np.ndarray:
+    rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
+    return rotation * np.linalg.det(rotation)
+
+
+def mesh_volume(positions: np.ndarray, triangles: np.ndarray) -> float:
+    """The volume that a closed surface holds."""
+    a, b, c = np.moveaxis(np.asarray(positions, float)[triangles], 1, 0)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+
+
+def pieces(corners: np.ndarray, low, high, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Triangles, (m, 3, 3), cut along the planes of n^3 cells of a box.
+
+    Returns the pieces in units of cells, as triangles, and the cell (3 integers) of each; cells
+    outside of the box get the nearest numbers below 0 or beyond n - 1.
+    """
+    low, high = np.asarray(low, float), np.asarray(high, float)
+    made = (np.asarray(corners, float) - low) * (n / (high - low))
+    for axis in range(3):
+        for plane in range(n + 1):
+            made = _split(made, axis, float(plane))
+    middles = made.mean(axis=1)
+    return made, np.clip(np.floor(middles), -1, n).astype(int)
+
+
+def _split(triangles: np.ndarray, axis: int, plane: float) -> np.ndarray:
+    """Cuts the triangles that a plane passes through, each into three."""
+    heights = triangles[:, :, axis] - plane
+    cut = (heights.min(axis=1) < 0) & (heights.max(axis=1) > 0)
+    if not cut.any():
+        return triangles
+    parts, heights = triangles[cut], heights[cut]
+    above = heights > 0
+    alone_above = above.sum(axis=1) == 1
+    # The corner that is by itself on its side comes first.
+    first = np.argmax(above == alone_above[:, None], axis=1)
+    order = (first[:, None] + np.arange(3)) % 3
+    rows = np.arange(len(parts))[:, None]
+    (a, b, c), (ha, hb, hc) = np.moveaxis(parts[rows, order], 1, 0), heights[rows, order].T
+    p = a + (b - a) * (ha / (ha - hb))[:, None]
+    q = a + (c - a) * (ha / (ha - hc))[:, None]
+    p[:, axis] = q[:, axis] = plane
+    made = [np.stack(t, axis=1) for t in ((a, p, q), (p, b, c), (p, c, q))]
+    return np.concatenate([triangles[~cut], *made])
+
+
+def occupancies(solid: Solid, low, high, n: int) -> np.ndarray:
+    """The mean winding number over each of the n^3 cells [x, y, z], exactly.
+
+    It is the integral, over each column of cells, of the heights of the surface in it: a piece
+    adds what is below it where it faces up, and takes it away where it faces down.
+    """
+    parts, cells = pieces(solid.corners, low, high, n)
+    a, b, c = np.moveaxis(parts, 1, 0)
+    up = 0.5 * np.cross(b - a, c - a)[:, 2]
+    height = parts[:, :, 2].mean(axis=1)
+    found = np.zeros((n, n, n + 1))  # The last one is for all that is above the box.
+    inside = ((cells[:, :2] >= 0) & (cells[:, :2] < n)).all(axis=1) & (cells[:, 2] >= 0)
+    x, y, z = cells[inside].T
+    np.add.at(found, (x, y, z), np.where(z < n, up[inside] * (height[inside] - z), 0.0))
+    whole = np.zeros_like(found)
+    np.add.at(whole, (x, y, z), up[inside])
+    below = np.cumsum(whole[..., ::-1], axis=2)[..., ::-1]
+    return (found[..., :n]) + below[..., 1:]
+
+
+def winding_numbers(solid: Solid, points: np.ndarray) -> np.ndarray:
+    """Generalized winding numbers (Jacobson et al. 2013), by the solid angle of every triangle."""
+    found, step = np.zeros(len(points)), max(1, 200_000 // max(1, len(solid.triangles)))
+    for start in range(0, len(points), step):
+        some = points[start : start + step]
+        found[start : start + step] = _solid_angles(solid.corners, some) / (4 * np.pi)
+    return found
+
+
+def _solid_angles(corners: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """The sum of the solid angles of triangles at each point, after Van Oosterom and Strackee.
+
+    Products of differences to a point are polynomials of it: sums over the triangles are products
+    of matrices. The origin is moved to the points, which keeps what cancels small.
+    """
+    middle = points.mean(axis=0)
+    p = points - middle
+    a, b, c = np.moveaxis(corners - middle, 1, 0)
+    ones = np.ones((len(p), 1))
+    squares = _rowdot(p, p)[:, None]
+
+    def product(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        return np.hstack([ones, squares, p]) @ np.vstack(
+            [_rowdot(u, v), np.ones(len(u)), -(u + v).T]
+        )
+
+    la, lb, lc = (np.sqrt(np.maximum(product(v, v), 0.0)) for v in (a, b, c))
+    area = np.cross(a, b) + np.cross(b, c) + np.cross(c, a)
+    volume = np.hstack([ones, p]) @ np.vstack([_rowdot(a, np.cross(b, c)), -area.T])
+    below = la * lb * lc + product(a, b) * lc + product(b, c) * la + product(c, a) * lb
+    return 2 * np.arctan2(volume, below).sum(axis=1)
+
+
+def _rowdot(u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    return np.einsum("ij,ij->i", u, v)
+
+
+class FarWinding:
+    """The same, but triangles far from a point count as a few clusters.
+
+    Of each cluster two terms of the expansion by Barill et al. (2018) count.
+    """
+
+    NEAR = 1.5  # Radii of a cluster within which its triangles count one by one.
+    TOGETHER = 64  # Points that share what is near and what is far.
+
+    def __init__(self, solid: Solid) -> None:
+        self._corners = solid.corners
+        clusters = max(4, round(np.sqrt(len(self._corners) / 75)))  # Along the longest side.
+        a, b, c = np.moveaxis(self._corners, 1, 0)
+        middles = self._corners.mean(axis=1)
+        areas = 0.5 * np.cross(b - a, c - a)
+        self._low = middles.min(axis=0)
+        self._size = max(np.ptp(middles, axis=0).max(), 1e-30)
+        keys = morton(middles, self._low, self._size / clusters)
+        _, which = np.unique(keys, return_inverse=True)
+        self._order = np.argsort(which, kind="stable")
+        self._starts = np.searchsorted(which[self._order], np.arange(which.max() + 2))
+
+        def summed(values: np.ndarray) -> np.ndarray:
+            return np.bincount(which, values)
+
+        weights = np.linalg.norm(areas, axis=1) + 1e-300
+        total = summed(weights)
+        self._centers = np.stack([summed(weights * middles[:, k]) / total for k in range(3)], 1)
+        offsets = middles - self._centers[which]
+        self._dipoles = np.stack([summed(areas[:, k]) for k in range(3)], 1)
+        second = [[summed(offsets[:, i] * areas[:, j]) for j in range(3)] for i in range(3)]
+        self._second = np.moveaxis(np.array(second), 2, 0)
+        reach = np.linalg.norm(self._corners - self._centers[which][:, None], axis=2).max(axis=1)
+        self._radii = np.zeros(len(self._centers))
+        np.maximum.at(self._radii, which, reach)
+
+    def __call__(self, points: np.ndarray) -> np.ndarray:
+        found = np.zeros(len(points))
+        along = np.argsort(morton(points, self._low, self._size / 256), kind="stable")
+        for start in range(0, len(points), self.TOGETHER):
+            which = along[start : start + self.TOGETHER]
+            found[which] = self._together(points[which])
+        return found
+
+    def _together(self, points: np.ndarray) -> np.ndarray:
+        middle = (points.min(axis=0) + points.max(axis=0)) / 2
+        reach = np.linalg.norm(points - middle, axis=1).max()
+        distance = np.linalg.norm(self._centers - middle, axis=1) - reach
+        is_near = distance < self.NEAR * self._radii
+        near = [self._order[self._starts[k] : self._starts[k + 1]] for k in np.flatnonzero(is_near)]
+        found = np.zeros(len(points))
+        if near:
+            found = _solid_angles(self._corners[np.concatenate(near)], points)
+        c, dipoles = self._centers[~is_near] - middle, self._dipoles[~is_near]
+        second, p = self._second[~is_near], points - middle
+        # With r from the point to the cluster: d . r and r . S r, as polynomials of the point.
+        first = _rowdot(c, dipoles)[None] - p @ dipoles.T
+        turned = np.einsum("kij,kj->ki", second + np.swapaxes(second, 1, 2), c)
+        pairs = (p[:, :, None] * p[:, None, :]).reshape(len(p), 9)
+        quadratic = (0.5 * _rowdot(c, turned))[None] - p @ turned.T
+        quadratic += pairs @ second.reshape(len(c), 9).T
+        square = _rowdot(p, p)[:, None] + _rowdot(c, c)[None] - 2 * p @ c.T
+        inverse = 1 / square
+        terms = first + np.einsum("kii->k", second)[None] - 3 * quadratic * inverse
+        found += (terms * inverse * np.sqrt(inverse)).sum(axis=1)
+        return found / (4 * np.pi)
+
+
+def morton(points: np.ndarray, low: np.ndarray, cell: float) -> np.ndarray:
+    """Where the cells that hold the points come along the Morton curve."""
+    cells = np.clip(np.floor((points - low) / cell), -512, 511).astype(int) + 512
+    return sum(((cells[:, a] >> bit) & 1) << (3 * bit + a) for bit in range(10) for a in range(3))
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A volume by random points, and its standard error."""
+
+    volume: float
+    error: float
+
+
+def estimated_volumes(solids: list[Solid], insides, low, high, *, n: int = 64) -> list[Estimate]:
+    """The volumes within a box where each of `insides` says so of the solids' winding numbers.
+
+    Each stratum has its own random points: two for each of the n^3 cells that may hold some of a
+    surface, one for the largest cells that cannot. So the estimate has no bias, and the error
+    comes from the cells at the surfaces.
+    """
+    low, high = np.asarray(low, float), np.asarray(high, float)
+    random = np.random.default_rng(1)
+    numbers = [FarWinding(solid) for solid in solids]
+    meets = np.zeros((n, n, n), bool)
+    for solid in solids:
+        meets |= touched_cells(solid.corners, low, high, n)
+    levels = [meets]
+    while len(levels[-1]) > 4:
+        m = len(levels[-1]) // 2
+        levels.append(levels[-1].reshape(m, 2, m, 2, m, 2).any(axis=(1, 3, 5)))
+    volumes, variances, parent = np.zeros(len(insides)), np.zeros(len(insides)), None
+    for level in reversed(levels):
+        m = len(level)
+        share = np.prod(high - low) / m**3
+        open_cells = np.ones_like(level) if parent is None else np.kron(parent, np.ones((2, 2, 2)))
+        parent = level
+
+        def sample(cells: np.ndarray, m: int = m) -> np.ndarray:
+            places = low + (cells + random.random(cells.shape)) / m * (high - low)
+            found = [number(places) for number in numbers]
+            return np.array([inside(*found) for inside in insides], float)
+
+        volumes += share * sample(np.argwhere((open_cells > 0) & ~level)).sum(axis=1)
+        if m == n:
+            first, second = (sample(np.argwhere(level)) for _ in range(2))
+            volumes += share * (first + second).sum(axis=1) / 2
+            variances = share**2 * ((first - second) ** 2).sum(axis=1) / 4
+    return [Estimate(*found) for found in zip(volumes, np.sqrt(variances), strict=True)]
+
+
+def touched_cells(corners: np.ndarray, low, high, n: int) -> np.ndarray:
+    """The n^3 cells that the boxes of triangles meet: all that triangles meet, and a few more."""
+    scaled = (corners - low) * (n / (high - low))
+    first, last = (np.floor(f).astype(int) for f in (scaled.min(axis=1), scaled.max(axis=1)))
+    within = ((last >= 0) & (first < n)).all(axis=1)
+    found = np.zeros((n, n, n), bool)
+    for (x, y, z), (p, q, r) in zip(np.maximum(first[within], 0), last[within], strict=True):
+        found[x : p + 1, y : q + 1, z : r + 1] = True
+    return found
+
+
+@dataclass(frozen=True)
+class SurfaceFaults:
+    """What keeps a surface from being a closed, oriented 2-manifold."""
+
+    open_or_crowded_edges: int
+    pinched_vertices: int
+    degenerate_triangles: int
+
+    @property
+    def none(self) -> bool:
+        return self == SurfaceFaults(0, 0, 0)
+
+
+def surface_faults(positions: np.ndarray, triangles: np.ndarray) -> SurfaceFaults:
+    """Each directed edge must have exactly one twin, and each vertex one fan of triangles."""
+    triangles = np.asarray(triangles, np.int64)
+    repeated = (triangles == np.roll(triangles, 1, axis=1)).any(axis=1)
+    a, b, c = np.moveaxis(np.asarray(positions, float)[triangles], 1, 0)
+    flat = np.linalg.norm(np.cross(b - a, c - a), axis=1) == 0
+    start, end = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    count = len(positions)
+    forward, backward = start * count + end, end * count + start
+    order = np.argsort(forward, kind="stable")
+    ranked = forward[order]
+    crowded = int((ranked[1:] == ranked[:-1]).sum())
+    place = np.searchsorted(ranked, backward)
+    found = (place < len(ranked)) & (ranked[np.minimum(place, len(ranked) - 1)] == backward)
+    bad = crowded + int((~found).sum())
+    pinched = 0
+    if bad == 0:
+        # Corner i, at the start of edge i, is followed around its vertex by the corner that the
+        # twin of the edge before it starts from. Fans are the cycles of that permutation.
+        corner = np.arange(len(start))
+        before = corner - corner % 3 + (corner + 2) % 3
+        step = order[place][before]
+        label = corner.copy()
+        for _ in range(int(np.ceil(np.log2(len(start) + 1)))):
+            label = np.minimum(label, label[step])
+            step = step[step]
+        pinched = len(np.unique(label)) - len(np.unique(start))
+    return SurfaceFaults(bad, pinched, int((repeated | flat).sum()))
