@@ -1,8 +1,8 @@
-"""Prefilter: mipmaps that know the mesh, baked in Blender."""
+"""Prefilter: mipmaps that know the mesh, and voxels of any mesh, in Blender."""
 
-from . import commands, operators, panels, settings, view
+from . import commands, operators, panels, settings, view, voxel_settings
 
-_PARTS = (settings, view, operators, panels, commands)
+_PARTS = (settings, voxel_settings, view, operators, panels, commands)
 
 
 def register() -> None:

@@ -37,6 +37,28 @@ def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     return found
 
 
+def corner_triangles(
+    mesh: bpy.types.Mesh,
+) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Returns the corners of the triangles that faces are cut into, (m, 3), and their faces."""
+    mesh.calc_loop_triangles()
+    count = len(mesh.loop_triangles)
+    corners = np.empty(3 * count, np.int32)
+    mesh.loop_triangles.foreach_get("loops", corners)
+    faces = np.empty(count, np.int32)
+    mesh.loop_triangle_polygons.foreach_get("value", faces)
+    return corners.reshape(-1, 3), faces
+
+
+def face_materials(mesh: bpy.types.Mesh, slots: int) -> NDArray[np.int32]:
+    """Returns the material slot of each face, of so many slots."""
+    materials = np.zeros(len(mesh.polygons), np.int32)
+    if "material_index" in mesh.attributes:
+        mesh.attributes["material_index"].data.foreach_get("value", materials)
+        np.clip(materials, 0, max(0, slots - 1), out=materials)
+    return materials
+
+
 def read_weights(
     object_name: str, mesh: bpy.types.Mesh, evaluated: bpy.types.Object | None, name: str
 ) -> Weights | None:

@@ -47,6 +47,25 @@ class StagedFile:
         self.temporary.unlink(missing_ok=True)
 
 
+@dataclass(frozen=True)
+class StagedFolder:
+    """A finished file with those that go with it, in a temporary folder beside its target."""
+
+    temporary: Path
+    target: Path
+
+    def commit(self) -> None:
+        """Moves the files into place, the target last, and removes the folder."""
+        written = sorted(self.temporary.iterdir(), key=lambda path: path.name == self.target.name)
+        for path in written:
+            StagedFile(path, self.target.with_name(path.name)).commit()
+        self.discard()
+
+    def discard(self) -> None:
+        """Removes the temporary folder."""
+        shutil.rmtree(self.temporary, ignore_errors=True)
+
+
 def check_target(path: str) -> Path:
     """Returns the absolute path of a texture file that can be written, symbolic links resolved.
 
@@ -94,6 +113,35 @@ def check_plain_target(path: str, ending: str) -> Path:
         raise ValueError(f"file '{path}': found extension '{target.suffix}'; {ending} is needed")
     _check_place(path, target)
     return target
+
+
+def check_output(path: str) -> Path:
+    """Returns the absolute path of a file of any kind that can be written.
+
+    Raises:
+        OSError: The folder is missing, or the file or its folder is read-only.
+    """
+    target = Path(os.path.realpath(path))
+    _check_place(path, target)
+    return target
+
+
+def stage_folder(target: Path, write: Callable[[Path], object]) -> StagedFolder:
+    """Has a function write a file under its own name, and others with it, beside its target.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    staged = StagedFolder(target.with_name(f".prefilter-{secrets.token_hex(4)}"), target)
+    staged.temporary.mkdir()
+    try:
+        write(staged.temporary / target.name)
+        if not (staged.temporary / target.name).exists():
+            raise OSError(f"file '{target}': Blender did not write it")
+    except BaseException:
+        staged.discard()
+        raise
+    return staged
 
 
 def stage_with(target: Path, write: Callable[[Path], object]) -> StagedFile:

@@ -278,7 +278,7 @@ class _Reader:
                 )
             else:
                 self.found.weighted = True
-        face_materials = _face_materials(mesh, len(materials))
+        face_materials = attributes.face_materials(mesh, len(materials))
         for use, indices in slots.items():
             layer = _uv_layer(mesh, use.uv_map)
             if layer is None:
@@ -343,14 +343,6 @@ def _materials(
     return materials
 
 
-def _face_materials(mesh: bpy.types.Mesh, slots: int) -> NDArray[np.int32]:
-    materials = np.zeros(len(mesh.polygons), np.int32)
-    if "material_index" in mesh.attributes:
-        mesh.attributes["material_index"].data.foreach_get("value", materials)
-        np.clip(materials, 0, max(0, slots - 1), out=materials)
-    return materials
-
-
 def _uv_layer(mesh: bpy.types.Mesh, name: str) -> bpy.types.MeshUVLoopLayer | None:
     if name:
         return mesh.uv_layers.get(name)
@@ -370,13 +362,8 @@ def _plain_surface(
     uvs: NDArray[np.float64],
     weights: attributes.Weights | None,
 ) -> prefilter.Surface:
-    mesh.calc_loop_triangles()
-    count = len(mesh.loop_triangles)
-    corners = np.empty(3 * count, np.int32)
-    mesh.loop_triangles.foreach_get("loops", corners)
-    faces = np.empty(count, np.int32)
-    mesh.loop_triangle_polygons.foreach_get("value", faces)
-    corners = corners.reshape(-1, 3)[chosen[faces]]
+    corners, faces = attributes.corner_triangles(mesh)
+    corners = corners[chosen[faces]]
     importance = None
     if weights is not None:
         importance = {

@@ -4,10 +4,12 @@ import bpy
 
 from .bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from .bake_texture_cache import PREFILTER_OT_bake_texture_cache
+from .boolean import PREFILTER_OT_boolean
 from .fill_unused import PREFILTER_OT_fill_unused
 from .plot_error import PREFILTER_OT_plot_error
 from .preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
 from .show_weights import PREFILTER_OT_show_source, PREFILTER_OT_show_weights
+from .voxelize import PREFILTER_OT_voxelize
 
 _CLASSES = (
     PREFILTER_OT_bake_mipmaps,
@@ -18,6 +20,8 @@ _CLASSES = (
     PREFILTER_OT_show_weights,
     PREFILTER_OT_show_source,
     PREFILTER_OT_fill_unused,
+    PREFILTER_OT_voxelize,
+    PREFILTER_OT_boolean,
 )
 
 register, unregister = bpy.utils.register_classes_factory(_CLASSES)

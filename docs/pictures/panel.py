@@ -2,8 +2,9 @@
 
 usage: python3 panel.py TARGET.png        (outside of Blender: starts Xvfb and Blender)
 
-TARGET is named after what it shows: panel.png (the bake), preview.png (a level, with the wipe) or
-weights.png (the weights of texels, with their legend).
+TARGET is named after what it shows: panel.png (the bake), preview.png (a level, with the wipe),
+weights.png (the weights of texels, with their legend) or voxelize.png (a mesh with a hole, and
+voxelized, beside the settings).
 """
 
 import os
@@ -127,7 +128,75 @@ def open_panel(panel: type) -> None:
         bpy.utils.register_class(other)
 
 
+def show_voxels() -> None:
+    """Inside Blender: a leaky monkey beside its voxelized copy, with the panels under Remesh."""
+    import bmesh
+    import bpy
+    from mathutils import Euler
+
+    bpy.context.preferences.view.show_splash = False
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    for x in (1.4, -1.4):
+        bpy.ops.mesh.primitive_monkey_add(location=(x, 0.0, 0.0))
+        monkey = bpy.context.object
+        monkey.modifiers.new("Subdivision", "SUBSURF").levels = 3
+        bpy.ops.object.modifier_apply(modifier="Subdivision")
+        bpy.ops.object.shade_smooth()
+        mesh = bmesh.new()
+        mesh.from_mesh(monkey.data)
+        chosen = np.random.default_rng(1).random(len(mesh.faces)) < 0.02
+        holes = [face for face, is_hole in zip(mesh.faces, chosen, strict=True) if is_hole]
+        bmesh.ops.delete(mesh, geom=holes, context="FACES")
+        mesh.to_mesh(monkey.data)
+        mesh.free()
+    for other in bpy.data.objects:
+        other.select_set(other != monkey)
+    bpy.ops.prefilter.voxelize(depth=8)
+    bpy.context.view_layer.objects.active = bpy.context.selected_objects[0]
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    for panel in [
+        kind
+        for kind in bpy.types.Panel.__subclasses__()
+        if kind.bl_rna.identifier.startswith("DATA_PT_") and kind.is_registered
+    ]:
+        if "remesh" not in panel.bl_rna.identifier:
+            bpy.utils.unregister_class(panel)
+    names = ("DATA_PT_remesh", "PREFILTER_PT_voxelize", "PREFILTER_PT_boolean")
+    panels = [getattr(bpy.types, name) for name in names]
+    for panel in reversed(panels):
+        bpy.utils.unregister_class(panel)
+    for panel in panels:
+        panel.bl_options = set()
+        bpy.utils.register_class(panel)
+
+    def arrange() -> None:
+        with bpy.context.temp_override(window=window, area=area):
+            bpy.ops.screen.area_split(direction="VERTICAL", factor=0.62)
+        parts = [part for part in window.screen.areas if part.type == "VIEW_3D"]
+        left, right = sorted(parts, key=lambda part: part.x)
+        right.type = "PROPERTIES"
+        left.spaces.active.overlay.show_overlays = False
+        left.spaces.active.shading.light = "MATCAP"
+        view = left.spaces.active.region_3d
+        view.view_rotation = Euler((1.0, 0.0, 0.0)).to_quaternion()
+        view.view_location, view.view_distance = (0.0, 0.0, 0.0), 5.5
+        view.view_perspective = "ORTHO"
+
+        def show_data() -> None:  # Once the editor is drawn, and knows what it can show.
+            right.spaces.active.context = "DATA"
+            bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
+
+        bpy.app.timers.register(show_data, first_interval=2.0)
+
+    bpy.app.timers.register(arrange, first_interval=2.0)
+
+
 if "bpy" in sys.modules:
-    show_panel()
+    if sys.argv[-1] == "voxelize":
+        show_voxels()
+    else:
+        show_panel()
 else:
     main(Path(sys.argv[1]))

@@ -1,8 +1,27 @@
 """The add-on comes and goes without a trace."""
 
+import dataclasses
+
 import addon_utils
 import bpy
+import pytest
 from conftest import PACKAGE
+
+OPERATORS = ("PREFILTER_OT_voxelize", "PREFILTER_OT_boolean")
+PANELS = ("PREFILTER_PT_voxelize", "PREFILTER_PT_boolean")
+
+
+def test_voxels_come_and_go():
+    for is_there in (True, False, True):
+        for name in (*OPERATORS, *PANELS):
+            assert hasattr(bpy.types, name) == is_there
+        for name in ("prefilter_voxelize", "prefilter_boolean"):
+            assert hasattr(bpy.types.Scene, name) == is_there
+        if is_there:
+            addon_utils.disable(PACKAGE, default_set=True)
+        else:
+            assert addon_utils.enable(PACKAGE, default_set=True) is not None
+    assert addon_utils.enable(PACKAGE, default_set=True) is not None
 
 
 def test_unregister_is_symmetric():
@@ -28,3 +47,13 @@ def test_settings_of_scene_operator_and_bake_agree(addon):
     for name in addon("settings").BakeProperties.__annotations__:
         assert getattr(scene, name) == getattr(defaults, name)
         assert operator[name].description
+
+
+@pytest.mark.parametrize("name", ["voxelize", "boolean"])
+def test_settings_of_voxels_agree(addon, name):
+    defaults = getattr(addon("voxel_choices"), f"{name.capitalize()}Settings")()
+    scene = getattr(bpy.context.scene, f"prefilter_{name}").to_settings()
+    operator = getattr(bpy.ops.prefilter, name).get_rna_type().properties
+    for field in dataclasses.fields(defaults):
+        assert getattr(scene, field.name) == pytest.approx(getattr(defaults, field.name))
+        assert field.name == "threads" or operator[field.name].description

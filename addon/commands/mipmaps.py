@@ -1,11 +1,11 @@
-"""`blender --background --command prefilter ...`: the operators without a window."""
+"""The commands `bake`, `plot` and `bake-cache`."""
 
 import argparse
 import math
 import os
 import re
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -13,31 +13,24 @@ from typing import Any
 
 import bpy
 
-from . import bake, choices, texture_cache
-from .bridge import engine_files, files, images, meshes
-from .choices import Choice
-from .view import errors, figure
-from .wording import listed
-
-_PROGRAM = "blender --background --command prefilter"
+from .. import bake, choices, texture_cache
+from ..bridge import engine_files, files, images, meshes
+from ..view import errors, figure
+from ..wording import listed
+from . import parts
 
 _BAKE_HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
 _PLOT_HELP = "plot the error of filters over the mip value, on the meshes that use an image"
 
 
-def _table(title: str, options: dict[str, Choice]) -> str:
-    rows = (f"  {key:<18}{choice.description}" for key, choice in options.items())
-    return "\n".join([f"{title}:", *rows])
-
-
 _TABLES = (
-    _table("filters", choices.FILTERS),
-    _table("wrap modes", choices.WRAPS | choices.WRAPS_V),
-    _table("value ranges", choices.BOUNDS),
-    _table("readers", choices.READERS),
-    _table("contents", choices.CONTENTS),
+    parts.table("filters", choices.FILTERS),
+    parts.table("wrap modes", choices.WRAPS | choices.WRAPS_V),
+    parts.table("value ranges", choices.BOUNDS),
+    parts.table("readers", choices.READERS),
+    parts.table("contents", choices.CONTENTS),
 )
-_FORMAT_TABLE = _table("texture formats, for .dds and .ktx2", choices.TEXTURE_FORMATS)
+_FORMAT_TABLE = parts.table("texture formats, for .dds and .ktx2", choices.TEXTURE_FORMATS)
 _CHOSEN = {
     "filter": (choices.FILTERS, "FILTER", "how a texel of a level is made"),
     "wrap": (choices.WRAPS, "MODE", "what lies outside of the image along u"),
@@ -79,74 +72,23 @@ its cache file anew, and it has to be baked again. Needs Blender 5.2 LTS or late
 example:
   prefilter bake-cache scene.blend --save"""
 
-_IMPORTERS: dict[str, Callable[[str], Any]] = {
-    ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
-    ".gltf": lambda path: bpy.ops.import_scene.gltf(filepath=path),
-    ".obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
-}
-_EXTENSIONS = (".blend", *_IMPORTERS)
 
-_handles: list[object] = []
-
-
-def register() -> None:
-    """Makes the command known to Blender's command line."""
-    _handles.append(bpy.utils.register_cli_command("prefilter", run))
-
-
-def unregister() -> None:
-    """Takes the command back."""
-    while _handles:
-        bpy.utils.unregister_cli_command(_handles.pop())
-
-
-def run(arguments: Sequence[str]) -> int:
-    """Runs `prefilter ARGUMENTS`.
-
-    Returns:
-        The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments.
-    """
-    try:
-        options = _parser().parse_args(arguments)
-        options.execute(options)
-    except SystemExit as end:
-        return end.code if isinstance(end.code, int) else 0
-    except bake.FAILURES as error:
-        print(f"prefilter: error: {error}", file=sys.stderr)
-        return 1
-    return 0
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog=_PROGRAM, description="Filters images for the surfaces that wear them."
-    )
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+def add(commands: Any) -> None:
+    """Adds the commands."""
     _add_bake(commands)
     _add_plot(commands)
     _add_bake_cache(commands)
-    return parser
-
-
-def _add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
-    return commands.add_parser(
-        name,
-        help=purpose,
-        description=f"{purpose[0].upper()}{purpose[1:]}.",
-        epilog="\n\n".join(notes),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
 
 
 def _add_bake(commands: Any) -> None:
-    parser = _add_command(commands, "bake", _BAKE_HELP, *_TABLES, _FORMAT_TABLE, _BAKE_NOTES)
+    parser = parts.add_command(commands, "bake", _BAKE_HELP, *_TABLES, _FORMAT_TABLE, _BAKE_NOTES)
     _add_scene(parser)
     defaults = choices.Settings()
     _add_choices(parser, *_CHOSEN)
     parser.add_argument(
         "--levels",
         metavar="N",
-        type=_count,
+        type=parts.count,
         default=defaults.levels,
         help="how many levels to make, the image itself included; 0 makes all (default: 0)",
     )
@@ -170,7 +112,7 @@ def _add_bake(commands: Any) -> None:
         default="",
         help="a file of the roughness to write, like --output",
     )
-    _add_threads(parser)
+    parts.add_threads(parser)
     parser.add_argument(
         "--importance",
         metavar="NAME",
@@ -212,16 +154,6 @@ def _add_bake(commands: Any) -> None:
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
 
-def _add_threads(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--threads",
-        metavar="N",
-        type=_count,
-        default=choices.Settings.threads,
-        help="how many threads to use; 0 uses all (default: 0)",
-    )
-
-
 def _add_scene(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a .blend, .glb, .gltf or .obj file")
     parser.add_argument(
@@ -254,7 +186,7 @@ def _add_choices(parser: argparse.ArgumentParser, *flags: str) -> None:
 
 
 def _add_plot(commands: Any) -> None:
-    parser = _add_command(commands, "plot", _PLOT_HELP, *_TABLES, _PLOT_NOTES)
+    parser = parts.add_command(commands, "plot", _PLOT_HELP, *_TABLES, _PLOT_NOTES)
     _add_scene(parser)
     parser.add_argument(
         "--filters",
@@ -273,12 +205,12 @@ def _add_plot(commands: Any) -> None:
 
 
 def _add_bake_cache(commands: Any) -> None:
-    parser = _add_command(commands, "bake-cache", _CACHE_HELP, _CACHE_NOTES)
+    parser = parts.add_command(commands, "bake-cache", _CACHE_HELP, _CACHE_NOTES)
     parser.add_argument("file", metavar="FILE", help="a .blend file")
     parser.add_argument(
         "--scene", metavar="NAME", help="the scene that is rendered (default: the active one)"
     )
-    _add_threads(parser)
+    parts.add_threads(parser)
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
     )
@@ -290,7 +222,7 @@ def _bake_cache(options: argparse.Namespace) -> None:
     if extension != ".blend":
         options.usage_error(f"FILE: found '{options.file}'; a .blend file is needed")
     path = os.path.abspath(options.file)
-    _load(path, extension)
+    parts.load(path, extension)
     if options.save:
         files.check_writable(Path(path))
     scene = bpy.context.scene if options.scene is None else bpy.data.scenes.get(options.scene)
@@ -298,7 +230,7 @@ def _bake_cache(options: argparse.Namespace) -> None:
         known = listed(other.name for other in bpy.data.scenes)
         raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {known}")
     bpy.context.window.scene = scene
-    progress = _ProgressLine()
+    progress = parts.ProgressLine()
     try:
         outcome = texture_cache.bake(
             scene,
@@ -309,17 +241,10 @@ def _bake_cache(options: argparse.Namespace) -> None:
     finally:
         progress.end()
     if options.save:
-        _save(path)
+        parts.save(path)
     for warning in outcome.warnings:
         print(f"prefilter: warning: {warning}", file=sys.stderr)
     print(outcome.summary)
-
-
-def _count(text: str) -> int:
-    value = int(text) if text.isdecimal() else -1
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"found '{text}'; a number from 0 up is needed")
-    return value
 
 
 def _weight(text: str) -> float:
@@ -351,15 +276,8 @@ def _alpha(text: str) -> float:
     return value
 
 
-def _checked_extension(options: argparse.Namespace) -> str:
-    extension = os.path.splitext(options.file)[1].lower()
-    if extension not in _EXTENSIONS:
-        options.usage_error(f"FILE: found '{options.file}'; allowed are {', '.join(_EXTENSIONS)}")
-    return extension
-
-
 def _plot(options: argparse.Namespace) -> None:
-    extension = _checked_extension(options)
+    extension = parts.checked_extension(options)
     if not options.output and not options.table:
         options.usage_error("nothing to write: give --output FILE or --table FILE")
     targets = [
@@ -367,7 +285,7 @@ def _plot(options: argparse.Namespace) -> None:
         for path, ending in ((options.output, ".png"), (options.table, ".csv"))
         if path
     ]
-    objects = _chosen(_load(os.path.abspath(options.file), extension), options.object)
+    objects = parts.chosen(parts.load(os.path.abspath(options.file), extension), options.object)
     image, is_picture = _image(options.image, objects, "auto")
     images.check_untiled(image)
     filters = list(dict.fromkeys(options.filters or errors.default_filters(options.reader)))
@@ -381,7 +299,7 @@ def _plot(options: argparse.Namespace) -> None:
         all_faces=is_picture,
         needs_surface=True,
     )
-    progress = _ProgressLine()
+    progress = parts.ProgressLine()
     try:
         curves = errors.measure(source, filters, progress)
     finally:
@@ -405,7 +323,7 @@ def _plot(options: argparse.Namespace) -> None:
 
 
 def _bake(options: argparse.Namespace) -> None:
-    extension = _checked_extension(options)
+    extension = parts.checked_extension(options)
     if options.save and extension != ".blend":
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
     if not options.save and not options.output:
@@ -416,7 +334,7 @@ def _bake(options: argparse.Namespace) -> None:
             f"--texture-format: found '{options.texture_format}', which is for .dds and .ktx2 files"
         )
     path = os.path.abspath(options.file)
-    objects = _chosen(_load(path, extension), options.object)
+    objects = parts.chosen(parts.load(path, extension), options.object)
     if options.save:
         files.check_writable(Path(path))
     depsgraph = bpy.context.evaluated_depsgraph_get()
@@ -446,7 +364,7 @@ def _bake(options: argparse.Namespace) -> None:
         settings = replace(
             settings, use_frames=True, frame_start=start, frame_end=end, frame_step=step
         )
-    progress = _ProgressLine()
+    progress = parts.ProgressLine()
     try:
         outcome = bake.bake(
             image, objects, settings, depsgraph, all_faces=is_picture, progress=progress
@@ -454,46 +372,12 @@ def _bake(options: argparse.Namespace) -> None:
     finally:
         progress.end()
     if options.save:
-        _save(path)
+        parts.save(path)
     for warning in outcome.warnings:
         print(f"prefilter: warning: {warning}", file=sys.stderr)
     for note in outcome.notes:
         print(note)
     print(outcome.summary)
-
-
-def _load(path: str, extension: str) -> list[bpy.types.Object]:
-    """Loads a file and returns its mesh objects and collection instances."""
-    if not os.path.isfile(path):
-        raise OSError(f"FILE: there is no file '{path}'")
-    before: set[bpy.types.Object] = set()
-    try:
-        if extension == ".blend":
-            bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
-        else:
-            before = set(bpy.data.objects)
-            _IMPORTERS[extension](path)
-    except RuntimeError as error:
-        raise OSError(f"FILE: cannot load '{path}': {str(error).strip()}") from error
-    objects = bpy.context.view_layer.objects
-    loaded = [obj for obj in objects if obj not in before and _has_surface(obj)]
-    if not loaded:
-        raise ValueError(f"FILE: found no mesh object in '{path}'")
-    return loaded
-
-
-def _has_surface(obj: bpy.types.Object) -> bool:
-    return obj.type == "MESH" or obj.instance_type == "COLLECTION"
-
-
-def _chosen(objects: list[bpy.types.Object], names: Sequence[str]) -> list[bpy.types.Object]:
-    by_name = {obj.name: obj for obj in objects}
-    for name in names:
-        if name not in by_name:
-            raise ValueError(
-                f"--object: found no mesh named '{name}'; the file has {listed(by_name)}"
-            )
-    return [by_name[name] for name in names] if names else objects
 
 
 def _image(
@@ -532,30 +416,3 @@ def _only_image(objects: Sequence[bpy.types.Object]) -> bpy.types.Image:
         return used[0]
     found = listed(image.name for image in used) or "none"
     raise ValueError(f"--image: needed, as the meshes use {found}")
-
-
-def _save(path: str) -> None:
-    try:
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-    except RuntimeError as error:
-        raise OSError(f"--save: cannot write '{path}': {str(error).strip()}") from error
-
-
-class _ProgressLine:
-    """Shows progress on stderr: one line that changes on a terminal, else a line each quarter."""
-
-    def __init__(self) -> None:
-        self._step = 1 if sys.stderr.isatty() else 25
-        self._shown = -1
-
-    def __call__(self, fraction: float) -> bool:
-        percent = int(100 * fraction) // self._step * self._step
-        if percent > self._shown:
-            self._shown = percent
-            line = f"prefilter: {percent:3d} %"
-            print(line, end="\r" if self._step == 1 else "\n", file=sys.stderr, flush=True)
-        return True
-
-    def end(self) -> None:
-        if self._step == 1 and self._shown >= 0:
-            print(file=sys.stderr)

@@ -1,0 +1,138 @@
+"""Triangles to Blender: meshes with materials and colours, and the objects that show them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .solids import SOLID_TYPES, MaterialKey
+
+
+@dataclass(frozen=True)
+class Contour:
+    """A surface in the space of its object.
+
+    Attributes:
+        positions: (n, 3) float32.
+        triangles: (m, 3) int32.
+        materials: What the indices mean.
+        face_materials: (m,) int32, or None where there is one material or none.
+        colors: By name: the type of the attribute, and (n, 4) scene-linear values.
+        active_color: The name of the active colour attribute.
+        render_color: The name of the one that renders use.
+        sharp_angle: Edges with a greater angle are sharp; None for flat faces.
+    """
+
+    positions: NDArray[np.float32]
+    triangles: NDArray[np.int32]
+    materials: Sequence[MaterialKey | None] = ()
+    face_materials: NDArray[np.int32] | None = None
+    colors: dict[str, tuple[str, NDArray[np.float32]]] = field(default_factory=dict)
+    active_color: str = ""
+    render_color: str = ""
+    sharp_angle: float | None = None
+
+
+def is_editable(obj: bpy.types.Object) -> bool:
+    """Returns whether an object's mesh can be replaced."""
+    return obj.library is None and obj.override_library is None
+
+
+def check_editable(obj: bpy.types.Object) -> None:
+    """Raises ValueError where an object's mesh cannot be replaced."""
+    if obj.library is not None:
+        raise ValueError(
+            f"object '{obj.name}' is linked from '{obj.library.filepath}'; make it local first"
+        )
+    if obj.override_library is not None:
+        raise ValueError(f"object '{obj.name}' is a library override; make it local first")
+
+
+def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
+    """Makes a mesh datablock of a surface."""
+    mesh = bpy.data.meshes.new(name)
+    count = len(contour.triangles)
+    mesh.vertices.add(len(contour.positions))
+    mesh.loops.add(3 * count)
+    mesh.polygons.add(count)
+    mesh.attributes["position"].data.foreach_set(
+        "vector", np.ascontiguousarray(contour.positions, np.float32).ravel()
+    )
+    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
+    mesh.loops.foreach_set(
+        "vertex_index", np.ascontiguousarray(contour.triangles, np.int32).ravel()
+    )
+    for key in contour.materials:
+        mesh.materials.append(key.find() if key is not None else None)
+    if contour.face_materials is not None:
+        mesh.polygons.foreach_set("material_index", contour.face_materials)
+    for color_name, (data_type, values) in contour.colors.items():
+        attribute = mesh.color_attributes.new(color_name, data_type, "POINT")
+        attribute.data.foreach_set("color", np.ascontiguousarray(values, np.float32).ravel())
+    mesh.update(calc_edges=True)
+    if contour.sharp_angle is None:
+        mesh.shade_flat()
+    else:
+        mesh.shade_smooth()
+        mesh.set_sharp_from_angle(angle=contour.sharp_angle)
+    colors = mesh.color_attributes
+    if contour.active_color in colors:
+        colors.active_color_name = contour.active_color
+    if contour.render_color in colors:
+        colors.render_color_index = colors.find(contour.render_color)
+    return mesh
+
+
+def show_contour(obj: bpy.types.Object, contour: Contour) -> bpy.types.Object:
+    """Has an object show a surface, and returns the object that does.
+
+    A mesh object gets a mesh of its own, and loses its modifiers and instances, which the surface
+    has in it. Any other object is hidden, and a new mesh object takes its place.
+    """
+    if obj.type == "MESH":
+        _replace_mesh(obj, contour)
+        return obj
+    made = new_object_beside(obj, new_mesh(obj.name, contour), ".voxels")
+    obj.hide_set(True)
+    obj.hide_render = True
+    return made
+
+
+def new_object_beside(obj: bpy.types.Object, data: bpy.types.ID, suffix: str) -> bpy.types.Object:
+    """Adds an object where another one is, in its collections, selected in its stead."""
+    made = bpy.data.objects.new(f"{obj.name}{suffix}", data)
+    scene_collections = {
+        bpy.context.scene.collection,
+        *bpy.context.scene.collection.children_recursive,
+    }
+    for collection in obj.users_collection:
+        if collection in scene_collections and collection.library is None:
+            collection.objects.link(made)
+    if not made.users_collection:
+        root.objects.link(made)
+    made.matrix_world = obj.matrix_world
+    made.select_set(True)
+    layer = bpy.context.view_layer.objects
+    if layer.active == obj:
+        layer.active = made
+    obj.select_set(False)
+    return made
+
+
+def is_solid(obj: bpy.types.Object) -> bool:
+    """Returns whether an object may show something that has an inside."""
+    return obj.type in SOLID_TYPES or (obj.type == "EMPTY" and obj.is_instancer)
+
+
+def _replace_mesh(obj: bpy.types.Object, contour: Contour) -> None:
+    old = obj.data
+    mesh = new_mesh(old.name, contour)
+    obj.modifiers.clear()
+    obj.instance_type = "NONE"
+    obj.data = mesh
+    if old.users == 0 and old.library is None:
+        name = old.name
+        bpy.data.meshes.remove(old)
+        mesh.name = name

@@ -1,0 +1,23 @@
+"""Panels, menus and modal operators of voxels, in a window that nobody sees."""
+
+import json
+from pathlib import Path
+
+SESSION = Path(__file__).with_name("voxel_session.py")
+
+
+def test_panels_and_modal_operators(in_window, tmp_path):
+    result = tmp_path / "result.json"
+    in_window(SESSION, result)
+    found = json.loads(result.read_text())
+    vertices = 642
+    assert found["started"] == ["RUNNING_MODAL"]
+    assert not found["polls_alone"]
+    assert not found["polls_while_running"]
+    assert found["closed"]
+    assert found["after"] != vertices
+    assert found["undone"] == vertices
+    assert found["cancelled"] == vertices
+    assert found["without_operand"] == vertices
+    assert found["polls_in_next_file"]
+    assert found["in_next_file"] == {"Next": 8}

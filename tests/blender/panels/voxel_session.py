@@ -1,0 +1,101 @@
+"""Runs in a Blender with a window: draws panels and menus, and voxelizes through the operators.
+
+One run ends well, one is cancelled by Esc, one is for an object that goes meanwhile, and one ends
+by loading another file.
+
+Usage: blender --factory-startup --enable-event-simulate --python voxel_session.py -- RESULT.json
+"""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import addon_utils
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import bodies
+from window import play, until
+
+RESULT = Path(sys.argv[sys.argv.index("--") + 1])
+
+
+def session() -> Iterator[None]:
+    """Yields whenever Blender should draw and handle events before going on."""
+    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
+    clear()
+    bodies.sphere("Ball", subdivisions=4)
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    properties = next(area for area in window.screen.areas if area.type == "PROPERTIES")
+    properties.spaces.active.context = "DATA"
+    override = {"window": window, "area": area, "region": region}
+    yield
+    for name in ("PREFILTER_PT_voxelize", "PREFILTER_PT_boolean"):
+        with bpy.context.temp_override(**override):
+            bpy.ops.wm.call_panel(name=name, keep_open=True)
+        yield
+        window.event_simulate(type="ESC", value="PRESS")
+        yield
+    for name in ("VIEW3D_MT_object", "VIEW3D_MT_object_convert"):
+        with bpy.context.temp_override(**override):
+            bpy.ops.wm.call_menu(name=name)
+        yield
+        window.event_simulate(type="ESC", value="PRESS")
+        yield
+
+    found = {}
+    bpy.ops.ed.undo_push(message="before")
+    with bpy.context.temp_override(**override):
+        found["polls_alone"] = bpy.ops.prefilter.boolean.poll()
+        found["started"] = list(bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=6))
+        found["polls_while_running"] = bpy.ops.prefilter.voxelize.poll()
+    yield from until(bpy.ops.prefilter.voxelize.poll)
+    ball = bpy.data.objects["Ball"]
+    found["closed"] = bodies.is_closed(ball)
+    found["after"] = len(ball.data.vertices)
+    bpy.ops.ed.undo()
+    yield
+    found["undone"] = len(bpy.data.objects["Ball"].data.vertices)
+
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=9)
+    window.event_simulate(type="ESC", value="PRESS")
+    yield from until(bpy.ops.prefilter.voxelize.poll)
+    found["cancelled"] = len(bpy.data.objects["Ball"].data.vertices)
+
+    bodies.cube("Goes", location=(0, 0, 5))
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.boolean("INVOKE_DEFAULT", operation="union", depth=5)
+    bpy.data.objects.remove(bpy.data.objects["Goes"])
+    yield from until(lambda: not running())
+    found["without_operand"] = len(bpy.data.objects["Ball"].data.vertices)
+
+    bpy.data.objects["Ball"].select_set(True)
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=9)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    yield
+    bodies.cube("Next")
+    yield
+    found["polls_in_next_file"] = bpy.ops.prefilter.voxelize.poll()
+    found["in_next_file"] = {obj.name: len(obj.data.vertices) for obj in bpy.data.objects}
+    RESULT.write_text(json.dumps(found))
+
+
+def running() -> bool:
+    """Returns whether an operator works."""
+    operators = bpy.context.window_manager.windows[0].modal_operators
+    return any(operator.bl_idname.startswith("PREFILTER_OT") for operator in operators)
+
+
+def clear() -> None:
+    """Removes the objects of the file that Blender starts with."""
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+
+
+play(session())

@@ -1,0 +1,161 @@
+"""The commands `voxelize` and `boolean`, in a Blender of their own."""
+
+import bodies
+import bpy
+import pytest
+from command_line import assert_fails, run
+
+
+@pytest.fixture
+def sphere(tmp_path):
+    """Writes an open sphere, and returns its file and its volume."""
+    ball = bodies.sphere("Ball")
+    bodies.without_faces(ball, 2)
+    path = tmp_path / "ball.ply"
+    for obj in bpy.context.scene.objects:
+        obj.select_set(obj == ball)
+    bpy.ops.wm.ply_export(filepath=str(path), export_selected_objects=True)
+    return path, bodies.volume(ball)
+
+
+@pytest.fixture
+def blend(tmp_path):
+    """Saves a .blend file with two cubes of volume 8 that overlap, and one that is hidden."""
+    bodies.cube("Body")
+    bodies.cube("Hole", location=(1, 0, 0))
+    bodies.cube("Hidden", location=(0, 5, 0)).hide_set(True)
+    path = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+IMPORTERS = {
+    ".obj": "wm.obj_import",
+    ".ply": "wm.ply_import",
+    ".stl": "wm.stl_import",
+    ".glb": "import_scene.gltf",
+    ".gltf": "import_scene.gltf",
+    ".fbx": "import_scene.fbx",
+}
+
+
+def loaded(path):
+    """Returns the mesh objects of a file."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    if path.suffix == ".blend":
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+    else:
+        module, name = IMPORTERS[path.suffix].split(".")
+        getattr(getattr(bpy.ops, module), name)(filepath=str(path))
+    bpy.context.view_layer.update()
+    return {obj.name: obj for obj in bpy.data.objects if obj.type == "MESH"}
+
+
+@pytest.mark.parametrize("command", ["voxelize", "boolean"])
+def test_help(command):
+    result = run(command, "--help")
+    assert result.returncode == 0
+    assert result.stdout.startswith(f"usage: blender --background --command prefilter {command}")
+    for word in ("--depth", "--voxel-size", "--interpolant", "--threads", "plane", "examples:"):
+        assert word in result.stdout
+    assert command in run("--help").stdout
+
+
+@pytest.mark.parametrize("extension", IMPORTERS)
+def test_formats(sphere, tmp_path, extension):
+    path, volume = sphere
+    target = tmp_path / f"out{extension}"
+    result = run("voxelize", path, target, "--depth", 5)
+    assert result.returncode == 0, result.stderr
+    assert "Voxelized 'ball' in 32³ cells" in result.stdout
+    assert "open edges; the result is closed" in result.stdout
+    assert "100 %" in result.stderr
+    left = {"ball.ply", target.name, "out.mtl", "out.bin"}
+    assert {file.name for file in tmp_path.iterdir()} <= left
+    (made,) = loaded(target).values()
+    bodies.welded(made)
+    assert bodies.is_closed(made)
+    assert bodies.volume(made) == pytest.approx(volume, rel=0.05)
+
+
+def test_blend_in_place(blend):
+    result = run("voxelize", blend, blend, "--object", "Hole", "--voxel-size", 0.1)
+    assert result.returncode == 0, result.stderr
+    assert "'Hole' in 32³ cells of 10 cm" in result.stdout
+    objects = loaded(blend)
+    assert len(objects["Body"].data.vertices) == 8
+    assert bodies.is_closed(objects["Hole"])
+    assert bodies.volume(objects["Hole"]) == pytest.approx(8, rel=0.05)
+
+
+def test_all_visible_objects(blend, tmp_path):
+    result = run("voxelize", blend.name, "out.glb", "--depth", 4, cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "Voxelized 2 objects" in result.stdout
+    assert set(loaded(tmp_path / "out.glb")) == {"Body", "Hole"}
+
+
+@pytest.mark.parametrize(
+    ("operation", "volume"), [("difference", 4), ("union", 12), ("intersection", 4)]
+)
+def test_boolean_of_objects(blend, tmp_path, operation, volume):
+    operands = ("--object", "Body", "--object", "Hole")
+    target = tmp_path / "out.ply"
+    result = run("boolean", blend, *operands, "--operation", operation, "-o", target, "--depth", 6)
+    assert result.returncode == 0, result.stderr
+    (made,) = loaded(target).values()
+    assert bodies.volume(made) == pytest.approx(volume, rel=0.05)
+
+
+def test_boolean_of_files(blend, sphere, tmp_path):
+    path, volume = sphere
+    target = tmp_path / "out.stl"
+    result = run("boolean", blend, path, "--operation", "intersection", "-o", target)
+    assert result.returncode == 0, result.stderr
+    assert "Intersection with 'ball': 'scene' in 128³ cells" in result.stdout
+    (made,) = loaded(target).values()
+    assert bodies.volume(made) == pytest.approx(volume, rel=0.05)
+
+
+def test_boolean_appends_blend_files(blend, sphere, tmp_path):
+    path, _ = sphere
+    target = tmp_path / "out.blend"
+    result = run("boolean", path, blend, "--operation", "union", "-o", target)
+    assert result.returncode == 0, result.stderr
+    made = loaded(target)["ball"]
+    assert bodies.volume(made) == pytest.approx(12, rel=0.05)
+
+
+def test_failures_leave_nothing(blend, tmp_path):
+    before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
+    target = tmp_path / "out.ply"
+    rows = [
+        (("voxelize", tmp_path / "gone.ply", target), ["there is no file"], 1),
+        (("voxelize", blend, tmp_path / "gone" / "out.ply"), ["there is no folder"], 1),
+        (("voxelize", blend, tmp_path / "out.txt"), ["OUTPUT: found", "allowed are"], 2),
+        (("voxelize", "image.png", target), ["FILE: found 'image.png'", "allowed are"], 2),
+        (("voxelize", blend, target, "--depth", 13), ["--depth: found '13'", "1 to 12"], 2),
+        (("voxelize", blend, target, "--voxel-size", 0), ["--voxel-size: found '0'"], 2),
+        (
+            ("voxelize", blend, target, "--object", "Hidden"),
+            ["no object named 'Hidden'", "'Body', 'Hole'"],
+            1,
+        ),
+        (
+            ("voxelize", blend, target, "--voxel-size", "0.0001"),
+            ["object 'Body': voxel_size: found 0.0001", "4096 are allowed"],
+            1,
+        ),
+        (("boolean", blend, "-o", target), ["give two files or more"], 2),
+        (("boolean", blend, blend), ["-o"], 2),
+    ]
+    for arguments, words, status in rows:
+        assert_fails(run(*arguments), *words, status=status)
+    assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before
+
+
+def test_damaged_file(tmp_path):
+    path = tmp_path / "bad.glb"
+    path.write_bytes(b"no glTF")
+    assert_fails(run("voxelize", path, tmp_path / "out.ply"), "cannot load", "bad.glb")
+    assert not (tmp_path / "out.ply").exists()
