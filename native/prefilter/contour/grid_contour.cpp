@@ -46,7 +46,8 @@ struct Built {
 
 class TreeBuilder {
  public:
-  TreeBuilder(const GridView& grid, int depth) : grid_(grid), depth_(depth) {}
+  TreeBuilder(const GridView& grid, float isovalue, int depth)
+      : grid_(grid), isovalue_(isovalue), depth_(depth) {}
 
   // The cell of a depth; its blocks are appended to the levels.
   Built build(const CellCoordinates& cell, int at_depth, Levels* levels) const {
@@ -84,7 +85,27 @@ class TreeBuilder {
   }
 
  private:
+  bool is_inside(int x, int y, int z) const {
+    if (x < 0 || y < 0 || z < 0) return false;
+    if (x >= grid_.size[0] || y >= grid_.size[1] || z >= grid_.size[2]) return false;
+    return grid_.at(x, y, z) >= isovalue_;
+  }
+
+  // Whether the samples around a block of two along each axis are on the side that it is on.
+  bool is_far_from_surface(const CellCoordinates& cell) const {
+    const bool side = is_inside(2 * cell[0], 2 * cell[1], 2 * cell[2]);
+    for (int x = 2 * cell[0] - 1; x <= 2 * cell[0] + 2; ++x) {
+      for (int y = 2 * cell[1] - 1; y <= 2 * cell[1] + 2; ++y) {
+        for (int z = 2 * cell[2] - 1; z <= 2 * cell[2] + 2; ++z) {
+          if (is_inside(x, y, z) != side) return false;
+        }
+      }
+    }
+    return true;
+  }
+
   const GridView& grid_;
+  float isovalue_;
   int depth_;
 };
 
@@ -94,8 +115,9 @@ struct Task {
   Levels levels;
 };
 
-CellTree tree_of(const GridView& grid, int depth, const Progress& progress, int threads) {
-  const TreeBuilder builder(grid, depth);
+CellTree tree_of(const GridView& grid, float isovalue, int depth, const Progress& progress,
+                 int threads) {
+  const TreeBuilder builder(grid, isovalue, depth);
   const int task_depth = std::min(kTaskDepth, depth);
   const int tasks_along = 1 << task_depth;
   std::vector<Task> tasks(static_cast<std::size_t>(tasks_along * tasks_along * tasks_along));
@@ -229,7 +251,8 @@ TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
   const int longest = std::max({grid.size[0], grid.size[1], grid.size[2]});
   const int depth =
       std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(longest - 1))));
-  const CellTree tree = tree_of(grid, depth, options.progress.part(0.0, 0.3), options.threads);
+  const CellTree tree =
+      tree_of(grid, options.isovalue, depth, options.progress.part(0.0, 0.3), options.threads);
   RootFrame root;
   for (int a = 0; a < 3; ++a) {
     root.origin[a] = frame.origin[a];
