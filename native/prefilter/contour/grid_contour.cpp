@@ -75,8 +75,12 @@ class TreeBuilder {
       if (octant.is_split) level.split[block] |= static_cast<std::uint8_t>(1U << o);
     }
     const OctantValues values = level.blocks[block];
-    if (level.split[block] == 0 && std::all_of(values.begin(), values.end(),
-                                               [&](float value) { return value == values[0]; })) {
+    const bool is_uniform =
+        level.split[block] == 0 &&
+        std::all_of(values.begin(), values.end(), [&](float value) { return value == values[0]; });
+    // A surface along the borders of cells leaves them uniform, and they have to stay fine: between
+    // larger cells a contour would cut the corners off. Larger blocks are made of such as passed.
+    if (is_uniform && (shift > 1 || is_far_from_surface(cell))) {
       level.blocks.pop_back();
       level.split.pop_back();
       return {values[0], false};
