@@ -13,7 +13,7 @@ Box = tuple[FloatArray, FloatArray]
 
 _MARGIN = 2
 """Empty cells on each side; the surface next to the outermost cells needs them."""
-_BYTES_PER_CELL = 400.0
+_BYTES_PER_CELL = 320.0
 """Of a tree, its contour and Blender's mesh, for each finest cell that the surface runs through."""
 _CELLS_PER_AREA = 1.5
 """How many unit cells a surface of area 1 runs through on average: |n|_1 over all directions."""

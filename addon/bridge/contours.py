@@ -61,13 +61,15 @@ def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
         "vector", np.ascontiguousarray(contour.positions, np.float32).ravel()
     )
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
-    mesh.loops.foreach_set(
-        "vertex_index", np.ascontiguousarray(contour.triangles, np.int32).ravel()
+    # Attributes take arrays as they are, a hundred times faster than loops and polygons do.
+    mesh.attributes[".corner_vert"].data.foreach_set(
+        "value", np.ascontiguousarray(contour.triangles, np.int32).ravel()
     )
     for key in contour.materials:
         mesh.materials.append(key.find() if key is not None else None)
-    if contour.face_materials is not None:
-        mesh.polygons.foreach_set("material_index", contour.face_materials)
+    if contour.face_materials is not None and contour.face_materials.any():
+        indices = mesh.attributes.new("material_index", "INT", "FACE")
+        indices.data.foreach_set("value", contour.face_materials)
     for color_name, (data_type, values) in contour.colors.items():
         attribute = mesh.color_attributes.new(color_name, data_type, "POINT")
         attribute.data.foreach_set("color", np.ascontiguousarray(values, np.float32).ravel())

@@ -15,23 +15,37 @@ ContourTree::ContourTree(const CellTree& cells, float isovalue, int threads)
     : cells_(cells), isovalue_(isovalue), blocks_(cells.levels.size()) {
   const auto side_of = [&](float value) { return value >= isovalue ? kInside : kOutside; };
   root_sides_ = side_of(cells.root);
-  for (std::size_t k = cells.levels.size(); k-- > 0;) {
+  for (std::size_t k = 0; k < cells.levels.size(); ++k) {
     const TreeLevel& level = cells.levels[k];
     blocks_[k].resize(level.size());
     for_blocks(level, threads, Progress(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         unsigned sides = 0;
         for (int o = 0; o < 8; ++o) {
-          const unsigned of_octant = level.is_split(b, o)
-                                         ? union_of(blocks_[k + 1][level.child(b, o)].sides)
-                                         : side_of(level.blocks[b][static_cast<std::size_t>(o)]);
-          sides |= of_octant << (2 * o);
+          const unsigned side = side_of(level.blocks[b][static_cast<std::size_t>(o)]);
+          sides |= side << (2 * o);
         }
         blocks_[k][b] = {level.first[b], static_cast<std::uint16_t>(sides), level.split[b]};
       }
     });
   }
-  if (!blocks_.empty()) root_sides_ = union_of(blocks_[0][0].sides);
+  update_sides(threads);
+}
+
+void ContourTree::update_sides(int threads) {
+  if (blocks_.empty()) return;
+  for (std::size_t k = blocks_.size() - 1; k-- > 0;) {
+    const TreeLevel& level = cells_.levels[k];
+    for_blocks(level, threads, Progress(), [&](std::size_t begin, std::size_t end) {
+      for (std::size_t b = begin; b < end; ++b) {
+        std::size_t child = level.first[b];
+        for (unsigned bits = level.split[b]; bits != 0U; bits &= bits - 1U) {
+          set_side(k, b, std::countr_zero(bits), union_of(blocks_[k + 1][child++].sides));
+        }
+      }
+    });
+  }
+  root_sides_ = union_of(blocks_[0][0].sides);
 }
 
 }  // namespace prefilter

@@ -39,6 +39,15 @@ class ContourTree {
   float isovalue() const { return isovalue_; }
   CellNode root() const { return {0, 0, 0, 0, !cells_.levels.empty(), root_sides_}; }
 
+  /// Puts a leaf on a side, kInside or kOutside, whatever its value. Afterwards update_sides() is
+  /// due.
+  void set_side(std::size_t level, std::size_t block, int octant, std::uint8_t side) {
+    std::uint16_t& sides = blocks_[level][block].sides;
+    const int shift = 2 * octant;
+    sides = static_cast<std::uint16_t>((sides & ~(kBothSides << shift)) | (side << shift));
+  }
+  void update_sides(int threads);
+
   /// The octant of a cell that is split; a leaf is its own octants.
   CellNode octant(const CellNode& node, int o) const {
     if (!node.is_split) return node;

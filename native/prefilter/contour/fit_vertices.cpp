@@ -19,51 +19,61 @@ constexpr std::size_t kBricksPerTask = 64;
 
 using CellCoordinates = std::array<std::int32_t, 3>;
 
-// Vertices of one depth below one cell.
+// The leaves of one depth below one cell.
 struct Brick {
   CellNode cell;
   CellCoordinates at;  // in cells of its depth
   int depth;           // of the leaves
 };
 
-// A block of leaves with vertices.
+// A block, some of whose leaves are asked about.
 struct LeafBlock {
   std::size_t block;
   CellCoordinates at;  // of its cell
 };
 
-class BrickFitter {
- public:
-  BrickFitter(const ContourTree& tree, const RootFrame& frame, SurfaceVertices* vertices)
-      : tree_(tree), frame_(frame), vertices_(*vertices) {}
+CellCoordinates octant_at(const CellCoordinates& at, int o) {
+  return {2 * at[0] + (o & 1), 2 * at[1] + ((o >> 1) & 1), 2 * at[2] + ((o >> 2) & 1)};
+}
 
-  void fit(const Brick& brick) {
+// A brick, dense, with a margin around it.
+class BrickWindow {
+ public:
+  explicit BrickWindow(const ContourTree& tree) : tree_(tree) {}
+
+  // Calls visit(block) for those blocks of the brick that is_wanted(level, block) picks, with the
+  // window around them filled.
+  template <typename IsWanted, typename Visit>
+  void for_blocks_of(const Brick& brick, const IsWanted& is_wanted, const Visit& visit) {
     blocks_.clear();
-    find_blocks(brick.cell, brick.at, brick.depth);
+    find_blocks(brick.cell, brick.at, brick.depth, is_wanted);
     if (blocks_.empty()) return;
     const int shift = brick.depth - brick.cell.depth;
     width_ = (1 << shift) + 2 * kMargin;
     for (int a = 0; a < 3; ++a) low_[a] = (brick.at[a] << shift) - kMargin;
     values_.assign(static_cast<std::size_t>(width_) * width_ * width_, 0.0F);
     fill(tree_.root(), {0, 0, 0}, brick.depth);
-    for (const LeafBlock& block : blocks_) fit_block(block, brick.depth);
+    for (const LeafBlock& block : blocks_) visit(block);
+  }
+
+  const float* cell(const CellCoordinates& at) const { return values_.data() + offset_of(at); }
+  std::array<std::ptrdiff_t, 3> strides() const {
+    return {static_cast<std::ptrdiff_t>(width_) * width_, width_, 1};
   }
 
  private:
-  static CellCoordinates octant_at(const CellCoordinates& at, int o) {
-    return {2 * at[0] + (o & 1), 2 * at[1] + ((o >> 1) & 1), 2 * at[2] + ((o >> 2) & 1)};
-  }
-
-  void find_blocks(const CellNode& cell, const CellCoordinates& at, int depth) {
+  template <typename IsWanted>
+  void find_blocks(const CellNode& cell, const CellCoordinates& at, int depth,
+                   const IsWanted& is_wanted) {
     if (cell.depth + 1 == depth) {
-      if (vertices_.cuts(static_cast<std::size_t>(cell.depth), cell.octants) != 0) {
+      if (is_wanted(static_cast<std::size_t>(cell.depth), cell.octants)) {
         blocks_.push_back({cell.octants, at});
       }
       return;
     }
     for (int o = 0; o < 8; ++o) {
       const CellNode octant = tree_.octant(cell, o);
-      if (octant.is_split) find_blocks(octant, octant_at(at, o), depth);
+      if (octant.is_split) find_blocks(octant, octant_at(at, o), depth, is_wanted);
     }
   }
 
@@ -88,6 +98,10 @@ class BrickFitter {
     }
     const float value = tree_.value(cell);
     if (value == 0.0F) return;
+    if (shift == 0) {
+      values_[static_cast<std::size_t>(offset_of(at))] = value;
+      return;
+    }
     for (std::int32_t x = low[0]; x < high[0]; ++x) {
       for (std::int32_t y = low[1]; y < high[1]; ++y) {
         std::fill_n(values_.begin() + offset_of({x, y, low[2]}), high[2] - low[2], value);
@@ -95,31 +109,7 @@ class BrickFitter {
     }
   }
 
-  void fit_block(const LeafBlock& block, int depth) {
-    const auto level = static_cast<std::size_t>(depth - 1);
-    const std::array<std::ptrdiff_t, 3> strides = {static_cast<std::ptrdiff_t>(width_) * width_,
-                                                   width_, 1};
-    std::size_t vertex = vertices_.first(level, block.block);
-    for (std::uint64_t cuts = vertices_.cuts(level, block.block); cuts != 0; cuts &= cuts - 1) {
-      const int bit = std::countr_zero(cuts);
-      const int face = bit % 6;
-      const CellCoordinates at = octant_at(block.at, bit / 6);
-      const std::optional<float> t = height_crossing(values_.data() + offset_of(at), strides, face);
-      if (t) move(vertex, at, depth, face, *t);
-      ++vertex;
-    }
-  }
-
-  void move(std::size_t vertex, const CellCoordinates& at, int depth, int face, float t) {
-    std::array<float, 3> position = vertices_.positions()[vertex];
-    position[face / 2] =
-        frame_.crossing(face, at[face / 2] + 0.5, static_cast<double>(t), 1.0, depth);
-    vertices_.move(vertex, position);
-  }
-
   const ContourTree& tree_;
-  const RootFrame& frame_;
-  SurfaceVertices& vertices_;
   std::vector<LeafBlock> blocks_;
   // Cells of the brick and kMargin around it, from low_ on.
   CellCoordinates low_{};
@@ -139,23 +129,75 @@ void find_bricks(const ContourTree& tree, const CellNode& cell, const CellCoordi
     return;
   }
   for (int o = 0; o < 8; ++o) {
-    find_bricks(tree, tree.octant(cell, o),
-                {2 * at[0] + (o & 1), 2 * at[1] + ((o >> 1) & 1), 2 * at[2] + ((o >> 2) & 1)},
-                bricks);
+    find_bricks(tree, tree.octant(cell, o), octant_at(at, o), bricks);
   }
 }
-}  // namespace
 
-void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Progress& progress,
-                  int threads, SurfaceVertices* vertices) {
+// Calls visit(brick, window) for all bricks; a window is used for one brick at a time.
+template <typename Visit>
+void for_bricks(const ContourTree& tree, const Progress& progress, int threads,
+                const Visit& visit) {
   std::vector<Brick> bricks;
   find_bricks(tree, tree.root(), {0, 0, 0}, &bricks);
   const std::size_t tasks = (bricks.size() + kBricksPerTask - 1) / kBricksPerTask;
   parallel_for(static_cast<std::int64_t>(tasks), threads, progress, [&](std::int64_t task) {
-    BrickFitter fitter(tree, frame, vertices);
+    BrickWindow window(tree);
     const std::size_t begin = static_cast<std::size_t>(task) * kBricksPerTask;
     const std::size_t end = std::min(bricks.size(), begin + kBricksPerTask);
-    for (std::size_t i = begin; i < end; ++i) fitter.fit(bricks[i]);
+    for (std::size_t i = begin; i < end; ++i) visit(bricks[i], &window);
+  });
+}
+}  // namespace
+
+void settle_sides(const Progress& progress, int threads, ContourTree* tree) {
+  const std::vector<TreeLevel>& levels = tree->cells().levels;
+  const auto is_doubtful = [&](std::size_t level, std::size_t block, int o) {
+    return std::abs(levels[level].blocks[block][static_cast<std::size_t>(o)] - 0.5F) < kDoubt &&
+           !levels[level].is_split(block, o);
+  };
+  const auto has_doubtful = [&](std::size_t level, std::size_t block) {
+    for (int o = 0; o < 8; ++o) {
+      if (is_doubtful(level, block, o)) return true;
+    }
+    return false;
+  };
+  for_bricks(*tree, progress, threads, [&](const Brick& brick, BrickWindow* window) {
+    const auto level = static_cast<std::size_t>(brick.depth - 1);
+    window->for_blocks_of(brick, has_doubtful, [&](const LeafBlock& block) {
+      for (int o = 0; o < 8; ++o) {
+        if (!is_doubtful(level, block.block, o)) continue;
+        const std::optional<float> height =
+            height_over_centre(window->cell(octant_at(block.at, o)), window->strides());
+        if (height) tree->set_side(level, block.block, o, *height >= 0.0F ? kInside : kOutside);
+      }
+    });
+  });
+  tree->update_sides(threads);
+}
+
+void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Progress& progress,
+                  int threads, SurfaceVertices* vertices) {
+  const auto has_vertices = [&](std::size_t level, std::size_t block) {
+    return vertices->cuts(level, block) != 0;
+  };
+  for_bricks(tree, progress, threads, [&](const Brick& brick, BrickWindow* window) {
+    const auto level = static_cast<std::size_t>(brick.depth - 1);
+    window->for_blocks_of(brick, has_vertices, [&](const LeafBlock& block) {
+      std::size_t vertex = vertices->first(level, block.block);
+      for (std::uint64_t cuts = vertices->cuts(level, block.block); cuts != 0; cuts &= cuts - 1) {
+        const int bit = std::countr_zero(cuts);
+        const int face = bit % 6;
+        const CellCoordinates at = octant_at(block.at, bit / 6);
+        const std::optional<float> t = height_crossing(window->cell(at), window->strides(), face);
+        if (t) {
+          std::array<float, 3> position = vertices->positions()[vertex];
+          position[face / 2] =
+              frame.crossing(face, at[face / 2] + 0.5, static_cast<double>(*t), 1.0, brick.depth);
+          vertices->move(vertex, position);
+        }
+        ++vertex;
+      }
+    });
   });
 }
 

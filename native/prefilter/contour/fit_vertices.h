@@ -6,6 +6,14 @@
 
 namespace prefilter {
 
+/// Occupancies this close to 1/2 do not tell which side their cell's centre is on.
+inline constexpr float kDoubt = 0.05F;
+
+/// Puts leaves whose occupancy is close to 1/2 on the side that their centre is on, by
+/// height_over_centre: on a curved surface the two differ, and triangles between such a centre and
+/// the surface would be inside out. Throws Error(kCancelled).
+void settle_sides(const Progress& progress, int threads, ContourTree* tree);
+
 /// Moves vertices along their lines to where height_crossing finds the surface; where it finds
 /// none they stay. Throws Error(kCancelled).
 void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Progress& progress,

@@ -11,6 +11,7 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
 #include "prefilter/contour/contour_tree.h"
+#include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/tree_contour.h"
 
 namespace prefilter {
@@ -45,12 +46,17 @@ void check_samples(const float* begin, std::size_t count) {
 // the grid is empty.
 class BlockSides {
  public:
-  BlockSides(const GridView& grid, float isovalue, const Progress& progress, int threads)
-      : grid_(grid), isovalue_(isovalue) {
+  BlockSides(const GridView& grid, const ContourOptions& options, const Progress& progress)
+      : grid_(grid), least_inside_(options.isovalue), most_outside_(options.isovalue) {
+    if (options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F) {
+      // settle_sides may put these on either side.
+      least_inside_ -= kDoubt;
+      most_outside_ += kDoubt;
+    }
     for (std::size_t a = 0; a < 3; ++a) size_[a] = (grid.size[a] + 1) / 2;
     const auto slice = static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]);
     sides_.resize(static_cast<std::size_t>(size_[0]) * slice);
-    parallel_for(size_[0], threads, progress, [&](std::int64_t x) {
+    parallel_for(size_[0], options.threads, progress, [&](std::int64_t x) {
       std::uint8_t* of_slice = sides_.data() + static_cast<std::size_t>(x) * slice;
       const int low = 2 * static_cast<int>(x);
       for (int i = low; i < std::min(low + 2, grid.size[0]); ++i) {
@@ -84,7 +90,10 @@ class BlockSides {
   }
 
  private:
-  std::uint8_t side_of(float sample) const { return sample >= isovalue_ ? kInside : kOutside; }
+  std::uint8_t side_of(float sample) const {
+    return static_cast<std::uint8_t>((sample >= least_inside_ ? kInside : 0) |
+                                     (sample < most_outside_ ? kOutside : 0));
+  }
 
   // Places from one before `low` to one after the `count` from there on.
   template <typename Visit>
@@ -97,7 +106,8 @@ class BlockSides {
   }
 
   const GridView& grid_;
-  float isovalue_;
+  float least_inside_;
+  float most_outside_;
   CellCoordinates size_{};
   std::vector<std::uint8_t> sides_;
 };
@@ -114,6 +124,10 @@ class TreeBuilder {
 
   // The cell of a depth; its blocks are appended to the levels.
   Built build(const CellCoordinates& cell, int at_depth, Levels* levels) const {
+    if (depth_ - at_depth == 1) {
+      return build_with(cell, at_depth, levels,
+                        [&](const CellCoordinates& octant) { return sample(octant); });
+    }
     return build_with(cell, at_depth, levels, [&](const CellCoordinates& octant) {
       return build(octant, at_depth + 1, levels);
     });
@@ -126,32 +140,35 @@ class TreeBuilder {
     for (int a = 0; a < 3; ++a) {
       if (cell[a] << shift >= grid_.size[a]) return {empty_, false};
     }
-    if (shift == 0) return {grid_.at(cell[0], cell[1], cell[2]), false};
-    TreeLevel& level = (*levels)[static_cast<std::size_t>(at_depth)];
-    const std::size_t block = level.size();
-    level.blocks.emplace_back();
-    level.split.push_back(0);
+    if (shift == 0) return sample(cell);
+    OctantValues values;
+    unsigned split = 0;
     for (int o = 0; o < 8; ++o) {
       const Built octant = build_octant(
           {2 * cell[0] + (o & 1), 2 * cell[1] + ((o >> 1) & 1), 2 * cell[2] + ((o >> 2) & 1)});
-      level.blocks[block][static_cast<std::size_t>(o)] = octant.value;
-      if (octant.is_split) level.split[block] |= static_cast<std::uint8_t>(1U << o);
+      values[static_cast<std::size_t>(o)] = octant.value;
+      if (octant.is_split) split |= 1U << o;
     }
-    const OctantValues values = level.blocks[block];
     // Equal samples are one leaf, but not beside the surface: a vertex is half-way between two
     // centres, and those have to be the samples' own.
-    if (level.split[block] == 0 &&
+    if (split == 0 &&
         std::all_of(values.begin(), values.end(),
                     [&](float value) { return value == values[0]; }) &&
         !(shift == 1 && sides_.is_near_surface(cell))) {
-      level.blocks.pop_back();
-      level.split.pop_back();
       return {values[0], false};
     }
+    TreeLevel& level = (*levels)[static_cast<std::size_t>(at_depth)];
+    level.blocks.push_back(values);
+    level.split.push_back(static_cast<std::uint8_t>(split));
     return {block_mean(values), true};
   }
 
  private:
+  Built sample(const CellCoordinates& at) const {
+    const bool is_within = at[0] < grid_.size[0] && at[1] < grid_.size[1] && at[2] < grid_.size[2];
+    return {is_within ? grid_.at(at[0], at[1], at[2]) : empty_, false};
+  }
+
   const GridView& grid_;
   const BlockSides& sides_;
   float empty_;
@@ -164,10 +181,10 @@ struct Task {
   Levels levels;
 };
 
-CellTree tree_of(const GridView& grid, float isovalue, int depth, const Progress& progress,
-                 int threads) {
-  const BlockSides sides(grid, isovalue, progress.part(0.0, 0.3), threads);
-  const TreeBuilder builder(grid, sides, isovalue, depth);
+CellTree tree_of(const GridView& grid, int depth, const ContourOptions& options,
+                 const Progress& progress) {
+  const BlockSides sides(grid, options, progress.part(0.0, 0.3));
+  const TreeBuilder builder(grid, sides, options.isovalue, depth);
   const int task_depth = std::min(kTaskDepth, depth);
   const int tasks_along = 1 << task_depth;
   std::vector<Task> tasks(static_cast<std::size_t>(tasks_along * tasks_along * tasks_along));
@@ -176,7 +193,7 @@ CellTree tree_of(const GridView& grid, float isovalue, int depth, const Progress
                                           cell[2])];
   };
   const auto count = static_cast<std::int64_t>(tasks.size());
-  parallel_for(count, threads, progress.part(0.3, 1.0), [&](std::int64_t i) {
+  parallel_for(count, options.threads, progress.part(0.3, 1.0), [&](std::int64_t i) {
     Task& task = tasks[static_cast<std::size_t>(i)];
     const int index = static_cast<int>(i);
     task.cell = {index / (tasks_along * tasks_along), index / tasks_along % tasks_along,
@@ -301,8 +318,7 @@ TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
   const int longest = std::max({grid.size[0], grid.size[1], grid.size[2]});
   const int depth =
       std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(longest - 1))));
-  const CellTree tree =
-      tree_of(grid, options.isovalue, depth, options.progress.part(0.0, 0.3), options.threads);
+  const CellTree tree = tree_of(grid, depth, options, options.progress.part(0.0, 0.3));
   RootFrame root;
   for (int a = 0; a < 3; ++a) {
     root.origin[a] = frame.origin[a];

@@ -7,7 +7,7 @@ namespace {
 
 constexpr float kFull = 1.0F - 1e-5F;
 constexpr float kEmpty = 1e-5F;
-constexpr int kMostSteps = 5;
+constexpr int kMostSteps = 4;
 // Second differences above this are a crease, not a curve.
 constexpr float kMostCurvature = 0.5F;
 constexpr float kSlack = 0.05F;
@@ -78,19 +78,34 @@ int steepest_axis(const float* cell, const float* neighbour,
   return steepest;
 }
 
-// The crossing as seen from one of the cells, on the way to the other: `along` leads there.
-std::optional<float> crossing_from(const float* cell, std::ptrdiff_t along, std::ptrdiff_t up,
-                                   const std::array<std::ptrdiff_t, 2>& across) {
+// The surface over a cell: its height over the centre, and how it runs on to both sides.
+struct LocalSurface {
+  float height;
+  Profile first;
+  Profile second;
+};
+
+std::optional<LocalSurface> surface_over(const float* cell, std::ptrdiff_t up,
+                                         const std::array<std::ptrdiff_t, 2>& across) {
   const std::optional<float> height = column_height(cell, up);
   if (!height) return std::nullopt;
   const Profile first = profile(cell, across[0], up, *height);
   const Profile second = profile(cell, across[1], up, *height);
-  // From the mean over the column to the height at its centre, above the cell's centre.
+  // From the mean over the column to the height at its centre.
   const float at_centre = *height - (first.curvature + second.curvature) / 24.0F - 0.5F;
+  return LocalSurface{at_centre, first, second};
+}
+
+// The crossing as seen from one of the cells, on the way to the other: `along` leads there.
+std::optional<float> crossing_from(const float* cell, std::ptrdiff_t along, std::ptrdiff_t up,
+                                   const std::array<std::ptrdiff_t, 2>& across) {
+  const std::optional<LocalSurface> surface = surface_over(cell, up, across);
+  if (!surface) return std::nullopt;
+  const float at_centre = surface->height;
   if (along == up) return at_centre;
   if (along == -up) return -at_centre;
   const bool is_first = along == across[0] || along == -across[0];
-  const Profile& profile_along = is_first ? first : second;
+  const Profile& profile_along = is_first ? surface->first : surface->second;
   if (!profile_along.has_slope) return std::nullopt;
   const bool is_forward = along == across[0] || along == across[1];
   const float slope = is_forward ? profile_along.slope : -profile_along.slope;
@@ -124,6 +139,17 @@ std::optional<float> height_crossing(const float* cell,
   }
   if (!t || !(*t >= -kSlack && *t <= 1.0F + kSlack)) return std::nullopt;
   return t;
+}
+
+std::optional<float> height_over_centre(const float* cell,
+                                        const std::array<std::ptrdiff_t, 3>& strides) {
+  float change = 0.0F;
+  const int axis = steepest_axis(cell, cell, strides, &change);
+  const std::ptrdiff_t up = change < 0.0F ? strides[axis] : -strides[axis];
+  const std::optional<LocalSurface> surface =
+      surface_over(cell, up, {strides[(axis + 1) % 3], strides[(axis + 2) % 3]});
+  if (!surface) return std::nullopt;
+  return surface->height;
 }
 
 }  // namespace prefilter

@@ -14,7 +14,7 @@
 namespace prefilter {
 
 /// Cells that may be read on all sides of the two.
-inline constexpr int kHeightReach = 7;
+inline constexpr int kHeightReach = 6;
 
 /// The crossing between a cell, at `cell`, and its neighbour across a face (2 a for the low one
 /// across axis a, 2 a + 1 for the high one), as the distance from the cell's centre in [0, 1]; one
@@ -22,5 +22,10 @@ inline constexpr int kHeightReach = 7;
 /// do not run from full to empty cells within reach: at thin parts, sharp corners and noise.
 std::optional<float> height_crossing(const float* cell,
                                      const std::array<std::ptrdiff_t, 3>& strides, int face);
+
+/// The height of the surface over the cell's centre along the axis that it faces most, in cells, so
+/// that the centre is inside where it is positive; none as above.
+std::optional<float> height_over_centre(const float* cell,
+                                        const std::array<std::ptrdiff_t, 3>& strides);
 
 }  // namespace prefilter

@@ -52,6 +52,10 @@ Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode&
   const float a = tree.value(leaf);
   const float b = tree.value(neighbour);
   const float isovalue = tree.isovalue();
+  // A side that was not settled by the value: the surface is close to that centre.
+  if ((a >= isovalue) == (b >= isovalue)) {
+    return {std::abs(a - isovalue) < std::abs(b - isovalue) ? 0.0F : 1.0F, 1.0F};
+  }
   const bool are_occupancies = a >= 0.0F && a <= 1.0F && b >= 0.0F && b <= 1.0F && isovalue == 0.5F;
   // A coarser leaf that is full or empty holds cells of this size that are; between fractions of
   // different cells there is but the line through the centres.

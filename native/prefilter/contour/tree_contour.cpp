@@ -193,11 +193,13 @@ TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
   }
   const Progress cutting = options.clean_up ? options.progress.part(0.0, 0.3) : options.progress;
   const Progress cleaning = options.progress.part(0.3, 1.0);
-  const ContourTree tree(cells, options.isovalue, options.threads);
-  SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.0, 0.3),
+  ContourTree tree(cells, options.isovalue, options.threads);
+  const bool fits = options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F;
+  if (fits) settle_sides(cutting.part(0.0, 0.2), options.threads, &tree);
+  SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.2, 0.4),
                            options.threads);
-  if (options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F) {
-    fit_vertices(tree, frame, cutting.part(0.3, 0.6), options.threads, &vertices);
+  if (fits) {
+    fit_vertices(tree, frame, cutting.part(0.4, 0.6), options.threads, &vertices);
   }
   const DualCells dual(tree);
   const TriangleMaker maker(tree, vertices);

@@ -360,6 +360,27 @@ TEST(ContourGrid, PlaneReproducesPlanes) {
   EXPECT_LT(mean[0], mean[2] / 20.0);                     // occupancy against linear
 }
 
+TEST(ContourGrid, UniformBlocksBesideTheSurfaceStayFine) {
+  // A cube of whole blocks of cells: its contour has its faces between samples, and loses half a
+  // cell's bevel at edges and corners alone.
+  constexpr int kSize = 16;
+  std::vector<float> values(kSize * kSize * kSize, 0.0F);
+  for (int i = 0; i < kSize * kSize * kSize; ++i) {
+    bool is_inside = true;
+    for (const int x : {i / (kSize * kSize), i / kSize % kSize, i % kSize}) {
+      is_inside = is_inside && x >= 4 && x < 12;
+    }
+    if (is_inside) values[static_cast<std::size_t>(i)] = 1.0F;
+  }
+  const GridView grid{values.data(), {kSize, kSize, kSize}};
+  for (const Interpolant interpolant : kInterpolants) {
+    const TriangleMesh mesh = contour_grid(grid, {}, options_of(interpolant));
+    EXPECT_EQ(fault_of(mesh), "");
+    EXPECT_GT(volume_of(mesh), 512.0 - 12.0 * 8.0 / 8.0 - 1.0);
+    EXPECT_LT(volume_of(mesh), 512.0);
+  }
+}
+
 TEST(HeightCrossing, IsOfFourthOrderAcrossAParabola) {
   // The surface z = 7.3 + x^2 k / 2 over columns of cells; their means in closed form.
   constexpr int kSize = 16;
