@@ -46,6 +46,7 @@ class VoxelSettings:
         depth: Cells along an axis are 2 to the power of this; 1 to 12.
         voxel_size: The side of a cell in world space, above 0.
         interpolant: A key of `INTERPOLANTS`: how the surface runs through cells.
+        use_close_holes: Whether holes get caps before the mesh is voxelized.
         use_cleanup: Whether to make slivers rounder.
         use_materials: Whether triangles get the material of the nearest face of the source.
         use_colors: Whether vertices get the colour attributes of the nearest point of the source.
@@ -58,6 +59,7 @@ class VoxelSettings:
     depth: int = 7
     voxel_size: float = 0.1
     interpolant: str = "plane"
+    use_close_holes: bool = True
     use_cleanup: bool = False
     use_materials: bool = True
     use_colors: bool = True

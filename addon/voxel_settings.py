@@ -51,6 +51,12 @@ class VoxelProperties:
         items=items(choices.INTERPOLANTS),
         default=_Settings.interpolant,
     )
+    use_close_holes: BoolProperty(
+        name="Close Holes",
+        description="Close each hole by triangles to the middle of its border; without them the "
+        "surface ends in steps there",
+        default=_Settings.use_close_holes,
+    )
     use_cleanup: BoolProperty(
         name="Clean Up",
         description="Make slivers among the triangles rounder",
@@ -87,6 +93,7 @@ class VoxelProperties:
         self._draw_first(layout)
         layout.prop(self, "resolution")
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
+        layout.prop(self, "use_close_holes")
         if self._makes_mesh():
             layout.prop(self, "interpolant")
             layout.prop(self, "use_cleanup")

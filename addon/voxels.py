@@ -372,12 +372,16 @@ def _sharing_materials(read: list[solids.Solid], meshes: list[SolidMesh]) -> lis
 def _voxelized(
     mesh: SolidMesh, grid: Grid, settings: VoxelSettings, progress: Progress
 ) -> "prefilter.Octree":
+    positions, triangles = mesh.positions, mesh.triangles
+    if settings.use_close_holes and mesh.open_edges:
+        closed = prefilter.close_holes(positions, triangles, progress=share(progress, 0.0, 0.3))
+        positions, triangles = closed.positions, closed.triangles
     return prefilter.voxelize(
-        mesh.positions,
-        mesh.triangles,
+        positions,
+        triangles,
         depth=grid.depth,
         bounds=grid.bounds,
-        progress=progress,
+        progress=share(progress, 0.3, 1.0),
         threads=settings.threads,
     )
 

@@ -107,6 +107,12 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
         help=f"how the surface runs through cells (default: {defaults.interpolant})",
     )
     parser.add_argument(
+        "--no-close-holes",
+        dest="use_close_holes",
+        action="store_false",
+        help="leave holes open; the surface ends in steps there",
+    )
+    parser.add_argument(
         "--cleanup",
         dest="use_cleanup",
         action="store_true",
@@ -200,6 +206,7 @@ def _common(options: argparse.Namespace) -> dict[str, Any]:
         "depth": defaults.depth if options.depth is None else options.depth,
         "voxel_size": options.voxel_size or defaults.voxel_size,
         "interpolant": options.interpolant,
+        "use_close_holes": options.use_close_holes,
         "use_cleanup": options.use_cleanup,
         "use_materials": options.use_materials,
         "use_colors": options.use_colors,

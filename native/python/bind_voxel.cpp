@@ -1,14 +1,19 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "convert.h"
 #include "prefilter/base/error.h"
+#include "prefilter/voxel/close_holes.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/octree.h"
 #include "prefilter/voxel/queries.h"
@@ -57,6 +62,27 @@ Octree bound_voxelize(const Array<double>& positions, const Array<std::int64_t>&
   const SolidMesh mesh{rows_of(positions), rows_of(triangles)};
   const py::gil_scoped_release unlocked;
   return voxelize(mesh, options);
+}
+
+// The mesh with its caps, and the numbers of open edges and of holes.
+std::tuple<Array<double>, Array<std::int64_t>, std::size_t, std::size_t> bound_close_holes(
+    const Array<double>& positions, const Array<std::int64_t>& triangles,
+    const py::object& callback) {
+  const Progress progress = to_progress(callback);
+  Caps caps;
+  {
+    const py::gil_scoped_release unlocked;
+    caps = close_holes({rows_of(positions), rows_of(triangles)}, progress);
+  }
+  const auto joined = [](const auto& own, const auto& added) {
+    auto result = std::decay_t<decltype(own)>(
+        {own.shape(0) + static_cast<py::ssize_t>(added.size()), py::ssize_t{3}});
+    auto* const end = std::copy_n(own.data(), own.size(), result.mutable_data());
+    if (!added.empty()) std::memcpy(end, added.data(), added.size() * sizeof(added[0]));
+    return result;
+  };
+  return {joined(positions, caps.positions), joined(triangles, caps.triangles), caps.open_edges,
+          caps.holes};
 }
 
 Octree bound_combine(const Octree& a, const Octree& b, const std::string& name,
@@ -163,6 +189,8 @@ void bind_voxel(py::module_& m) {
       .def_property_readonly("nbytes", &byte_count);
   m.def("voxelize", &bound_voxelize, py::arg("positions"), py::arg("triangles"), py::arg("depth"),
         py::arg("bounds"), py::arg("progress"), py::arg("threads"));
+  m.def("close_holes", &bound_close_holes, py::arg("positions"), py::arg("triangles"),
+        py::arg("progress"));
   m.def("make_octree", &bound_make_octree, py::arg("levels"), py::arg("root"), py::arg("bounds"),
         py::arg("depth"));
 }

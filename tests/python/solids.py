@@ -4,6 +4,7 @@ Nothing here calls the library, nor shares a method with it: occupancies are exa
 heights over columns of cells, and inside is where generalized winding numbers say so.
 """
 
+import itertools
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -310,41 +311,74 @@ class Estimate:
     error: float
 
 
-def estimated_volumes(solids: list[Solid], insides, low, high, *, n: int = 64) -> list[Estimate]:
-    """The volumes within a box where each of `insides` says so of the solids' winding numbers.
+class RandomPoints:
+    """Volumes by random points and winding numbers, of combinations of solids within a box.
 
-    Each stratum has its own random points: two for each of the n^3 cells that may hold some of a
-    surface, one for the largest cells that cannot. So the estimate has no bias, and the error
-    comes from the cells at the surfaces.
+    Each of n^3 cells has its own points. Those that no triangle of a solid meets are as a whole
+    inside of it or outside, where its winding number is clearly above or below 1/2: so points are
+    drawn only for cells that the result is not known for, and the error comes from these alone.
     """
-    low, high = np.asarray(low, float), np.asarray(high, float)
-    random = np.random.default_rng(1)
-    numbers = [FarWinding(solid) for solid in solids]
-    meets = np.zeros((n, n, n), bool)
-    for solid in solids:
-        meets |= touched_cells(solid.corners, low, high, n)
-    levels = [meets]
-    while len(levels[-1]) > 4:
-        m = len(levels[-1]) // 2
-        levels.append(levels[-1].reshape(m, 2, m, 2, m, 2).any(axis=(1, 3, 5)))
-    volumes, variances, parent = np.zeros(len(insides)), np.zeros(len(insides)), None
-    for level in reversed(levels):
-        m = len(level)
-        share = np.prod(high - low) / m**3
-        open_cells = np.ones_like(level) if parent is None else np.kron(parent, np.ones((2, 2, 2)))
-        parent = level
 
-        def sample(cells: np.ndarray, m: int = m) -> np.ndarray:
-            places = low + (cells + random.random(cells.shape)) / m * (high - low)
-            found = [number(places) for number in numbers]
-            return np.array([inside(*found) for inside in insides], float)
+    CLEAR = 0.25  # Further than this from 1/2. Holes make winding numbers change between cells.
 
-        volumes += share * sample(np.argwhere((open_cells > 0) & ~level)).sum(axis=1)
-        if m == n:
-            first, second = (sample(np.argwhere(level)) for _ in range(2))
-            volumes += share * (first + second).sum(axis=1) / 2
-            variances = share**2 * ((first - second) ** 2).sum(axis=1) / 4
-    return [Estimate(*found) for found in zip(volumes, np.sqrt(variances), strict=True)]
+    def __init__(self, solids: list[Solid], low, high) -> None:
+        self._low, self._high = np.asarray(low, float), np.asarray(high, float)
+        self._solids = solids
+        self._numbers = [FarWinding(solid) for solid in solids]
+        self._random = np.random.default_rng(1)
+        self._known: dict[int, list[np.ndarray]] = {}
+
+    def estimate(self, inside, *, error: float = 0.001) -> Estimate:
+        """The volume where `inside` says so of the winding numbers, of that relative error."""
+        for n in (32, 64, 128, 256):
+            found = self._estimate(inside, n)
+            if found.error < error * found.volume:
+                break
+        return found
+
+    def _estimate(self, inside, n: int) -> Estimate:
+        known = self._cells(n)
+        answers = [
+            inside(*(np.where(np.isnan(k), x, k) for k, x in zip(known, values, strict=True)))
+            for values in itertools.product((0.0, 1.0), repeat=len(known))
+        ]
+        settled = np.all([answer == answers[0] for answer in answers], axis=0)
+        share = np.prod(self._high - self._low) / n**3
+        cells = np.argwhere(~settled)
+        first, second = (self._sample(inside, cells, known, n) for _ in range(2))
+        count = np.count_nonzero(settled & answers[0]) + (first + second).sum() / 2
+        return Estimate(share * count, share * np.sqrt(((first - second) ** 2).sum() / 4))
+
+    def _sample(self, inside, cells: np.ndarray, known: list[np.ndarray], n: int) -> np.ndarray:
+        """Whether a random point of each of the cells is inside."""
+        points, numbers = self._points(cells, n), []
+        for number, sides in zip(self._numbers, known, strict=True):
+            found = sides[tuple(cells.T)]
+            asked = np.isnan(found)
+            found[asked] = number(points[asked])
+            numbers.append(found)
+        return inside(*numbers).astype(float)
+
+    def _points(self, cells: np.ndarray, n: int) -> np.ndarray:
+        places = (cells + self._random.random(cells.shape)) / n
+        return self._low + places * (self._high - self._low)
+
+    def _cells(self, n: int) -> list[np.ndarray]:
+        """For each solid and cell 1 inside, 0 outside, and NaN where that is not known."""
+        if n not in self._known:
+            coarse = (
+                self._cells(n // 2) if n > 8 else [np.full((4,) * 3, np.nan)] * len(self._solids)
+            )
+            self._known[n] = [np.kron(sides, np.ones((2, 2, 2))) for sides in coarse]
+            for solid, number, sides in zip(
+                self._solids, self._numbers, self._known[n], strict=True
+            ):
+                meets = touched_cells(solid.corners, self._low, self._high, n)
+                cells = np.argwhere(np.isnan(sides) & ~meets)
+                found = number(self._points(cells, n))
+                clear = np.abs(found - 0.5) > self.CLEAR
+                sides[tuple(cells[clear].T)] = found[clear] > 0.5
+        return self._known[n]
 
 
 def touched_cells(corners: np.ndarray, low, high, n: int) -> np.ndarray:

@@ -68,6 +68,17 @@ void add_leaves(const CellTree& tree, std::size_t level, std::size_t block, cons
   }
 }
 
+// A cell and the finest cells around it, which are 2^-shift as wide.
+Box widened(const Box& cell, int shift) {
+  Box box = cell;
+  for (int a = 0; a < 3; ++a) {
+    const double finest = std::ldexp(cell.size(a), -shift);
+    box.low[a] -= finest;
+    box.high[a] += finest;
+  }
+  return box;
+}
+
 class Resampler {
  public:
   Resampler(const Octree& source, int depth, const Progress& progress)
@@ -79,11 +90,14 @@ class Resampler {
   float value_of(const Box& box, int at_depth, double share, bool* is_split) {
     *is_split = false;
     ValueSpan span;
-    if (!is_within(box, source_.bounds)) span.add(0.0F);
+    // A surface along the borders of cells leaves them uniform; they have to stay fine, as contours
+    // between larger cells cut corners off.
+    const Box around = at_depth < depth_ ? widened(box, depth_ - at_depth) : box;
+    if (!is_within(around, source_.bounds)) span.add(0.0F);
     if (source_.cells.levels.empty()) {
-      if (overlaps(source_.bounds, box)) span.add(source_.cells.root);
+      if (overlaps(source_.bounds, around)) span.add(source_.cells.root);
     } else {
-      add_leaves(source_.cells, 0, 0, source_.bounds, box, &span);
+      add_leaves(source_.cells, 0, 0, source_.bounds, around, &span);
     }
     if (span.is_constant()) {
       advance(share);

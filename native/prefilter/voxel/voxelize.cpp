@@ -22,31 +22,6 @@ constexpr double kMarginShare = 1.0 / 8.0;  // of the cells along an axis, at th
 // triangles. Measured on scans: 20 to 25.
 constexpr double kBytesPerCell = 30.0;
 
-void check_mesh(const SolidMesh& mesh) {
-  if (mesh.triangles.empty()) throw_invalid("triangles: none; at least one is needed");
-  if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max() ||
-      mesh.positions.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw_invalid("triangles: too many; 2^32 triangles and 2^31 positions are the most");
-  }
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    for (const double x : mesh.positions[i]) {
-      // The difference of any two has to be finite as well.
-      if (std::abs(x) <= 1e300) continue;
-      throw_invalid("positions: row " + std::to_string(i) + " holds " + to_text(x) +
-                    "; all values must be finite, and at most 1e300");
-    }
-  }
-  const auto count = static_cast<std::int64_t>(mesh.positions.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::int64_t vertex : mesh.triangles[t]) {
-      if (vertex >= 0 && vertex < count) continue;
-      throw_invalid("triangles: triangle " + std::to_string(t) + " names vertex " +
-                    std::to_string(vertex) + "; there are " + std::to_string(count) +
-                    ", from 0 on");
-    }
-  }
-}
-
 Box box_of(const SolidMesh& mesh) {
   Box box;
   box.low.fill(std::numeric_limits<double>::infinity());
@@ -124,6 +99,31 @@ void check_surface(const RootTriangles& mesh, int depth) {
                kBytesPerCell * cells);
 }
 }  // namespace
+
+void check_mesh(const SolidMesh& mesh) {
+  if (mesh.triangles.empty()) throw_invalid("triangles: none; at least one is needed");
+  if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max() ||
+      mesh.positions.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
+    throw_invalid("triangles: too many; 2^32 triangles and 2^31 positions are the most");
+  }
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    for (const double x : mesh.positions[i]) {
+      // The difference of any two has to be finite as well.
+      if (std::abs(x) <= 1e300) continue;
+      throw_invalid("positions: row " + std::to_string(i) + " holds " + to_text(x) +
+                    "; all values must be finite, and at most 1e300");
+    }
+  }
+  const auto count = static_cast<std::int64_t>(mesh.positions.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const std::int64_t vertex : mesh.triangles[t]) {
+      if (vertex >= 0 && vertex < count) continue;
+      throw_invalid("triangles: triangle " + std::to_string(t) + " names vertex " +
+                    std::to_string(vertex) + "; there are " + std::to_string(count) +
+                    ", from 0 on");
+    }
+  }
+}
 
 Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options) {
   check_depth(options.depth, 1, "depth");

@@ -36,4 +36,8 @@ struct VoxelizeOptions {
 /// Error(kOutOfMemory) for a tree that would not fit into memory; Error(kCancelled).
 Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options);
 
+/// Throws Error for a mesh without triangles, an index that names no vertex, or a position that is
+/// not finite.
+void check_mesh(const SolidMesh& mesh);
+
 }  // namespace prefilter

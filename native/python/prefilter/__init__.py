@@ -16,14 +16,16 @@ from .surface import Surface
 from .texture_files import write_dds, write_ktx2
 from .texture_use import fill_unused, texel_weights
 from .version import VERSION
-from .voxel import Octree, voxelize
+from .voxel import ClosedMesh, Octree, close_holes, voxelize
 
 __version__ = VERSION
 
 __all__ = [
     "Cancelled",
+    "ClosedMesh",
     "Octree",
     "Surface",
+    "close_holes",
     "contour",
     "fill_unused",
     "keep_coverage",

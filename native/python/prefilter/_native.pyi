@@ -186,6 +186,11 @@ def voxelize(
     progress: ProgressCallback | None,
     threads: int,
 ) -> Octree: ...
+def close_holes(
+    positions: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int64],
+    progress: ProgressCallback | None,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], int, int]: ...
 def make_octree(
     levels: list[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]],
     root: float,
