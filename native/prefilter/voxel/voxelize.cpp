@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/memory.h"
+#include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
 #include "prefilter/wavelet/triangle_analysis.h"
 
@@ -18,9 +20,21 @@ namespace {
 
 constexpr double kMarginCells = 2.0;
 constexpr double kMarginShare = 1.0 / 8.0;  // of the cells along an axis, at the most
+constexpr std::size_t kRowsPerTask = 1U << 14;
 // Of a cell that the surface passes through: blocks while they are moved together, and the bricks'
 // triangles. Measured on scans: 20 to 25.
 constexpr double kBytesPerCell = 30.0;
+
+std::size_t task_count(std::size_t rows) { return (rows + kRowsPerTask - 1) / kRowsPerTask; }
+
+void for_rows(std::size_t rows, int threads,
+              const std::function<void(std::size_t, std::size_t)>& body) {
+  parallel_for(static_cast<std::int64_t>(task_count(rows)), threads, Progress(),
+               [&](std::int64_t task) {
+                 const std::size_t begin = static_cast<std::size_t>(task) * kRowsPerTask;
+                 body(begin, std::min(rows, begin + kRowsPerTask));
+               });
+}
 
 Box box_of(const SolidMesh& mesh) {
   Box box;
@@ -71,32 +85,50 @@ double cells_met(const std::array<Point3, 3>& corners) {
   return sum;
 }
 
-// Throws where all triangles have zero area, or the tree would not fit.
-void check_surface(const RootTriangles& mesh, int depth) {
+// Of some triangles: the cells of a tree that they meet, with the root for a unit, and whether any
+// has an area.
+struct SurfaceExtent {
   double cells = 0.0;
   bool has_area = false;
-  const double n = std::ldexp(1.0, depth);
-  for (const auto& triangle : mesh.triangles) {
+};
+
+SurfaceExtent extent_of(const RootTriangles& mesh, std::size_t begin, std::size_t end) {
+  SurfaceExtent extent;
+  for (std::size_t t = begin; t < end; ++t) {
     std::array<Point3, 3> corners;
     bool meets_root = true;
     for (int i = 0; i < 3; ++i) {
-      corners[i] = mesh.positions[static_cast<std::size_t>(triangle[i])];
+      corners[i] = mesh.positions[static_cast<std::size_t>(mesh.triangles[t][i])];
     }
     for (int a = 0; a < 3; ++a) {
       meets_root = meets_root && std::min({corners[0][a], corners[1][a], corners[2][a]}) <= 1.0 &&
                    std::max({corners[0][a], corners[1][a], corners[2][a]}) >= 0.0;
     }
     const double area = cells_met(corners);
-    has_area = has_area || area > 0.0;
+    extent.has_area = extent.has_area || area > 0.0;
     // No plane meets more than about three layers of the root.
-    if (meets_root) cells += std::min(area, 3.0) * n * n;
+    if (meets_root) extent.cells += std::min(area, 3.0);
   }
-  if (!has_area) {
+  return extent;
+}
+
+// Throws where all triangles have zero area, or the tree would not fit.
+void check_surface(const RootTriangles& mesh, int depth, int threads) {
+  std::vector<SurfaceExtent> parts(task_count(mesh.triangles.size()));
+  for_rows(mesh.triangles.size(), threads, [&](std::size_t begin, std::size_t end) {
+    parts[begin / kRowsPerTask] = extent_of(mesh, begin, end);
+  });
+  SurfaceExtent all;
+  for (const SurfaceExtent& part : parts) {
+    all.cells += part.cells;
+    all.has_area = all.has_area || part.has_area;
+  }
+  if (!all.has_area) {
     throw_invalid("triangles: all " + std::to_string(mesh.triangles.size()) +
                   " have zero area; at least one with an area is needed");
   }
   check_memory("depth: a tree of depth " + std::to_string(depth) + " of this mesh",
-               kBytesPerCell * cells);
+               kBytesPerCell * std::ldexp(all.cells, 2 * depth));
 }
 }  // namespace
 
@@ -144,17 +176,21 @@ Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options) {
 
   const Box& bounds = octree.bounds;
   std::vector<Point3> positions(mesh.positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    for (int a = 0; a < 3; ++a) {
-      positions[i][a] = (mesh.positions[i][a] - bounds.low[a]) / bounds.size(a);
+  for_rows(positions.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int a = 0; a < 3; ++a) {
+        positions[i][a] = (mesh.positions[i][a] - bounds.low[a]) / bounds.size(a);
+      }
     }
-  }
+  });
   std::vector<std::array<std::int32_t, 3>> triangles(mesh.triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (int i = 0; i < 3; ++i) triangles[t][i] = static_cast<std::int32_t>(mesh.triangles[t][i]);
-  }
+  for_rows(triangles.size(), options.threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      for (int i = 0; i < 3; ++i) triangles[t][i] = static_cast<std::int32_t>(mesh.triangles[t][i]);
+    }
+  });
   const RootTriangles in_root{positions, triangles};
-  check_surface(in_root, options.depth);
+  check_surface(in_root, options.depth, options.threads);
   HaarTree coefficients =
       analyse_triangles(in_root, options.depth, options.progress.part(0.0, 0.9), options.threads);
   octree.cells =
