@@ -84,6 +84,11 @@ FUNCTIONS = {
         prefilter.nearest_points,
         {"points": QUAD, "positions": BOX.positions, "triangles": BOX.triangles},
     ),
+    "close_holes": (
+        prefilter.close_holes,
+        {"positions": BOX.positions, "triangles": BOX.triangles},
+    ),
+    "contour": (prefilter.contour, {"grid": np.ones((2, 2, 2))}),
     "Octree": (octree_method, {"name": "union", "other": OCTREE}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
@@ -515,6 +520,8 @@ QUERY_ROWS = [
     ("box_occupancy", {"low": (0, 0, 0), "high": (0, 1, 1)}, ["box: ", "along x"]),
     ("box_occupancy", {"low": (0, 0), "high": (1, 1)}, ["box: shape (2, 2)", "(2, 3)"]),
     ("save", {"path": 3}, ["path: 3"]),
+    ("contour", {"interpolant": "cubic"}, ["interpolant: 'cubic'", "occupancy, plane, linear"]),
+    ("contour", {"isovalue": 0}, ["isovalue: 0", "above 0 and up to 1"]),
 ]
 NEAREST_ROWS = [
     ("nearest_points", arguments, words)
@@ -526,7 +533,37 @@ NEAREST_ROWS = [
         ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
     )
 ]
-ROWS += VOXEL_ROWS + NEAREST_ROWS
+CLOSE_ROWS = [
+    ("close_holes", arguments, words)
+    for arguments, words in (
+        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: row 3", "nan"]),
+        ({"positions": BOX.positions[:, :2]}, ["positions: shape (8, 2)", "(vertices, 3) is"]),
+        ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
+        ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
+        ({"progress": 3}, ["progress: 3", "a callable"]),
+    )
+]
+CONTOUR_ROWS = [
+    ("contour", arguments, words)
+    for arguments, words in (
+        ({"grid": np.zeros(5)}, ["grid: shape (5,)", "(x, y, z) is needed"]),
+        ({"grid": np.zeros((2, 2, 2), int)}, ["grid: dtype int64", "float32 or float64"]),
+        ({"grid": np.zeros((0, 2, 2))}, ["grid: 0 cells along x", "1 to 4096 are needed"]),
+        ({"grid": np.full((2, 2, 2), np.nan)}, ["grid: holds nan", "finite"]),
+        ({"grid": np.full((2, 2), np.inf)}, ["grid: holds inf", "finite"]),
+        ({"interpolant": "cubic"}, ["interpolant: 'cubic'", "occupancy, plane, linear"]),
+        ({"interpolant": 1}, ["interpolant: 1", "a name is needed"]),
+        ({"isovalue": np.nan}, ["isovalue: nan", "a finite number"]),
+        ({"isovalue": "half"}, ["isovalue: 'half'", "a number is needed"]),
+        ({"spacing": 0}, ["spacing: 0", "above 0"]),
+        ({"spacing": (1, -1, 1)}, ["spacing: (1, -1, 1)", "above 0"]),
+        ({"spacing": (1, 1)}, ["spacing: shape (2,)", "one number, or (3,)"]),
+        ({"origin": np.inf}, ["origin: inf", "finite"]),
+        ({"threads": -1}, ["threads: -1", "0 meaning all processors"]),
+        ({"progress": 3}, ["progress: 3", "a callable"]),
+    )
+]
+ROWS += VOXEL_ROWS + NEAREST_ROWS + CLOSE_ROWS + CONTOUR_ROWS
 # Where something stands in the way on the disk.
 PLACES = [
     ("nowhere/out.dds", ["path: there is no folder", "nowhere"]),
@@ -600,6 +637,8 @@ def test_the_other_arguments_of_the_rows_are_good(function, folder):
 
 
 def test_every_function_is_there():
-    public = {name for name in prefilter.__all__ if name not in {"Cancelled", "Surface"}}
+    public = {
+        name for name in prefilter.__all__ if name not in {"Cancelled", "ClosedMesh", "Surface"}
+    }
     assert public <= set(FUNCTIONS)
     assert {row[0] for row in ROWS} == set(FUNCTIONS)

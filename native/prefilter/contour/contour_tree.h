@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "prefilter/contour/edge_crossing.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
@@ -69,7 +70,7 @@ class ContourTree {
       return cells_.levels[static_cast<std::size_t>(node.depth - 1)]
           .blocks[node.block][node.octant];
     }
-    return node.is_outside() ? std::min(0.0F, isovalue_) : cells_.root;
+    return node.is_outside() ? empty_sample(isovalue_) : cells_.root;
   }
 
  private:

@@ -174,20 +174,25 @@ inline DualCells::DualCells(const ContourTree& tree) : tree_(tree) {
   const auto nothing = [](const Meeting&) {};
   const CellNode root = tree.root();
   const CellNode outside = kSurroundings;
+  // Around an edge or a corner of the root its neighbours are cells of their own.
+  const auto surroundings = [](std::size_t number) {
+    CellNode cell = kSurroundings;
+    cell.block = static_cast<std::uint32_t>(number);
+    return cell;
+  };
   in_cell(root, nothing);
   for (int axis = 0; axis < 3; ++axis) {
     at_face(axis, outside, root, nothing);
     at_face(axis, root, outside, nothing);
     for (std::size_t k = 0; k < 4; ++k) {
-      std::array<CellNode, 4> around = {outside, outside, outside, outside};
-      around[k] = root;
+      std::array<CellNode, 4> around;
+      for (std::size_t i = 0; i < 4; ++i) around[i] = i == k ? root : surroundings(i);
       at_edge(axis, around, nothing);
     }
   }
   for (std::size_t i = 0; i < 8; ++i) {
     Meeting cells;
-    cells.fill(outside);
-    cells[i] = root;
+    for (std::size_t j = 0; j < 8; ++j) cells[j] = i == j ? root : surroundings(j);
     at_point(cells, nothing);
   }
   found_ = nullptr;

@@ -1,6 +1,9 @@
 // Where the surface cuts the line between the centres of two cells (section 5.2).
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 namespace prefilter {
 
 enum class Interpolant {
@@ -8,6 +11,12 @@ enum class Interpolant {
   kPlane,      // the surface that leaves the cells around theirs
   kLinear,     // samples of a smooth function: marching cubes
 };
+
+/// The sample that stands for what is empty: 0, or where that would be inside, the largest that is
+/// not.
+inline float empty_sample(float isovalue) {
+  return isovalue > 0.0F ? 0.0F : std::nextafter(isovalue, -std::numeric_limits<float>::infinity());
+}
 
 /// Where between the samples a (t = 0) and b (t = 1), on two sides of the iso-value, a linear
 /// function takes it.

@@ -16,8 +16,6 @@ namespace {
 constexpr int kBrickDepth = 4;
 constexpr int kMargin = kHeightReach;
 constexpr std::size_t kBricksPerTask = 64;
-// Occupancies this close to 1/2 do not tell which side their cell's centre is on.
-constexpr float kDoubt = 0.05F;
 
 using CellCoordinates = std::array<std::int32_t, 3>;
 

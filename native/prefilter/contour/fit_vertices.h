@@ -6,6 +6,9 @@
 
 namespace prefilter {
 
+/// Occupancies this close to 1/2 do not tell which side their cell's centre is on.
+inline constexpr float kDoubt = 0.05F;
+
 /// Puts leaves whose occupancy is close to 1/2 on the side that their centre is on, by
 /// height_over_centre: on a curved surface the two differ, and triangles between such a centre and
 /// the surface would be inside out. Throws Error(kCancelled).

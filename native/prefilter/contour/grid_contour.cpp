@@ -10,6 +10,8 @@
 #include "prefilter/base/memory.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/contour/contour_tree.h"
+#include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/tree_contour.h"
 
 namespace prefilter {
@@ -21,23 +23,94 @@ constexpr int kTaskDepth = 3;
 using CellCoordinates = std::array<int, 3>;
 using Levels = std::vector<TreeLevel>;
 
-void check_grid(const GridView& grid) {
-  std::size_t count = 1;
+void check_size(const GridView& grid) {
   for (int a = 0; a < 3; ++a) {
     if (grid.size[a] < 1 || grid.size[a] > kLargestSide) {
       throw_invalid("grid: " + std::to_string(grid.size[a]) + " cells along " +
                     std::string(1, "xyz"[a]) + "; 1 to " + std::to_string(kLargestSide) +
                     " are needed");
     }
-    count *= static_cast<std::size_t>(grid.size[a]);
   }
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!std::isfinite(grid.values[i])) {
-      throw_invalid("grid: holds " + to_text(static_cast<double>(grid.values[i])) +
+}
+
+void check_samples(const float* begin, std::size_t count) {
+  for (const float* at = begin; at != begin + count; ++at) {
+    if (!std::isfinite(*at)) {
+      throw_invalid("grid: holds " + to_text(static_cast<double>(*at)) +
                     "; all samples must be finite");
     }
   }
 }
+
+// On which sides of the iso-value the samples of each block of 2 x 2 x 2 are; what is outside of
+// the grid is empty.
+class BlockSides {
+ public:
+  BlockSides(const GridView& grid, const ContourOptions& options, const Progress& progress)
+      : grid_(grid), least_inside_(options.isovalue), most_outside_(options.isovalue) {
+    if (options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F) {
+      // settle_sides may put these on either side.
+      least_inside_ -= kDoubt;
+      most_outside_ += kDoubt;
+    }
+    for (std::size_t a = 0; a < 3; ++a) size_[a] = (grid.size[a] + 1) / 2;
+    const auto slice = static_cast<std::size_t>(size_[1]) * static_cast<std::size_t>(size_[2]);
+    sides_.resize(static_cast<std::size_t>(size_[0]) * slice);
+    parallel_for(size_[0], options.threads, progress, [&](std::int64_t x) {
+      std::uint8_t* of_slice = sides_.data() + static_cast<std::size_t>(x) * slice;
+      const int low = 2 * static_cast<int>(x);
+      for (int i = low; i < std::min(low + 2, grid.size[0]); ++i) {
+        for (int j = 0; j < grid.size[1]; ++j) {
+          const float* row = &grid.values[grid.index(i, j, 0)];
+          check_samples(row, static_cast<std::size_t>(grid.size[2]));
+          std::uint8_t* of_row = of_slice + static_cast<std::size_t>(j / 2) * size_[2];
+          for (int k = 0; k < grid.size[2]; ++k) of_row[k / 2] |= side_of(row[k]);
+        }
+      }
+    });
+  }
+
+  /// Whether the surface passes between samples of a block, or between them and those around.
+  bool is_near_surface(const CellCoordinates& block) const {
+    unsigned sides = 0;
+    for_around(block, 1, [&](int x, int y, int z) {
+      const bool is_within =
+          x >= 0 && y >= 0 && z >= 0 && x < size_[0] && y < size_[1] && z < size_[2];
+      sides |= is_within ? sides_[(static_cast<std::size_t>(x) * size_[1] + y) * size_[2] + z]
+                         : kOutside;
+    });
+    if (sides != kBothSides) return false;
+    sides = 0;
+    for_around({2 * block[0], 2 * block[1], 2 * block[2]}, 2, [&](int x, int y, int z) {
+      const bool is_within =
+          x >= 0 && y >= 0 && z >= 0 && x < grid_.size[0] && y < grid_.size[1] && z < grid_.size[2];
+      sides |= is_within ? side_of(grid_.at(x, y, z)) : kOutside;
+    });
+    return sides == kBothSides;
+  }
+
+ private:
+  std::uint8_t side_of(float sample) const {
+    return static_cast<std::uint8_t>((sample >= least_inside_ ? kInside : 0) |
+                                     (sample < most_outside_ ? kOutside : 0));
+  }
+
+  // Places from one before `low` to one after the `count` from there on.
+  template <typename Visit>
+  static void for_around(const CellCoordinates& low, int count, const Visit& visit) {
+    for (int x = low[0] - 1; x <= low[0] + count; ++x) {
+      for (int y = low[1] - 1; y <= low[1] + count; ++y) {
+        for (int z = low[2] - 1; z <= low[2] + count; ++z) visit(x, y, z);
+      }
+    }
+  }
+
+  const GridView& grid_;
+  float least_inside_;
+  float most_outside_;
+  CellCoordinates size_{};
+  std::vector<std::uint8_t> sides_;
+};
 
 struct Built {
   float value = 0.0F;
@@ -46,11 +119,15 @@ struct Built {
 
 class TreeBuilder {
  public:
-  TreeBuilder(const GridView& grid, float isovalue, int depth)
-      : grid_(grid), isovalue_(isovalue), depth_(depth) {}
+  TreeBuilder(const GridView& grid, const BlockSides& sides, float isovalue, int depth)
+      : grid_(grid), sides_(sides), empty_(empty_sample(isovalue)), depth_(depth) {}
 
   // The cell of a depth; its blocks are appended to the levels.
   Built build(const CellCoordinates& cell, int at_depth, Levels* levels) const {
+    if (depth_ - at_depth == 1) {
+      return build_with(cell, at_depth, levels,
+                        [&](const CellCoordinates& octant) { return sample(octant); });
+    }
     return build_with(cell, at_depth, levels, [&](const CellCoordinates& octant) {
       return build(octant, at_depth + 1, levels);
     });
@@ -61,55 +138,40 @@ class TreeBuilder {
                    const BuildOctant& build_octant) const {
     const int shift = depth_ - at_depth;
     for (int a = 0; a < 3; ++a) {
-      if (cell[a] << shift >= grid_.size[a]) return {};
+      if (cell[a] << shift >= grid_.size[a]) return {empty_, false};
     }
-    if (shift == 0) return {grid_.at(cell[0], cell[1], cell[2]), false};
-    TreeLevel& level = (*levels)[static_cast<std::size_t>(at_depth)];
-    const std::size_t block = level.size();
-    level.blocks.emplace_back();
-    level.split.push_back(0);
+    if (shift == 0) return sample(cell);
+    OctantValues values;
+    unsigned split = 0;
     for (int o = 0; o < 8; ++o) {
       const Built octant = build_octant(
           {2 * cell[0] + (o & 1), 2 * cell[1] + ((o >> 1) & 1), 2 * cell[2] + ((o >> 2) & 1)});
-      level.blocks[block][static_cast<std::size_t>(o)] = octant.value;
-      if (octant.is_split) level.split[block] |= static_cast<std::uint8_t>(1U << o);
+      values[static_cast<std::size_t>(o)] = octant.value;
+      if (octant.is_split) split |= 1U << o;
     }
-    const OctantValues values = level.blocks[block];
-    const bool is_uniform =
-        level.split[block] == 0 &&
-        std::all_of(values.begin(), values.end(), [&](float value) { return value == values[0]; });
-    // A surface along the borders of cells leaves them uniform, and they have to stay fine: between
-    // larger cells a contour would cut the corners off. Larger blocks are made of such as passed.
-    if (is_uniform && (shift > 1 || is_far_from_surface(cell))) {
-      level.blocks.pop_back();
-      level.split.pop_back();
+    // Equal samples are one leaf, but not beside the surface: a vertex is half-way between two
+    // centres, and those have to be the samples' own.
+    if (split == 0 &&
+        std::all_of(values.begin(), values.end(),
+                    [&](float value) { return value == values[0]; }) &&
+        !(shift == 1 && sides_.is_near_surface(cell))) {
       return {values[0], false};
     }
+    TreeLevel& level = (*levels)[static_cast<std::size_t>(at_depth)];
+    level.blocks.push_back(values);
+    level.split.push_back(static_cast<std::uint8_t>(split));
     return {block_mean(values), true};
   }
 
  private:
-  bool is_inside(int x, int y, int z) const {
-    if (x < 0 || y < 0 || z < 0) return false;
-    if (x >= grid_.size[0] || y >= grid_.size[1] || z >= grid_.size[2]) return false;
-    return grid_.at(x, y, z) >= isovalue_;
-  }
-
-  // Whether the samples around a block of two along each axis are on the side that it is on.
-  bool is_far_from_surface(const CellCoordinates& cell) const {
-    const bool side = is_inside(2 * cell[0], 2 * cell[1], 2 * cell[2]);
-    for (int x = 2 * cell[0] - 1; x <= 2 * cell[0] + 2; ++x) {
-      for (int y = 2 * cell[1] - 1; y <= 2 * cell[1] + 2; ++y) {
-        for (int z = 2 * cell[2] - 1; z <= 2 * cell[2] + 2; ++z) {
-          if (is_inside(x, y, z) != side) return false;
-        }
-      }
-    }
-    return true;
+  Built sample(const CellCoordinates& at) const {
+    const bool is_within = at[0] < grid_.size[0] && at[1] < grid_.size[1] && at[2] < grid_.size[2];
+    return {is_within ? grid_.at(at[0], at[1], at[2]) : empty_, false};
   }
 
   const GridView& grid_;
-  float isovalue_;
+  const BlockSides& sides_;
+  float empty_;
   int depth_;
 };
 
@@ -119,9 +181,10 @@ struct Task {
   Levels levels;
 };
 
-CellTree tree_of(const GridView& grid, float isovalue, int depth, const Progress& progress,
-                 int threads) {
-  const TreeBuilder builder(grid, isovalue, depth);
+CellTree tree_of(const GridView& grid, int depth, const ContourOptions& options,
+                 const Progress& progress) {
+  const BlockSides sides(grid, options, progress.part(0.0, 0.3));
+  const TreeBuilder builder(grid, sides, options.isovalue, depth);
   const int task_depth = std::min(kTaskDepth, depth);
   const int tasks_along = 1 << task_depth;
   std::vector<Task> tasks(static_cast<std::size_t>(tasks_along * tasks_along * tasks_along));
@@ -130,7 +193,7 @@ CellTree tree_of(const GridView& grid, float isovalue, int depth, const Progress
                                           cell[2])];
   };
   const auto count = static_cast<std::int64_t>(tasks.size());
-  parallel_for(count, threads, progress, [&](std::int64_t i) {
+  parallel_for(count, options.threads, progress.part(0.3, 1.0), [&](std::int64_t i) {
     Task& task = tasks[static_cast<std::size_t>(i)];
     const int index = static_cast<int>(i);
     task.cell = {index / (tasks_along * tasks_along), index / tasks_along % tasks_along,
@@ -197,7 +260,7 @@ class Outliner {
  private:
   float value(int x, int y) const {
     const bool is_within = x >= 0 && y >= 0 && x < image_.size[0] && y < image_.size[1];
-    return is_within ? image_.at(x, y, 0) : std::min(0.0F, options_.isovalue);
+    return is_within ? image_.at(x, y, 0) : empty_sample(options_.isovalue);
   }
   bool is_inside(int x, int y) const {
     const bool is_within = x >= 0 && y >= 0 && x < image_.size[0] && y < image_.size[1];
@@ -251,12 +314,11 @@ class Outliner {
 
 TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
                           const ContourOptions& options) {
-  check_grid(grid);
+  check_size(grid);
   const int longest = std::max({grid.size[0], grid.size[1], grid.size[2]});
   const int depth =
       std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(longest - 1))));
-  const CellTree tree =
-      tree_of(grid, options.isovalue, depth, options.progress.part(0.0, 0.3), options.threads);
+  const CellTree tree = tree_of(grid, depth, options, options.progress.part(0.0, 0.3));
   RootFrame root;
   for (int a = 0; a < 3; ++a) {
     root.origin[a] = frame.origin[a];
@@ -269,7 +331,9 @@ TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
 
 std::vector<Polyline> contour_image(const GridView& image, const GridFrame& frame,
                                     const ContourOptions& options) {
-  check_grid(image);
+  check_size(image);
+  check_samples(image.values,
+                static_cast<std::size_t>(image.size[0]) * static_cast<std::size_t>(image.size[1]));
   Outliner outliner(image, frame, options);
   outliner.cut_rows(options.progress);
   return outliner.take();

@@ -16,12 +16,13 @@ struct GridView {
   const float* values = nullptr;
   std::array<int, 3> size{};  // cells along the axes, 1 to 4096
 
-  float at(int x, int y, int z) const {
-    return values[(static_cast<std::size_t>(x) * static_cast<std::size_t>(size[1]) +
-                   static_cast<std::size_t>(y)) *
-                      static_cast<std::size_t>(size[2]) +
-                  static_cast<std::size_t>(z)];
+  std::size_t index(int x, int y, int z) const {
+    return (static_cast<std::size_t>(x) * static_cast<std::size_t>(size[1]) +
+            static_cast<std::size_t>(y)) *
+               static_cast<std::size_t>(size[2]) +
+           static_cast<std::size_t>(z);
   }
+  float at(int x, int y, int z) const { return values[index(x, y, z)]; }
 };
 
 /// Where cells are: cell (i, j, k) begins at origin + spacing * (i, j, k).
@@ -30,9 +31,9 @@ struct GridFrame {
   std::array<double, 3> spacing{1.0, 1.0, 1.0};
 };
 
-/// As contour_tree does: the octree is made of the grid, with blocks of equal samples as leaves.
-/// What is outside of the grid is empty. Throws Error where a side is out of range or a sample is
-/// not a number, and what contour_tree throws.
+/// Marching cubes on the samples. As contour_tree does: the octree is made of the grid, with blocks
+/// of equal samples away from the surface as leaves. What is outside of the grid is empty. Throws
+/// Error where a side is out of range or a sample is not a number, and what contour_tree throws.
 TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
                           const ContourOptions& options);
 

@@ -194,6 +194,8 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
   tree.levels = std::move(levels);
   for (TreeLevel& level : tree.levels) link_blocks(&level);
   update_means(&tree, threads);
+  // All empty, or all full.
+  if (!is_fraction(tree.root)) tree.levels.clear();
   return tree;
 }
 

@@ -130,6 +130,107 @@ TEST(ContourGrid, RandomSamplesGiveClosedManifolds) {
   }
 }
 
+// Positions in the order of their coordinates, from `low` on.
+std::vector<std::array<float, 3>> sorted_positions(const TriangleMesh& mesh, int low) {
+  std::vector<std::array<float, 3>> positions = mesh.positions;
+  for (auto& p : positions) {
+    for (float& x : p) x -= static_cast<float>(low);
+  }
+  std::sort(positions.begin(), positions.end());
+  return positions;
+}
+
+// Samples that are equal in blocks, wherever these begin, are samples still.
+TEST(ContourGrid, MovesWithItsSamples) {
+  constexpr int kBlock = 4;
+  constexpr int kBlocks = 3;
+  constexpr int kSize = 32;
+  std::mt19937 random(8);
+  for (int trial = 0; trial < 30; ++trial) {
+    std::vector<float> blocks(kBlocks * kBlocks * kBlocks);
+    for (float& block : blocks) block = static_cast<float>(random() % 5) / 4.0F;
+    for (const Interpolant interpolant : kInterpolants) {
+      std::vector<std::array<float, 3>> first;
+      std::size_t triangles = 0;
+      for (const int low : {8, 9, 11, 12, 16}) {
+        std::vector<float> values(kSize * kSize * kSize);
+        GridView grid{values.data(), {kSize, kSize, kSize}};
+        constexpr int kSide = kBlock * kBlocks;
+        for (int i = 0; i < kSide * kSide * kSide; ++i) {
+          const std::array<int, 3> at = {i / (kSide * kSide), i / kSide % kSide, i % kSide};
+          values[grid.index(low + at[0], low + at[1], low + at[2])] =
+              blocks[static_cast<std::size_t>(
+                  (at[0] / kBlock * kBlocks + at[1] / kBlock) * kBlocks + at[2] / kBlock)];
+        }
+        const TriangleMesh mesh = contour_grid(grid, {}, options_of(interpolant));
+        ASSERT_EQ(fault_of(mesh), "");
+        const auto positions = sorted_positions(mesh, low);
+        if (low == 8) {
+          first = positions;
+          triangles = mesh.triangles.size();
+        }
+        ASSERT_EQ(mesh.triangles.size(), triangles) << trial << " " << low;
+        ASSERT_EQ(positions.size(), first.size()) << trial << " " << low;
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+          for (std::size_t a = 0; a < 3; ++a) {
+            ASSERT_NEAR(positions[i][a], first[i][a], 1e-5) << trial << " " << low;
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(ContourGrid, FullBoxesLoseTheirEdgesAlone) {
+  // Cut off by planes through the middles between samples: 1/8 of a cell along each edge, and 5/48
+  // at each corner.
+  for (const auto& [low, side, size] :
+       std::vector<std::array<int, 3>>{{0, 4, 8}, {4, 4, 16}, {8, 16, 32}, {3, 4, 9}, {0, 5, 5}}) {
+    std::vector<float> values(static_cast<std::size_t>(size) * size * size);
+    GridView grid{values.data(), {size, size, size}};
+    for (int i = 0; i < side * side * side; ++i) {
+      values[grid.index(low + i / (side * side), low + i / side % side, low + i % side)] = 1.0F;
+    }
+    const double wanted = side * side * side - 12 * (side - 1) / 8.0 - 8 * 5 / 48.0;
+    for (const Interpolant interpolant : kInterpolants) {
+      const TriangleMesh mesh = contour_grid(grid, {}, options_of(interpolant));
+      EXPECT_EQ(fault_of(mesh), "");
+      EXPECT_NEAR(volume_of(mesh), wanted, 1e-3) << low << " " << side << " " << size;
+      EXPECT_EQ(mesh.positions.size(), 6U * side * side);
+    }
+  }
+}
+
+// Functions with a sign: what pads a grid to a cube is outside of them, too.
+TEST(ContourGrid, TakesIsoValuesOfZeroAndBelow) {
+  for (const int size : {16, 20}) {
+    for (const float isovalue : {0.0F, -0.5F}) {
+      std::vector<float> values;
+      for (int i = 0; i < size * size * size; ++i) {
+        const double middle = size / 2.0 - 0.5;
+        values.push_back(
+            static_cast<float>(5.0 - std::hypot(i / (size * size) - middle,
+                                                i / size % size - middle, i % size - middle)));
+      }
+      ContourOptions options = options_of(Interpolant::kLinear);
+      options.isovalue = isovalue;
+      const TriangleMesh mesh = contour_grid({values.data(), {size, size, size}}, {}, options);
+      EXPECT_EQ(fault_of(mesh), "");
+      const double radius = 5.0 - static_cast<double>(isovalue);
+      EXPECT_NEAR(volume_of(mesh) / (4.18879 * radius * radius * radius), 1.0, 0.025);
+      // All inside: the surface is around the grid, and finite.
+      options.isovalue = -100.0F;
+      const TriangleMesh all = contour_grid({values.data(), {size, size, size}}, {}, options);
+      EXPECT_EQ(fault_of(all), "");
+      EXPECT_GT(volume_of(all), 0.9 * size * size * size);
+    }
+  }
+  const std::vector<float> zeros(27, 0.0F);
+  ContourOptions options;
+  options.isovalue = 0.0F;
+  EXPECT_EQ(fault_of(contour_grid({zeros.data(), {3, 3, 3}}, {}, options)), "");
+}
+
 CellTree random_tree(unsigned seed, int depth) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> uniform(0.0F, 1.0F);

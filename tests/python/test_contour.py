@@ -1,0 +1,96 @@
+"""Contours of grids: planes, spheres and boxes whose measures are known in closed form."""
+
+import itertools
+
+import numpy as np
+import prefilter
+import pytest
+
+INTERPOLANTS = ["occupancy", "plane", "linear"]
+
+
+def enclosed(positions, triangles):
+    a, b, c = (positions[triangles[:, k]].astype(float) for k in range(3))
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+def is_closed(triangles):
+    """Whether every edge is there once in each direction."""
+    edges = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    forward = set(map(tuple, edges.tolist()))
+    return len(forward) == len(edges) and all((b, a) in forward for a, b in forward)
+
+
+def slab(size, normal, offset):
+    """The share of each cell below a plane: inclusion and exclusion over its corners."""
+    lows = np.indices((size,) * 3) + np.where(np.array(normal) < 0, 1, 0)[:, None, None, None]
+    rest = offset - np.einsum("a,axyz->xyz", normal, lows)
+    sides = np.abs(normal)
+    shares = sum(
+        (-1) ** sum(corner) * np.maximum(rest - np.dot(corner, sides), 0) ** 3
+        for corner in itertools.product((0, 1), repeat=3)
+    ) / (6 * sides.prod())
+    return np.where(rest <= 0, 0, np.where(rest >= sides.sum(), 1, shares)).clip(0, 1)
+
+
+@pytest.mark.parametrize(
+    ("interpolant", "most"), [("plane", 5e-5), ("occupancy", 0.03), ("linear", 0.12)]
+)
+def test_vertices_lie_on_planes(interpolant, most):
+    random = np.random.default_rng(0)
+    for _ in range(20):
+        normal = random.normal(size=3)
+        normal /= np.linalg.norm(normal)
+        offset = normal @ (8 + random.uniform(-0.5, 0.5, 3))
+        grid = slab(16, normal, offset).astype(np.float32)
+        positions, triangles = prefilter.contour(grid, interpolant=interpolant)
+        assert is_closed(triangles)
+        inner = positions[((positions > 5) & (positions < 11)).all(axis=1)]
+        assert np.abs(inner @ normal - offset).max() < most
+
+
+@pytest.mark.parametrize("interpolant", INTERPOLANTS)
+@pytest.mark.parametrize("low", [0, 3, 4, 8])
+def test_a_box_of_ones_is_the_same_anywhere(interpolant, low):
+    """Its edges are cut off by 1/8 of a cell, and its corners by 5/48."""
+    grid = np.zeros((20, 17, 16))
+    grid[low : low + 8, low : low + 8, low : low + 8] = 1
+    positions, triangles = prefilter.contour(grid, interpolant=interpolant)
+    assert is_closed(triangles)
+    assert len(positions) == 6 * 64
+    assert enclosed(positions, triangles) == pytest.approx(512 - 12 * 7 / 8 - 8 * 5 / 48, abs=1e-3)
+
+
+def test_signed_distances_have_the_iso_value_zero():
+    """A grid that is no power of two along any axis: what is around it stays outside."""
+    x, y, z = np.meshgrid(np.arange(19), np.arange(21), np.arange(22), indexing="ij")
+    distance = np.sqrt((x - 9) ** 2 + (y - 10) ** 2 + (z - 10) ** 2)
+    positions, triangles = prefilter.contour(6.3 - distance, interpolant="linear", isovalue=0)
+    assert is_closed(triangles)
+    radius = np.linalg.norm(positions - (9.5, 10.5, 10.5), axis=1)
+    assert np.abs(radius - 6.3).max() < 0.05
+
+
+def test_spacing_and_origin_place_the_cells():
+    random = np.random.default_rng(1)
+    grid = random.random((5, 6, 7))
+    plain, triangles = prefilter.contour(grid)
+    placed, same = prefilter.contour(grid, spacing=(0.5, 2, 3), origin=(1, -2, 4))
+    np.testing.assert_array_equal(triangles, same)
+    np.testing.assert_allclose(placed, plain * (0.5, 2, 3) + (1, -2, 4), rtol=1e-5, atol=1e-5)
+
+
+def test_threads_and_types_do_not_matter():
+    grid = np.random.default_rng(2).random((33, 20, 40)).astype(np.float32)
+    first = prefilter.contour(grid, interpolant="plane", threads=1)
+    for other in (
+        prefilter.contour(grid, interpolant="plane", threads=5),
+        prefilter.contour(grid.astype(float), interpolant="plane"),
+    ):
+        np.testing.assert_array_equal(first[0], other[0])
+        np.testing.assert_array_equal(first[1], other[1])
+
+
+def test_stops_when_asked():
+    with pytest.raises(prefilter.Cancelled):
+        prefilter.contour(np.zeros((64, 64, 64)), progress=lambda fraction: False)
