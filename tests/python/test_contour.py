@@ -5,6 +5,7 @@ import itertools
 import numpy as np
 import prefilter
 import pytest
+import solids
 
 INTERPOLANTS = ["occupancy", "plane", "linear"]
 
@@ -49,6 +50,33 @@ def test_vertices_lie_on_planes(interpolant, most):
         assert np.abs(inner @ normal - offset).max() < most
 
 
+def normal_errors(positions, triangles, center):
+    """Degrees between the facets and a sphere under their middles; and their areas."""
+    corners = positions[triangles] - center
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1)
+    middles = corners.mean(axis=1)
+    cosines = (normals * middles).sum(axis=1) / (areas * np.linalg.norm(middles, axis=1))
+    return np.degrees(np.arccos(cosines.clip(-1, 1))), areas
+
+
+@pytest.mark.parametrize("center", [(0.2, 0.3, 0.4), (0.0, 0.0, 0.0), (0.5, 0.05, 0.77)])
+def test_normals_on_a_sphere_of_fifteen_cells(center):
+    """Facets with vertices on it, and any of the diagonals that cells leave free: 0.86 degrees."""
+    sphere = solids.sphere(15.0, 5, center)
+    octree = prefilter.voxelize(
+        sphere.positions, sphere.triangles, depth=6, bounds=((-32,) * 3, (32,) * 3)
+    )
+    means, largest = {}, {}
+    for interpolant in INTERPOLANTS:
+        errors, areas = normal_errors(*octree.contour(interpolant=interpolant), center)
+        means[interpolant] = np.average(errors, weights=areas)
+        largest[interpolant] = errors[areas > 1e-6 * areas.sum()].max()
+    assert means["plane"] < 0.79
+    assert means["occupancy"] < 0.95
+    assert largest["occupancy"] < means["linear"]  # Figure 5.8
+
+
 @pytest.mark.parametrize("interpolant", INTERPOLANTS)
 @pytest.mark.parametrize("low", [0, 3, 4, 8])
 def test_a_box_of_ones_is_the_same_anywhere(interpolant, low):
@@ -75,8 +103,11 @@ def test_spacing_and_origin_place_the_cells():
     random = np.random.default_rng(1)
     grid = random.random((5, 6, 7))
     plain, triangles = prefilter.contour(grid)
-    placed, same = prefilter.contour(grid, spacing=(0.5, 2, 3), origin=(1, -2, 4))
+    larger, same = prefilter.contour(grid, spacing=4)
     np.testing.assert_array_equal(triangles, same)
+    np.testing.assert_array_equal(larger, plain * 4)
+    placed, others = prefilter.contour(grid, spacing=(0.5, 2, 3), origin=(1, -2, 4))
+    assert is_closed(others)  # The diagonals are the best ones where the surface is.
     np.testing.assert_allclose(placed, plain * (0.5, 2, 3) + (1, -2, 4), rtol=1e-5, atol=1e-5)
 
 

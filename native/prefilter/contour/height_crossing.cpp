@@ -8,8 +8,6 @@ namespace {
 constexpr float kFull = 1.0F - 1e-5F;
 constexpr float kEmpty = 1e-5F;
 constexpr int kMostSteps = 4;
-// Second differences above this are a crease, not a curve.
-constexpr float kMostCurvature = 0.5F;
 constexpr float kSlack = 0.05F;
 
 // The height of the surface over the low side of a column's cell, in cells; `up` leads towards the
@@ -40,15 +38,10 @@ Profile profile(const float* cell, std::ptrdiff_t across, std::ptrdiff_t up, flo
   const std::optional<float> low = column_height(cell - across, up);
   const std::optional<float> high = column_height(cell + across, up);
   Profile result;
-  if (low && high) {
-    result.slope = (*high - *low) / 2.0F;
-    result.curvature = *high - 2.0F * height + *low;
-    result.has_slope = true;
-    if (std::abs(result.curvature) > kMostCurvature) result.curvature = 0.0F;
-  } else if (low || high) {
-    result.slope = high ? *high - height : height - *low;
-    result.has_slope = true;
-  }
+  if (!low || !high) return result;  // A slope to one side would be off by half the curvature.
+  result.slope = (*high - *low) / 2.0F;
+  result.curvature = *high - 2.0F * height + *low;
+  result.has_slope = true;
   return result;
 }
 

@@ -1,7 +1,5 @@
 #include "prefilter/contour/marching_table.h"
 
-#include <cassert>
-
 namespace prefilter {
 
 std::array<int, 4> face_corners(int axis, bool is_high) {
@@ -72,30 +70,12 @@ unsigned ambiguous_faces(unsigned inside) {
   return faces;
 }
 
-namespace {
-MarchingCase make_case(unsigned inside) {
-  MarchingCase result;
-  result.ambiguous_faces = ambiguous_faces(inside);
-  result.loops = marching_loops(inside, 0);
-  for (const MarchingLoop& loop : result.loops) {
-    std::vector<std::array<std::uint8_t, 3>> triangles;
-    const auto shares_no_face = [&](int i, int j) {
-      return (faces_of_edge(loop[static_cast<std::size_t>(i)]) &
-              faces_of_edge(loop[static_cast<std::size_t>(j)])) == 0U;
-    };
-    [[maybe_unused]] const bool is_possible =
-        triangulate_loop(static_cast<int>(loop.size()), shares_no_face, &triangles);
-    assert(is_possible);
-    for (const auto& [i, j, k] : triangles) result.triangles.push_back({loop[i], loop[j], loop[k]});
-  }
-  return result;
-}
-}  // namespace
-
 const std::array<MarchingCase, 256>& marching_cases() {
   static const auto* const cases = [] {
     auto* all = new std::array<MarchingCase, 256>;
-    for (unsigned inside = 0; inside < 256; ++inside) (*all)[inside] = make_case(inside);
+    for (unsigned inside = 0; inside < 256; ++inside) {
+      (*all)[inside] = {marching_loops(inside, 0), ambiguous_faces(inside)};
+    }
     return all;
   }();
   return *cases;

@@ -6,13 +6,14 @@
 //
 // On a face the segments depend on the signs of its four corners alone: each run of inside corners
 // around the face is cut off by itself. Neighbours see the same segments, in opposite directions,
-// so the surface is closed. A loop of segments is triangulated without diagonals in faces of the
-// cube: such a one could be a diagonal, or a segment, of the neighbour's too, and belong to four
-// triangles.
+// so the surface is closed. Diagonals of a loop of segments must not lie in faces of the cube: such
+// a one could be a diagonal, or a segment, of the neighbour's too, and belong to four triangles.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace prefilter {
@@ -22,8 +23,6 @@ using MarchingLoop = std::vector<std::uint8_t>;
 
 struct MarchingCase {
   std::vector<MarchingLoop> loops;
-  // The loops' triangles, as edges.
-  std::vector<std::array<std::uint8_t, 3>> triangles;
   // The faces with two inside corners that are opposite of each other, as bits: 2 a for the low
   // face across axis a, 2 a + 1 for the high one.
   unsigned ambiguous_faces = 0;
@@ -57,44 +56,43 @@ constexpr unsigned faces_of_edge(int edge) {
   return faces;
 }
 
-/// Triangulates a loop of `count` vertices without the diagonals that `is_allowed(i, j)` refuses.
-/// Appends triples of places in the loop; false, and nothing appended, where there is no way.
-template <typename IsAllowed>
-bool triangulate_loop(int count, const IsAllowed& is_allowed,
-                      std::vector<std::array<std::uint8_t, 3>>* triangles) {
-  // apex[i][j]: the third corner over the side (i, j) of a triangulation of i .. j; -1: none. Of
-  // several the one nearest to the middle, for triangles that are not thin.
+/// Triangulates a loop of 3 to 12 vertices without the diagonals that `is_allowed(i, j)` refuses,
+/// at the least sum of `cost(i, j, k)` over its triangles. Calls `add(i, j, k)` with their places
+/// in the loop; false, and no call, where there is no way.
+template <typename IsAllowed, typename Cost, typename Add>
+bool triangulate_loop(int count, const IsAllowed& is_allowed, const Cost& cost, const Add& add) {
   constexpr int kMost = 12;
-  std::array<std::array<std::int8_t, kMost>, kMost> apex{};
+  // The best of the triangulations of i .. j: its cost, and the third corner over the side (i, j).
+  std::array<std::array<double, kMost>, kMost> least;
+  std::array<std::array<std::int8_t, kMost>, kMost> apex;
+  for (int i = 0; i + 1 < count; ++i) least[i][i + 1] = 0.0;
   for (int span = 2; span < count; ++span) {
     for (int i = 0; i + span < count; ++i) {
       const int j = i + span;
+      least[i][j] = std::numeric_limits<double>::infinity();
       apex[i][j] = -1;
-      const bool is_side = span == count - 1;
-      if (!is_side && !is_allowed(i, j)) continue;
-      int best = 2 * kMost;
+      if (span < count - 1 && !is_allowed(i, j)) continue;
       for (int k = i + 1; k < j; ++k) {
-        const bool low_is_fine = k == i + 1 || apex[i][k] >= 0;
-        const bool high_is_fine = k == j - 1 || apex[k][j] >= 0;
-        const int off_middle = k - i > j - k ? (k - i) - (j - k) : (j - k) - (k - i);
-        if (low_is_fine && high_is_fine && off_middle < best) {
-          best = off_middle;
-          apex[i][j] = static_cast<std::int8_t>(k);
-        }
+        const double sides = least[i][k] + least[k][j];
+        if (!(sides < least[i][j])) continue;
+        const double sum = sides + cost(i, k, j);
+        if (apex[i][j] >= 0 && sum >= least[i][j]) continue;
+        least[i][j] = sum;
+        apex[i][j] = static_cast<std::int8_t>(k);
       }
     }
   }
-  if (count < 3 || apex[0][count - 1] < 0) return count < 3;
-  std::vector<std::array<int, 2>> open = {{0, count - 1}};
-  while (!open.empty()) {
-    const auto [i, j] = open.back();
-    open.pop_back();
+  if (apex[0][count - 1] < 0) return false;
+  std::array<std::array<int, 2>, kMost> open;
+  std::size_t waiting = 0;
+  open[waiting++] = {0, count - 1};
+  while (waiting > 0) {
+    const auto [i, j] = open[--waiting];
     if (j - i < 2) continue;
     const int k = apex[i][j];
-    triangles->push_back(
-        {static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(k), static_cast<std::uint8_t>(j)});
-    open.push_back({i, k});
-    open.push_back({k, j});
+    add(i, k, j);
+    open[waiting++] = {i, k};
+    open[waiting++] = {k, j};
   }
   return true;
 }

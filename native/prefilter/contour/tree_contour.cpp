@@ -1,6 +1,7 @@
 #include "prefilter/contour/tree_contour.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -26,10 +27,39 @@ struct TaskTriangles {
   std::vector<std::array<float, 3>> middles;
 };
 
+constexpr std::array<unsigned, 12> kFacesOfEdges = [] {
+  std::array<unsigned, 12> faces;
+  for (int edge = 0; edge < 12; ++edge) faces[edge] = faces_of_edge(edge);
+  return faces;
+}();
+
+// In proportion to the volume between a triangle and a large sphere through its corners: the area
+// times the sum of the squared sides. Of the triangulations of points of one plane Delaunay's has
+// the least sum (Rajan 1994), and facets whose normals are the nearest to the sphere's.
+double sphere_gap(const std::array<float, 3>& a, const std::array<float, 3>& b,
+                  const std::array<float, 3>& c) {
+  std::array<double, 3> u;
+  std::array<double, 3> v;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    u[i] = double{b[i]} - a[i];
+    v[i] = double{c[i]} - a[i];
+    squares += u[i] * u[i] + v[i] * v[i] + (v[i] - u[i]) * (v[i] - u[i]);
+  }
+  double doubled = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    const std::size_t k = (i + 2) % 3;
+    const double n = u[j] * v[k] - u[k] * v[j];
+    doubled += n * n;
+  }
+  return std::sqrt(doubled) * squares;
+}
+
 class TriangleMaker {
  public:
-  TriangleMaker(const ContourTree& tree, const SurfaceVertices& vertices)
-      : tree_(tree), vertices_(vertices), cases_(marching_cases()) {}
+  explicit TriangleMaker(const SurfaceVertices& vertices)
+      : vertices_(vertices), cases_(marching_cases()) {}
 
   void add(const Meeting& leaves, TaskTriangles* task) const {
     unsigned inside = 0;
@@ -51,11 +81,10 @@ class TriangleMaker {
       }
     }
     std::array<unsigned, 12> faces;
-    if (is_uniform || (!has_shared_corners(leaves, loops, &faces) && joined == 0U)) {
-      for (const auto& [a, b, c] : found.triangles) {
-        task->triangles.push_back({on_edge[a], on_edge[b], on_edge[c]});
-      }
-      return;
+    if (is_uniform) {
+      faces = kFacesOfEdges;
+    } else {
+      find_shared_faces(leaves, loops, &faces);
     }
     for (const MarchingLoop& loop : loops) add_loop(loop, on_edge, faces, task);
   }
@@ -84,12 +113,12 @@ class TriangleMaker {
   }
 
   // The faces of the dual cell that both leaves of each edge reach: as a leaf may be several of its
-  // corners, more than those that the edge lies in. True where there are more of any.
+  // corners, maybe more than those that the edge lies in.
   //
   // Two vertices whose leaves all reach one face are in the dual cell behind it, too, and only
   // then: the four boxes have more than this point in common.
-  static bool has_shared_corners(const Meeting& leaves, const std::vector<MarchingLoop>& loops,
-                                 std::array<unsigned, 12>* faces) {
+  static void find_shared_faces(const Meeting& leaves, const std::vector<MarchingLoop>& loops,
+                                std::array<unsigned, 12>* faces) {
     std::array<unsigned, 8> reached{};
     for (int i = 0; i < 8; ++i) {
       for (int j = 0; j < 8; ++j) {
@@ -100,14 +129,11 @@ class TriangleMaker {
         for (int axis = 0; axis < 3; ++axis) reached[i] |= 1U << (2 * axis + ((j >> axis) & 1));
       }
     }
-    bool has_more = false;
     for (const MarchingLoop& loop : loops) {
       for (const int edge : loop) {
         (*faces)[edge] = reached[low_corner(edge)] & reached[high_corner(edge)];
-        has_more = has_more || (*faces)[edge] != faces_of_edge(edge);
       }
     }
-    return has_more;
   }
 
   // A loop in which edges between the same two leaves, which are one vertex, follow each other.
@@ -131,17 +157,18 @@ class TriangleMaker {
       faces[0] |= faces[count];
     }
     if (count < 3) return;
-    std::vector<std::array<std::uint8_t, 3>> triangles;
-    const bool is_done = triangulate_loop(
-        count, [&](int i, int j) { return (faces[i] & faces[j]) == 0U; }, &triangles);
-    for (const auto& [i, j, k] : triangles) {
+    const auto is_allowed = [&](int i, int j) { return (faces[i] & faces[j]) == 0U; };
+    const auto cost = [&](int i, int j, int k) {
+      return sphere_gap(position(corners[i]), position(corners[j]), position(corners[k]));
+    };
+    const bool is_done = triangulate_loop(count, is_allowed, cost, [&](int i, int j, int k) {
       task->triangles.push_back({corners[i], corners[j], corners[k]});
-    }
+    });
     if (is_done) return;
     // No diagonal is free: a fan around the middle needs none.
     std::array<float, 3> middle{};
     for (int i = 0; i < count; ++i) {
-      const auto& p = vertices_.positions()[static_cast<std::size_t>(corners[i])];
+      const auto& p = position(corners[i]);
       for (int a = 0; a < 3; ++a) middle[a] += p[a] / static_cast<float>(count);
     }
     task->middles.push_back(middle);
@@ -151,7 +178,10 @@ class TriangleMaker {
     }
   }
 
-  const ContourTree& tree_;
+  const std::array<float, 3>& position(std::int32_t vertex) const {
+    return vertices_.positions()[static_cast<std::size_t>(vertex)];
+  }
+
   const SurfaceVertices& vertices_;
   const std::array<MarchingCase, 256>& cases_;
 };
@@ -202,7 +232,7 @@ TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
     fit_vertices(tree, frame, cutting.part(0.4, 0.6), options.threads, &vertices);
   }
   const DualCells dual(tree);
-  const TriangleMaker maker(tree, vertices);
+  const TriangleMaker maker(vertices);
   std::vector<TaskTriangles> tasks((dual.part_count() + kPartsPerTask - 1) / kPartsPerTask);
   parallel_for(static_cast<std::int64_t>(tasks.size()), options.threads, cutting.part(0.6, 1.0),
                [&](std::int64_t i) {
