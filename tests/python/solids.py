@@ -397,8 +397,12 @@ def surface_faults(positions: np.ndarray, triangles: np.ndarray) -> SurfaceFault
         before = corner - corner % 3 + (corner + 2) % 3
         step = order[place][before]
         label = corner.copy()
-        for _ in range(int(np.ceil(np.log2(len(start) + 1)))):
-            label = np.minimum(label, label[step])
-            step = step[step]
+        while True:
+            # Of 2^k corners in turn. Unchanged, it is the same of all such runs of a fan, which
+            # together are all of it.
+            least = np.minimum(label, label[step])
+            if (least == label).all():
+                break
+            label, step = least, step[step]
         pinched = len(np.unique(label)) - len(np.unique(start))
     return SurfaceFaults(bad, pinched, int((repeated | flat).sum()))

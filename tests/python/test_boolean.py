@@ -73,12 +73,8 @@ def check(a: Solid, b: Solid, depth: int = 8) -> None:
         estimate = points.estimate(operation.inside, error=ERROR_BAR)
         assert estimate.error < ERROR_BAR * estimate.volume
         octree = operation(*octrees)
-        surface = mesh_volume(*octree.contour())
-        print(
-            f"{operation.name}: octree {octree.volume / estimate.volume - 1:+.2%}, surface "
-            f"{surface / estimate.volume - 1:+.2%} +- {estimate.error / estimate.volume:.2%}"
-        )
-        check_surface(octree, estimate.volume)
+        # "linear" has the loops of "occupancy"; smaller surfaces are checked with all three.
+        check_surface(octree, estimate.volume, ("occupancy", "plane"))
 
 
 def test_the_estimate_finds_a_known_volume():

@@ -62,6 +62,7 @@ void parallel_for(std::int64_t count, int threads, const Progress& progress,
     work(true);
   }
   if (failure) std::rethrow_exception(failure);
+  progress.report(1.0);  // A helper may have ended last.
 }
 
 void parallel_team(int threads, const std::function<void(Team&)>& body) {

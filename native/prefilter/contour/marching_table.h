@@ -61,6 +61,10 @@ constexpr unsigned faces_of_edge(int edge) {
 /// in the loop; false, and no call, where there is no way.
 template <typename IsAllowed, typename Cost, typename Add>
 bool triangulate_loop(int count, const IsAllowed& is_allowed, const Cost& cost, const Add& add) {
+  if (count == 3) {
+    add(0, 1, 2);
+    return true;
+  }
   constexpr int kMost = 12;
   // The best of the triangulations of i .. j: its cost, and the third corner over the side (i, j).
   std::array<std::array<double, kMost>, kMost> least;

@@ -6,7 +6,7 @@
 
 namespace prefilter {
 namespace {
-constexpr std::size_t kBlocksPerTask = 1U << 15;
+constexpr std::size_t kBlocksPerTask = 1U << 12;
 
 // Means of cells that are split, from their octants as they are after clamping.
 void pass_up(const TreeLevel& next, std::size_t begin, std::size_t end, TreeLevel* level) {

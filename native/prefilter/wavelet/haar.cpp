@@ -13,20 +13,22 @@ constexpr float kRounding = 1e-5F;
 
 // Values of cells that no boundary passes through are whole numbers but for rounding.
 float without_rounding(float value) {
-  const float whole = std::round(value);
+  const float whole = std::rint(value);
   return std::abs(value - whole) <= kRounding ? whole : value;
 }
 
-void to_values(TreeLevel* level, std::size_t begin, std::size_t end) {
+// Of a last level all cells are clamped, and none split any more.
+void to_values(bool is_last, std::size_t begin, std::size_t end, TreeLevel* level) {
   for (std::size_t b = begin; b < end; ++b) {
     OctantValues& values = level->blocks[b];
     hadamard(&values);
     const unsigned met = level->split[b];
     for (int o = 0; o < 8; ++o) {
-      if (((met >> o) & 1U) == 0U) {
-        values[o] = std::clamp(without_rounding(values[o]), 0.0F, 1.0F);
-      }
+      const bool is_met = ((met >> o) & 1U) != 0U;
+      if (!is_met) values[o] = without_rounding(values[o]);
+      if (!is_met || is_last) values[o] = std::clamp(values[o], 0.0F, 1.0F);
     }
+    if (is_last) level->split[b] = 0;
   }
 }
 
@@ -59,16 +61,11 @@ CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, 
     const auto part =
         progress.part(static_cast<double>(k) / count, (static_cast<double>(k) + 1) / count);
     for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
-      to_values(&level, begin, end);
+      to_values(is_last, begin, end, &level);
       if (!is_last) pass_down(level, begin, end, &tree.levels[k + 1]);
     });
   }
-  TreeLevel& last = tree.levels.back();
-  for (OctantValues& values : last.blocks) {
-    for (float& value : values) value = std::clamp(value, 0.0F, 1.0F);
-  }
-  std::fill(last.split.begin(), last.split.end(), std::uint8_t{0});
-  last.first.assign(last.size(), 0U);
+  tree.levels.back().first.assign(tree.levels.back().size(), 0U);
   update_means(&tree, threads);
   return tree;
 }

@@ -30,6 +30,21 @@ TEST(ParallelFor, PassesOnTheExceptionOfABody) {
   EXPECT_THROW(fail(), std::runtime_error);
 }
 
+TEST(ParallelFor, ReportsTheEndWhenAHelperIsLast) {
+  const std::thread::id caller = std::this_thread::get_id();
+  std::vector<double> seen;
+  const Progress progress([&](double fraction) {
+    seen.push_back(fraction);
+    return true;
+  });
+  parallel_for(2, 2, progress, [&](std::int64_t) {
+    const bool is_caller = std::this_thread::get_id() == caller;
+    std::this_thread::sleep_for(std::chrono::milliseconds(is_caller ? 10 : 200));
+  });
+  ASSERT_FALSE(seen.empty());
+  EXPECT_EQ(seen.back(), 1.0);
+}
+
 TEST(ParallelFor, StopsSoonWhenCancelled) {
   using Clock = std::chrono::steady_clock;
   const Progress progress([](double fraction) { return fraction < 0.01; });
