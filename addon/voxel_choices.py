@@ -47,7 +47,7 @@ class VoxelSettings:
         voxel_size: The side of a cell in world space, above 0.
         interpolant: A key of `INTERPOLANTS`: how the surface runs through cells.
         use_close_holes: Whether holes get caps before the mesh is voxelized.
-        use_cleanup: Whether to make slivers rounder.
+        use_cleanup: Whether to collapse short edges: fewer triangles, and no slivers to shade.
         use_materials: Whether triangles get the material of the nearest face of the source.
         use_colors: Whether vertices get the colour attributes of the nearest point of the source.
         use_smooth: Whether the result is shaded smooth.
@@ -60,7 +60,7 @@ class VoxelSettings:
     voxel_size: float = 0.1
     interpolant: str = "plane"
     use_close_holes: bool = True
-    use_cleanup: bool = False
+    use_cleanup: bool = True
     use_materials: bool = True
     use_colors: bool = True
     use_smooth: bool = True

@@ -59,7 +59,8 @@ class VoxelProperties:
     )
     use_cleanup: BoolProperty(
         name="Clean Up",
-        description="Make slivers among the triangles rounder",
+        description="Collapse short edges: a quarter fewer triangles, and no slivers, which "
+        "shade badly",
         default=_Settings.use_cleanup,
     )
     use_materials: BoolProperty(

@@ -113,10 +113,10 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
         help="leave holes open; the surface ends in steps there",
     )
     parser.add_argument(
-        "--cleanup",
+        "--no-cleanup",
         dest="use_cleanup",
-        action="store_true",
-        help="make slivers among the triangles rounder",
+        action="store_false",
+        help="keep all triangles, slivers too",
     )
     parser.add_argument(
         "--no-materials",

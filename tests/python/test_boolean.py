@@ -54,7 +54,8 @@ def bounds_of(*solids: Solid) -> tuple[np.ndarray, np.ndarray]:
 def check_surface(octree: prefilter.Octree, expected: float, interpolants=INTERPOLANTS) -> None:
     """Closed, 2-manifold, oriented outward, and of that volume."""
     for interpolant in interpolants:
-        positions, triangles = octree.contour(interpolant=interpolant)
+        cleanup = interpolant == "plane"  # As in Blender.
+        positions, triangles = octree.contour(interpolant=interpolant, cleanup=cleanup)
         assert len(triangles) > 0
         faults = surface_faults(positions, triangles)
         assert faults.none, f"{interpolant}: {faults}"
