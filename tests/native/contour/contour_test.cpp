@@ -11,6 +11,7 @@
 #include "prefilter/contour/height_crossing.h"
 #include "prefilter/contour/marching_table.h"
 #include "prefilter/contour/tree_contour.h"
+#include "wavelet/random_tree.h"
 
 namespace prefilter {
 namespace {
@@ -249,32 +250,6 @@ TEST(ContourGrid, TakesIsoValuesOfZeroAndBelow) {
   ContourOptions options;
   options.isovalue = 0.0F;
   EXPECT_EQ(fault_of(contour_grid({zeros.data(), {3, 3, 3}}, {}, options)), "");
-}
-
-CellTree random_tree(unsigned seed, int depth) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
-  CellTree tree;
-  std::size_t blocks = 1;
-  for (int k = 0; k < depth && blocks > 0; ++k) {
-    TreeLevel level;
-    level.blocks.resize(blocks);
-    blocks = 0;
-    for (OctantValues& block : level.blocks) {
-      std::uint8_t split = 0;
-      for (std::size_t o = 0; o < 8; ++o) {
-        const float draw = uniform(random);
-        block[o] = draw < 0.3F ? 0.0F : draw > 0.7F ? 1.0F : uniform(random);
-        if (k + 1 < depth && uniform(random) < 0.4F) split |= static_cast<std::uint8_t>(1U << o);
-      }
-      level.split.push_back(split);
-      blocks += static_cast<std::size_t>(std::popcount(split));
-    }
-    link_blocks(&level);
-    tree.levels.push_back(std::move(level));
-  }
-  update_means(&tree, 1);
-  return tree;
 }
 
 TEST(ContourTree, LeavesOfAnySizesGiveClosedManifolds) {

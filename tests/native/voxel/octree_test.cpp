@@ -11,6 +11,7 @@
 #include "prefilter/voxel/resample.h"
 #include "prefilter/voxel/voxelize.h"
 #include "wavelet/meshes.h"
+#include "wavelet/random_tree.h"
 
 namespace prefilter {
 namespace {
@@ -43,35 +44,12 @@ std::string message_of(const std::function<void()>& act) {
   return "";
 }
 
-// Leaves of any depth with any value, the nastiest of trees.
-Octree random_tree(unsigned seed, int depth) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
-  std::vector<TreeLevel> levels;
-  std::size_t blocks = 1;
-  for (int k = 0; k < depth && blocks > 0; ++k) {
-    TreeLevel level;
-    level.blocks.resize(blocks);
-    blocks = 0;
-    for (OctantValues& block : level.blocks) {
-      std::uint8_t split = 0;
-      for (int o = 0; o < 8; ++o) {
-        const float draw = uniform(random);
-        block[static_cast<std::size_t>(o)] = draw < 0.3F   ? 0.0F
-                                             : draw > 0.7F ? 1.0F
-                                                           : uniform(random);
-        if (k + 1 < depth && uniform(random) < 0.4F) split |= static_cast<std::uint8_t>(1U << o);
-      }
-      level.split.push_back(split);
-      blocks += static_cast<std::size_t>(std::popcount(split));
-    }
-    levels.push_back(std::move(level));
-  }
-  return make_octree(std::move(levels), 0.0F, kUnit, depth);
+Octree random_octree(unsigned seed, int depth) {
+  return make_octree(random_tree(seed, depth).levels, 0.0F, kUnit, depth);
 }
 
 TEST(Octree, VolumeAndBoxesAgreeWithTheDenseCells) {
-  const Octree octree = random_tree(1, 4);
+  const Octree octree = random_octree(1, 4);
   const std::vector<float> cells = dense(octree);
   double sum = 0.0;
   for (const float value : cells) sum += value;
@@ -110,7 +88,7 @@ TEST(Octree, VolumeAndBoxesAgreeWithTheDenseCells) {
 }
 
 TEST(Octree, PointsFindTheirCells) {
-  const Octree octree = random_tree(5, 5);
+  const Octree octree = random_octree(5, 5);
   const std::vector<float> cells = dense(octree);
   std::mt19937 random(6);
   std::uniform_real_distribution<double> uniform(-0.1, 1.1);
@@ -134,7 +112,7 @@ TEST(Octree, PointsFindTheirCells) {
 }
 
 TEST(Octree, CoarserCellsAreMeans) {
-  const Octree octree = random_tree(7, 5);
+  const Octree octree = random_octree(7, 5);
   for (int depth = 0; depth < 5; ++depth) {
     EXPECT_EQ(dense_values(coarsened(octree, depth), depth, Progress(), 1),
               dense_values(octree, depth, Progress(), 1));
@@ -162,8 +140,8 @@ TEST(Octree, WhatIsNoTreeIsRefused) {
 
 TEST(Combine, IsCellByCellForAnyDepths) {
   for (unsigned seed = 10; seed < 20; ++seed) {
-    const Octree a = random_tree(seed, 3 + static_cast<int>(seed % 3));
-    const Octree b = random_tree(seed + 100, 2 + static_cast<int>(seed % 4));
+    const Octree a = random_octree(seed, 3 + static_cast<int>(seed % 3));
+    const Octree b = random_octree(seed + 100, 2 + static_cast<int>(seed % 4));
     const int depth = std::max(a.depth, b.depth);
     const std::vector<float> of_a = dense_values(a, depth, Progress(), 1);
     const std::vector<float> of_b = dense_values(b, depth, Progress(), 1);
@@ -222,7 +200,7 @@ TEST(Combine, OtherBoundsAreCarriedOver) {
 }
 
 TEST(Resample, KeepsTheVolumeOfWhatItCovers) {
-  const Octree octree = random_tree(30, 4);
+  const Octree octree = random_octree(30, 4);
   const Box around = {{-0.31, -0.17, -0.4}, {1.2, 1.33, 1.11}};
   EXPECT_NEAR(volume(resampled(octree, around, 4, Progress())), volume(octree), 1e-6);
   const Octree same = resampled(octree, kUnit, 4, Progress());
