@@ -24,9 +24,9 @@ caller_path=${PATH:-}
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin:$caller_path
 
 host_packages=(cmake ninja-build g++ libgtest-dev python3-dev pybind11-dev python3-numpy python3-pytest)
-# Debian's Blender comes without OpenImageIO's Python module, without fonts and without a screen.
+# Debian's Blender comes without OpenImageIO's and OpenVDB's Python modules, without fonts and without a screen.
 blender_packages=(python3-openimageio openimageio-tools python3-numpy python3-scipy python3-pytest
-  python3-pil fonts-dejavu-core xvfb xauth)
+  python3-pil python3-openvdb fonts-dejavu-core xvfb xauth)
 declare -A root_packages=(
   [trixie]="blender ${blender_packages[*]} python3-dev pybind11-dev ca-certificates"
   [sid]="blender ${blender_packages[*]} python3-dev pybind11-dev ca-certificates python3-cattr python3-requests"

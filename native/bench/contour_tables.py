@@ -138,7 +138,7 @@ def sphere_errors(grid: np.ndarray, center: np.ndarray, radius: float) -> dict[s
 
 
 def random_spheres(radius: float, count: int, seed: int = 0) -> dict[str, SphereErrors]:
-    """The means, and the largest angle, over spheres at random places in the grid."""
+    """The means over spheres at random places in the grid."""
     random = np.random.default_rng(seed)
     n = int(2 * radius + 6)
     every: dict[str, list[SphereErrors]] = {name: [] for name in (*INTERPOLANTS, ON_SPHERE)}
@@ -151,7 +151,7 @@ def random_spheres(radius: float, count: int, seed: int = 0) -> dict[str, Sphere
         name: SphereErrors(
             float(np.mean([e.radius for e in errors])),
             float(np.mean([e.mean_normal for e in errors])),
-            max(e.largest_normal for e in errors),
+            float(np.mean([e.largest_normal for e in errors])),
         )
         for name, errors in every.items()
     }

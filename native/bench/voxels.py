@@ -3,8 +3,7 @@
 Usage: scripts/run python3 native/bench/voxels.py [MODEL...] [--sizes N...] [--rounds N]
 
 Needs the models gathered in ../shared beside the checkout. What a peer needs is said where it is
-missing, and the peer left out; for OpenVDB's Python module, once:
-    scripts/run apt-get update; scripts/run apt-get install --no-install-recommends python3-openvdb
+missing, and the peer left out.
 
 The criteria: in CPU time of one thread, voxelize takes at most 0.25 of OpenVDB's meshToVolume, and
 with the contour at most 0.3 of Blender's voxel remesh; neither takes more memory than they; two

@@ -1,5 +1,7 @@
 """The commands `voxelize` and `boolean`, in a Blender of their own."""
 
+import importlib.util
+
 import bodies
 import bpy
 import pytest
@@ -76,6 +78,19 @@ def test_formats(sphere, tmp_path, extension):
     bodies.welded(made)
     assert bodies.is_closed(made)
     assert bodies.volume(made) == pytest.approx(volume, rel=0.05)
+
+
+def test_openvdb_file(sphere, tmp_path):
+    result = run("voxelize", sphere[0], tmp_path / "out.vdb", "--depth", 5)
+    if not any(map(importlib.util.find_spec, ("openvdb", "pyopenvdb"))):
+        assert_fails(result, "no Python module for OpenVDB")
+        return
+    assert result.returncode == 0, result.stderr
+    assert {file.name for file in tmp_path.iterdir()} == {"ball.ply", "out.vdb"}
+    made = bpy.data.volumes.new("Out")
+    made.filepath = str(tmp_path / "out.vdb")
+    assert made.grids.load()
+    assert [grid.name for grid in made.grids] == ["density"]
 
 
 def test_blend_in_place(blend):

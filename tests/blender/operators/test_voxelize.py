@@ -1,5 +1,6 @@
 """`prefilter.voxelize`, as scripts call it: the volume and the place of results are known."""
 
+import importlib.util
 import math
 
 import bodies
@@ -232,18 +233,40 @@ def test_shading(smooth):
 def test_volume_object(tmp_path, addon):
     volumes = addon("bridge.volumes")
     ball = bodies.sphere(location=(1, 2, 3))
+    ball.rotation_euler = (0.3, 0.2, 0.1)
+    bpy.context.view_layer.update()
+    before = len(ball.data.vertices)
+    path = tmp_path / "ball.vdb"
     if not volumes.is_available():
         with pytest.raises(RuntimeError, match="no Python module for OpenVDB"):
-            voxelize(output="volume", filepath=str(tmp_path / "ball.vdb"))
+            voxelize(output="volume", filepath=str(path))
         assert len(bpy.data.volumes) == 0
         return
-    assert voxelize(output="volume", filepath=str(tmp_path / "ball.vdb")) == {"FINISHED"}
+    assert voxelize(output="volume", filepath=str(path)) == {"FINISHED"}
     made = bpy.data.objects["Sphere.volume"]
     assert made.type == "VOLUME"
     assert tuple(made.location) == pytest.approx((1, 2, 3))
-    assert len(ball.data.vertices) == 162 * 4 - 6
+    assert len(ball.data.vertices) == before
     assert made.data.grids.load()
     assert made.data.grids[0].name == "density"
+    grid, cells = read_density(path)
+    spacing = grid.transform.voxelSize()[0]
+    assert cells.min() >= 0
+    assert cells.max() == 1
+    assert cells.sum() * spacing**3 == pytest.approx(bodies.volume(ball), rel=1e-4)
+    middle = np.average(np.argwhere(cells > 0), axis=0, weights=cells[cells > 0])
+    np.testing.assert_allclose(grid.transform.indexToWorld(tuple(middle)), 0, atol=1e-3)
+
+
+def read_density(path):
+    """Returns an OpenVDB file's grid of that name, and 32 x 32 x 32 values of it."""
+    for name in ("openvdb", "pyopenvdb"):
+        if importlib.util.find_spec(name):
+            module = importlib.import_module(name)
+    grid = module.read(str(path), "density")
+    cells = np.empty((32, 32, 32), np.float32)
+    grid.copyToArray(cells)
+    return grid, cells
 
 
 def linked(tmp_path):
