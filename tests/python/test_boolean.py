@@ -61,7 +61,9 @@ def check_surface(octree: prefilter.Octree, expected: float, interpolants=INTERP
         assert len(triangles) > 0
         faults = surface_faults(positions, triangles)
         assert faults.none, f"{interpolant}: {faults}"
-        assert mesh_volume(positions, triangles) == pytest.approx(expected, rel=VOLUME_BAR)
+        volume = mesh_volume(positions, triangles)
+        print(f"{interpolant}: {len(triangles)} triangles, volume {volume / expected - 1:+.3%}")
+        assert volume == pytest.approx(expected, rel=VOLUME_BAR)
 
 
 def check(a: Solid, b: Solid, depth: int = 8) -> None:
@@ -76,6 +78,7 @@ def check(a: Solid, b: Solid, depth: int = 8) -> None:
         estimate = points.estimate(operation.inside, error=ERROR_BAR)
         assert estimate.error < ERROR_BAR * estimate.volume
         octree = operation(*octrees)
+        print(f"{operation.name}: +- {estimate.error / estimate.volume:.3%}")
         # "linear" has the loops of "occupancy"; smaller surfaces are checked with all three.
         check_surface(octree, estimate.volume, ("occupancy", "plane"))
 
