@@ -132,23 +132,24 @@ def bilinear_taps(
     x = uvs[:, 0] * width - 0.5
     y = uvs[:, 1] * height - 0.5
     x0, y0 = np.floor(x).astype(int), np.floor(y).astype(int)
-    taps, weights = [], []
-    for dy in (0, 1):
-        for dx in (0, 1):
-            column, has_column = wrap_indices(x0 + dx, width, wrap[0])
-            row, has_row = wrap_indices(y0 + dy, height, wrap[1])
-            taps.append(row * width + column)
-            along_x = x - x0 if dx else 1 - (x - x0)
-            along_y = y - y0 if dy else 1 - (y - y0)
-            weights.append(along_x * along_y * has_column * has_row)
-    return np.stack(taps, 1), np.stack(weights, 1)
+    columns = [wrap_indices(x0 + k, width, wrap[0]) for k in (0, 1)]
+    rows = [wrap_indices(y0 + k, height, wrap[1]) for k in (0, 1)]
+    along_x = [share * has for share, (_, has) in zip((x0 + 1 - x, x - x0), columns, strict=True)]
+    along_y = [share * has for share, (_, has) in zip((y0 + 1 - y, y - y0), rows, strict=True)]
+    taps = [row * width + column for row, _ in rows for column, _ in columns]
+    weights = [v * u for v in along_y for u in along_x]
+    return np.stack(taps).T, np.stack(weights).T
 
 
 def bilinear(image: np.ndarray, uvs: np.ndarray, wrap: tuple[str, str]) -> np.ndarray:
     height, width, channels = image.shape
     taps, weights = bilinear_taps(uvs, height, width, wrap)
     flat = image.reshape(-1, channels).astype(np.float64)
-    return sum(weights[:, k, None] * flat[taps[:, k]] for k in range(4))
+    found = np.empty((len(uvs), channels))
+    for c in range(channels):
+        plane = np.ascontiguousarray(flat[:, c])
+        found[:, c] = sum(weights[:, k] * plane[taps[:, k]] for k in range(4))
+    return found
 
 
 def in_border(uvs: np.ndarray, wrap: tuple[str, str]) -> np.ndarray:
