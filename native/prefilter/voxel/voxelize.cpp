@@ -6,6 +6,8 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -175,7 +177,9 @@ Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options) {
   }
 
   const Box& bounds = octree.bounds;
-  std::vector<Point3> positions(mesh.positions.size());
+  // Not set to zero first, so that the threads that write touch the memory.
+  const auto position_memory = std::make_unique_for_overwrite<Point3[]>(mesh.positions.size());
+  const std::span positions(position_memory.get(), mesh.positions.size());
   for_rows(positions.size(), options.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       for (int a = 0; a < 3; ++a) {
@@ -183,7 +187,9 @@ Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options) {
       }
     }
   });
-  std::vector<std::array<std::int32_t, 3>> triangles(mesh.triangles.size());
+  const auto triangle_memory =
+      std::make_unique_for_overwrite<std::array<std::int32_t, 3>[]>(mesh.triangles.size());
+  const std::span triangles(triangle_memory.get(), mesh.triangles.size());
   for_rows(triangles.size(), options.threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       for (int i = 0; i < 3; ++i) triangles[t][i] = static_cast<std::int32_t>(mesh.triangles[t][i]);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 #include <vector>
 
 #include "prefilter/base/parallel.h"
@@ -67,21 +68,60 @@ void scatter(const RootTriangles& mesh, std::size_t begin, std::size_t end, int 
   }
 }
 
-// Stable, so that a brick keeps its triangles in order. Least significant digit first.
-void sort_by_brick(int key_bits, std::vector<BrickTriangle>* pairs) {
-  constexpr int kDigit = 11;
-  std::vector<BrickTriangle> sorted(pairs->size());
-  for (int shift = 0; shift < key_bits; shift += kDigit) {
-    std::vector<std::size_t> offsets((1U << kDigit) + 1U);
-    for (const BrickTriangle& pair : *pairs) {
-      ++offsets[((pair.brick >> shift) & ((1U << kDigit) - 1U)) + 1U];
+// One pass of a radix sort: stable, by some bits of the brick, from chunks to `sorted`.
+void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int shift, int bits,
+                   int threads, std::span<BrickTriangle> sorted) {
+  const std::size_t digits = std::size_t{1} << bits;
+  const auto digit_of = [&](const BrickTriangle& pair) {
+    return (pair.brick >> shift) & (digits - 1);
+  };
+  // Where the next pair of a chunk and a digit goes; first, how many there are.
+  std::vector<std::size_t> places(chunks.size() * digits);
+  const auto count = static_cast<std::int64_t>(chunks.size());
+  parallel_for(count, threads, Progress(), [&](std::int64_t i) {
+    const auto chunk = static_cast<std::size_t>(i);
+    std::size_t* const own = places.data() + chunk * digits;
+    for (const BrickTriangle& pair : chunks[chunk]) ++own[digit_of(pair)];
+  });
+  std::size_t next = 0;
+  for (std::size_t digit = 0; digit < digits; ++digit) {
+    for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk) {
+      next += std::exchange(places[chunk * digits + digit], next);
     }
-    for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
-    for (const BrickTriangle& pair : *pairs) {
-      sorted[offsets[(pair.brick >> shift) & ((1U << kDigit) - 1U)]++] = pair;
-    }
-    pairs->swap(sorted);
   }
+  parallel_for(count, threads, Progress(), [&](std::int64_t i) {
+    const auto chunk = static_cast<std::size_t>(i);
+    std::size_t* const own = places.data() + chunk * digits;
+    for (const BrickTriangle& pair : chunks[chunk]) sorted[own[digit_of(pair)]++] = pair;
+  });
+}
+
+// The pairs of all parts, by brick; each brick keeps its triangles in order. Least significant
+// digit first.
+std::vector<BrickTriangle> sorted_by_brick(const std::vector<Scattered>& parts, int key_bits,
+                                           int threads) {
+  constexpr int kMostDigitBits = 9;
+  constexpr std::size_t kPairsPerChunk = 1U << 15;
+  const int passes = std::max(1, (key_bits + kMostDigitBits - 1) / kMostDigitBits);
+  const int bits = (key_bits + passes - 1) / passes;
+  std::size_t count = 0;
+  std::vector<std::span<const BrickTriangle>> chunks;
+  for (const Scattered& part : parts) {
+    count += part.pairs.size();
+    chunks.emplace_back(part.pairs);
+  }
+  std::vector<BrickTriangle> sorted(count);
+  std::vector<BrickTriangle> other(passes > 1 ? count : 0);
+  for (int pass = 0; pass < passes; ++pass) {
+    sort_by_digit(chunks, pass * bits, bits, threads, sorted);
+    if (pass + 1 == passes) break;
+    sorted.swap(other);
+    chunks.clear();
+    for (std::size_t begin = 0; begin < count; begin += kPairsPerChunk) {
+      chunks.push_back(std::span(other).subspan(begin, std::min(kPairsPerChunk, count - begin)));
+    }
+  }
+  return sorted;
 }
 
 // A brick that some boundary passes through.
@@ -176,16 +216,11 @@ Scattered scatter_all(const RootTriangles& mesh, int bricks_per_axis, const Prog
             &parts[static_cast<std::size_t>(task)]);
   });
   Scattered all;
-  std::size_t pair_count = 0;
-  for (const Scattered& part : parts) pair_count += part.pairs.size();
-  all.pairs.reserve(pair_count);
-  for (Scattered& part : parts) {
-    all.pairs.insert(all.pairs.end(), part.pairs.begin(), part.pairs.end());
-    all.leaving.insert(all.leaving.end(), part.leaving.begin(), part.leaving.end());
-    part = Scattered();
-  }
   const int bits = 3 * std::bit_width(static_cast<unsigned>(bricks_per_axis - 1));
-  sort_by_brick(bits, &all.pairs);
+  all.pairs = sorted_by_brick(parts, bits, threads);
+  for (const Scattered& part : parts) {
+    all.leaving.insert(all.leaving.end(), part.leaving.begin(), part.leaving.end());
+  }
   return all;
 }
 
