@@ -13,8 +13,8 @@ from .mipmap import mipmap_error, mipmaps, seam_contrast
 from .nearest import nearest_points
 from .normals import normal_mipmaps
 from .surface import Surface
-from .texture_files import write_dds, write_ktx2
 from .texture_use import fill_unused, texel_weights
+from .textures.texture_files import write_dds, write_ktx2
 from .version import VERSION
 from .voxel import ClosedMesh, Octree, close_holes, voxelize
 

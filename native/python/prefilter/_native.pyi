@@ -5,7 +5,7 @@ from typing import overload
 import numpy as np
 import numpy.typing as npt
 
-from .arguments import ProgressCallback
+from ._border.arguments import ProgressCallback
 
 class Cancelled(Exception): ...  # noqa: N818
 

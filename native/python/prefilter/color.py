@@ -3,7 +3,7 @@
 import numpy.typing as npt
 
 from . import _native
-from .arrays import FloatArray, as_image, as_threads
+from ._border.arrays import FloatArray, as_image, as_threads
 
 
 def to_linear(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:

@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import ProgressCallback, as_name, as_number, as_progress
-from .arrays import as_floats, as_threads
+from ._border.arguments import ProgressCallback, as_name, as_number, as_progress
+from ._border.arrays import as_floats, as_threads
 
 Mesh = tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]
 Outlines = list[npt.NDArray[np.float32]]

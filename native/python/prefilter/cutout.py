@@ -7,9 +7,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import ProgressCallback, Wrap, as_progress, as_surfaces, as_wrap
-from .arrays import FloatArray, as_image, as_threads
-from .surface import Surface
+from ._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
+from ._border.arrays import FloatArray, as_image, as_threads
+from .surface import Surface, as_surfaces
 from .texture_use import texel_weights
 
 _TOLERANCE = 1e-3

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import (
+from ._border.arguments import (
     Bounds,
     ProgressCallback,
     Wrap,
@@ -15,12 +15,11 @@ from .arguments import (
     as_name,
     as_number,
     as_progress,
-    as_surfaces,
     as_wrap,
+    is_srgb,
 )
-from .arrays import as_bytes, as_image, as_threads
-from .surface import Surface
-from .texel_formats import is_srgb
+from ._border.arrays import as_bytes, as_image, as_threads
+from .surface import Surface, as_surfaces
 
 
 def mipmaps(

@@ -4,8 +4,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import ProgressCallback, as_progress
-from .arrays import as_floats, as_indices, as_threads
+from ._border.arguments import ProgressCallback, as_progress
+from ._border.arrays import as_floats, as_indices, as_threads
 
 
 def nearest_points(

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import ProgressCallback, Wrap, as_progress, as_wrap
-from .arrays import FloatArray, as_image, as_threads, check_shape
+from ._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
+from ._border.arrays import FloatArray, as_image, as_threads, check_shape
 from .mipmap import mipmaps
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights

@@ -7,8 +7,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import ProgressCallback, as_name, as_progress
-from .arrays import as_floats, as_indices, check_shape
+from ._border.arguments import ProgressCallback, as_name, as_progress
+from ._border.arrays import as_floats, as_indices, check_shape
 
 Sharp = tuple[npt.ArrayLike, npt.ArrayLike]
 
@@ -236,6 +236,18 @@ class Surface(_native.Surface):
 
     def __repr__(self) -> str:
         return f"<prefilter.Surface of {self.triangle_count} triangles, area {self.area:g}>"
+
+
+def as_surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
+    if surface is None:
+        return []
+    surfaces = [surface] if isinstance(surface, _native.Surface) else surface
+    if not isinstance(surfaces, Sequence):
+        raise ValueError(f"surface: a {type(surface).__name__}; a Surface or a list is needed")
+    for found in surfaces:
+        if not isinstance(found, _native.Surface):
+            raise ValueError(f"surface: holds a {type(found).__name__}; a Surface is needed")
+    return list(surfaces)
 
 
 def _weights(

@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import ProgressCallback, Wrap, as_progress, as_size, as_surfaces, as_wrap
-from .arrays import as_image, as_threads
-from .surface import Surface
+from ._border.arguments import ProgressCallback, Wrap, as_progress, as_size, as_wrap
+from ._border.arrays import as_image, as_threads
+from .surface import Surface, as_surfaces
 
 
 def texel_weights(

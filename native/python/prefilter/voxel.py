@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from .arguments import ProgressCallback, as_name, as_number, as_progress
-from .arrays import as_floats, as_indices, as_threads
-from .output import as_target, replace_file
+from ._border.arguments import ProgressCallback, as_name, as_number, as_progress
+from ._border.arrays import as_floats, as_indices, as_threads
+from ._border.output import as_target, replace_file
 
 Corner = Sequence[float] | npt.NDArray[np.floating]
 Box = tuple[Corner, Corner]

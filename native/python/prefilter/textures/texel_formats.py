@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from . import _native
-from .arguments import ProgressCallback
-from .arrays import as_bytes, as_image
-from .color import to_linear
+from .. import _native
+from .._border.arguments import ProgressCallback
+from .._border.arrays import as_bytes, as_image
+from ..color import to_linear
 
 
 @dataclass(frozen=True)
@@ -160,12 +160,6 @@ def as_format(name: str, level: np.ndarray, *, needs_srgb: bool) -> TexelFormat:
     if found.channels == 2 and level.shape[2] < 2:
         raise ValueError(f"format: '{name}' needs 2 channels; the levels have {level.shape[2]}")
     return found
-
-
-def is_srgb(encoding: str) -> bool:
-    if encoding not in ("linear", "srgb"):
-        raise ValueError(f"encoding: {encoding!r} is not one of linear, srgb")
-    return encoding == "srgb"
 
 
 def as_alpha(alpha: str) -> str:

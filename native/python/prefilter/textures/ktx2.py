@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from ..version import VERSION
 from .texel_formats import Container, Texture
-from .version import VERSION
 
 _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 _HEADER_BYTES, _LEVEL_INDEX_BYTES = 80, 24

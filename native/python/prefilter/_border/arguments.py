@@ -1,30 +1,12 @@
 """Arguments that several functions take, checked once, here at the border."""
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-from . import _native
-
-if TYPE_CHECKING:
-    from .surface import Surface
 
 ProgressCallback = Callable[[float], bool | None]
 Wrap = str | tuple[str, str]
 Bounds = tuple[float | None, float | None]
-
-
-def as_surfaces(surface: "Surface | Sequence[Surface] | None") -> "list[Surface]":
-    if surface is None:
-        return []
-    surfaces = [surface] if isinstance(surface, _native.Surface) else surface
-    if not isinstance(surfaces, Sequence):
-        raise ValueError(f"surface: a {type(surface).__name__}; a Surface or a list is needed")
-    for found in surfaces:
-        if not isinstance(found, _native.Surface):
-            raise ValueError(f"surface: holds a {type(found).__name__}; a Surface is needed")
-    return list(surfaces)
 
 
 def as_name(argument: str, name: object) -> str:
@@ -79,3 +61,9 @@ def as_number(argument: str, number: float) -> float:
     if isinstance(number, bool) or not isinstance(number, int | float | np.number):
         raise ValueError(f"{argument}: {number!r}; a number is needed")
     return float(number)
+
+
+def is_srgb(encoding: str) -> bool:
+    if encoding not in ("linear", "srgb"):
+        raise ValueError(f"encoding: {encoding!r} is not one of linear, srgb")
+    return encoding == "srgb"

@@ -6,13 +6,13 @@ from typing import BinaryIO
 
 import numpy.typing as npt
 
-from . import _native
-from .arguments import ProgressCallback, as_progress
-from .arrays import as_threads
+from .. import _native
+from .._border.arguments import ProgressCallback, as_progress, is_srgb
+from .._border.arrays import as_threads
+from .._border.output import as_target, replace_file
 from .dds import DDS
 from .ktx2 import KTX2
-from .output import as_target, replace_file
-from .texel_formats import Container, Texture, as_alpha, as_format, as_levels, encoded, is_srgb
+from .texel_formats import Container, Texture, as_alpha, as_format, as_levels, encoded
 
 
 def write_dds(

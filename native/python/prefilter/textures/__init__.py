@@ -1,0 +1,1 @@
+"""Texture files for engines and viewers."""
