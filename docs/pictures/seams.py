@@ -12,9 +12,10 @@ import numpy as np
 import prefilter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "native/bench"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import demo_scene as demo
-import sampling
+
+from bench.mipmaps import sampling
 
 LEVEL = 5
 WEIGHTS = (0.0, 1.0)

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "native/bench"))
-import meshes
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.voxels import meshes
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "meshes"
 

@@ -1,7 +1,7 @@
 """Compares prefilter with maketx, picture file to mip-mapped file, in time and memory.
 
 Usage: cmake --preset bench && cmake --build build/bench --target prefilter_bake_file
-       scripts/run python3 native/bench/compare_files.py [--size N] [--rounds N] [--threads N]
+       scripts/run python3 bench/mipmaps/compare_files.py [--size N] [--rounds N] [--threads N]
 
 The criteria, for 8-bit RGBA pictures of 1024 and 4096 texels, two threads each: pam-box takes no
 longer than maketx's box, pam-bilinear no longer than its lanczos3, pam-trilinear at most 3 times
@@ -16,10 +16,12 @@ import sys
 import tempfile
 from pathlib import Path
 
-from compare_maketx import HERE, SPOT, measure, medians_ratio, print_table
-from peers import run
-from peers.file_to_file import IN_CPP, FileToFile
-from peers.maketx import Maketx
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.mipmaps.compare_maketx import HERE, SPOT
+from bench.peers import run
+from bench.peers.file_to_file import IN_CPP, FileToFile
+from bench.peers.maketx import Maketx
+from bench.turns import measure, medians_ratio, named, print_table
 
 LIMITS = (
     ("pam-box", "box", 1.0),
@@ -60,7 +62,7 @@ def main() -> None:
             key: Maketx(picture, folder, filter=key, threads=options.threads)
             for key in ("box", "lanczos3")
         }
-        results = measure([*theirs.values(), *ours.values(), *in_python], options.rounds)
+        results = measure(named(*theirs.values(), *ours.values(), *in_python), options.rounds)
     print(f"{'spot' if spot else 'generated'}, {size} RGBA, {options.threads} threads each")
     print_table(results, theirs["lanczos3"].name)
     failed = False

@@ -1,6 +1,6 @@
 """Measures how far the levels of each filter are from their image, over gathered models.
 
-Usage: blender --background --python-exit-code 1 --python native/bench/quality.py -- [MODEL...]
+Usage: blender --background --python-exit-code 1 --python bench/mipmaps/quality.py -- [MODEL...]
        (--help lists the options)
 
 Models are imported by Blender's own importers, and read through the add-on's bridge, so that what
@@ -17,16 +17,14 @@ import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-import maketx_levels
 import numpy as np
 import prefilter
-import sampling
-import subjects
-from report import Report
-from sampling import Floats, Texels
-from subjects import Subject
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.mipmaps import maketx_levels, sampling, subjects
+from bench.mipmaps.sampling import Floats, Texels
+from bench.mipmaps.subjects import Subject
+from bench.report import Report
 
 SUBJECT = "pam-bilinear"
 TRILINEAR = "pam-trilinear"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/mipmaps/scene.h"
 #include "bench/peak_memory.h"
-#include "bench/scene.h"
 #include "prefilter/mipmap/mipmap_error.h"
 #include "prefilter/mipmap/mipmaps.h"
 

@@ -1,6 +1,6 @@
 """Measures what the seam weight does to UV seams and to the error, over gathered models.
 
-Usage: blender --background --python-exit-code 1 --python native/bench/seams.py -- [MODEL...]
+Usage: blender --background --python-exit-code 1 --python bench/mipmaps/seams.py -- [MODEL...]
        (--help lists the options)
 
 Models are imported by Blender's own importers, and read through the add-on's bridge, as in
@@ -14,15 +14,14 @@ import argparse
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
 import numpy as np
 import prefilter
-import sampling
-import subjects
-from report import Report
-from sampling import Floats, Texels
-from subjects import Subject
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.mipmaps import sampling, subjects
+from bench.mipmaps.sampling import Floats, Texels
+from bench.mipmaps.subjects import Subject
+from bench.report import Report
 
 LEVELS = range(1, 7)
 JUDGED = slice(1, None)  # Levels 2 to 6.

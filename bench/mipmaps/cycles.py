@@ -1,6 +1,6 @@
 """Measures what Cycles renders from PAM in its texture cache, against the cache that Blender makes.
 
-Usage: blender --background --python-exit-code 1 --python native/bench/cycles.py -- [MODEL...]
+Usage: blender --background --python-exit-code 1 --python bench/mipmaps/cycles.py -- [MODEL...]
        (--help lists the options; Blender 5.2 or later is needed)
 
 Each model gets an emission shader with its base colour, and is rendered from four sides by an
@@ -25,9 +25,9 @@ import prefilter
 from mathutils import Euler, Vector
 from numpy.typing import NDArray
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-import subjects
-from report import Report
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.mipmaps import subjects
+from bench.report import Report
 
 Texels = NDArray[np.float32]
 

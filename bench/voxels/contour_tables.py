@@ -1,6 +1,6 @@
 """The tables of section 5.4: contours of planes and spheres whose occupancies are exact.
 
-scripts/run python3 native/bench/contour_tables.py [--planes N] [--spheres N] [--markdown FILE]
+scripts/run python3 bench/voxels/contour_tables.py [--planes N] [--spheres N] [--markdown FILE]
 
 Occupancies come from closed forms and quadrature, not from the library. What a contour encloses of
 a cell is measured by voxelizing it; that voxelize is exact is the business of its own tests.

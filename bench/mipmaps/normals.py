@@ -1,6 +1,6 @@
 """Measures by how many degrees the levels of normal maps are off, over gathered models.
 
-Usage: blender --background --python-exit-code 1 --python native/bench/normals.py -- [MODEL...]
+Usage: blender --background --python-exit-code 1 --python bench/mipmaps/normals.py -- [MODEL...]
        (--data FOLDER names the folder of the models)
 
 The models have no normal maps, so each gets one from its picture: brightness for height. Compared
@@ -16,10 +16,8 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
-sys.path.insert(0, str(Path(__file__).parent))
-
-import sampling
-import subjects
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.mipmaps import sampling, subjects
 
 FILTERS = ("box", "pam-bilinear")
 LEVELS = range(1, 7)

@@ -1,12 +1,10 @@
 """Image in memory to levels in memory: only that is in the clock, in a new Python each time.
 
-Run as a program, it does the work once and prints seconds, peak and start as in `Measurement`.
+Run as a program, it does the work once and prints what `clock` does.
 usage: in_memory.py prefilter|openimageio FOLDER FILTER THREADS
 """
 
-import re
 import sys
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -22,8 +20,7 @@ class InMemory:
 
     def measure(self) -> "Measurement":
         """See `Peer`."""
-        _, _, printed = run(self._command)
-        return Measurement(*map(float, printed.split()))
+        return run_clocked(self._command)
 
 
 def _prefilter(folder: Path, filter: str, threads: int) -> Callable[[], Any]:
@@ -67,24 +64,11 @@ def _openimageio(folder: Path, filter: str, threads: int) -> Callable[[], Any]:
 _LIBRARIES = {"prefilter": _prefilter, "openimageio": _openimageio}
 
 
-def _status(field: str) -> float:
-    """Returns a field of /proc/self/status in MiB."""
-    text = Path("/proc/self/status").read_text()
-    return int(re.search(rf"^{field}:\s*(\d+) kB", text, re.MULTILINE)[1]) / 1024
-
-
-def _main(library: str, folder: str, filter: str, threads: str) -> None:
-    work = _LIBRARIES[library](Path(folder), filter, int(threads))
-    Path("/proc/self/clear_refs").write_text("5")  # Forgets the peak of loading.
-    start = _status("VmRSS")
-    began = time.perf_counter()
-    levels = work()
-    seconds = time.perf_counter() - began
-    print(seconds, _status("VmHWM"), start)
-    del levels
-
-
-if __name__ == "__main__":
-    _main(*sys.argv[1:])
+if __package__:
+    from . import Measurement
+    from .clock import run_clocked
 else:
-    from . import Measurement, run
+    from clock import clocked
+
+    library, folder, filter, threads = sys.argv[1:]
+    clocked(_LIBRARIES[library](Path(folder), filter, int(threads)))

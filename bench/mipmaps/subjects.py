@@ -15,7 +15,8 @@ import numpy as np
 import prefilter
 from bl_ext.user_default.prefilter.bridge import images, meshes
 from numpy.typing import NDArray
-from sampling import Floats, Texels, areas_of, wrapped
+
+from bench.mipmaps.sampling import Floats, Texels, areas_of, wrapped
 
 DATA = Path(__file__).resolve().parents[3] / "shared/data/textured"
 MODELS = (

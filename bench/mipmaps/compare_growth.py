@@ -1,7 +1,7 @@
 """Compares prefilter with itself on larger textures and meshes, picture file to mip-mapped file.
 
 Usage: cmake --preset bench && cmake --build build/bench --target prefilter_bake_file
-       scripts/run python3 native/bench/compare_growth.py [--rounds N] [--threads N]
+       scripts/run python3 bench/mipmaps/compare_growth.py [--rounds N] [--threads N]
 
 The criteria, for pam-bilinear and 8-bit RGBA pictures: 8192 texels take at most 4.4 times as long
 as 4096, and a mesh of a million triangles over 1024 texels less than 3 times as long as one of ten
@@ -15,9 +15,11 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from compare_maketx import HERE, measure, medians_ratio, print_table
-from peers import run
-from peers.file_to_file import IN_CPP, FileToFile
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.mipmaps.compare_maketx import HERE
+from bench.peers import run
+from bench.peers.file_to_file import IN_CPP, FileToFile
+from bench.turns import measure, medians_ratio, named, print_table
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         for case in CASES:
             work = [prepared(Path(name), *sides, options) for sides in (case.small, case.large)]
-            results = measure(work, options.rounds)
+            results = measure(named(*work), options.rounds)
             print_table(results, work[0].name)
             ratio = medians_ratio(results[work[1].name], results[work[0].name])
             failed = failed or ratio > case.limit

@@ -1,6 +1,6 @@
 """Measures what block compression adds to the error of levels, on a model with one texture.
 
-Usage: python3 native/bench/block_formats.py MODEL.obj TEXTURE    (with the package importable)
+Usage: python3 bench/mipmaps/block_formats.py MODEL.obj TEXTURE    (with the package importable)
 
 The files are those of prefilter.write_dds, read by OpenImageIO (2.5 or later). Errors are in
 scene-linear values over the surface, by prefilter.mipmap_error; and in steps of 8 bits over the

@@ -1,6 +1,6 @@
 """Compares voxelize and contour with OpenVDB and Blender's voxel remesh, in time and memory.
 
-Usage: scripts/run python3 native/bench/voxels.py [MODEL...] [--sizes N...] [--rounds N]
+Usage: scripts/run python3 bench/voxels/voxels.py [MODEL...] [--sizes N...] [--rounds N]
 
 Needs the models gathered in ../shared beside the checkout. What a peer needs is said where it is
 missing, and the peer left out.
@@ -13,17 +13,21 @@ cells. Every round runs each program once; ends with status 1 where a criterion 
 
 import argparse
 import statistics
+import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-import meshes
 import numpy as np
-from peers import Measurement, Peer
-from peers.octree import Octree
-from peers.vdb import OpenVdb
-from peers.voxel_remesh import VoxelRemesh
-from report import Report
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.peers import Measurement, Peer
+from bench.peers.octree import Octree
+from bench.peers.vdb import OpenVdb
+from bench.peers.voxel_remesh import VoxelRemesh
+from bench.report import Report
+from bench.turns import measure
+from bench.voxels import meshes
 
 MODELS = ("armadillo.obj", "igea_tri.ply")
 DEEPEST = ("armadillo.obj", 12, 4e9)
@@ -119,10 +123,7 @@ def compare(report: Report, subject: Subject, options: argparse.Namespace) -> No
         work["OpenVDB meshToVolume"] = OpenVdb(subject.mesh, subject.cell)
     if not VoxelRemesh.missing():
         work["Blender voxel remesh"] = VoxelRemesh(subject.mesh, subject.cell)
-    runs: dict[str, Runs] = {key: [] for key in work}
-    for _ in range(options.rounds):
-        for key, peer in work.items():
-            runs[key].append(peer.measure())
+    runs = measure(work, options.rounds, uncounted=0)
     size = 2**subject.depth
     rows = [row(key, found, subject) for key, found in runs.items()]
     head = ["program", "CPU s", "min - max", "ns / cell", "wall s", "peak MiB", "of it before"]

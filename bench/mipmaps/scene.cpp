@@ -1,4 +1,4 @@
-#include "bench/scene.h"
+#include "bench/mipmaps/scene.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from . import Measurement, run
 
-ROOT = Path(__file__).resolve().parents[3]
-IN_CPP = ROOT / "build/bench/native/bench/prefilter_bake_file"
-IN_PYTHON = ROOT / "native/bench/bake_file.py"
+ROOT = Path(__file__).resolve().parents[2]
+IN_CPP = ROOT / "build/bench/prefilter_bake_file"
+IN_PYTHON = ROOT / "bench/mipmaps/bake_file.py"
 
 
 class FileToFile:

@@ -1,0 +1,4 @@
+"""What docs/benchmarks.md is made with: a folder a subject, and what they share beside them.
+
+Programs are started by their paths, put the checkout on sys.path, and import from here.
+"""

@@ -1,0 +1,1 @@
+"""Textures and the levels that are made of them."""

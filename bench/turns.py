@@ -1,0 +1,53 @@
+"""Peers that are run in turns, so that what else the machine does falls on all of them alike."""
+
+import statistics
+import sys
+from collections.abc import Mapping, Sequence
+
+from bench.peers import Measurement, Peer
+
+
+def measure(
+    work: Mapping[str, Peer], rounds: int, *, uncounted: int = 1
+) -> dict[str, list[Measurement]]:
+    """Runs all of them in turn, `rounds` times, after those that are not counted."""
+    results: dict[str, list[Measurement]] = {name: [] for name in work}
+    for count in range(-uncounted, rounds):
+        for name, peer in work.items():
+            found = peer.measure()
+            if count >= 0:
+                results[name].append(found)
+        print(f"round {count + 1} of {rounds}", file=sys.stderr, flush=True)
+    return results
+
+
+def named(*peers: Peer) -> dict[str, Peer]:
+    """Returns peers by their names."""
+    return {peer.name: peer for peer in peers}
+
+
+def print_table(results: dict[str, list[Measurement]], reference: str) -> None:
+    """Prints a markdown table; pairs are runs of the same round."""
+    print("\n| program | median s | min - max s | of medians | of pairs (min - max) | peak MiB |")
+    print("| :--- | ---: | ---: | ---: | ---: | ---: |")
+    for name, runs in results.items():
+        seconds = [run.seconds for run in runs]
+        pairs = [a.seconds / b.seconds for a, b in zip(runs, results[reference], strict=True)]
+        peak, start = max(run.peak_mib for run in runs), max(run.start_mib for run in runs)
+        cells = [
+            name,
+            f"{statistics.median(seconds):.3f}",
+            f"{min(seconds):.3f} - {max(seconds):.3f}",
+            f"{medians_ratio(runs, results[reference]):.2f}",
+            f"{statistics.median(pairs):.2f} ({min(pairs):.2f} - {max(pairs):.2f})",
+            f"{peak:.0f}" + (f" ({start:.0f} before)" if start else ""),
+        ]
+        print(f"| {' | '.join(cells)} |")
+    print()
+
+
+def medians_ratio(runs: Sequence[Measurement], others: Sequence[Measurement]) -> float:
+    """Returns the ratio of the median times."""
+    return statistics.median(run.seconds for run in runs) / statistics.median(
+        run.seconds for run in others
+    )
