@@ -4,7 +4,7 @@
 
 #include "convert.h"
 #include "prefilter/base/error.h"
-#include "prefilter/blocks/compress_blocks.h"
+#include "prefilter/color/compress_blocks.h"
 
 namespace py = pybind11;
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "convert.h"
-#include "prefilter/cutout/covered_share.h"
+#include "prefilter/mipmap/covered_share.h"
 
 namespace py = pybind11;
 

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "convert.h"
-#include "prefilter/normals/lookup_means.h"
+#include "prefilter/mipmap/lookup_means.h"
 
 namespace py = pybind11;
 

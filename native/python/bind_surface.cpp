@@ -8,7 +8,7 @@
 
 #include "convert.h"
 #include "prefilter/base/error.h"
-#include "prefilter/surface/nearest.h"
+#include "prefilter/spatial/nearest.h"
 #include "prefilter/surface/subdivision.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/surface/udim_tile.h"

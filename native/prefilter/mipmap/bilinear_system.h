@@ -8,9 +8,9 @@
 #include "prefilter/base/lanes.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/mipmap/moment_sweep.h"
-#include "prefilter/mipmap/nine_point_system.h"
 #include "prefilter/mipmap/seams.h"
+#include "prefilter/solve/nine_point_system.h"
+#include "prefilter/texels/moment_sweep.h"
 
 namespace prefilter {
 

@@ -8,8 +8,8 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/color/srgb_decoder.h"
-#include "prefilter/mipmap/tiles.h"
 #include "prefilter/moments/four_point_rule.h"
+#include "prefilter/texels/tiles.h"
 
 namespace prefilter {
 namespace {

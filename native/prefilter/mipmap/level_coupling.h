@@ -6,8 +6,8 @@
 
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/mipmap/moment_sweep.h"
-#include "prefilter/mipmap/nine_point_system.h"
+#include "prefilter/solve/nine_point_system.h"
+#include "prefilter/texels/moment_sweep.h"
 
 namespace prefilter {
 

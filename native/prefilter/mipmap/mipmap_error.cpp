@@ -13,11 +13,11 @@
 #include "prefilter/base/text.h"
 #include "prefilter/color/srgb_decoder.h"
 #include "prefilter/color/transfer.h"
-#include "prefilter/mipmap/coverage.h"
-#include "prefilter/mipmap/levels.h"
 #include "prefilter/mipmap/mipmaps.h"
-#include "prefilter/mipmap/moment_sweep.h"
 #include "prefilter/moments/four_point_rule.h"
+#include "prefilter/texels/coverage.h"
+#include "prefilter/texels/levels.h"
+#include "prefilter/texels/moment_sweep.h"
 
 namespace prefilter {
 namespace {

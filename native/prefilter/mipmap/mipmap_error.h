@@ -6,8 +6,8 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/mipmap/reader.h"
 #include "prefilter/surface/surface.h"
+#include "prefilter/texels/reader.h"
 
 namespace prefilter {
 

@@ -14,16 +14,16 @@
 #include "prefilter/color/transfer.h"
 #include "prefilter/filters/push_pull.h"
 #include "prefilter/mipmap/bilinear_system.h"
-#include "prefilter/mipmap/coverage.h"
 #include "prefilter/mipmap/encoded_fit.h"
 #include "prefilter/mipmap/filtered_image.h"
-#include "prefilter/mipmap/levels.h"
-#include "prefilter/mipmap/moment_sweep.h"
 #include "prefilter/mipmap/pam_box.h"
 #include "prefilter/mipmap/seams.h"
-#include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/mipmap/texture_space.h"
 #include "prefilter/mipmap/trilinear_system.h"
+#include "prefilter/texels/coverage.h"
+#include "prefilter/texels/levels.h"
+#include "prefilter/texels/moment_sweep.h"
+#include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
 namespace {

@@ -8,9 +8,9 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/mipmap/reader.h"
-#include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/surface/surface.h"
+#include "prefilter/texels/reader.h"
+#include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
 

@@ -6,9 +6,9 @@
 #include "prefilter/base/lanes.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/filters/push_pull.h"
-#include "prefilter/mipmap/coverage.h"
-#include "prefilter/mipmap/level_grid.h"
-#include "prefilter/mipmap/levels.h"
+#include "prefilter/texels/coverage.h"
+#include "prefilter/texels/level_grid.h"
+#include "prefilter/texels/levels.h"
 
 namespace prefilter {
 namespace {

@@ -6,7 +6,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/mipmap/texel_triangles.h"
+#include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
 

@@ -8,7 +8,7 @@
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/mipmap/nine_point_system.h"
+#include "prefilter/solve/nine_point_system.h"
 #include "prefilter/surface/surface.h"
 
 namespace prefilter {

@@ -1,8 +1,8 @@
 #include "prefilter/mipmap/texture_space.h"
 
+#include "prefilter/filters/downsample.h"
 #include "prefilter/filters/push_pull.h"
-#include "prefilter/filters/resample.h"
-#include "prefilter/mipmap/levels.h"
+#include "prefilter/texels/levels.h"
 
 namespace prefilter {
 namespace {

@@ -5,9 +5,9 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/filters/push_pull.h"
-#include "prefilter/mipmap/coverage.h"
 #include "prefilter/mipmap/mipmaps.h"
-#include "prefilter/mipmap/texel_triangles.h"
+#include "prefilter/texels/coverage.h"
+#include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prefilter/mipmap/levels.h"
+#include "prefilter/texels/levels.h"
 
 namespace prefilter {
 namespace {

@@ -9,7 +9,7 @@
 #include "prefilter/base/wrap.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/level_coupling.h"
-#include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/texels/moment_sweep.h"
 
 namespace prefilter {
 

@@ -7,7 +7,7 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/voxel/resample.h"
+#include "prefilter/voxel/regrid.h"
 
 namespace prefilter {
 namespace {
@@ -237,7 +237,7 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
     if (occupied) first = grown(std::move(first), *occupied);
   }
   const int depth = matching_depth(first.bounds, b);
-  const Octree second = resampled(b, first.bounds, depth, progress.part(0.0, 0.7));
+  const Octree second = regridded(b, first.bounds, depth, progress.part(0.0, 0.7));
   result.bounds = first.bounds;
   result.depth = std::max(first.depth, depth);
   result.cells =

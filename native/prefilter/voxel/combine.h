@@ -15,7 +15,7 @@ enum class SetOperation {
 /// The operation cell by cell, in memory proportional to the surfaces. Trees may be of any depths
 /// and bounds.
 ///
-/// Where bounds differ, b is resampled on the cells of a, down to the first depth at which they are
+/// Where bounds differ, b is regridded on the cells of a, down to the first depth at which they are
 /// no larger than b's; for a union the root of a is doubled until it holds all of b that is not
 /// empty. Throws Error where that would be deeper than kMaxTreeDepth; Error(kCancelled).
 ///

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "prefilter/base/parallel.h"
+#include "prefilter/spatial/morton.h"
 #include "prefilter/wavelet/boundary_flux.h"
-#include "prefilter/wavelet/morton.h"
 #include "prefilter/wavelet/root_mean.h"
 
 namespace prefilter {

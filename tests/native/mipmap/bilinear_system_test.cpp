@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "mipmap/scenes.h"
-#include "prefilter/mipmap/levels.h"
+#include "prefilter/texels/levels.h"
+#include "texels/scenes.h"
 
 namespace prefilter {
 namespace {

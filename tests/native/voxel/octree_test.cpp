@@ -8,7 +8,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/queries.h"
-#include "prefilter/voxel/resample.h"
+#include "prefilter/voxel/regrid.h"
 #include "prefilter/voxel/voxelize.h"
 #include "wavelet/meshes.h"
 #include "wavelet/random_tree.h"
@@ -202,8 +202,8 @@ TEST(Combine, OtherBoundsAreCarriedOver) {
 TEST(Resample, KeepsTheVolumeOfWhatItCovers) {
   const Octree octree = random_octree(30, 4);
   const Box around = {{-0.31, -0.17, -0.4}, {1.2, 1.33, 1.11}};
-  EXPECT_NEAR(volume(resampled(octree, around, 4, Progress())), volume(octree), 1e-6);
-  const Octree same = resampled(octree, kUnit, 4, Progress());
+  EXPECT_NEAR(volume(regridded(octree, around, 4, Progress())), volume(octree), 1e-6);
+  const Octree same = regridded(octree, kUnit, 4, Progress());
   EXPECT_EQ(dense(same), dense(octree));
 }
 

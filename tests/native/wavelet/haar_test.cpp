@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "prefilter/wavelet/morton.h"
+#include "prefilter/spatial/morton.h"
 
 namespace prefilter {
 namespace {

@@ -1,10 +1,10 @@
-#include "prefilter/mipmap/level_grid.h"
+#include "prefilter/texels/level_grid.h"
 
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
-#include "prefilter/mipmap/levels.h"
+#include "prefilter/texels/levels.h"
 
 namespace prefilter {
 namespace {

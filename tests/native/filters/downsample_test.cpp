@@ -1,4 +1,4 @@
-#include "prefilter/filters/resample.h"
+#include "prefilter/filters/downsample.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "prefilter/surface/nearest.h"
+#include "prefilter/spatial/nearest.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The fitting is libsquish's: clusters along the principal axis of a block's colours, all ways to
 // split them tried, and least squares for the ends (Simon Brown, "DXT Compression Techniques").
-#include "prefilter/blocks/compress_blocks.h"
+#include "prefilter/color/compress_blocks.h"
 
 #include <squish.h>
 

@@ -1,4 +1,4 @@
-#include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/texels/moment_sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <mutex>
 #include <tuple>
 
-#include "mipmap/scenes.h"
-#include "prefilter/mipmap/levels.h"
+#include "prefilter/texels/levels.h"
+#include "texels/scenes.h"
 
 namespace prefilter {
 namespace {

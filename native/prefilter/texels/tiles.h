@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/mipmap/texel_triangles.h"
+#include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
 

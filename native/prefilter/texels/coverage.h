@@ -5,7 +5,7 @@
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/mipmap/texel_triangles.h"
+#include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
 

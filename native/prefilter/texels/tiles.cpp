@@ -1,4 +1,4 @@
-#include "prefilter/mipmap/tiles.h"
+#include "prefilter/texels/tiles.h"
 
 #include <array>
 #include <utility>

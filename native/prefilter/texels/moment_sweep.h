@@ -12,10 +12,10 @@
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/mipmap/level_grid.h"
-#include "prefilter/mipmap/reader.h"
-#include "prefilter/mipmap/texel_triangles.h"
 #include "prefilter/moments/cell_moments.h"
+#include "prefilter/texels/level_grid.h"
+#include "prefilter/texels/reader.h"
+#include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
 

@@ -1,7 +1,7 @@
 // A mass matrix that is scaled by its diagonal has a condition number of about 9 on whole texels,
 // so a few Gauss-Seidel sweeps do; and a sweep that clamps each texel as it goes converges to the
 // solution of the problem with ranges.
-#include "prefilter/mipmap/nine_point_system.h"
+#include "prefilter/solve/nine_point_system.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 // Node i has the children 2 i + 1 and 2 i + 2, and shares its range of triangles out in halves, so
 // that the tree is an array of boxes. Closest points of triangles: Ericson, Real-Time Collision
 // Detection (2005), section 5.1.5.
-#include "prefilter/surface/nearest.h"
+#include "prefilter/spatial/nearest.h"
 
 #include <algorithm>
 #include <cmath>

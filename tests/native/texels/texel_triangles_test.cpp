@@ -1,10 +1,10 @@
-#include "prefilter/mipmap/texel_triangles.h"
+#include "prefilter/texels/texel_triangles.h"
 
 #include <gtest/gtest.h>
 
-#include "mipmap/scenes.h"
 #include "prefilter/base/error.h"
-#include "prefilter/mipmap/coverage.h"
+#include "prefilter/texels/coverage.h"
+#include "texels/scenes.h"
 
 namespace prefilter {
 namespace {

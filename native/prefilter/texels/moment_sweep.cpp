@@ -1,6 +1,6 @@
 // Sections 7.2 and 7.3: closed-form integrals over triangles cut to the finest cells. Where a texel
 // lies inside of one triangle the integrals of the image are a fixed 3 x 3 stencil.
-#include "prefilter/mipmap/moment_sweep.h"
+#include "prefilter/texels/moment_sweep.h"
 
 #include <array>
 #include <cassert>
@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "prefilter/color/srgb_decoder.h"
-#include "prefilter/mipmap/levels.h"
-#include "prefilter/mipmap/tiles.h"
 #include "prefilter/moments/axis_parts.h"
 #include "prefilter/moments/four_point_rule.h"
+#include "prefilter/texels/levels.h"
+#include "prefilter/texels/tiles.h"
 
 namespace prefilter {
 namespace {

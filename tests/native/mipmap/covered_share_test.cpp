@@ -1,4 +1,4 @@
-#include "prefilter/cutout/covered_share.h"
+#include "prefilter/mipmap/covered_share.h"
 
 #include <gtest/gtest.h>
 

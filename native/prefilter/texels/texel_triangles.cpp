@@ -1,4 +1,4 @@
-#include "prefilter/mipmap/texel_triangles.h"
+#include "prefilter/texels/texel_triangles.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,7 +11,7 @@ namespace prefilter {
 /// The same shape on the cells of another box, down to `depth`: exact where its cells lie within
 /// leaves or are made up of them, and otherwise the mean of what they cover. Throws
 /// Error(kCancelled).
-Octree resampled(const Octree& octree, const Box& bounds, int depth, const Progress& progress);
+Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress);
 
 /// An octree of a larger root, twice as wide each time, that has the same cells and holds `box` as
 /// well. Throws Error where its finest cells would be deeper than kMaxTreeDepth.

@@ -1,4 +1,4 @@
-#include "prefilter/normals/lookup_means.h"
+#include "prefilter/mipmap/lookup_means.h"
 
 #include <array>
 #include <cmath>

@@ -1,11 +1,11 @@
-#include "prefilter/mipmap/coverage.h"
+#include "prefilter/texels/coverage.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "prefilter/mipmap/tiles.h"
 #include "prefilter/moments/axis_parts.h"
+#include "prefilter/texels/tiles.h"
 
 namespace prefilter {
 namespace {

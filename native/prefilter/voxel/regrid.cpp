@@ -1,4 +1,4 @@
-#include "prefilter/voxel/resample.h"
+#include "prefilter/voxel/regrid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,9 +79,9 @@ Box widened(const Box& cell, int shift) {
   return box;
 }
 
-class Resampler {
+class Regridder {
  public:
-  Resampler(const Octree& source, int depth, const Progress& progress)
+  Regridder(const Octree& source, int depth, const Progress& progress)
       : source_(source), depth_(depth), progress_(progress) {
     levels_.resize(static_cast<std::size_t>(depth));
   }
@@ -157,16 +157,16 @@ void add_occupied(const CellTree& tree, std::size_t level, std::size_t block, co
 }
 }  // namespace
 
-Octree resampled(const Octree& octree, const Box& bounds, int depth, const Progress& progress) {
+Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress) {
   check_box(bounds, "bounds");
   check_depth(depth, 0, "depth");
-  Resampler resampler(octree, depth, progress);
+  Regridder regridder(octree, depth, progress);
   Octree result;
   result.bounds = bounds;
   result.depth = depth;
   bool is_split = false;
-  result.cells.root = resampler.value_of(bounds, 0, 1.0, &is_split);
-  result.cells.levels = resampler.take_levels();
+  result.cells.root = regridder.value_of(bounds, 0, 1.0, &is_split);
+  result.cells.levels = regridder.take_levels();
   for (TreeLevel& level : result.cells.levels) link_blocks(&level);
   update_means(&result.cells, 1);
   return result;
