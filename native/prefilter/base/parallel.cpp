@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <exception>
 #include <mutex>
 #include <optional>
@@ -63,6 +64,15 @@ void parallel_for(std::int64_t count, int threads, const Progress& progress,
   }
   if (failure) std::rethrow_exception(failure);
   progress.report(1.0);  // A helper may have ended last.
+}
+
+void parallel_ranges(std::int64_t count, std::int64_t grain, int threads, const Progress& progress,
+                     const std::function<void(std::int64_t, std::int64_t)>& body) {
+  assert(count >= 0 && grain >= 1);
+  parallel_for(range_count(count, grain), threads, progress, [&](std::int64_t range) {
+    const std::int64_t begin = range * grain;
+    body(begin, begin + std::min(grain, count - begin));
+  });
 }
 
 void parallel_team(int threads, const std::function<void(Team&)>& body) {

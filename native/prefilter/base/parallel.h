@@ -20,6 +20,17 @@ int resolve_threads(int threads);
 void parallel_for(std::int64_t count, int threads, const Progress& progress,
                   const std::function<void(std::int64_t)>& body);
 
+/// How many ranges parallel_ranges makes of [0, count): count / grain, rounded up.
+constexpr std::int64_t range_count(std::int64_t count, std::int64_t grain) {
+  return count / grain + (count % grain != 0 ? 1 : 0);
+}
+
+/// Calls body(begin, end) for every range of [0, count) from a multiple of `grain`, 1 or more, to
+/// the next or to the end: parallel_for over range_count(count, grain) ranges, where what an index
+/// takes is too short to be handed out by itself. The range that begins at b is number b / grain.
+void parallel_ranges(std::int64_t count, std::int64_t grain, int threads, const Progress& progress,
+                     const std::function<void(std::int64_t, std::int64_t)>& body);
+
 /// A group of threads that walk through the same steps together.
 class Team {
  public:

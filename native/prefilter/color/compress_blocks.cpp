@@ -44,19 +44,17 @@ std::vector<std::uint8_t> compress_blocks(const std::uint8_t* rgba, int width, i
                   " texels; both sides must be at least 1");
   }
   const int flags = squish_flags(options);
-  const std::size_t columns = (static_cast<std::size_t>(width) + kSide - 1) / kSide;
-  const std::size_t rows = (static_cast<std::size_t>(height) + kSide - 1) / kSide;
+  const auto columns = static_cast<std::size_t>(range_count(width, kSide));
+  const auto rows = static_cast<std::size_t>(range_count(height, kSide));
   const std::size_t bytes = block_bytes(options.format);
   std::vector<std::uint8_t> blocks(rows * columns * bytes);
-  parallel_for(static_cast<std::int64_t>(rows), options.threads, progress, [&](std::int64_t row) {
-    const int top = static_cast<int>(row) * kSide;
-    const int texel_rows = std::min(kSide, height - top);
-    std::uint8_t* block = blocks.data() + static_cast<std::size_t>(row) * columns * bytes;
+  parallel_ranges(height, kSide, options.threads, progress, [&](int top, int bottom) {
+    std::uint8_t* block = blocks.data() + static_cast<std::size_t>(top / kSide) * columns * bytes;
     for (int left = 0; left < width; left += kSide, block += bytes) {
       const int texel_columns = std::min(kSide, width - left);
       std::array<std::uint8_t, 4 * kSide * kSide> texels{};
       int inside = 0;
-      for (int y = 0; y < texel_rows; ++y) {
+      for (int y = 0; y < bottom - top; ++y) {
         const std::uint8_t* source =
             rgba + 4 * (static_cast<std::ptrdiff_t>(top + y) * width + left);
         std::copy_n(source, 4 * texel_columns, texels.data() + 4 * kSide * y);

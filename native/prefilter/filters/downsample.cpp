@@ -46,15 +46,14 @@ void filter_row(const float* padded, int before, const std::vector<Taps>& taps, 
 Image filter_rows(const ImageView& source, int width, Kernel kernel, Wrap mode,
                   const Progress& progress, int threads) {
   const std::vector<Taps> taps = all_taps(kernel, source.width, width);
-  const int end = taps.back().first + static_cast<int>(taps.back().weights.size());
+  const int taps_end = taps.back().first + static_cast<int>(taps.back().weights.size());
   const int before = std::max(0, -taps.front().first);
-  const int after = std::max(0, end - source.width);
+  const int after = std::max(0, taps_end - source.width);
   Image target(width, source.height, source.channels);
-  constexpr int kRows = 16;
-  parallel_for((source.height + kRows - 1) / kRows, threads, progress, [&](std::int64_t band) {
+  constexpr int kRowsAtOnce = 16;
+  parallel_ranges(source.height, kRowsAtOnce, threads, progress, [&](int begin, int end) {
     std::vector<float> padded;
-    const int y_end = std::min(source.height, static_cast<int>(band + 1) * kRows);
-    for (int y = static_cast<int>(band) * kRows; y < y_end; ++y) {
+    for (int y = begin; y < end; ++y) {
       pad_row(source.texel(0, y), source.width, source.channels, mode, before, after, &padded);
       float* row = target.texel(0, y);
       switch (source.channels) {

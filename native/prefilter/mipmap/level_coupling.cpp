@@ -116,10 +116,7 @@ void LevelCoupling::subtract_fine(const NinePointSystem<float>& fine,
                                   const NinePointSystem<float>& coarse, float scale, int threads,
                                   std::vector<LaneValues>* sums) const {
   // Each band of the next level's rows collects what comes to it, in the order of the finer rows.
-  const int bands = (y_.next_size + kRowsAtOnce - 1) / kRowsAtOnce;
-  parallel_for(bands, threads, Progress(), [&](std::int64_t band) {
-    const int begin = static_cast<int>(band) * kRowsAtOnce;
-    const int end = std::min(begin + kRowsAtOnce, y_.next_size);
+  parallel_ranges(y_.next_size, kRowsAtOnce, threads, Progress(), [&](int begin, int end) {
     for (int y = 0; y < y_.size; ++y) {
       for (int slot = 0; slot < 3; ++slot) {
         const int row = rows_[y][slot];

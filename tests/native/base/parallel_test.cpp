@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <stdexcept>
@@ -55,6 +56,21 @@ TEST(ParallelFor, StopsSoonWhenCancelled) {
   };
   EXPECT_THROW(run(), Error);
   EXPECT_LT(Clock::now() - start, std::chrono::seconds(2));
+}
+
+TEST(ParallelRanges, AreWholeGrainsAndTheRest) {
+  for (const std::int64_t count : {0, 1, 6, 7, 8, 14, 100}) {
+    std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));
+    std::atomic<int> ranges{0};
+    parallel_ranges(count, 7, 3, Progress(), [&](std::int64_t begin, std::int64_t end) {
+      EXPECT_EQ(begin % 7, 0);
+      EXPECT_EQ(end, std::min(count, begin + 7));
+      for (std::int64_t i = begin; i < end; ++i) ++visits[i];
+      ++ranges;
+    });
+    EXPECT_EQ(ranges, range_count(count, 7));
+    for (const std::atomic<int>& visit : visits) EXPECT_EQ(visit, 1);
+  }
 }
 
 TEST(ParallelTeam, StepsTogether) {
