@@ -2,8 +2,8 @@
 
 import bpy
 
-from . import images
 from .images import FloatArray, Picture
+from .new_images import new_packed, suffixed
 
 _PICTURE_KEY = "prefilter_picture_of"
 _COPY_KEY = "prefilter_copy_of"
@@ -23,10 +23,10 @@ def write_picture(
     Raises:
         OSError: The image cannot be made.
     """
-    name = images.suffixed(source.name, suffix)
+    name = suffixed(source.name, suffix)
     key = _COPY_KEY if like_source else _PICTURE_KEY
     try:
-        image = images.new_packed(name, source if like_source else None, pixels)
+        image = new_packed(name, source if like_source else None, pixels)
     except RuntimeError as error:
         raise OSError(f"image '{source.name}': cannot make '{name}': {error}") from error
     image[key] = source.full_name
@@ -40,7 +40,7 @@ def write_picture(
 
 def write_text(source: Picture, suffix: str, text: str) -> bpy.types.Text:
     """Writes a text named `<source>.<suffix>`, over one that was written before."""
-    name = images.suffixed(source.name, suffix)
+    name = suffixed(source.name, suffix)
     found = bpy.data.texts.get(name)
     if found is None or found.get(_PICTURE_KEY) != source.full_name:
         found = bpy.data.texts.new(name)

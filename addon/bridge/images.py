@@ -1,4 +1,4 @@
-"""Image datablocks to scene-linear arrays, and levels back to image datablocks.
+"""Image datablocks to scene-linear arrays, and what decoded colors are stored as.
 
 What Blender keeps in `Image.pixels` (rows from the bottom, always four channels):
 
@@ -10,11 +10,9 @@ Alpha is coverage unless the alpha mode is Channel Packed or None or the colour 
 the four channels are independent.
 """
 
-import hashlib
 import os
-import re
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -25,7 +23,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
-from ..wording import listed
+from ..core.wording import listed
 from . import openimageio
 from .openimageio import Check
 
@@ -43,10 +41,6 @@ _KIND_OF_TYPE = {
     "COMPOSITING": "a compositor result",
 }
 _LINEAR_REC709_NAMES = frozenset({"Linear", "Linear Rec.709"})
-# Blender's limit is 63 bytes; this leaves room for the .001 of a name that is taken.
-_MAX_NAME_BYTES = 59
-_HASH_DIGITS = 8
-_SOURCE_KEY = "prefilter_level_of"
 
 
 class Encoding(Enum):
@@ -262,128 +256,6 @@ def encoded(picture: Picture, linear: FloatArray, check: Check = lambda: None) -
     return _convert(picture, linear, check, decode=False)
 
 
-@dataclass(frozen=True)
-class StagedLevels:
-    """Level images that are finished, and replace none yet.
-
-    Attributes:
-        picture: Level 0.
-        images: Levels 1, 2, ...
-    """
-
-    picture: Picture
-    images: list[bpy.types.Image]
-
-    def commit(self) -> list[str]:
-        """Gives the images their names, and puts each in the place of that of an earlier bake.
-
-        Returns:
-            The names of the images. One that belongs to another image gets a number behind it.
-        """
-        for number, image in enumerate(self.images, start=1):
-            name = level_name(self.picture.name, number)
-            earlier = _earlier_level(name, self.picture)
-            image[_SOURCE_KEY] = self.picture.full_name
-            if earlier is not None:
-                earlier.user_remap(image)
-                bpy.data.images.remove(earlier)
-            image.name = name
-        return [image.name for image in self.images]
-
-    def discard(self) -> None:
-        """Removes the images."""
-        for image in self.images:
-            bpy.data.images.remove(image)
-        self.images.clear()
-
-
-def stage_levels(picture: Picture, levels: Sequence[FloatArray]) -> StagedLevels:
-    """Makes packed image datablocks of levels, to be named `<image>.mip1`, `<image>.mip2` ...
-
-    An image of an earlier bake is replaced, so that materials that showed it show the new one.
-    Deeper levels of an earlier bake are left as they are. Every image keeps a fake user, as Blender
-    saves no unused datablock.
-
-    A byte level has the picture's colour space, and straight alpha where the picture's is
-    Premultiplied. A float level is scene-linear (or data, like the picture), with associated alpha.
-    Only these survive packing, saving and loading: Blender's packing does not convert colours, and
-    its loading does.
-
-    Args:
-        picture: Level 0.
-        levels: Levels 1, 2, ... in the encoding of `picture.stored`.
-
-    Raises:
-        OSError: A level cannot be made; no image is left behind.
-    """
-    staged = StagedLevels(picture, [])
-    try:
-        for number, level in enumerate(levels, start=1):
-            name = level_name(picture.name, number)
-            staged.images.append(new_packed(name, picture, level))
-    except RuntimeError as error:
-        staged.discard()
-        raise OSError(f"image '{picture.name}': cannot make level {number}: {error}") from error
-    except BaseException:
-        staged.discard()
-        raise
-    return staged
-
-
-def level_name(image_name: str, number: int) -> str:
-    """Returns the name of the image that holds a level.
-
-    A base that is too long is cut, and gets a hash of what it was.
-    """
-    return suffixed(image_name, f"mip{number}")
-
-
-def suffixed(image_name: str, ending: str) -> str:
-    """Returns `<image>.<ending>`; a base that is too long is cut, as in `level_name`."""
-    suffix = f".{ending}"
-    base = image_name.encode()
-    if len(base) + len(suffix) <= _MAX_NAME_BYTES:
-        return image_name + suffix
-    suffix = f"~{hashlib.sha256(base).hexdigest()[:_HASH_DIGITS]}{suffix}"
-    return base[: _MAX_NAME_BYTES - len(suffix)].decode(errors="ignore") + suffix
-
-
-def new_packed(name: str, like: Picture | None, pixels: FloatArray) -> bpy.types.Image:
-    """Makes a packed image datablock with a fake user.
-
-    Args:
-        name: Its name; Blender adds a number to one that is taken.
-        like: What it is stored as (see `stage_levels`); None for an sRGB byte image.
-        pixels: Its values, row 0 at the bottom.
-    """
-    height, width = pixels.shape[:2]
-    is_float = like is not None and like.is_float
-    image = bpy.data.images.new(name, width, height, alpha=True, float_buffer=is_float)
-    try:
-        _fill_level(image, like, pixels)
-    except BaseException:
-        bpy.data.images.remove(image)
-        raise
-    return image
-
-
-def save_png(path: Path, pixels: FloatArray) -> None:
-    """Writes sRGB values, row 0 at the bottom, as a PNG file.
-
-    Raises:
-        OSError: The file cannot be written.
-    """
-    image = new_packed("prefilter picture", None, pixels)
-    try:
-        image.filepath_raw = str(path)
-        image.file_format = "PNG"
-        image.save()
-    except RuntimeError as error:
-        raise OSError(f"file '{path}': cannot be written: {str(error).strip()}") from error
-    finally:
-        bpy.data.images.remove(image)
-
-
 def _why_empty(image: bpy.types.Image) -> str:
     if not image.filepath:
         return "found no pixels"
@@ -434,40 +306,3 @@ def _scene_linear_name() -> str:
         return probe.colorspace_settings.name
     finally:
         bpy.data.images.remove(probe)
-
-
-def _fill_level(image: bpy.types.Image, picture: Picture | None, level: FloatArray) -> None:
-    if picture is None:
-        image.colorspace_settings.name = "sRGB"
-    elif not picture.is_float:
-        image.colorspace_settings.name = picture.colorspace
-        image.alpha_mode = "STRAIGHT" if picture.alpha_mode == "PREMUL" else picture.alpha_mode
-    else:
-        space = picture.colorspace if picture.is_data else picture.linear_space
-        image.colorspace_settings.name = space
-        image.alpha_mode = "PREMUL" if picture.alpha_mode == "STRAIGHT" else picture.alpha_mode
-    image.use_fake_user = True
-    image.pixels.foreach_set(_with_alpha(level).ravel())
-    image.update()
-    image.pack()
-
-
-def _earlier_level(name: str, picture: Picture) -> bpy.types.Image | None:
-    """Returns the image of that name, or of that name and a number, that a bake made before."""
-    form = re.compile(re.escape(name) + r"(\.\d{3,})?")
-    found = [
-        image
-        for image in bpy.data.images
-        if image.library is None
-        and form.fullmatch(image.name)
-        and image.get(_SOURCE_KEY) == picture.full_name
-    ]
-    return min(found, key=lambda image: image.name, default=None)
-
-
-def _with_alpha(pixels: FloatArray) -> FloatArray:
-    if pixels.shape[2] == 4:
-        return np.ascontiguousarray(pixels, np.float32)
-    rgba = np.ones((*pixels.shape[:2], 4), np.float32)
-    rgba[..., :3] = pixels
-    return rgba

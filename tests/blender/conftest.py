@@ -40,15 +40,12 @@ def bake(addon: Callable[[str], ModuleType]) -> Callable[..., Any]:
     """Returns a function that bakes with the settings given as keywords."""
 
     def run(image, objects=(), *, all_faces=False, progress=lambda _: True, **settings):
-        module = addon("bake")
-        return module.bake(
-            image,
-            list(objects),
-            module.Settings(**settings),
-            scenes.depsgraph(),
-            all_faces=all_faces,
-            progress=progress,
+        chosen = addon("mipmaps.choices").Settings(**settings)
+        job = addon("mipmaps.reading").read(
+            image, list(objects), chosen, scenes.depsgraph(), all_faces=all_faces
         )
+        job.compute(progress)
+        return job.write()
 
     return run
 

@@ -41,17 +41,17 @@ def test_unregister_is_symmetric():
 
 
 def test_settings_of_scene_operator_and_bake_agree(addon):
-    defaults = addon("bake").Settings()
+    defaults = addon("mipmaps.choices").Settings()
     scene = bpy.context.scene.prefilter_bake
     operator = bpy.ops.prefilter.bake_mipmaps.get_rna_type().properties
-    for name in addon("settings").BakeProperties.__annotations__:
+    for name in addon("mipmaps.properties").BakeProperties.__annotations__:
         assert getattr(scene, name) == getattr(defaults, name)
         assert operator[name].description
 
 
 @pytest.mark.parametrize("name", ["voxelize", "boolean"])
 def test_settings_of_voxels_agree(addon, name):
-    defaults = getattr(addon("voxel_choices"), f"{name.capitalize()}Settings")()
+    defaults = getattr(addon("voxels.choices"), f"{name.capitalize()}Settings")()
     scene = getattr(bpy.context.scene, f"prefilter_{name}").to_settings()
     operator = getattr(bpy.ops.prefilter, name).get_rna_type().properties
     for field in dataclasses.fields(defaults):

@@ -12,7 +12,7 @@ def read(addon, made):
 
 
 def write_levels(addon, made, levels):
-    return addon("bridge.images").stage_levels(read(addon, made), levels).commit()
+    return addon("bridge.level_images").stage_levels(read(addon, made), levels).commit()
 
 
 @pytest.mark.parametrize(
@@ -254,7 +254,7 @@ def test_failure_while_staging_leaves_no_image(addon, monkeypatch):
     def no_packing(image, picture, level):
         raise RuntimeError("no packing")
 
-    monkeypatch.setattr(addon("bridge.images"), "_fill_level", no_packing)
+    monkeypatch.setattr(addon("bridge.new_images"), "_fill_level", no_packing)
     with pytest.raises(OSError, match="'Paint': cannot make level 1"):
         write_levels(addon, made, [scenes.noise(2, 2)])
     assert [image.name for image in bpy.data.images] == ["Paint"]

@@ -1,0 +1,205 @@
+"""Files for engines: DDS and KTX 2 with all levels, and a PNG for each level.
+
+* A byte image in sRGB or data keeps its bytes, in 8-bit and block formats; straight alpha.
+* Other images are sRGB-encoded in these, or as they are where they are data.
+* Formats of floats are scene-linear. A float image has associated alpha, and the file says so.
+* PNG: a byte image as it is; a float image with 16 bits, sRGB-encoded unless it is data; straight
+  alpha.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import prefilter
+
+from ...core.alpha import unassociated
+from .. import openimageio
+from ..images import Encoding, FloatArray, Picture
+from . import staging
+from .staging import StagedFile
+from .textures import numbered
+
+_WRITERS: dict[str, Callable[..., None]] = {
+    ".dds": prefilter.write_dds,
+    ".ktx2": prefilter.write_ktx2,
+}
+_FLOATS = frozenset({"rgba16f", "rgba32f"})
+_FEW_CHANNELS = frozenset({"bc4", "bc5"})
+_BLOCK_SIDE = 4
+_CUT_OUT_ALPHA = 0.5
+
+
+def is_for_engines(target: Path) -> bool:
+    """Tells whether `stage` of this module writes such a file."""
+    return target.suffix.lower() in (*_WRITERS, ".png")
+
+
+def has_formats(path: str) -> bool:
+    """Tells whether there is a choice of formats for such a file."""
+    return path.lower().endswith(tuple(_WRITERS))
+
+
+def checked(
+    picture: Picture, target: Path | None, texture_format: str, threshold: float | None = None
+) -> list[str]:
+    """Returns what the user should know about the format of a picture's file.
+
+    Args:
+        picture: Level 0.
+        target: The file; None for none.
+        texture_format: See `stage`.
+        threshold: The alpha from which on a cut-out is shown; None for other images.
+
+    Raises:
+        ValueError: The picture does not go with the format.
+    """
+    if target is None or not has_formats(target.name):
+        return []
+    chosen = _chosen(picture, texture_format)
+    who = f"texture format: {chosen.upper()}"
+    if chosen in _FEW_CHANNELS and not picture.is_float and picture.encoding is not Encoding.NONE:
+        raise ValueError(
+            f"{who} has no sRGB form, and image '{picture.name}' has the color space "
+            f"{picture.colorspace}; Non-Color or another format is needed"
+        )
+    told = []
+    height, width, channels = picture.stored.shape
+    if chosen.startswith("bc") and (width % _BLOCK_SIDE or height % _BLOCK_SIDE):
+        told.append(f"{who} of {width} x {height} texels: Direct3D needs sides divisible by 4")
+    if chosen in _FEW_CHANNELS:
+        kept = {"bc4": "the red channel", "bc5": "the red and green channels"}[chosen]
+        told.append(f"{who} keeps {kept} of '{picture.name}' only")
+    elif chosen == "bc1" and channels == 4:
+        if not picture.alpha_is_coverage:
+            told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
+        elif threshold is None:
+            told.append(f"{who} knows no alpha of '{picture.name}' between 0 and 1")
+        elif threshold != _CUT_OUT_ALPHA:
+            told.append(f"{who} cuts alpha at {_CUT_OUT_ALPHA}, not at {threshold:g}")
+    if chosen not in _FLOATS and picture.is_float:
+        finite = picture.stored[np.isfinite(picture.stored)]
+        if finite.size and (finite.min() < 0 or finite.max() > 1):
+            told.append(f"{who} clips values of '{picture.name}' beyond 0 and 1")
+    return told
+
+
+def stage(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    texture_format: str,
+    check: openimageio.Check,
+    *,
+    threads: int = 0,
+) -> list[StagedFile]:
+    """Writes a DDS or KTX 2 file, or a PNG for each level, beside the target.
+
+    Args:
+        target: A path from `textures.check_target`.
+        picture: Where the levels come from.
+        linear_levels: Every level, scene-linear, row 0 at the bottom.
+        stored_levels: The same levels in the encoding of the picture.
+        texture_format: A format of `prefilter.write_dds`; for "auto" floats or bytes, as the
+            picture has them. Not for PNG.
+        check: Called now and then.
+        threads: How many threads to use; 0 for all.
+
+    Raises:
+        ValueError: The values do not go with the format.
+        OSError: A file cannot be written.
+    """
+    write_texture = _WRITERS.get(target.suffix.lower())
+    if write_texture is None:
+        return _stage_numbered(target, picture, linear_levels, stored_levels, check)
+    chosen = _chosen(picture, texture_format)
+    levels, encoding = _values(picture, linear_levels, stored_levels, chosen)
+    alpha = "independent"
+    if picture.alpha_is_coverage:
+        alpha = "straight" if picture.alpha_is_straight else "premultiplied"
+    elif chosen == "bc1":
+        levels = [level[..., :3] for level in levels]
+
+    def go_on(_: float) -> bool:
+        check()
+        return True
+
+    write = partial(
+        write_texture,
+        levels=levels,
+        format=chosen,
+        encoding=encoding,
+        alpha=alpha,
+        progress=go_on,
+        threads=threads,
+    )
+    return [staging.stage_with(target, write)]
+
+
+def _stage_numbered(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    check: openimageio.Check,
+) -> list[StagedFile]:
+    color_space = "sRGB"
+    if picture.is_data:
+        color_space = "raw"
+    elif not picture.is_float:
+        color_space = picture.colorspace
+    staged: list[StagedFile] = []
+    try:
+        for number, level in enumerate(linear_levels if picture.is_float else stored_levels):
+            check()
+            write = partial(
+                openimageio.write_picture,
+                pixels=_png_pixels(picture, level),
+                color_space=color_space,
+            )
+            staged.append(staging.stage_with(numbered(target, number), write))
+    except BaseException:
+        for file in staged:
+            file.discard()
+        raise
+    return staged
+
+
+def _png_pixels(picture: Picture, level: FloatArray) -> np.ndarray[Any, Any]:
+    """Returns bytes, or 16 bits, with rows from the top and straight alpha."""
+    if not picture.is_float:
+        return np.ascontiguousarray(_bytes(level)[::-1])
+    if picture.alpha_is_coverage:
+        level = unassociated(level)
+    if not picture.is_data:
+        level = prefilter.to_srgb(level)
+    values = np.clip(np.nan_to_num(level[::-1], nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
+    return np.rint(values * 65535).astype(np.uint16)
+
+
+def _chosen(picture: Picture, texture_format: str) -> str:
+    if texture_format != "auto":
+        return texture_format
+    return "rgba16f" if picture.is_float else "rgba8"
+
+
+def _values(
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    chosen: str,
+) -> tuple[list[Any], str]:
+    """Returns the levels to write, and the encoding that they have or are to get."""
+    if not (picture.is_float or chosen in _FLOATS or picture.encoding is Encoding.OCIO):
+        encoding = "srgb" if picture.encoding is Encoding.SRGB else "linear"
+        return [_bytes(level) for level in stored_levels], encoding
+    encoding = "linear" if picture.is_data or chosen in _FEW_CHANNELS else "srgb"
+    return list(linear_levels), encoding
+
+
+def _bytes(level: FloatArray) -> np.ndarray[Any, Any]:
+    # As Blender rounds, so that level images are the same.
+    return (np.clip(level, 0, 1) * np.float32(255) + np.float32(0.5)).astype(np.uint8)

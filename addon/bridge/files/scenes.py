@@ -1,0 +1,128 @@
+"""Files with objects, as Blender imports and exports them."""
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..new_meshes import is_solid
+from . import staging
+
+IMPORTERS: dict[str, Callable[[str], Any]] = {
+    ".obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
+    ".ply": lambda path: bpy.ops.wm.ply_import(filepath=path),
+    ".stl": lambda path: bpy.ops.wm.stl_import(filepath=path),
+    ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
+    ".gltf": lambda path: bpy.ops.import_scene.gltf(filepath=path),
+    ".fbx": lambda path: bpy.ops.import_scene.fbx(filepath=path),
+}
+EXPORTERS: dict[str, Callable[[str], Any]] = {
+    ".obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_selected_objects=True),
+    ".ply": lambda path: bpy.ops.wm.ply_export(filepath=path, export_selected_objects=True),
+    ".stl": lambda path: bpy.ops.wm.stl_export(filepath=path, export_selected_objects=True),
+    ".glb": lambda path: bpy.ops.export_scene.gltf(
+        filepath=path, use_selection=True, export_format="GLB"
+    ),
+    ".gltf": lambda path: bpy.ops.export_scene.gltf(
+        filepath=path, use_selection=True, export_format="GLTF_SEPARATE"
+    ),
+    ".fbx": lambda path: bpy.ops.export_scene.fbx(filepath=path, use_selection=True),
+}
+
+
+def load(paths: Sequence[str]) -> list[list[bpy.types.Object]]:
+    """Loads files into one scene.
+
+    A .blend file that comes first is opened; what the first scene of others shows is appended.
+
+    Args:
+        paths: Their endings are ".blend" or keys of `IMPORTERS`.
+
+    Returns:
+        The visible objects of each file that may show something with an inside.
+
+    Raises:
+        OSError: A file is missing or cannot be read.
+        ValueError: A file has no such object.
+    """
+    for path in paths:
+        if not os.path.isfile(path):
+            raise OSError(f"FILE: there is no file '{path}'")
+    if Path(paths[0]).suffix.lower() != ".blend":
+        bpy.ops.wm.read_homefile(use_empty=True)
+    found = []
+    for i, path in enumerate(paths):
+        before = set() if i == 0 else set(bpy.data.objects)
+        try:
+            _load_one(os.path.abspath(path), is_first=i == 0)
+        except RuntimeError as error:
+            raise OSError(f"FILE: cannot load '{path}': {str(error).strip()}") from error
+        objects = [
+            obj
+            for obj in bpy.context.view_layer.objects
+            if obj not in before and is_solid(obj) and obj.visible_get()
+        ]
+        if not objects:
+            raise ValueError(f"FILE: found no visible object with a surface in '{path}'")
+        found.append(objects)
+    return found
+
+
+def as_one(name: str, objects: Sequence[bpy.types.Object]) -> bpy.types.Object:
+    """Returns the only object of several, or an instance of a collection of all of them."""
+    if len(objects) == 1:
+        return objects[0]
+    collection = bpy.data.collections.new(name)
+    for obj in objects:
+        collection.objects.link(obj)
+    made = bpy.data.objects.new(name, None)
+    made.instance_type, made.instance_collection = "COLLECTION", collection
+    bpy.context.scene.collection.objects.link(made)
+    return made
+
+
+def save(target: Path, names: Sequence[str]) -> None:
+    """Writes objects, or for a .blend file all there is, beside the target, and renames it.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    extension = target.suffix.lower()
+    for obj in bpy.context.view_layer.objects:
+        obj.select_set(obj.name in names)
+    try:
+        if extension == ".blend":
+            staged = staging.stage_with(
+                target,
+                lambda path: bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True),
+            )
+        else:
+            staged = staging.stage_folder(target, lambda path: EXPORTERS[extension](str(path)))
+    except RuntimeError as error:
+        raise OSError(f"file '{target}': cannot write it: {str(error).strip()}") from error
+    staged.commit()
+
+
+def _load_one(path: str, *, is_first: bool) -> None:
+    extension = Path(path).suffix.lower()
+    if extension != ".blend":
+        IMPORTERS[extension](path)
+    elif is_first:
+        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+    else:
+        _append_visible(path)
+    bpy.context.view_layer.update()
+
+
+def _append_visible(path: str) -> None:
+    """Adds what the first scene of a .blend file shows."""
+    with bpy.data.libraries.load(path, link=False) as (there, here):
+        here.scenes = there.scenes[:1]
+    for scene in here.scenes:
+        layer = scene.view_layers[0]
+        for obj in layer.objects:
+            if obj.visible_get(view_layer=layer):
+                bpy.context.scene.collection.objects.link(obj)
+        bpy.data.scenes.remove(scene)

@@ -1,0 +1,118 @@
+"""Mip-mapped files for renderers.
+
+* OpenEXR: scene-linear, associated alpha, 16-bit floats unless 32 are asked for.
+* TIFF (.tif, .tiff, .tx): a byte image stays 8-bit and in its colour space, a float image is
+  written as scene-linear 32-bit floats; associated alpha, as texture readers expect.
+
+A file always holds every level down to 1 x 1, in tiles of 64 x 64. Those for engines are written
+by `engines`.
+"""
+
+import os
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from ...core import alpha
+from .. import images, openimageio
+from ..images import FloatArray, Picture
+from .staging import StagedFile, check_place, stage_with
+
+_FORMATS = {".exr": "openexr", ".tif": "tiff", ".tiff": "tiff", ".tx": "tiff"}
+# Those that `engines` writes; the last one gets a file a level.
+_OTHER_EXTENSIONS = (".dds", ".ktx2", ".png")
+_MOST_LEVELS = 31
+_WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
+
+
+def check_target(path: str) -> Path:
+    """Returns the absolute path of a texture file that can be written, symbolic links resolved.
+
+    Raises:
+        ValueError: The name does not end in a known extension.
+        OSError: The folder is missing, or the file or its folder is read-only.
+    """
+    target = Path(os.path.realpath(path))
+    extension = target.suffix.lower()
+    allowed = (*_FORMATS, *_OTHER_EXTENSIONS)
+    if extension not in allowed:
+        raise ValueError(
+            f"file '{path}': found extension '{target.suffix}'; allowed are {', '.join(allowed)}"
+        )
+    if extension == ".png":
+        for number in range(_MOST_LEVELS):
+            level_file = numbered(target, number)
+            check_place(str(level_file), level_file)
+    else:
+        check_place(path, target)
+    return target
+
+
+def numbered(target: Path, number: int) -> Path:
+    """Returns the file of a level where each has its own, symbolic links resolved."""
+    return Path(os.path.realpath(target.with_suffix(f".{number}{target.suffix}")))
+
+
+def shown(target: Path) -> str:
+    """Returns how to call a file, or the files of all levels."""
+    if target.suffix.lower() != ".png":
+        return f"'{target}'"
+    return f"'{target.with_suffix(f'.0{target.suffix}')}' and so on"
+
+
+def stage(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    wrap: tuple[str, str],
+    check: openimageio.Check,
+    *,
+    half: bool = True,
+) -> StagedFile:
+    """Writes a mip-mapped file beside its target.
+
+    Args:
+        target: A path from `check_target`.
+        picture: Where the levels come from.
+        linear_levels: Every level, scene-linear, row 0 at the bottom.
+        stored_levels: The same levels in the encoding of the picture.
+        wrap: Wrap modes in u and v.
+        check: Called before each level.
+        half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    file_format = _FORMATS[target.suffix.lower()]
+    keep_bytes = file_format == "tiff" and not picture.is_float
+    levels = stored_levels if keep_bytes else linear_levels
+    float_type = "half" if file_format == "openexr" and half else "float"
+    write = partial(
+        openimageio.write_texture,
+        levels=[_file_pixels(picture, level) for level in levels],
+        file_format=file_format,
+        pixel_type="uint8" if keep_bytes else float_type,
+        color_space=_color_space(picture, keep_bytes),
+        wrap_modes=",".join(_WRAP_MODES[mode] for mode in wrap),
+        has_alpha=picture.alpha_is_coverage,
+        check=check,
+    )
+    return stage_with(target, write)
+
+
+def _file_pixels(picture: Picture, level: FloatArray) -> FloatArray:
+    """Returns a level with associated alpha and rows from the top."""
+    if picture.alpha_is_straight:
+        level = alpha.associated(level)
+    return np.ascontiguousarray(level[::-1])
+
+
+def _color_space(picture: Picture, keep_bytes: bool) -> str:
+    if picture.is_data:
+        return "raw"
+    if keep_bytes and picture.encoding is not images.Encoding.NONE:
+        return picture.colorspace
+    return "scene_linear"

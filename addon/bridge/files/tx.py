@@ -1,0 +1,251 @@
+"""The files of Cycles' texture cache: made by Blender, their levels replaced here.
+
+What a file holds (Blender 5.2): tiles of 64 x 64, 1 or 4 channels, every level down to 1 x 1, in a
+TIFF for integers and an OpenEXR for floats, in both cases named `<image file>.<version>-<MD5>.tx`.
+Colours are scene-linear, or sRGB-encoded where Cycles decodes them after its lookup, which it does
+for integers in a colour space like sRGB; alpha is associated where it is coverage. An image of one
+colour is one tile.
+
+Cycles uses a file while its time of modification is that of the image file, in whole seconds.
+"""
+
+import os
+import re
+import secrets
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+
+from .. import openimageio
+from ..images import FloatArray
+from ..openimageio import Check
+from . import staging
+
+_ALPHA_TYPES = {
+    "STRAIGHT": "straight",
+    "PREMUL": "premultiplied",
+    "CHANNEL_PACKED": "channel_packed",
+    "NONE": "none",
+}
+_DEFAULT_FOLDER = "blender_tx"
+_ENCODED_SPACE = "scene_linear_srgb"
+_SOURCE_SPACE = re.compile(r"\(colorspace: ([^,]*), ")
+_LARGEST_HALF = 65504.0
+# What OpenImageIO reads from the description of a TIFF, and does not write back.
+_DESCRIBED = ("oiio:ConstantColor", "oiio:AverageColor")
+
+
+@dataclass(frozen=True)
+class Source:
+    """An image file, and how an image datablock reads it: what a cache file is made from.
+
+    Attributes:
+        path: The image file.
+        colorspace: The datablock's colour space.
+        is_data: Whether that space says that the values are no colours.
+        alpha_mode: The datablock's alpha mode.
+        cache_folder: Where the user keeps cache files: empty for a folder beside the image, else
+            absolute, or relative to the image.
+    """
+
+    path: Path
+    colorspace: str
+    is_data: bool
+    alpha_mode: str
+    cache_folder: str
+
+    @property
+    def folder(self) -> Path:
+        """The folder that a new cache file goes to."""
+        return self.path.parent / (self.cache_folder or _DEFAULT_FOLDER)
+
+    @property
+    def alpha_is_coverage(self) -> bool:
+        """Whether a fourth channel says how much of a texel is covered."""
+        return not self.is_data and self.alpha_mode in {"STRAIGHT", "PREMUL"}
+
+
+@dataclass(frozen=True)
+class Texture:
+    """A cache file.
+
+    Attributes:
+        path: The file.
+        stored: Level 0 as it is stored: (height, width, 1 or 4), row 0 at the bottom.
+        is_encoded: Whether colours are sRGB-encoded.
+        is_float: Whether the file holds floats.
+        is_constant: Whether the image has one colour only, and the file one tile of it.
+    """
+
+    path: Path
+    stored: FloatArray
+    is_encoded: bool
+    is_float: bool
+    is_constant: bool
+
+
+def is_available() -> bool:
+    """Returns whether this Blender's Cycles makes texture caches."""
+    settings = bpy.types.RenderSettings.bl_rna.properties
+    return "use_texture_cache" in settings and _maker() is not None
+
+
+def make(source: Source) -> Path:
+    """Lets Blender make the cache file, unless there is one that is up to date.
+
+    Returns:
+        The file that Cycles uses for the image.
+
+    Raises:
+        OSError: The image file cannot be read, or the cache file cannot be written.
+    """
+    folder = source.folder
+    while not folder.exists():
+        folder = folder.parent
+    staging.check_writable(folder / "texture.tx")
+    try:
+        made = _maker()(
+            str(source.path),
+            colorspace=source.colorspace,
+            alpha_type=_ALPHA_TYPES[source.alpha_mode],
+            cache_dir=source.cache_folder,
+        )
+    except RuntimeError as error:
+        raise OSError(
+            f"Blender cannot make a texture cache of '{source.path}' in '{source.folder}': {error}"
+        ) from error
+    staging.check_writable(Path(made))
+    return Path(made)
+
+
+def read(path: Path) -> Texture:
+    """Reads a cache file.
+
+    Raises:
+        OSError: It cannot be read, or it is no file of Blender's texture cache.
+    """
+    reader, spec = _open(path)
+    try:
+        pixels = reader.read_image(0, 0, 0, spec.nchannels, "float")
+    finally:
+        reader.close()
+    if pixels is None:
+        raise OSError(f"cannot read '{path}': {reader.geterror()}")
+    is_float = reader.format_name() == "openexr"
+    return Texture(
+        path,
+        np.ascontiguousarray(pixels[::-1], np.float32),
+        not is_float and _source_space(path, spec) == _ENCODED_SPACE,
+        is_float,
+        spec.getattribute("oiio:ConstantColor") is not None,
+    )
+
+
+def stage(texture: Texture, levels: Sequence[FloatArray], check: Check) -> staging.StagedFile:
+    """Writes a cache file with other levels beside the file that it is to replace.
+
+    Level 0, its metadata and the time of modification stay as they are.
+
+    Args:
+        texture: The file.
+        levels: Levels 1, 2, ... in the encoding of `texture.stored`, row 0 at the bottom.
+        check: Called before each level.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    oiio = openimageio.module()
+    reader, spec = _open(texture.path)
+    time = os.stat(texture.path).st_mtime_ns
+    # OpenImageIO chooses the format by the extension.
+    extension = ".exr" if texture.is_float else ".tif"
+    temporary = texture.path.with_name(f".prefilter-{secrets.token_hex(4)}{extension}")
+    staged = staging.StagedFile(temporary, texture.path)
+    try:
+        full = reader.read_image(0, 0, 0, spec.nchannels, spec.format)
+        writer = oiio.ImageOutput.create(str(temporary))
+        mode = "AppendMIPLevel" if writer.supports("mipmap") else "AppendSubimage"
+        _write(writer, temporary, _first_spec(spec, texture.is_float), "Create", full)
+        for level in levels:
+            check()
+            if spec.format == oiio.HALF:
+                level = level.clip(-_LARGEST_HALF, _LARGEST_HALF)
+            pixels = np.ascontiguousarray(level[::-1], np.float32)
+            _write(writer, temporary, _level_spec(oiio, spec, pixels), mode, pixels)
+        if not writer.close():
+            raise OSError(f"cannot write '{temporary}': {writer.geterror()}")
+        # An OpenEXR file is finished when its writer goes.
+        del writer
+        os.utime(temporary, ns=(time, time))
+    except BaseException:
+        staged.discard()
+        raise
+    finally:
+        reader.close()
+    return staged
+
+
+def _maker() -> Any:
+    """Returns what `blender --command maketx` calls: for one file, and any thread; or None."""
+    try:
+        import _cycles
+    except ImportError:
+        return None
+    return getattr(_cycles, "maketx", None)
+
+
+def _open(path: Path) -> tuple[Any, Any]:
+    oiio = openimageio.module()
+    reader = oiio.ImageInput.open(str(path))
+    if reader is None:
+        raise OSError(f"cannot read '{path}': {oiio.geterror()}")
+    spec = reader.spec()
+    software = spec.getattribute("Software") or ""
+    if not software.startswith("Blender maketx"):
+        reader.close()
+        raise OSError(f"'{path}' is not of Blender's texture cache: found Software '{software}'")
+    return reader, spec
+
+
+def _source_space(path: Path, spec: Any) -> str:
+    found = _SOURCE_SPACE.search(spec.getattribute("DocumentName") or "")
+    if found is None:
+        raise OSError(
+            f"'{path}' does not tell its colour space, as Blender 5.2's texture cache does"
+        )
+    return found[1]
+
+
+def _first_spec(spec: Any, is_float: bool) -> Any:
+    """Returns a spec that writes what was read.
+
+    But no `oiio:SHA-1`, which OpenImageIO leaves out when it reads: it is of level 0 alone, and
+    readers that go by it would take this file for Blender's.
+    """
+    if not is_float:
+        described = ((name, spec.getattribute(name)) for name in _DESCRIBED)
+        text = " ".join(f"{name}={value}" for name, value in described if value is not None)
+        if text:
+            spec.attribute("ImageDescription", text)
+    return spec
+
+
+def _level_spec(oiio: Any, first: Any, pixels: FloatArray) -> Any:
+    height, width, channels = pixels.shape
+    spec = oiio.ImageSpec(width, height, channels, first.format)
+    spec.tile_width, spec.tile_height = first.tile_width, first.tile_height
+    # Without a time of its own a level of a TIFF gets that of the writing, and files would differ.
+    for name in ("compression", "planarconfig", "DateTime"):
+        value = first.getattribute(name)
+        if value is not None:
+            spec.attribute(name, value)
+    return spec
+
+
+def _write(writer: Any, path: Path, spec: Any, mode: str, pixels: Any) -> None:
+    if not writer.open(str(path), spec, mode) or not writer.write_image(pixels):
+        raise OSError(f"cannot write '{path}': {writer.geterror()}")

@@ -1,0 +1,59 @@
+"""`blender --background --command prefilter ...`: the operators without a window."""
+
+import argparse
+import importlib
+import importlib.util
+import sys
+from collections.abc import Sequence
+from types import ModuleType
+
+import bpy
+
+from .core.outcome import FAILURES
+
+_PROGRAM = "blender --background --command prefilter"
+
+
+class Commands:
+    """The commands of all subjects, which the function `add` of their module `command` adds."""
+
+    def __init__(self, subjects: Sequence[ModuleType]) -> None:
+        """Takes the packages of the subjects."""
+        self._subjects = subjects
+        self._handle: object = None
+
+    def register(self) -> None:
+        """Makes the commands known to Blender's command line."""
+        self._handle = bpy.utils.register_cli_command("prefilter", self.run)
+
+    def unregister(self) -> None:
+        """Takes them back."""
+        bpy.utils.unregister_cli_command(self._handle)
+
+    def run(self, arguments: Sequence[str]) -> int:
+        """Runs `prefilter ARGUMENTS`.
+
+        Returns:
+            The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments.
+        """
+        try:
+            options = self._parser().parse_args(arguments)
+            options.execute(options)
+        except SystemExit as end:
+            return end.code if isinstance(end.code, int) else 0
+        except FAILURES as error:
+            print(f"prefilter: error: {error}", file=sys.stderr)
+            return 1
+        return 0
+
+    def _parser(self) -> argparse.ArgumentParser:
+        parser = argparse.ArgumentParser(
+            prog=_PROGRAM,
+            description="Filters images for the surfaces that use them, and meshes in voxels.",
+        )
+        commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
+        for subject in self._subjects:
+            name = f"{subject.__name__}.command"
+            if importlib.util.find_spec(name) is not None:
+                importlib.import_module(name).add(commands)
+        return parser

@@ -1,0 +1,1 @@
+"""What every subject stands on: jobs, operators, commands, choices. It knows no subject."""

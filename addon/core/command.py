@@ -1,0 +1,107 @@
+"""What the commands share: options, progress, messages."""
+
+import argparse
+import sys
+from collections.abc import Iterable
+from typing import Any, Protocol
+
+from .choices import Choice
+from .jobs import Progress
+from .outcome import Outcome
+
+
+class Work(Protocol):
+    """Work on what was read from Blender."""
+
+    def compute(self, progress: Progress) -> None:
+        """Computes everything, and writes nothing."""
+
+    def write(self) -> Outcome:
+        """Writes the results."""
+
+    def discard(self) -> None:
+        """Removes what is left of results that were not written."""
+
+
+def table(title: str, options: dict[str, Choice]) -> str:
+    """Returns choices with their descriptions, for the end of a help text."""
+    rows = (f"  {key:<18}{choice.description}" for key, choice in options.items())
+    return "\n".join([f"{title}:", *rows])
+
+
+def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
+    """Adds a command whose help ends in notes, which keep their lines."""
+    return commands.add_parser(
+        name,
+        help=purpose,
+        description=f"{purpose[0].upper()}{purpose[1:]}.",
+        epilog="\n\n".join(notes),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+
+
+def add_threads(parser: argparse.ArgumentParser) -> None:
+    """Adds the option `--threads`."""
+    parser.add_argument(
+        "--threads",
+        metavar="N",
+        type=count,
+        default=0,
+        help="how many threads to use; 0 uses all (default: 0)",
+    )
+
+
+def count(text: str) -> int:
+    """Reads a number from 0 up."""
+    value = int(text) if text.isdecimal() else -1
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"found '{text}'; a number from 0 up is needed")
+    return value
+
+
+def done(work: Work) -> Outcome:
+    """Computes and writes, with a line of progress."""
+    progress = ProgressLine()
+    try:
+        work.compute(progress)
+        return work.write()
+    finally:
+        work.discard()
+        progress.end()
+
+
+def tell(outcome: Outcome) -> None:
+    """Prints what was done, and on stderr what the user should look at."""
+    warn(outcome.warnings)
+    for note in outcome.notes:
+        print(note)
+    print(outcome.summary)
+
+
+def warn(warnings: Iterable[str]) -> None:
+    """Prints warnings on stderr."""
+    for warning in warnings:
+        print(f"prefilter: warning: {warning}", file=sys.stderr)
+
+
+class ProgressLine:
+    """Shows progress on stderr: one line that changes on a terminal, else a line each quarter."""
+
+    def __init__(self) -> None:
+        """Shows nothing yet."""
+        self._step = 1 if sys.stderr.isatty() else 25
+        self._shown = -1
+
+    def __call__(self, fraction: float) -> bool:
+        """Shows how much is done, and says to go on."""
+        percent = int(100 * fraction) // self._step * self._step
+        if percent > self._shown:
+            self._shown = percent
+            line = f"prefilter: {percent:3d} %"
+            print(line, end="\r" if self._step == 1 else "\n", file=sys.stderr, flush=True)
+        return True
+
+    def end(self) -> None:
+        """Leaves the line."""
+        if self._step == 1 and self._shown >= 0:
+            print(file=sys.stderr)

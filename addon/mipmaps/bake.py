@@ -1,0 +1,389 @@
+"""Baking mipmaps: what `reading` has read is computed anywhere, and then written to Blender.
+
+The operator and the command are two ways to call this.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import prefilter
+
+from ..bridge import images, materials, meshes
+from ..bridge.files import engines, textures
+from ..bridge.files.staging import StagedFile
+from ..bridge.images import FloatArray, Picture
+from ..bridge.level_images import StagedLevels, stage_levels
+from ..core.jobs import Progress, go_on, share
+from ..core.outcome import Outcome
+from ..core.wording import counted, listed
+from . import contents, frames, seams
+from .choices import CONTENTS, FILTERS, Settings
+
+_FILTERED = 0.9  # What the progress is once the levels are filtered.
+_FIRST_FILTERED = 0.6  # The same where they are then compared with others.
+_LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
+
+
+class Bake:
+    """One bake.
+
+    `write` belongs on the main thread; `compute` touches no Blender data and runs on any thread.
+    Nothing is written before everything is computed.
+    """
+
+    def __init__(
+        self,
+        picture: Picture,
+        found: meshes.ImageSurfaces,
+        settings: Settings,
+        target: Path | None,
+        content: str,
+        roughness: contents.Roughness | None = None,
+        roughness_target: Path | None = None,
+    ) -> None:
+        """Keeps copies of what was read; use `reading.read`."""
+        self.warnings = list(found.problems)
+        self._notes: list[str] = []
+        self._picture = picture
+        self._surfaces = found.surfaces
+        self._objects = found.objects
+        self._settings = settings
+        self._target = target
+        self._wrap = self._choose_wrap(found.extensions)
+        self._content = content
+        self._roughness = roughness
+        self._roughness_target = roughness_target
+        self._levels: list[FloatArray] = []
+        self._roughness_levels: list[FloatArray] = []
+        self._staged: list[StagedFile] = []
+        self._staged_levels: list[StagedLevels] = []
+
+    @property
+    def image_name(self) -> str:
+        """The name of the image that is baked."""
+        return self._picture.name
+
+    @property
+    def picture(self) -> Picture:
+        """The pixels of the image that is baked."""
+        return self._picture
+
+    @property
+    def settings(self) -> Settings:
+        """What to bake."""
+        return self._settings
+
+    @property
+    def surfaces(self) -> Sequence[prefilter.Surface]:
+        """The surfaces that the image is mapped on."""
+        return self._surfaces
+
+    @property
+    def objects(self) -> Sequence[str]:
+        """The name of the object that each surface comes from."""
+        return self._objects
+
+    @property
+    def wrap(self) -> tuple[str, str]:
+        """What lookups read outside of the image along u and v."""
+        return self._wrap
+
+    @property
+    def reader(self) -> str:
+        """How the levels are looked up, as `prefilter.mipmaps` names it."""
+        return self._settings.reader if reads_encoded(self._picture) else "linear"
+
+    def linear(self, progress: Progress) -> FloatArray:
+        """Returns the image's scene-linear values; raises what `compute` does."""
+        return images.scene_linear(self._picture, partial(go_on, progress, 0.0))
+
+    def filtered(
+        self,
+        linear: FloatArray,
+        filter: str,
+        progress: Progress,
+        *,
+        levels: int | None = None,
+        seam_weight: float | None = None,
+    ) -> list[FloatArray]:
+        """Returns scene-linear levels with any filter; raises what `compute` does.
+
+        Args:
+            linear: What `linear` returned.
+            filter: A key of `FILTERS`.
+            progress: Called with the fraction done.
+            levels: How many, the image itself included; None for all.
+            seam_weight: See `prefilter.mipmaps`; None for that of the settings.
+        """
+        if seam_weight is None:
+            seam_weight = self._settings.seam_weight
+        with self.naming_objects():
+            return prefilter.mipmaps(
+                linear,
+                self._surfaces or None,
+                filter=filter,
+                wrap=self._wrap,
+                bounds=self._bounds(linear),
+                levels=levels,
+                premultiplied=not self._picture.alpha_is_straight,
+                reader=self.reader,
+                seam_weight=seam_weight,
+                progress=progress,
+                threads=self._settings.threads,
+            )
+
+    @contextmanager
+    def naming_objects(self) -> Iterator[None]:
+        """Puts objects in the place of surfaces in the library's messages."""
+        try:
+            yield
+        except ValueError as error:
+            raise ValueError(_naming_objects(str(error), self._objects)) from error
+
+    def compute(self, progress: Progress) -> None:
+        """Filters, encodes and stages the file.
+
+        Raises:
+            prefilter.Cancelled: `progress` returned False.
+            ValueError: The library refuses the image or the surfaces.
+            OSError: The file cannot be written.
+        """
+        linear = self.linear(progress)
+        with self.naming_objects():
+            end = _FIRST_FILTERED if self._heeds_seams() else _FILTERED
+            levels, rough = self._filtered(linear, share(progress, 0.0, end))
+            if self._heeds_seams():
+                self._compare_seams(linear, levels, share(progress, end, _FILTERED))
+        check = partial(go_on, progress, _FILTERED)
+        try:
+            self._levels = self._stage(
+                self._picture, linear, levels, self._target, self._settings.texture_format, check
+            )
+            if self._roughness is not None:
+                self._roughness_levels = self._stage(
+                    self._roughness.picture,
+                    self._roughness.linear,
+                    rough,
+                    self._roughness_target,
+                    roughness_format(self._settings, self._roughness.picture),
+                    check,
+                )
+            go_on(progress, 1.0)
+        except BaseException:
+            self.discard()
+            raise
+
+    def _filtered(
+        self, linear: FloatArray, progress: Progress
+    ) -> tuple[list[FloatArray], list[FloatArray]]:
+        """Returns all levels, scene-linear, of the image and of its roughness."""
+        settings = self._settings
+        to_file = self._target is not None or self._roughness_target is not None
+        options = {
+            "filter": settings.filter,
+            "wrap": self._wrap,
+            "levels": None if to_file else settings.levels or None,
+            "threads": settings.threads,
+        }
+        surfaces = self._surfaces or None
+        if self._content == "normal":
+            return contents.normal_levels(linear, surfaces, self._roughness, progress, **options)
+        bounds = self._bounds(linear)
+        options["reader"] = self.reader
+        options["seam_weight"] = settings.seam_weight
+        if self._content == "cutout":
+            levels = contents.cutout_levels(
+                self._picture, linear, surfaces, bounds, settings.threshold, progress, **options
+            )
+        else:
+            levels = contents.plain_levels(
+                self._picture, linear, surfaces, bounds, progress, **options
+            )
+        return levels, []
+
+    def _heeds_seams(self) -> bool:
+        return (
+            self._settings.seam_weight > 0.0
+            and self._settings.filter in seams.FILTERS
+            and self._content in {"color", "data"}
+        )
+
+    def _compare_seams(
+        self, linear: FloatArray, levels: list[FloatArray], progress: Progress
+    ) -> None:
+        """Notes the contrast across seams of the levels, and of levels that do not heed them."""
+        others = self.filtered(
+            linear,
+            self._settings.filter,
+            share(progress, 0.0, 0.8),
+            levels=len(levels),
+            seam_weight=0.0,
+        )
+        without, weighed = (
+            prefilter.seam_contrast(made[1:], self._surfaces, wrap=self._wrap, progress=part)
+            for made, part in (
+                (others, share(progress, 0.8, 0.9)),
+                (levels, share(progress, 0.9, 1.0)),
+            )
+        )
+        note = seams.note(self.image_name, without, weighed)
+        if note:
+            self._notes.append(note)
+
+    def _stage(
+        self,
+        picture: Picture,
+        linear: FloatArray,
+        levels: list[FloatArray],
+        target: Path | None,
+        texture_format: str,
+        check: Callable[[], None],
+    ) -> list[FloatArray]:
+        """Stages a file of the levels; returns those above 0 as level images hold them."""
+        stored = [images.encoded(picture, level, check) for level in levels[1:]]
+        stored.insert(0, picture.stored)
+        if target is not None:
+            levels[0] = linear
+            if engines.is_for_engines(target):
+                threads = self._settings.threads
+                self._staged += engines.stage(
+                    target, picture, levels, stored, texture_format, check, threads=threads
+                )
+            else:
+                self._staged.append(
+                    textures.stage(target, picture, levels, stored, self._wrap, check)
+                )
+        return stored[1 : self._settings.levels or None]
+
+    def write(self) -> Outcome:
+        """Puts the file into place and writes the level images.
+
+        Raises:
+            OSError: The file cannot be put into place, or an image cannot be made; nothing was
+                written then.
+        """
+        self.stage_images()
+        return self.commit()
+
+    def stage_images(self) -> None:
+        """Makes the level images, which replace none yet.
+
+        Raises:
+            OSError: An image cannot be made.
+        """
+        pairs = [(self._picture, self._levels)]
+        if self._roughness is not None:
+            pairs.append((self._roughness.picture, self._roughness_levels))
+        try:
+            for picture, levels in pairs if self._settings.use_images else ():
+                self._staged_levels.append(stage_levels(picture, levels))
+        except BaseException:
+            self.discard()
+            raise
+
+    def commit(self) -> Outcome:
+        """Puts what is staged into place.
+
+        Raises:
+            OSError: The file cannot be put into place; nothing was written then.
+        """
+        try:
+            for staged in self._staged:
+                staged.commit()
+        except BaseException:
+            self.discard()
+            raise
+        names: list[str] = []
+        for staged in self._staged_levels:
+            made = staged.commit()
+            names += made
+            base = staged.picture.name
+            if any(name != f"{base}.mip{i}" for i, name in enumerate(made, start=1)):
+                self.warnings.append(f"the level images are named {listed(made)}")
+        self._staged_levels.clear()
+        self.discard()
+        targets = (self._target, self._roughness_target)
+        return Outcome(
+            self._summary(names),
+            images=names,
+            files=[str(target) for target in targets if target is not None],
+            warnings=self.warnings,
+            notes=self._notes,
+        )
+
+    def discard(self) -> None:
+        """Removes what was staged, if it was not put into place."""
+        for staged in (*self._staged, *self._staged_levels):
+            staged.discard()
+        self._staged.clear()
+        self._staged_levels.clear()
+
+    def _choose_wrap(self, extensions: Sequence[str]) -> tuple[str, str]:
+        wrap = self._settings.wrap
+        if wrap == "auto":
+            wrap = "repeat"
+            if extensions:
+                wrap = materials.WRAP_OF_EXTENSION[extensions[0]]
+                if len(extensions) > 1 or extensions[0] == "MIRROR":
+                    self.warnings.append(
+                        f"Image Texture nodes extend the image by {', '.join(extensions)}; "
+                        f"filtered as '{wrap}'"
+                    )
+        wrap_v = self._settings.wrap_v
+        return wrap, wrap if wrap_v == "same" else wrap_v
+
+    def _bounds(self, linear: FloatArray) -> tuple[float | None, float | None] | None:
+        if self._settings.bounds != "auto":
+            return _LIMITS[self._settings.bounds]
+        finite = np.isfinite(linear)
+        low = 0.0 if linear.min(where=finite, initial=0.0) >= 0.0 else None
+        within_one = linear.max(where=finite, initial=0.0) <= 1.0
+        high = 1.0 if not self._picture.is_float and within_one else None
+        return low, high
+
+    def _summary(self, names: Sequence[str]) -> str:
+        baked = f"Baked '{self.image_name}'"
+        if self._content not in {"color", "data"}:
+            baked += f" as {CONTENTS[self._content].label}"
+        parts = [f"{baked} with {FILTERS[self._settings.filter].label}"]
+        if self._surfaces:
+            parts.append(f"over {counted(set(self._objects), 'object')}")
+            if self._settings.use_frames:
+                parts.append(f"at {counted(frames.chosen(self._settings), 'frame')}")
+        results = []
+        if names:
+            results.append(counted(names, "level image"))
+        targets = (self._target, self._roughness_target)
+        results += [textures.shown(target) for target in targets if target is not None]
+        parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
+        return " ".join(parts)
+
+
+def reads_encoded(picture: Picture) -> bool:
+    """Tells whether there are renderers that interpolate the picture's texels as encoded."""
+    return picture.encoding is images.Encoding.SRGB and not picture.is_float
+
+
+def roughness_format(settings: Settings, picture: Picture) -> str:
+    """Returns the format of the roughness file: that of the normal map, unless channels lack."""
+    if settings.texture_format not in {"bc4", "bc5"}:
+        return settings.texture_format
+    if settings.roughness_channel == "all":
+        return "bc4"
+    return "bc3" if picture.stored.shape[2] == 4 else "bc1"
+
+
+def _naming_objects(message: str, objects: Sequence[str]) -> str:
+    """Returns a message of the library, with objects in the place of its surfaces."""
+    one = re.match(r"surface (\d+)\b", message)
+    if one and int(one[1]) < len(objects):
+        return f"object '{objects[int(one[1])]}'{message[one.end() :]}"
+    if message.startswith("surface:") and objects:
+        names = list(dict.fromkeys(objects))
+        noun = "object" if len(names) == 1 else "objects"
+        return f"{noun} {listed(names)}: {message.removeprefix('surface:').lstrip()}"
+    return message

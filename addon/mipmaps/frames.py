@@ -1,0 +1,58 @@
+"""The surfaces of animated objects, over the frames of a scene."""
+
+from collections.abc import Generator, Sequence
+
+import bpy
+
+from ..bridge import meshes
+from .choices import Settings
+
+
+def surfaces_over(
+    image: bpy.types.Image,
+    objects: Sequence[bpy.types.Object],
+    settings: Settings,
+    depsgraph: bpy.types.Depsgraph,
+    *,
+    all_faces: bool,
+) -> Generator[float, None, meshes.ImageSurfaces]:
+    """Reads the surfaces of one frame or several; see `reading.reading`.
+
+    Yields:
+        The fraction done.
+
+    Returns:
+        The surfaces, those of several frames as one.
+
+    Raises:
+        ValueError: There is no such frame, or a mesh is unfit.
+    """
+    options = meshes.SurfaceOptions(settings.use_subdivision_limit, settings.importance)
+    if not settings.use_frames:
+        return meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
+    frames = chosen(settings)
+    found = meshes.ImageSurfaces()
+    scene = depsgraph.scene
+    before = scene.frame_current, scene.frame_subframe
+    try:
+        for count, frame in enumerate(frames, start=1):
+            scene.frame_set(frame)
+            found.add_pose(
+                meshes.image_surfaces(objects, image, depsgraph, options, all_faces=all_faces)
+            )
+            yield count / len(frames)
+    finally:
+        scene.frame_set(before[0], subframe=before[1])
+    return found
+
+
+def chosen(settings: Settings) -> range:
+    """Returns the frames to average over; raises ValueError if there are none."""
+    if settings.frame_step < 1:
+        raise ValueError(f"frame_step: found {settings.frame_step}; 1 and up is needed")
+    if settings.frame_end < settings.frame_start:
+        raise ValueError(
+            f"frame_end: found {settings.frame_end}, which is before frame_start, "
+            f"{settings.frame_start}"
+        )
+    return range(settings.frame_start, settings.frame_end + 1, settings.frame_step)

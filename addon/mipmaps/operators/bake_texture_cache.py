@@ -1,0 +1,49 @@
+"""`prefilter.bake_texture_cache`: PAM levels for Cycles, for every image of the scene."""
+
+import bpy
+
+from ...bridge.files import tx
+from ...core.operator import BackgroundOperator, Work
+from .. import texture_cache
+
+
+class PREFILTER_OT_bake_texture_cache(BackgroundOperator, bpy.types.Operator):
+    """Bakes PAM into Cycles' texture cache."""
+
+    bl_idname = "prefilter.bake_texture_cache"
+    bl_label = "Bake PAM into Texture Cache"
+    bl_description = (
+        "Make the texture cache of the scene's images, and replace its levels with ones that are "
+        "right for the meshes that wear them. Overwrites cache files; when an image file changes, "
+        "Blender makes its cache file anew, and it has to be baked again"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Baking PAM into the texture cache"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether this Blender has a texture cache, and there is an image to bake."""
+        if not super().poll(context):
+            return False
+        if not tx.is_available():
+            cls.poll_message_set(texture_cache.NEEDED)
+            return False
+        if context.scene is None or not bpy.data.images:
+            cls.poll_message_set("There is no image in this file")
+            return False
+        return True
+
+    def read(self, context: bpy.types.Context) -> Work:
+        """Copies the surfaces of the scene."""
+        depsgraph = context.evaluated_depsgraph_get()
+        self._bake = texture_cache.CacheBake.read(context.scene, depsgraph)
+        return self._bake.compute
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Puts the files into place."""
+        del context, result
+        return self.tell(self._bake.write())
+
+    def discard(self) -> None:
+        """Removes what was staged."""
+        self._bake.discard()

@@ -1,0 +1,65 @@
+"""`prefilter.fill_unused`: a copy of an image without background."""
+
+from functools import partial
+
+import bpy
+import numpy as np
+import prefilter
+from bpy.props import BoolProperty, StringProperty
+
+from ...bridge import derived, images
+from ...bridge.images import FloatArray
+from ...core.jobs import Progress
+from ...core.operator import Work
+from ..bake import Bake
+from .source import ImageOperator, read_source, show_in_editor
+
+
+class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
+    """Makes a copy of an image whose unused texels are filled."""
+
+    bl_idname = "prefilter.fill_unused"
+    bl_label = "Fill Unused Texels"
+    bl_description = (
+        "Make a copy of the image in which the texels that no lookup on the selected meshes reads "
+        "continue those that are read, so that no filter or compressor sees the background"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Filling texels"
+
+    image: StringProperty(
+        name="Image",
+        description="The image to fill; the image of the editor if empty",
+        options={"SKIP_SAVE"},
+    )
+    use_in_place: BoolProperty(
+        name="Use Copy Everywhere",
+        description="Have materials, and whatever else uses the image, use the copy instead",
+        default=False,
+    )
+
+    def read(self, context: bpy.types.Context) -> Work:
+        """Copies the image and its surfaces."""
+        self._source = read_source(context, self.image, context.scene.prefilter_bake.to_settings())
+        self.warn(self._source.warnings)
+        return partial(_fill, self._source)
+
+    def finish(self, context: bpy.types.Context, result: FloatArray) -> str:
+        """Writes the copy."""
+        picture = self._source.picture
+        filled = derived.write_picture(picture, "filled", result, like_source=True)
+        if self.use_in_place:
+            images.find(picture.name).user_remap(filled)
+        show_in_editor(context, filled)
+        changed = float(np.any(result != picture.stored, axis=2).mean())
+        return f"Filled {changed:.1%} of the texels in '{filled.name}'"
+
+
+def _fill(source: Bake, progress: Progress) -> FloatArray:
+    """Returns stored values; those of texels that are used are the image's own, bit for bit."""
+    linear = source.linear(progress)
+    with source.naming_objects():
+        filled = prefilter.fill_unused(linear, source.surfaces, wrap=source.wrap, progress=progress)
+    stored = images.encoded(source.picture, filled)
+    kept = np.all((filled == linear) | (np.isnan(filled) & np.isnan(linear)), axis=2)
+    return np.where(kept[..., None], source.picture.stored, stored)

@@ -1,0 +1,52 @@
+"""`prefilter.plot_error`: the errors of filters over the mip value, as a figure and a table."""
+
+import bpy
+from bpy.props import EnumProperty, StringProperty
+
+from ...bridge import derived
+from ...core.choices import items
+from ...core.operator import Work
+from .. import choices
+from ..view import errors, figure
+from .source import ImageOperator, read_source, show_in_editor
+
+
+class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
+    """Measures the levels of filters, and plots their errors."""
+
+    bl_idname = "prefilter.plot_error"
+    bl_label = "Plot Error"
+    bl_description = (
+        "Measure how far the levels of each filter are from the image over the surface of the "
+        "selected meshes, and plot it against the mip value, as an image and a text with the values"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Measuring errors"
+
+    image: StringProperty(
+        name="Image",
+        description="The image to measure; the image of the editor if empty",
+        options={"SKIP_SAVE"},
+    )
+    filters: EnumProperty(
+        name="Filters",
+        description="The filters to compare",
+        items=items(choices.FILTERS),
+        options={"ENUM_FLAG"},
+        default=set(errors.DEFAULT_FILTERS),
+    )
+
+    def read(self, context: bpy.types.Context) -> Work:
+        """Copies the image and its surfaces."""
+        self._source = read_source(context, self.image, context.scene.prefilter_bake.to_settings())
+        self.warn(self._source.warnings)
+        chosen = [name for name in choices.FILTERS if name in self.filters]
+        return lambda progress: errors.measure(self._source, chosen, progress)
+
+    def finish(self, context: bpy.types.Context, result: errors.ErrorCurves) -> str:
+        """Draws the figure and writes the table."""
+        picture = self._source.picture
+        plot = derived.write_picture(picture, "error", figure.draw(result))
+        table = derived.write_text(picture, "error.csv", result.table())
+        show_in_editor(context, plot)
+        return f"{result.summary()}; plotted in '{plot.name}', values in text '{table.name}'"

@@ -1,0 +1,75 @@
+"""`prefilter.show_weights` and `prefilter.show_source`: where a surface spends its area."""
+
+from functools import partial
+
+import bpy
+import prefilter
+from bpy.props import StringProperty
+
+from ...bridge import derived
+from ...core.jobs import Progress
+from ...core.operator import Work
+from ..bake import Bake
+from ..view import weights
+from .source import ImageOperator, read_source, show_in_editor
+
+
+class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
+    """Makes a picture of the weights of texels."""
+
+    bl_idname = "prefilter.show_weights"
+    bl_label = "Show Texel Weights"
+    bl_description = (
+        "Make a picture of how much of the selected meshes' surface lies in each texel of the image"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Weighing texels"
+
+    image: StringProperty(
+        name="Image",
+        description="The image whose texels are weighed; the image of the editor if empty",
+        options={"SKIP_SAVE"},
+    )
+
+    def read(self, context: bpy.types.Context) -> Work:
+        """Copies the surfaces."""
+        self._source = read_source(context, self.image, context.scene.prefilter_bake.to_settings())
+        self.warn(self._source.warnings)
+        return partial(_weigh, self._source)
+
+    def finish(self, context: bpy.types.Context, result: weights.Weights) -> str:
+        """Writes the picture."""
+        made = derived.write_picture(self._source.picture, "weights", result.picture)
+        show_in_editor(context, made)
+        return f"{result.used_share:.1%} of the texels hold some of the surface; see '{made.name}'"
+
+
+class PREFILTER_OT_show_source(bpy.types.Operator):
+    """Goes back from a picture to the image that it is made of."""
+
+    bl_idname = "prefilter.show_source"
+    bl_label = "Back to Image"
+    bl_description = "Show the image again that this picture is made of"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the editor shows such a picture."""
+        if derived.source_of(getattr(context.space_data, "image", None)) is None:
+            cls.poll_message_set("The editor shows no picture that was made of an image")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Shows the image."""
+        context.space_data.image = derived.source_of(context.space_data.image)
+        return {"FINISHED"}
+
+
+def _weigh(source: Bake, progress: Progress) -> weights.Weights:
+    height, width = source.picture.stored.shape[:2]
+    with source.naming_objects():
+        found = prefilter.texel_weights(
+            source.surfaces, width, height, wrap=source.wrap, progress=progress
+        )
+    return weights.Weights(weights.picture(found), float((found > 0).mean()))

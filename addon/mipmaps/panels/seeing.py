@@ -1,0 +1,152 @@
+"""The panels that show levels, errors and weights, in the Prefilter tab of the Image editors."""
+
+import bpy
+import bpy.utils.previews
+import numpy as np
+
+from ...bridge import derived
+from ..operators.fill_unused import PREFILTER_OT_fill_unused
+from ..operators.plot_error import PREFILTER_OT_plot_error
+from ..operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
+from ..operators.show_weights import PREFILTER_OT_show_source, PREFILTER_OT_show_weights
+from ..view import preview, weights
+
+_SWATCH_SIDE = 16
+_swatches: list[tuple[str, str]] = []
+_icons: bpy.utils.previews.ImagePreviewCollection | None = None
+
+
+class _Panel:
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Prefilter"
+
+
+class PREFILTER_PT_preview(_Panel, bpy.types.Panel):
+    """The level slider and the wipe."""
+
+    bl_label = "Preview"
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draws the switch."""
+        if preview.find(context.space_data.image) is not None:
+            self.layout.prop(context.window_manager.prefilter_view, "use_preview", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.window_manager.prefilter_view
+        image = context.space_data.image
+        shown = preview.find(image)
+        if shown is not None:
+            column = layout.column()
+            column.active = settings.use_preview
+            column.prop(settings, "mip_value", slider=True)
+            row = column.row(heading="Wipe")
+            row.prop(settings, "use_wipe", text="")
+            part = row.row()
+            part.active = settings.use_wipe
+            part.prop(settings, "wipe", text="", slider=True)
+            if settings.mip_value > shown.last_level:
+                column.label(text=f"The last level is {shown.last_level}", icon="INFO")
+            if image.use_view_as_render:
+                column.label(text="Drawn without View as Render", icon="INFO")
+            settings_now = context.scene.prefilter_bake.to_settings()
+            if shown.is_stale:
+                layout.label(text="The image or a mesh has changed", icon="ERROR")
+            elif shown.settings != preview.settings_for_preview(settings_now):
+                layout.label(text="The settings have changed", icon="ERROR")
+            elif settings.compare not in shown.levels:
+                layout.label(text="The filter has changed", icon="ERROR")
+        layout.prop(settings, "compare")
+        text = "Preview Levels" if shown is None else "Refresh"
+        operator = layout.operator(
+            PREFILTER_OT_preview_levels.bl_idname, text=text, icon="FILE_REFRESH"
+        )
+        operator.compare = settings.compare
+        if shown is not None:
+            layout.operator(PREFILTER_OT_end_preview.bl_idname, icon="X")
+
+
+class PREFILTER_PT_error(_Panel, bpy.types.Panel):
+    """The error plot."""
+
+    bl_label = "Error Plot"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = context.window_manager.prefilter_view
+        self.layout.column(align=True).prop(settings, "plot_filters")
+        reader = context.scene.prefilter_bake.reader
+        if reader != "linear" and "pam-trilinear" in settings.plot_filters:
+            self.layout.label(text="PAM Trilinear goes with Linear Light", icon="ERROR")
+        operator = self.layout.operator(PREFILTER_OT_plot_error.bl_idname, icon="FCURVE")
+        operator.filters = settings.plot_filters
+        _draw_back(self.layout, context)
+
+
+class PREFILTER_PT_texel_use(_Panel, bpy.types.Panel):
+    """The weights of texels, and what to do about unused ones."""
+
+    bl_label = "Texel Use"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.operator(PREFILTER_OT_show_weights.bl_idname, icon="TEXTURE")
+        legend = layout.column(align=True)
+        for key, text in _swatches:
+            legend.label(text=text, icon_value=_icons[key].icon_id)
+        layout.operator(PREFILTER_OT_fill_unused.bl_idname, icon="SNAP_FACE")
+        _draw_back(layout, context)
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (PREFILTER_PT_preview, PREFILTER_PT_error, PREFILTER_PT_texel_use)
+)
+
+
+def register() -> None:
+    """Registers the panels, and makes the colored squares of the legend."""
+    _load_swatches()
+    _register_classes()
+
+
+def unregister() -> None:
+    """Removes them."""
+    _unregister_classes()
+    _free_swatches()
+
+
+def _load_swatches() -> None:
+    global _icons
+    _icons = bpy.utils.previews.new()
+    for octave in range(weights.OCTAVES, -weights.OCTAVES - 1, -2):
+        factor = f"{2**octave} x" if octave >= 0 else f"1/{2**-octave} of"
+        text = f"{factor} an even use" if octave else "Even use of all texels"
+        _add_swatch(text, weights.colors(2.0**octave))
+    _add_swatch("Nothing of the surface (hatched)", weights.unused_color())
+
+
+def _free_swatches() -> None:
+    global _icons
+    bpy.utils.previews.remove(_icons)
+    _icons = None
+    _swatches.clear()
+
+
+def _add_swatch(text: str, color: np.ndarray | tuple[float, float, float]) -> None:
+    key = str(len(_swatches))
+    icon = _icons.new(key)
+    icon.icon_size = (_SWATCH_SIDE, _SWATCH_SIDE)
+    icon.icon_pixels_float = np.tile([*color, 1.0], _SWATCH_SIDE**2).tolist()
+    _swatches.append((key, text))
+
+
+def _draw_back(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    if derived.source_of(context.space_data.image) is not None:
+        layout.operator(PREFILTER_OT_show_source.bl_idname, icon="LOOP_BACK")

@@ -1,0 +1,52 @@
+"""The button in Cycles' render properties, under Performance, Texture Cache; and the Image menu."""
+
+import bpy
+
+from ..operators.bake_texture_cache import PREFILTER_OT_bake_texture_cache
+
+_ICON = "TEXTURE"
+_PARENT = "CYCLES_RENDER_PT_performance_texture_cache"
+
+
+class PREFILTER_PT_texture_cache(bpy.types.Panel):
+    """The bake into the texture cache, beside Blender's settings of it."""
+
+    bl_label = "Prefilter"
+    bl_space_type = "PROPERTIES"
+    bl_region_type = "WINDOW"
+    bl_context = "render"
+    bl_parent_id = _PARENT
+
+    COMPAT_ENGINES = frozenset({"CYCLES"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the scene is rendered by Cycles."""
+        return context.engine in cls.COMPAT_ENGINES
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        del context
+        column = self.layout.column()
+        column.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)
+        column.label(text="Overwrites the cache files", icon="INFO")
+        column.label(text="Bake again when images change", icon="BLANK1")
+
+
+def register() -> None:
+    """Registers the panel, in a Blender that has the one around it, and the menu entry."""
+    bpy.types.IMAGE_MT_image.append(_draw_image_menu)
+    if hasattr(bpy.types, _PARENT):
+        bpy.utils.register_class(PREFILTER_PT_texture_cache)
+
+
+def unregister() -> None:
+    """Removes the panel and the menu entry."""
+    if PREFILTER_PT_texture_cache.is_registered:
+        bpy.utils.unregister_class(PREFILTER_PT_texture_cache)
+    bpy.types.IMAGE_MT_image.remove(_draw_image_menu)
+
+
+def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    del context
+    menu.layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)

@@ -1,0 +1,306 @@
+"""Baking PAM into Cycles' texture cache in three steps: read, compute anywhere, write.
+
+The operator and the command are two ways to call this. Every image of a scene is baked at once;
+what cannot be weighed by a surface keeps the levels that Blender made, and a warning says why.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+
+import bpy
+import numpy as np
+import prefilter
+
+from ..bridge import images, materials, meshes, rendered
+from ..bridge.files import tx
+from ..bridge.files.staging import StagedFile
+from ..bridge.images import FloatArray
+from ..core.alpha import associated, at_most_opaque, unassociated
+from ..core.jobs import Progress, go_on
+from ..core.outcome import Outcome
+from ..core.wording import counted, listed
+
+NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
+
+_MADE = 0.2  # What the progress is once Blender has made its cache files.
+
+
+@dataclass
+class _Worn:
+    """An image file on its surfaces.
+
+    Attributes:
+        names: Of the image, and those that share its cache file.
+        source: What the cache file is made from.
+        surfaces: Where it is worn, in the unit square if the file is a UDIM tile.
+        objects: The name of the object of each surface.
+        extensions: What Image Texture nodes do outside of the image.
+        obstacle: Why its levels are to stay as Blender makes them, or empty.
+    """
+
+    names: list[str]
+    source: tx.Source
+    surfaces: list[prefilter.Surface] = field(default_factory=list)
+    objects: list[str] = field(default_factory=list)
+    extensions: list[str] = field(default_factory=list)
+    obstacle: str = ""
+
+    def share(self, other: "_Worn") -> None:
+        """Adds the surfaces of an image with the same cache file."""
+        self.names.extend(other.names)
+        self.surfaces.extend(other.surfaces)
+        self.objects.extend(other.objects)
+        self.extensions.extend(other.extensions)
+        self.obstacle = self.obstacle or other.obstacle
+
+    @property
+    def who(self) -> str:
+        """What to call it in a message."""
+        return f"image '{self.names[0]}'"
+
+
+class CacheBake:
+    """One bake of a scene.
+
+    `CacheBake.read` and `write` belong on the main thread; `compute` touches no Blender data and
+    runs on any thread. No levels are replaced before all are computed.
+    """
+
+    def __init__(self, scene: str, worn: list[_Worn], warnings: list[str], threads: int) -> None:
+        """Keeps copies of what was read; use `CacheBake.read`."""
+        self.warnings = warnings
+        self._scene = scene
+        self._worn = worn
+        self._threads = threads
+        self._staged: list[tuple[_Worn, StagedFile]] = []
+        self._constant = 0
+
+    @classmethod
+    def read(
+        cls, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, threads: int = 0
+    ) -> "CacheBake":
+        """Copies everything that the bake needs out of Blender.
+
+        Args:
+            scene: The scene that is rendered.
+            depsgraph: The evaluated dependency graph.
+            threads: How many threads to use; 0 for all.
+
+        Raises:
+            ValueError: No image can be baked; the message says why.
+            OSError: This Blender has no texture cache.
+        """
+        if not tx.is_available():
+            raise OSError(NEEDED)
+        cache_folder = bpy.context.preferences.filepaths.texture_cache_directory
+        worn: list[_Worn] = []
+        warnings: list[str] = []
+        for image, seen in rendered.viewers(scene, depsgraph).items():
+            try:
+                worn.extend(_read_image(image, seen, depsgraph, cache_folder, warnings))
+            except ValueError as error:
+                warnings.append(str(error))
+        if not worn:
+            raise ValueError(_nothing(scene, warnings))
+        return cls(scene.name, worn, list(dict.fromkeys(warnings)), threads)
+
+    def compute(self, progress: Progress) -> None:
+        """Lets Blender make the cache files, and stages those with other levels.
+
+        Raises:
+            prefilter.Cancelled: `progress` returned False.
+            ValueError: No image can be baked.
+            OSError: A file cannot be written.
+        """
+        try:
+            shared = self._make(progress)
+            for index, (path, worn) in enumerate(shared.items()):
+                advance = partial(_advance, progress, index, len(shared))
+                go_on(advance, 0.0)
+                try:
+                    if worn.obstacle:
+                        raise ValueError(f"{worn.who}: {worn.obstacle}")
+                    self._stage(tx.read(path), worn, advance)
+                except ValueError as error:
+                    self.warnings.append(f"{error}; its levels are Blender's")
+            if not self._staged and not self._constant:
+                raise ValueError(
+                    f"scene '{self._scene}': no image could be baked; {'; '.join(self.warnings)}"
+                )
+            go_on(progress, 1.0)
+        except BaseException:
+            self.discard()
+            raise
+
+    def write(self) -> Outcome:
+        """Puts the files into place, and turns the scene's texture cache on.
+
+        Raises:
+            OSError: A file cannot be put into place.
+        """
+        written = []
+        try:
+            for _, staged in self._staged:
+                staged.commit()
+                written.append(str(staged.target))
+        finally:
+            self.discard()
+        scene = bpy.data.scenes.get(self._scene)
+        if scene is not None:
+            scene.render.use_texture_cache = True
+        return Outcome(self._summary(), files=written, warnings=self.warnings)
+
+    def discard(self) -> None:
+        """Removes what was staged, if it was not put into place."""
+        for _, staged in self._staged:
+            staged.discard()
+
+    def _make(self, progress: Progress) -> dict[tx.Path, _Worn]:
+        """Makes the cache files; images that share one are joined."""
+        shared: dict[tx.Path, _Worn] = {}
+        for index, worn in enumerate(self._worn):
+            go_on(progress, _MADE * index / len(self._worn))
+            try:
+                path = tx.make(worn.source)
+            except OSError as error:
+                self.warnings.append(f"{worn.who}: {error}")
+            else:
+                if path in shared:
+                    shared[path].share(worn)
+                else:
+                    shared[path] = worn
+        return shared
+
+    def _stage(self, texture: tx.Texture, worn: _Worn, progress: Progress) -> None:
+        if texture.is_constant:
+            self._constant += 1
+            return
+        wrap = _wrap(worn)
+        try:
+            levels = _levels(texture, worn, wrap, progress, self._threads)
+        except ValueError as error:
+            raise ValueError(f"{worn.who}: {error}") from error
+        check = partial(go_on, progress, 1.0)
+        self._staged.append((worn, tx.stage(texture, levels, check)))
+
+    def _summary(self) -> str:
+        names = {name for worn, _ in self._staged for name in worn.names}
+        objects = {name for worn, _ in self._staged for name in worn.objects}
+        text = (
+            f"Baked PAM into the texture cache of {counted(names, 'image')} "
+            f"({counted(self._staged, 'file')}), over {counted(objects, 'object')}"
+        )
+        if self._constant:
+            text += f"; {self._constant} of one colour stay as they are"
+        return text
+
+
+def _read_image(
+    image: bpy.types.Image,
+    seen: rendered.Viewers,
+    depsgraph: bpy.types.Depsgraph,
+    cache_folder: str,
+    warnings: list[str],
+) -> list[_Worn]:
+    """Returns the files of an image with their surfaces; an image with an obstacle has none."""
+    paths = images.files_of(image)
+    space = image.colorspace_settings
+    obstacle = "; ".join(seen.others)
+    found = meshes.ImageSurfaces()
+    if not obstacle:
+        found = meshes.image_surfaces(seen.objects, image, depsgraph)
+        warnings.extend(f"image '{image.name}': {problem}" for problem in found.problems)
+    worn = []
+    for number, path in paths.items():
+        one = _Worn(
+            [image.name if number is None else f"{image.name}, tile {number}"],
+            tx.Source(path, space.name, space.is_data, image.alpha_mode, cache_folder),
+            extensions=list(found.extensions),
+            obstacle=obstacle,
+        )
+        for surface, name in zip(found.surfaces, found.objects, strict=True):
+            part = surface if number is None else surface.udim_tile(number)
+            if part is not None:
+                one.surfaces.append(part)
+                one.objects.append(name)
+        if not obstacle and not sum(part.area for part in one.surfaces):
+            one.obstacle = "no surface of the scene lies in it"
+        worn.append(one)
+    return worn
+
+
+def _levels(
+    texture: tx.Texture,
+    worn: _Worn,
+    wrap: str,
+    progress: Progress,
+    threads: int,
+) -> list[FloatArray]:
+    """Returns levels 1, 2, ... as the file stores them."""
+    stored = texture.stored
+    is_opaque = stored.shape[2] == 4 and bool(np.all(stored[..., 3] == 1))
+    if is_opaque:
+        stored = np.ascontiguousarray(stored[..., :3])
+    covers = stored.shape[2] == 4 and worn.source.alpha_is_coverage
+    fit = partial(
+        prefilter.mipmaps, surface=worn.surfaces, wrap=wrap, progress=progress, threads=threads
+    )
+    if texture.is_encoded:
+        straight = unassociated(stored) if covers else stored
+        levels = [
+            prefilter.to_srgb(level, threads=threads)
+            for level in fit(
+                prefilter.to_linear(straight, threads=threads),
+                premultiplied=not covers,
+                reader="srgb-after",
+            )[1:]
+        ]
+        if covers:
+            levels = [associated(level) for level in levels]
+    elif texture.is_float:
+        levels = fit(stored, premultiplied=True, bounds=_float_bounds(stored))[1:]
+        if covers:
+            levels = [at_most_opaque(level) for level in levels]
+    else:
+        levels = fit(stored, premultiplied=True)[1:]
+    if is_opaque:
+        levels = [np.pad(level, ((0, 0), (0, 0), (0, 1)), constant_values=1) for level in levels]
+    return levels
+
+
+def _float_bounds(values: FloatArray) -> tuple[float | None, None]:
+    """Returns bounds that keep light positive."""
+    return (0.0 if values.min(where=np.isfinite(values), initial=0.0) >= 0.0 else None), None
+
+
+def _wrap(worn: _Worn) -> str:
+    """Returns the wrap mode of the nodes; where they differ it matters only beyond the edges.
+
+    Raises:
+        ValueError: It matters, and they differ or mirror the image.
+    """
+    modes = list(dict.fromkeys(worn.extensions))
+    if (len(modes) > 1 or "MIRROR" in modes) and not _is_inside(worn.surfaces):
+        raise ValueError(
+            f"{worn.who}: UVs leave it, where Image Texture nodes go on by {', '.join(modes)}"
+        )
+    return materials.WRAP_OF_EXTENSION[modes[0]]
+
+
+def _is_inside(surfaces: Iterable[prefilter.Surface]) -> bool:
+    return all(np.all((surface.uvs >= 0) & (surface.uvs <= 1)) for surface in surfaces)
+
+
+def _advance(progress: Progress, index: int, count: int, fraction: float) -> bool:
+    return progress(_MADE + (1 - _MADE) * (index + fraction) / count)
+
+
+def _nothing(scene: bpy.types.Scene, warnings: Sequence[str]) -> str:
+    start = f"scene '{scene.name}': found no image texture to bake"
+    if warnings:
+        return f"{start}; {'; '.join(warnings)}"
+    names = listed(obj.name for obj in scene.objects if obj.type == "MESH")
+    if not names:
+        return f"{start}; it has no mesh"
+    return f"{start}; no material on a mesh that is rendered has one, among {names}"

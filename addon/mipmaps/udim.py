@@ -1,0 +1,131 @@
+"""UDIM images: which part of the surface lies in each tile, and the bakes of all tiles as one."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+
+from ..bridge import meshes
+from ..bridge.images import Picture
+from ..core.jobs import Progress
+from ..core.outcome import Outcome
+from ..core.wording import listed
+from .bake import Bake
+from .choices import TEXTURE_SPACE_FILTERS, Settings
+
+
+@dataclass(frozen=True)
+class Tile:
+    """What a tile is baked from.
+
+    Attributes:
+        picture: Its pixels.
+        found: The part of the surface that lies in it, in the unit square.
+        target: The file to write, if there is one.
+    """
+
+    picture: Picture
+    found: meshes.ImageSurfaces
+    target: Path | None
+
+
+class TiledBake:
+    """The bakes of the tiles of a UDIM image, as one; it is used like a `Bake`."""
+
+    def __init__(self, image_name: str, bakes: Sequence[Bake], warnings: list[str]) -> None:
+        """Takes the bakes over, of one tile at least; use `reading.read`."""
+        self.image_name = image_name
+        self.warnings = warnings
+        self._bakes = bakes
+
+    def compute(self, progress: Progress) -> None:
+        """Computes tile by tile; see `Bake.compute`."""
+        try:
+            for index, one in enumerate(self._bakes):
+                one.compute(partial(self._advance, progress, index))
+        except BaseException:
+            self.discard()
+            raise
+
+    def write(self) -> Outcome:
+        """Writes all tiles, once everything is staged; see `Bake.write`."""
+        try:
+            for one in self._bakes:
+                one.stage_images()
+            outcomes = [one.commit() for one in self._bakes]
+        except BaseException:
+            self.discard()
+            raise
+        for outcome in outcomes:
+            self.warnings.extend(outcome.warnings)
+        names = [name for outcome in outcomes for name in outcome.images]
+        summary = f"{outcomes[0].summary}, and likewise its other tiles, {len(outcomes)} in all"
+        return replace(
+            outcomes[0],
+            summary=outcomes[0].summary if len(outcomes) == 1 else summary,
+            images=names,
+            files=[path for outcome in outcomes for path in outcome.files],
+            warnings=list(dict.fromkeys(self.warnings)),
+            notes=[note for outcome in outcomes for note in outcome.notes],
+        )
+
+    def discard(self) -> None:
+        """Removes what was staged, if it was not put into place."""
+        for one in self._bakes:
+            one.discard()
+
+    def _advance(self, progress: Progress, index: int, fraction: float) -> bool:
+        return progress((index + fraction) / len(self._bakes))
+
+
+def tiles(
+    image_name: str,
+    pictures: Sequence[Picture],
+    numbers: Sequence[int],
+    found: meshes.ImageSurfaces,
+    settings: Settings,
+    targets: Sequence[Path],
+) -> tuple[list[Tile], list[str]]:
+    """Returns the tiles that some of the surface lies in, and warnings of the others.
+
+    Args:
+        image_name: The name of the tiled image.
+        pictures: Of each tile.
+        numbers: Of each tile.
+        found: The surfaces on all of the tiles.
+        settings: What to bake.
+        targets: The file of each tile; empty for none.
+
+    Raises:
+        ValueError: The surface lies in none of the tiles.
+    """
+    chosen, warnings = [], list(found.problems)
+    for index, (picture, number) in enumerate(zip(pictures, numbers, strict=True)):
+        # A lookup past the edge of a tile is one in the next.
+        inside = meshes.ImageSurfaces(extensions=["EXTEND"])
+        for surface, name in zip(found.surfaces, found.objects, strict=True):
+            part = surface.udim_tile(number)
+            if part is not None:
+                inside.surfaces.append(part)
+                inside.objects.append(name)
+        area = sum(part.area for part in inside.surfaces)
+        if area == 0 and settings.filter not in TEXTURE_SPACE_FILTERS:
+            warnings.append(f"tile {number} is left out: no surface lies in it")
+            continue
+        chosen.append(Tile(picture, inside, targets[index] if targets else None))
+    if not chosen:
+        raise ValueError(
+            f"image '{image_name}': no surface lies in its tiles, {listed(map(str, numbers))}"
+        )
+    return chosen, warnings
+
+
+def paths(path: str, tiles: Sequence[int]) -> list[str]:
+    """Returns the file of each tile: with its number for <UDIM>, or else before the extension."""
+    if not path or not tiles:
+        return [path] if path else []
+    if "<UDIM>" not in path:
+        stem, extension = os.path.splitext(path)
+        path = f"{stem}.<UDIM>{extension}"
+    return [path.replace("<UDIM>", str(number)) for number in tiles]

@@ -1,0 +1,6 @@
+"""Seeing mipmaps: levels drawn in the editor, their errors as a figure, the weights of texels."""
+
+from ...core.registration import registration
+from . import overlay, preview, state
+
+register, unregister = registration(state, preview, overlay)

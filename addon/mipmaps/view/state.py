@@ -1,0 +1,77 @@
+"""What the editors show, in all windows: no part of the scene, so no undo changes it."""
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty
+
+from ...core.choices import items
+from .. import choices
+from . import errors, preview
+
+
+def _redraw(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    del settings, context
+    preview.redraw()
+
+
+class PREFILTER_PG_view(bpy.types.PropertyGroup):
+    """The settings of the panels that show levels and errors."""
+
+    use_preview: BoolProperty(
+        name="Show Level",
+        description="Draw a level in the place of the image",
+        default=True,
+        update=_redraw,
+    )
+    mip_value: FloatProperty(
+        name="Mip Value",
+        description="The level that is drawn: 0 is the image, 1 has half its sides. Between two "
+        "levels it is a mixture of both, as on a GPU",
+        default=1.0,
+        min=0.0,
+        max=16.0,
+        soft_max=10.0,
+        step=100,
+        precision=2,
+        update=_redraw,
+    )
+    use_wipe: BoolProperty(
+        name="Wipe",
+        description="Draw the levels of another filter in the left part of the editor",
+        default=False,
+        update=_redraw,
+    )
+    wipe: FloatProperty(
+        name="Position",
+        description="Where the wipe is, from the left to the right edge of the editor",
+        subtype="FACTOR",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        update=_redraw,
+    )
+    compare: EnumProperty(
+        name="Compare With",
+        description="The filter on the left of the wipe",
+        items=items(choices.FILTERS),
+        default="box",
+        update=_redraw,
+    )
+    plot_filters: EnumProperty(
+        name="Filters",
+        description="The filters to compare; Shift-click to choose several",
+        items=items(choices.FILTERS),
+        options={"ENUM_FLAG"},
+        default=set(errors.DEFAULT_FILTERS),
+    )
+
+
+def register() -> None:
+    """Registers the settings on the window manager."""
+    bpy.utils.register_class(PREFILTER_PG_view)
+    bpy.types.WindowManager.prefilter_view = PointerProperty(type=PREFILTER_PG_view)
+
+
+def unregister() -> None:
+    """Removes them."""
+    del bpy.types.WindowManager.prefilter_view
+    bpy.utils.unregister_class(PREFILTER_PG_view)

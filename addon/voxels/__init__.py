@@ -1,0 +1,6 @@
+"""Voxels of any mesh: closed surfaces, volumes, and set operations."""
+
+from ..core.registration import registration
+from . import operators, panel, properties
+
+register, unregister = registration(properties, operators, panel)

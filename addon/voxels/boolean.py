@@ -1,0 +1,173 @@
+"""Set operations on objects, in the same three steps as voxelizing them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial, reduce
+
+import bpy
+import numpy as np
+import prefilter
+
+from ..bridge import new_meshes, solids
+from ..core.jobs import Progress, go_on, share
+from ..core.outcome import Outcome
+from ..core.wording import listed
+from .choices import BooleanSettings
+from .grid import Box, check_memory, choose_grid
+from .place import Place, naming, still_there
+from .solid_meshes import SolidMesh, join, solid_mesh
+from .steps import VOXELIZED, Result, contoured, tell_defects, told, voxelized
+
+
+class Boolean:
+    """An object combined with others, in one grid of cells; in three steps as `Voxelization`."""
+
+    def __init__(self, place: Place, read: list[solids.Solid], settings: BooleanSettings) -> None:
+        """Keeps copies of what was read; use `Boolean.read`."""
+        self.warnings: list[str] = []
+        self._notes: list[str] = []
+        self._place = place
+        self._read = read
+        self._names = [solid.name for solid in read[1:]]
+        self._settings = settings
+        self._result: Result | None = None
+
+    @classmethod
+    def read(
+        cls,
+        active: bpy.types.Object | None,
+        others: Sequence[bpy.types.Object],
+        settings: BooleanSettings,
+        depsgraph: bpy.types.Depsgraph,
+    ) -> "Boolean":
+        """Copies everything that the work needs out of Blender.
+
+        Args:
+            active: The first operand, which gets the result.
+            others: The other operands, at least one.
+            settings: What to do.
+            depsgraph: The evaluated dependency graph.
+
+        Raises:
+            ValueError: There are too few objects, or one is unfit.
+        """
+        if active is None or not others:
+            raise ValueError("select two objects or more, one of them active")
+        new_meshes.check_editable(active)
+        if settings.operands == "delete":
+            for obj in others:
+                new_meshes.check_editable(obj)
+        place = Place.of(active, depsgraph)
+        objects = [active, *others]
+        read = solids.read_solids(objects, depsgraph, [place.origin] * len(objects))
+        for solid in read:
+            if not solid.parts:
+                raise ValueError(f"object '{solid.name}': found no faces")
+        return cls(place, read, settings)
+
+    def compute(self, progress: Progress) -> None:
+        """Voxelizes the operands, combines them and contours the result.
+
+        Raises:
+            ValueError: Nothing is left, or cells are too small.
+            MemoryError: The result does not fit into memory.
+            prefilter.Cancelled: `progress` has said so.
+        """
+        meshes = [solid_mesh(solid) for solid in self._read]
+        for solid, mesh in zip(self._read, meshes, strict=True):
+            tell_defects(solid.name, mesh, self.warnings, self._notes)
+        with naming(self._place.name):
+            grid = choose_grid(self._box([mesh.box for mesh in meshes]), self._settings)
+            check_memory(grid, sum(mesh.area for mesh in meshes))
+        trees = []
+        for i, (solid, mesh) in enumerate(zip(self._read, meshes, strict=True)):
+            start, end = (VOXELIZED * k / len(meshes) for k in (i, i + 1))
+            with naming(solid.name):
+                trees.append(voxelized(mesh, grid, self._settings, share(progress, start, end)))
+        combine = getattr(prefilter.Octree, self._settings.operation)
+        tree = reduce(
+            partial(
+                combine, progress=lambda _: progress(VOXELIZED), threads=self._settings.threads
+            ),
+            trees,
+        )
+        del trees
+        with naming(self._place.name):
+            self._result = contoured(
+                tree,
+                grid,
+                join(_sharing_materials(self._read, meshes)),
+                self._merged(),
+                self._place,
+                self._settings,
+                share(progress, VOXELIZED, 1.0),
+            )
+        go_on(progress, 1.0)
+        self._read.clear()
+
+    def write(self) -> Outcome:
+        """Puts the result into the first operand, and does with the others as was chosen.
+
+        Raises:
+            ValueError: An object is gone.
+        """
+        result = self._result
+        active = still_there(result.place.name)
+        others = [still_there(name) for name in self._names]
+        made = new_meshes.show_contour(active, result.contour)
+        for obj in others:
+            if self._settings.operands == "hide":
+                obj.hide_set(True)
+                obj.hide_render = True
+            elif self._settings.operands == "delete":
+                bpy.data.objects.remove(obj)
+        names = listed(self._names)
+        what = {
+            "difference": f"Difference with {names}",
+            "union": f"Union with {names}",
+            "intersection": f"Intersection with {names}",
+        }[self._settings.operation]
+        return Outcome(
+            f"{what}: {told(result)}",
+            objects=[made.name],
+            warnings=self.warnings,
+            notes=self._notes,
+        )
+
+    def discard(self) -> None:
+        """Does nothing: nothing is staged."""
+
+    def _box(self, boxes: list[Box]) -> Box:
+        if self._settings.operation == "union":
+            return (
+                np.min([low for low, _ in boxes], axis=0),
+                np.max([high for _, high in boxes], axis=0),
+            )
+        if self._settings.operation == "difference":
+            return boxes[0]
+        low = np.max([low for low, _ in boxes], axis=0)
+        high = np.min([high for _, high in boxes], axis=0)
+        if np.any(low >= high):
+            raise ValueError("the objects have nothing in common")
+        return low, high
+
+    def _merged(self) -> solids.Solid:
+        first = next((solid for solid in self._read if solid.active_color), self._read[0])
+        return solids.Solid(
+            self._place.name,
+            [],
+            self._read[0].materials,
+            first.active_color,
+            first.render_color,
+        )
+
+
+def _sharing_materials(read: list[solids.Solid], meshes: list[SolidMesh]) -> list[SolidMesh]:
+    """Returns the operands with materials numbered as the first one's, which gets the others'."""
+    shared = read[0].materials
+    renumbered = []
+    for solid, mesh in zip(read, meshes, strict=True):
+        shared.extend(key for key in dict.fromkeys(solid.materials) if key not in shared)
+        numbers = np.array([shared.index(key) for key in solid.materials], np.int32)
+        renumbered.append(replace(mesh, materials=numbers[mesh.materials]))
+    return renumbered

@@ -1,0 +1,116 @@
+"""Where the cells of a tree are, and what they cost."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.memory import available_memory
+from .choices import MOST_DEPTH, VoxelSettings
+
+FloatArray = NDArray[np.float64]
+Box = tuple[FloatArray, FloatArray]
+
+_MARGIN = 2
+"""Empty cells on each side; the surface next to the outermost cells needs them."""
+_BYTES_PER_CELL = 320.0
+"""Of a tree, its contour and Blender's mesh, for each finest cell that the surface runs through."""
+_CELLS_PER_AREA = 1.5
+"""How many unit cells a surface of area 1 runs through on average: |n|_1 over all directions."""
+_MOST_CORNERS = 2**31 - 1
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A cube of 2^depth cells along each axis.
+
+    Attributes:
+        low: Its low corner.
+        side: Its side.
+        depth: How often it is halved.
+    """
+
+    low: FloatArray
+    side: float
+    depth: int
+
+    @property
+    def bounds(self) -> Box:
+        """The low and the high corner."""
+        return self.low, self.low + self.side
+
+    @property
+    def cells(self) -> int:
+        """Cells along an axis."""
+        return 1 << self.depth
+
+    @property
+    def spacing(self) -> float:
+        """The side of a cell."""
+        return self.side / self.cells
+
+
+def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
+    """Returns the grid for what is in a box.
+
+    With a voxel size, cells begin at its multiples, so that grids of one size coincide.
+
+    Raises:
+        ValueError: The depth or the voxel size is out of range, or the box has no extent.
+    """
+    low, high = box
+    extent = float((high - low).max())
+    if not extent > 0.0:
+        raise ValueError("its vertices are all at one place")
+    if settings.resolution == "depth":
+        return _grid_of_depth(box, extent, settings.depth)
+    size = settings.voxel_size
+    if not 0.0 < size < math.inf:
+        raise ValueError(f"voxel_size: found {size:g}; a number above 0 is needed")
+    needed = extent / size + 2 * _MARGIN + 1
+    most = 1 << MOST_DEPTH
+    if needed > most:
+        least = extent / (most - 2 * _MARGIN - 1)
+        raise ValueError(
+            f"voxel_size: found {size:g}, which makes {needed:.0f} cells along an axis; up to "
+            f"{most} are allowed, so it has to be at least {least:.3g}"
+        )
+    depth = max(1, math.ceil(math.log2(needed)))
+    side = size * (1 << depth)
+    return Grid(np.floor(((low + high) / 2 - side / 2) / size + 0.5) * size, side, depth)
+
+
+def check_memory(grid: Grid, area: float) -> None:
+    """Raises MemoryError where the surface in so many cells does not fit into memory.
+
+    Args:
+        grid: The cells.
+        area: The area of the surface.
+    """
+    crossed = min(_CELLS_PER_AREA * area / grid.spacing**2, float(grid.cells) ** 3)
+    needed, free = _BYTES_PER_CELL * crossed, available_memory()
+    if needed > free or 6 * crossed > _MOST_CORNERS:
+        raise MemoryError(
+            f"cells of {grid.spacing:.3g} need about {needed / 1e9:.3g} GB of memory, and "
+            f"{2 * crossed:.2g} triangles; {free / 1e9:.3g} GB are free: take fewer or larger cells"
+        )
+
+
+def check_dense_memory(grid: Grid) -> None:
+    """Raises MemoryError where a full array of the cells does not fit into memory."""
+    needed, free = 4.0 * float(grid.cells) ** 3, available_memory()
+    if needed > free:
+        raise MemoryError(
+            f"a volume of {grid.cells}³ cells needs {needed / 1e9:.3g} GB of memory; "
+            f"{free / 1e9:.3g} GB are free: take fewer or larger cells"
+        )
+
+
+def _grid_of_depth(box: Box, extent: float, depth: int) -> Grid:
+    if not 1 <= depth <= MOST_DEPTH:
+        raise ValueError(f"depth: found {depth}; 1 to {MOST_DEPTH} are allowed")
+    cells = 1 << depth
+    margin = min(_MARGIN, cells / 4)
+    side = extent * cells / (cells - 2 * margin)
+    return Grid((box[0] + box[1]) / 2 - side / 2, side, depth)

@@ -1,0 +1,10 @@
+"""The operators on objects, one a file."""
+
+import bpy
+
+from .boolean import PREFILTER_OT_boolean
+from .voxelize import PREFILTER_OT_voxelize
+
+register, unregister = bpy.utils.register_classes_factory(
+    (PREFILTER_OT_voxelize, PREFILTER_OT_boolean)
+)

@@ -1,0 +1,46 @@
+"""`prefilter.boolean`: union, intersection and difference of any meshes, through voxels."""
+
+import bpy
+
+from ...bridge.new_meshes import is_editable
+from ..boolean import Boolean
+from ..properties import BooleanProperties
+from .voxel_operator import VoxelOperator, chosen_solids
+
+
+class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator):
+    """Combines the active object with the other selected ones."""
+
+    bl_idname = "prefilter.boolean"
+    bl_label = "Voxel Boolean"
+    bl_description = (
+        "Combine the active object with the other selected objects, in one grid of voxels. Works "
+        "on open, leaky and self-intersecting meshes. The active object gets the result; modifiers "
+        "are applied"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Combining"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there are an active object to change and others."""
+        if not super().poll(context):
+            return False
+        active = context.active_object
+        chosen = chosen_solids(context)
+        if active not in chosen:
+            cls.poll_message_set("Select an object that has a surface, and make it the active one")
+            return False
+        if len(chosen) < 2:
+            cls.poll_message_set("Select one more object that has a surface")
+            return False
+        if not is_editable(active):
+            cls.poll_message_set("The active object is linked: make it local first")
+            return False
+        return True
+
+    def read_work(self, context: bpy.types.Context) -> Boolean:
+        """Copies the selected objects."""
+        active = context.active_object
+        others = [obj for obj in chosen_solids(context) if obj != active]
+        return Boolean.read(active, others, self.to_settings(), context.evaluated_depsgraph_get())

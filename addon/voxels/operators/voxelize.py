@@ -1,0 +1,41 @@
+"""`prefilter.voxelize`: a closed surface in place of any mesh, through voxels."""
+
+import bpy
+
+from ...bridge.new_meshes import is_editable
+from ..properties import VoxelizeProperties
+from ..voxelization import Voxelization
+from .voxel_operator import VoxelOperator, chosen_solids
+
+
+class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operator):
+    """Voxelizes each of the selected objects."""
+
+    bl_idname = "prefilter.voxelize"
+    bl_label = "Voxelize"
+    bl_description = (
+        "Give each selected object a closed surface, made from the exact share of every voxel that "
+        "it fills. Open, leaky and self-intersecting meshes will do. Modifiers are applied"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Voxelizing"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether an object is selected that can be voxelized."""
+        if not super().poll(context):
+            return False
+        chosen = chosen_solids(context)
+        if not chosen:
+            cls.poll_message_set("Select an object that has a surface")
+            return False
+        if not any(map(is_editable, chosen)):
+            cls.poll_message_set("The selected objects are linked: make them local first")
+            return False
+        return True
+
+    def read_work(self, context: bpy.types.Context) -> Voxelization:
+        """Copies the selected objects."""
+        return Voxelization.read(
+            chosen_solids(context), self.to_settings(), context.evaluated_depsgraph_get()
+        )

@@ -1,0 +1,56 @@
+"""The objects that get the results: where they are, and whether they are still there."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where the results of an object go: its name, and the way from its frame to its own space."""
+
+    name: str
+    origin: NDArray[np.float64]
+    to_local: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> "Place":
+        matrix = np.array(obj.evaluated_get(depsgraph).matrix_world, np.float64)
+        linear = matrix[:3, :3]
+        lengths = np.linalg.norm(linear, axis=0)
+        # A matrix of tiny numbers is fine, one that is flat is not.
+        if not np.all(lengths > 0.0) or abs(np.linalg.det(linear / lengths)) < 1e-6:
+            raise ValueError(f"object '{obj.name}': its scale is 0 along an axis")
+        return cls(obj.name, matrix[:3, 3].copy(), np.linalg.inv(linear))
+
+    def localize(
+        self, positions: NDArray[np.floating], triangles: NDArray[np.int32]
+    ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+        """Returns triangles in the object's space, right side out there too."""
+        local = (positions.astype(np.float64) @ self.to_local.T).astype(np.float32)
+        return local, triangles[:, ::-1] if np.linalg.det(self.to_local) < 0 else triangles
+
+
+def still_there(name: str) -> bpy.types.Object:
+    """Returns the object of a name; raises ValueError where it is gone or in another mode."""
+    obj = bpy.data.objects.get(name)
+    if obj is None:
+        raise ValueError(f"object '{name}' is gone")
+    if obj.mode != "OBJECT":
+        raise ValueError(f"object '{name}' is not in Object Mode any more")
+    return obj
+
+
+@contextmanager
+def naming(name: str) -> Iterator[None]:
+    """Puts the name of an object before messages."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"object '{name}': {error}") from error
+    except MemoryError as error:
+        raise MemoryError(f"object '{name}': {error}") from error

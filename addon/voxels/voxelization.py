@@ -1,0 +1,174 @@
+"""Voxelizing objects in three steps: read from Blender, compute, write to Blender.
+
+The operator and the command are two ways to call this.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import bpy
+from mathutils import Matrix
+
+from ..bridge import new_meshes, solids
+from ..bridge.files import staging, volumes
+from ..core.jobs import Progress, go_on, share
+from ..core.outcome import Outcome
+from ..core.wording import counted, listed
+from .choices import VoxelizeSettings
+from .grid import check_dense_memory, check_memory, choose_grid
+from .place import Place, naming, still_there
+from .solid_meshes import solid_mesh
+from .steps import VOXELIZED, Result, contoured, tell_defects, told, voxelized
+
+
+class Voxelization:
+    """Objects voxelized one by one.
+
+    `read` and `write` belong on the main thread; `compute` touches no Blender data and runs on any
+    thread. Nothing is written before everything is computed.
+    """
+
+    def __init__(
+        self,
+        read: list[tuple[Place, solids.Solid]],
+        settings: VoxelizeSettings,
+        targets: list[Path],
+    ) -> None:
+        """Keeps copies of what was read; use `Voxelization.read`."""
+        self.warnings: list[str] = []
+        self._notes: list[str] = []
+        self._read = read
+        self._settings = settings
+        self._targets = targets
+        self._results: list[Result] = []
+
+    @classmethod
+    def read(
+        cls,
+        objects: Sequence[bpy.types.Object],
+        settings: VoxelizeSettings,
+        depsgraph: bpy.types.Depsgraph,
+    ) -> "Voxelization":
+        """Copies everything that the work needs out of Blender.
+
+        Args:
+            objects: What to voxelize, each by itself.
+            settings: How.
+            depsgraph: The evaluated dependency graph.
+
+        Raises:
+            ValueError: There is no object, or one is unfit.
+            OSError: The file of a volume cannot be written.
+        """
+        if not objects:
+            raise ValueError("no object is selected that has a surface")
+        is_volume = settings.output == "volume"
+        if is_volume and not volumes.is_available():
+            raise OSError(volumes.NEEDED)
+        if not is_volume:
+            for obj in objects:
+                new_meshes.check_editable(obj)
+        places = [Place.of(obj, depsgraph) for obj in objects]
+        found = solids.read_solids(objects, depsgraph, [place.origin for place in places])
+        read = cls(list(zip(places, found, strict=True)), settings, [])
+        read._leave_out_empty()
+        if is_volume:
+            read._targets = _volume_files([place.name for place, _ in read._read], settings)
+        return read
+
+    def compute(self, progress: Progress) -> None:
+        """Voxelizes and new_meshes.
+
+        Raises:
+            ValueError: An object encloses nothing, or its cells are too small.
+            MemoryError: A result does not fit into memory.
+            prefilter.Cancelled: `progress` has said so.
+        """
+        count = len(self._read)
+        for i, (place, solid) in enumerate(self._read):
+            part = share(progress, i / count, (i + 1) / count)
+            with naming(place.name):
+                self._results.append(self._compute_one(i, place, solid, part))
+        go_on(progress, 1.0)
+        self._read.clear()
+
+    def write(self) -> Outcome:
+        """Puts the results into Blender.
+
+        Raises:
+            ValueError: An object is gone.
+        """
+        targets = [still_there(result.place.name) for result in self._results]
+        made = [
+            self._show(obj, result).name for obj, result in zip(targets, self._results, strict=True)
+        ]
+        lines = [told(result) for result in self._results]
+        if len(lines) == 1:
+            summary = f"Voxelized {lines[0]}"
+        else:
+            total = sum(result.triangles for result in self._results)
+            summary = f"Voxelized {counted(lines, 'object')}: {total} triangles"
+            self._notes = [*lines, *self._notes]
+        return Outcome(summary, objects=made, warnings=self.warnings, notes=self._notes)
+
+    def discard(self) -> None:
+        """Removes what was staged."""
+        for result in self._results:
+            if result.staged is not None:
+                result.staged.discard()
+
+    def _leave_out_empty(self) -> None:
+        empty = [place.name for place, solid in self._read if not solid.parts]
+        self._read = [(place, solid) for place, solid in self._read if solid.parts]
+        if not self._read:
+            raise ValueError(
+                f"object{'s' if len(empty) > 1 else ''} {listed(empty)}: found no faces"
+            )
+        if empty:
+            self.warnings.append(f"left out, as they have no faces: {listed(empty)}")
+
+    def _compute_one(
+        self, index: int, place: Place, solid: solids.Solid, progress: Progress
+    ) -> Result:
+        mesh = solid_mesh(solid)
+        tell_defects(place.name, mesh, self.warnings, self._notes)
+        grid = choose_grid(mesh.box, self._settings)
+        check_memory(grid, mesh.area)
+        if self._targets:
+            check_dense_memory(grid)
+        tree = voxelized(mesh, grid, self._settings, share(progress, 0.0, VOXELIZED))
+        if self._targets:
+            staged = staging.stage_with(
+                self._targets[index],
+                lambda path: volumes.write_grid(
+                    path, tree.dense(threads=self._settings.threads), grid.low, grid.spacing
+                ),
+            )
+            return Result(place, grid, tree.volume, 0, staged=staged)
+        return contoured(
+            tree, grid, mesh, solid, place, self._settings, share(progress, VOXELIZED, 1.0)
+        )
+
+    def _show(self, obj: bpy.types.Object, result: Result) -> bpy.types.Object:
+        if result.contour is not None:
+            return new_meshes.show_contour(obj, result.contour)
+        result.staged.commit()
+        volume = volumes.new_volume(obj.name, result.staged.target)
+        made = new_meshes.new_object_beside(obj, volume, ".volume")
+        made.matrix_world = Matrix.Translation(result.place.origin)
+        return made
+
+
+def _volume_files(names: list[str], settings: VoxelizeSettings) -> list[Path]:
+    """Returns the file of each volume; of several, each is named after its object too."""
+    if settings.filepath:
+        path = Path(bpy.path.abspath(settings.filepath))
+        paths = [path]
+        if len(names) > 1:
+            paths = [path.with_stem(f"{path.stem}.{bpy.path.clean_name(name)}") for name in names]
+    elif bpy.data.is_saved:
+        folder = Path(bpy.data.filepath).parent
+        paths = [folder / f"{bpy.path.clean_name(name)}.vdb" for name in names]
+    else:
+        raise ValueError("filepath: a volume needs a file: name one, or save the .blend file first")
+    return [staging.check_plain_target(str(path), ".vdb") for path in paths]

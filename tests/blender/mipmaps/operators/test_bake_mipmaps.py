@@ -1,0 +1,154 @@
+"""The operator, as scripts call it."""
+
+from functools import partial
+from types import SimpleNamespace
+
+import bpy
+import numpy as np
+import pytest
+import scenes
+from texture_readers import read_dds
+
+
+def bake(**options):
+    return bpy.ops.prefilter.bake_mipmaps(**options)
+
+
+def test_bakes_by_name():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    assert bake(image="Paint") == {"FINISHED"}
+    assert tuple(bpy.data.images["Paint.mip3"].size) == (1, 1)
+    assert bpy.data.images["Paint.mip1"].packed_file is not None
+
+
+def test_invoke_in_the_background_executes():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    assert bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Paint") == {"FINISHED"}
+    assert "Paint.mip3" in bpy.data.images
+
+
+def test_says_what_it_did(capfd):
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    bake(image="Paint", levels=3)
+    assert (
+        "Baked 'Paint' with PAM Bilinear over 1 object into 2 level images"
+        in capfd.readouterr().out
+    )
+
+
+def test_warns_of_what_it_left_out(capfd):
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    bare = scenes.textured_quad(image, "NoMap")
+    bare.data.uv_layers.remove(bare.data.uv_layers[0])
+    assert bake(image="Paint") == {"FINISHED"}
+    assert "Warning: object 'NoMap' has no UV map" in capfd.readouterr().out
+
+
+def test_only_selected_objects_count():
+    values = np.zeros((4, 4, 4), np.float32)
+    values[:, :2] = (1, 0, 0, 1)
+    values[:, 2:] = (0, 0, 1, 1)
+    image = scenes.image("Flag", values, colorspace="Non-Color")
+    material = scenes.material("Cloth", image)
+    left = scenes.quads("Left", [((0, 0), (0.5, 0), (0.5, 1), (0, 1))], select=True)
+    right = scenes.quads("Right", [((0.5, 0), (1, 0), (1, 1), (0.5, 1))], select=False)
+    for obj in (left, right):
+        obj.data.materials.append(material)
+    bake(image="Flag", filter="pam-box", wrap="clamp")
+    np.testing.assert_allclose(scenes.pixels("Flag.mip2")[0, 0], (1, 0, 0, 1), atol=0.003)
+
+
+def test_object_in_edit_mode_counts():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image)
+    bpy.ops.object.mode_set(mode="EDIT")
+    assert bake(image="Paint") == {"FINISHED"}
+
+
+def test_file_beside_the_blend(tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    bake(image="Paint", use_images=False, filepath="//paint.exr")
+    assert (tmp_path / "paint.exr").exists()
+    assert "Paint.mip1" not in bpy.data.images
+
+
+def test_file_for_engines(tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
+    path = tmp_path / "out.dds"
+    options = {"image": "Paint", "filepath": str(path), "texture_format": "bc3"}
+    assert bake(**options, use_images=False) == {"FINISHED"}
+    assert read_dds(path).format == "BC3_SRGB"
+
+
+def test_poll_without_images():
+    assert not bpy.ops.prefilter.bake_mipmaps.poll()
+    with pytest.raises(RuntimeError, match="no image in this file"):
+        bake(image="Paint")
+
+
+@pytest.fixture
+def quitting():
+    """Returns a context as Blender has it when it quits, and the names of what was called on it."""
+    calls = []
+    manager = SimpleNamespace(
+        event_timer_remove=lambda timer: calls.append("timer"),
+        progress_end=lambda: calls.append("progress"),
+    )
+    return SimpleNamespace(window_manager=manager, workspace=None), calls
+
+
+@pytest.mark.parametrize("is_reading", [False, True])
+def test_quitting_leaves_nothing(addon, quitting, is_reading):
+    operator_class = addon("mipmaps.operators.bake_mipmaps").PREFILTER_OT_bake_mipmaps
+    background = addon("core.operator").BackgroundOperator
+    context, calls = quitting
+    operator = SimpleNamespace(
+        _timer=None,
+        _job=None if is_reading else addon("core.jobs").Job(lambda progress: None),
+        _reading=SimpleNamespace(close=lambda: calls.append("close")),
+        _key=lambda: "prefilter.bake_mipmaps",
+    )
+    if not is_reading:
+        operator._bake = SimpleNamespace(discard=lambda: calls.append("discard"))
+    operator.discard = partial(operator_class.discard, operator)
+    operator._leave = partial(background._leave, operator)
+    background.cancel(operator, context)
+    assert calls == ["close", *(["discard"] if not is_reading else []), "timer", "progress"]
+
+
+def test_thread_that_does_not_start_leaves_nothing(addon, monkeypatch):
+    module, background = addon("mipmaps.operators.bake_mipmaps"), addon("core.operator")
+
+    def no_job(work):
+        raise RuntimeError("no thread")
+
+    monkeypatch.setattr(background, "Job", no_job)
+    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
+    operator_class = module.PREFILTER_OT_bake_mipmaps
+    operator = SimpleNamespace(_what_to_read=lambda context: ())
+    operator._start = partial(operator_class._start, operator)
+    operator._go_on_reading = partial(operator_class._go_on_reading, operator)
+
+    def reading():
+        yield 0.5
+        return SimpleNamespace(compute=None, image_name="Paint")
+
+    monkeypatch.setattr(module.reading, "reading", reading)
+    with pytest.raises(RuntimeError, match="no thread"):
+        operator_class.invoke(operator, SimpleNamespace(window_manager=None), None)
+    assert not operator_class._running
+
+
+def test_frames_and_instances():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    quad = scenes.textured_quad(image)
+    scenes.collection_instance(quad).select_set(True)
+    bpy.context.scene.frame_set(5)
+    assert bake(image="Paint", use_frames=True, frame_start=2, frame_end=4) == {"FINISHED"}
+    assert bpy.context.scene.frame_current == 5
+    assert "Paint.mip3" in bpy.data.images

@@ -1,0 +1,671 @@
+"""The bake into Cycles' texture cache: that renders use it, and that nothing else changes."""
+
+import os
+import subprocess
+
+import bpy
+import cycles_scenes as cycles
+import numpy as np
+import OpenImageIO as oiio
+import prefilter
+import pytest
+import scenes
+
+HAS_CACHE = "use_texture_cache" in bpy.types.RenderSettings.bl_rna.properties
+needs_cache = pytest.mark.skipif(not HAS_CACHE, reason="Blender 5.2 or later is needed")
+
+LEFT = ((0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (0.0, 1.0))
+RIGHT = ((0.5, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0))
+MAGENTA = (1.0, 0.0, 1.0)
+GREEN, BLUE = (0.1, 0.8, 0.2), (0.2, 0.1, 0.9)
+
+
+@pytest.fixture
+def scene():
+    """Returns the scene, set up for Cycles."""
+    made = bpy.context.scene
+    cycles.set_up(made)
+    return made
+
+
+def bake():
+    return bpy.ops.prefilter.bake_texture_cache()
+
+
+def generate():
+    return bpy.ops.render.generate_texture_cache()
+
+
+def smooth(height, width, channels, *, seed=3):
+    """Returns values in [0, 1] with detail at every scale."""
+    random = np.random.default_rng(seed)
+    total = np.zeros((height, width, channels))
+    for cell in (1, 2, 4, 8, 16):
+        coarse = random.random((height // cell, width // cell, channels))
+        total += np.kron(coarse, np.ones((cell, cell, 1))) * cell**0.5
+    total -= total.min()
+    return (total / total.max()).astype(np.float32)
+
+
+def contents(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.skipif(HAS_CACHE, reason="this Blender has a texture cache")
+def test_an_older_blender_says_what_is_needed():
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
+    assert not bpy.ops.prefilter.bake_texture_cache.poll()
+    with pytest.raises(RuntimeError, match=r"Blender 5\.2 LTS or later"):
+        bake()
+
+
+@needs_cache
+def test_poll_without_images():
+    assert not bpy.ops.prefilter.bake_texture_cache.poll()
+    with pytest.raises(RuntimeError, match="no image in this file"):
+        bake()
+
+
+@needs_cache
+@pytest.mark.parametrize("kind", ["float", "uint8"])
+@pytest.mark.parametrize("number", [1, 2])
+def test_cycles_renders_the_levels(scene, tmp_path, kind, number):
+    name = "paint.exr" if kind == "float" else "paint.png"
+    image = cycles.write_picture(tmp_path / name, smooth(256, 256, 3), kind)
+    node = cycles.shown_on(image).data.materials[0].node_tree.nodes["Image Texture"]
+    node.extension = "EXTEND"
+    scene.render.use_texture_cache = True
+    generate()
+    path = cycles.cache_file(tmp_path)
+    size = 256 >> number
+
+    def predicted():
+        texels = cycles.level(path, number)[..., :3]
+        return cycles.pixel_means(texels, size, is_encoded=kind == "uint8")
+
+    of_blender, box = cycles.render(scene, size, tmp_path / "out.exr"), predicted()
+    bake()
+    of_ours, ours = cycles.render(scene, size, tmp_path / "out.exr"), predicted()
+
+    def rmse(a, b):
+        return np.sqrt(np.mean((a - b) ** 2))
+
+    noise = 2e-3
+    assert rmse(of_blender, box) < noise
+    assert rmse(of_ours, ours) < noise
+    assert rmse(ours, box) > 5 * noise
+    full = cycles.level(path, 0)[..., :3]
+    true = cycles.pixel_means(full, size, is_encoded=kind == "uint8")
+    assert rmse(of_ours, true) < 0.8 * rmse(of_blender, true)
+
+
+@needs_cache
+def test_cycles_renders_whatever_the_levels_are(scene, tmp_path, addon):
+    tx_files = addon("bridge.files.tx")
+    cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(256, 256, 3), "uint8"))
+    bake()
+    texture = tx_files.read(cycles.cache_file(tmp_path))
+    flat = []
+    for number in range(1, 9):
+        side = 256 >> number
+        flat.append(np.tile(np.float32((1, 0, 0, 1)), (side, side, 1)))
+    tx_files.stage(texture, flat, lambda: None).commit()
+    colors = cycles.render(scene, 64, tmp_path / "out.exr")
+    np.testing.assert_allclose(colors, np.broadcast_to((1, 0, 0), colors.shape), atol=1e-3)
+
+
+@needs_cache
+@pytest.mark.parametrize(
+    ("name", "kind", "channels"),
+    [
+        ("byte.png", "uint8", 3),
+        ("gray.png", "uint8", 1),
+        ("deep.png", "uint16", 3),
+        ("half.exr", "half", 3),
+        ("float.exr", "float", 4),
+    ],
+)
+def test_all_but_the_levels_stays(scene, tmp_path, name, kind, channels):
+    image = cycles.write_picture(tmp_path / name, smooth(96, 160, channels), kind)
+    os.utime(tmp_path / name, (1.6e9, 1.6e9))
+    cycles.shown_on(image)
+    scene.render.use_texture_cache = False
+    generate()
+    path = cycles.cache_file(tmp_path)
+    before, full = cycles.metadata(path), cycles.level(path, 0)
+    box = [cycles.level(path, number) for number in range(8)]
+    assert bake() == {"FINISHED"}
+    assert cycles.cache_files(tmp_path) == [path]
+    assert cycles.metadata(path) == before
+    np.testing.assert_array_equal(cycles.level(path, 0), full)
+    assert path.stat().st_mtime == 1.6e9
+    assert scene.render.use_texture_cache
+    for number, theirs in enumerate(box):
+        assert cycles.level(path, number).shape == theirs.shape
+    assert not np.array_equal(cycles.level(path, 1), box[1])
+    reader = oiio.ImageInput.open(str(path))
+    assert not reader.seek_subimage(0, 8)
+
+
+@needs_cache
+def test_blender_leaves_it_alone_until_the_image_changes(scene, tmp_path, capfd):
+    name = tmp_path / "paint.png"
+    cycles.shown_on(cycles.write_picture(name, smooth(128, 128, 3), "uint8"))
+    scene.render.use_auto_generate_texture_cache = True
+    bake()
+    path = cycles.cache_file(tmp_path)
+    ours = path.read_bytes()
+    capfd.readouterr()
+    generate()
+    assert "0 failed, 1 up to date" in capfd.readouterr().out
+    cycles.render(scene, 8, tmp_path / "out.exr")
+    assert path.read_bytes() == ours
+    os.utime(name, (1.6e9, 1.6e9))
+    cycles.render(scene, 8, tmp_path / "out.exr")
+    assert path.read_bytes() != ours
+    bake()
+    assert np.array_equal(cycles.level(path, 1)[..., :3], cycles.level(path, 1)[..., :3])
+    assert path.stat().st_mtime == 1.6e9
+
+
+@needs_cache
+@pytest.mark.parametrize(
+    ("kind", "colorspace", "is_encoded"),
+    [
+        ("uint8", "sRGB", True),
+        ("uint8", "Non-Color", False),
+        ("uint8", "Linear Rec.709", False),
+        ("uint16", "sRGB", True),
+        ("uint8", "Filmic sRGB", False),
+        ("half", "Linear Rec.709", False),
+        ("float", "Non-Color", False),
+        ("float", "ACEScg", False),
+    ],
+)
+def test_levels_are_closer_to_the_image_as_cycles_reads_it(
+    scene, tmp_path, kind, colorspace, is_encoded
+):
+    name = f"paint.{'png' if kind.startswith('uint') else 'exr'}"
+    pixels = smooth(128, 128, 3)
+    pixels[:, 64:] = MAGENTA
+    image = cycles.write_picture(tmp_path / name, pixels, kind)
+    image.colorspace_settings.name = colorspace
+    inside = ((0, 0), (0.49, 0), (0.49, 1), (0, 1))
+    node = cycles.shown_on(image, inside).data.materials[0].node_tree.nodes["Image Texture"]
+    node.extension = "EXTEND"
+    generate()
+    path = cycles.cache_file(tmp_path)
+    random = np.random.default_rng(5)
+    u, v = 0.49 * random.random(20000), random.random(20000)
+
+    def read(number):
+        values = cycles.looked_up(cycles.level(path, number)[..., :3], u, v)
+        return scenes.to_linear(values) if is_encoded else values
+
+    true = read(0)
+    box = [np.sqrt(np.mean((read(number) - true) ** 2)) for number in (1, 2, 3, 4)]
+    bake()
+    ours = [np.sqrt(np.mean((read(number) - true) ** 2)) for number in (1, 2, 3, 4)]
+    assert np.all(np.array(ours) < 0.96 * np.array(box)), (ours, box)
+
+
+@needs_cache
+@pytest.mark.parametrize(
+    ("name", "kind", "mode"),
+    [
+        ("leaf.png", "uint8", "STRAIGHT"),
+        ("leaf.exr", "float", "PREMUL"),
+        ("leaf.exr", "half", "PREMUL"),
+    ],
+)
+def test_colour_and_alpha_are_associated(scene, tmp_path, name, kind, mode):
+    alpha = (smooth(64, 64, 1) > 0.5).astype(np.float32)
+    color = np.float32(GREEN)
+    leaf = color * alpha if mode == "PREMUL" else np.where(alpha > 0, color, np.float32(MAGENTA))
+    image = cycles.write_picture(
+        tmp_path / name, np.concatenate([leaf, alpha], axis=2).astype(np.float32), kind
+    )
+    image.alpha_mode = mode
+    cycles.shown_on(image)
+    bake()
+    stored = cycles.level(cycles.cache_file(tmp_path), 2)
+    known = cycles.level(cycles.cache_file(tmp_path), 0)
+    assert known[..., 3].min() == 0
+    assert np.all(stored[..., 3] >= 0)
+    assert np.all(stored[..., 3] <= 1)
+    assert stored[..., 3].mean() == pytest.approx(alpha.mean(), abs=0.02)
+    seen = stored[..., 3] > 0.2
+    np.testing.assert_allclose(
+        stored[seen][:, :3] / stored[seen][:, 3:],
+        np.broadcast_to(color, (seen.sum(), 3)),
+        atol=0.02 if kind == "uint8" else 0.002,
+    )
+
+
+@needs_cache
+@pytest.mark.parametrize("is_cut_out", [False, True])
+@pytest.mark.parametrize("kind", ["uint8", "float"])
+def test_covered_colours_are_closer_to_the_image(scene, tmp_path, is_cut_out, kind):
+    pixels, alpha = smooth(256, 256, 4), smooth(256, 256, 1, seed=8)
+    pixels[..., 3:] = alpha > 0.5 if is_cut_out else np.clip(2 * alpha - 0.5, 0, 1)
+    if kind == "float":
+        pixels[..., :3] *= pixels[..., 3:]
+    name = "leaf.png" if kind == "uint8" else "leaf.exr"
+    image = cycles.write_picture(tmp_path / name, pixels, kind)
+    material = cycles.shown_on(image).data.materials[0]
+    material.node_tree.nodes["Image Texture"].extension = "EXTEND"
+    generate()
+    path = cycles.cache_file(tmp_path)
+    random = np.random.default_rng(1)
+    u, v = random.random(40000), random.random(40000)
+
+    def read(number):
+        texels = cycles.looked_up(cycles.level(path, number), u, v)
+        color, covered = texels[:, :3], texels[:, 3:]
+        straight = np.divide(color, covered, out=np.zeros_like(color), where=covered > 0)
+        if kind == "uint8":
+            straight = scenes.to_linear(straight)
+        return np.concatenate([straight * covered, covered], axis=1)
+
+    def errors():
+        true = read(0)
+        return np.array([np.sqrt(np.mean((read(k) - true) ** 2)) for k in (1, 2, 3, 4)])
+
+    box = errors()
+    bake()
+    assert np.all(errors() < box)
+
+
+@needs_cache
+@pytest.mark.parametrize("mode", ["CHANNEL_PACKED", "NONE"])
+def test_channels_that_are_no_alpha_do_not_mix(scene, tmp_path, mode):
+    pixels = np.ones((64, 64, 4), np.float32)
+    pixels[..., :3] = 0.5
+    pixels[:, ::2, 3] = 0
+    image = cycles.write_picture(tmp_path / "packed.png", pixels, "uint8")
+    image.alpha_mode = mode
+    cycles.shown_on(image)
+    bake()
+    stored = cycles.level(cycles.cache_file(tmp_path), 3)
+    np.testing.assert_allclose(stored[..., :3], 0.5, atol=0.51 / 255)
+    np.testing.assert_allclose(stored[..., 3], 0.5 if mode == "CHANNEL_PACKED" else 1, atol=0.01)
+
+
+@needs_cache
+def test_weights_are_those_of_all_objects(scene, tmp_path):
+    pixels = np.zeros((64, 64, 3), np.float32)
+    pixels[:] = MAGENTA
+    pixels[:24] = GREEN
+    pixels[40:] = BLUE
+    image = cycles.write_picture(tmp_path / "paint.exr", pixels, "half")
+    low = ((0, 0), (1, 0), (1, 0.36), (0, 0.36))
+    high = ((0, 0.64), (1, 0.64), (1, 0.99), (0, 0.99))
+    first = cycles.shown_on(image, low, "First")
+    second = cycles.shown_on(image, high, "Second")
+    second.data.materials[0] = first.data.materials[0]
+    first.data.materials[0].node_tree.nodes["Image Texture"].extension = "EXTEND"
+    for obj in (first, second):
+        obj.select_set(False)
+    bake()
+    stored = cycles.level(cycles.cache_file(tmp_path), 4)[..., :3]
+    np.testing.assert_allclose(stored[0], np.broadcast_to(GREEN, (4, 3)), atol=0.03)
+    np.testing.assert_allclose(stored[3], np.broadcast_to(BLUE, (4, 3)), atol=0.03)
+    second.hide_render = True
+    bake()
+    stored = cycles.level(cycles.cache_file(tmp_path), 4)[..., :3]
+    np.testing.assert_allclose(stored[3], np.broadcast_to(GREEN, (4, 3)), atol=0.03)
+
+
+@needs_cache
+def test_two_images_of_a_file_share_their_surfaces(scene, tmp_path):
+    pixels = np.zeros((64, 64, 3), np.float32)
+    pixels[:] = MAGENTA
+    pixels[:, :20] = GREEN
+    pixels[:, 44:] = BLUE
+    first = cycles.write_picture(tmp_path / "paint.exr", pixels, "half")
+    second = bpy.data.images.load(str(tmp_path / "paint.exr"), check_existing=False)
+    assert first != second
+    cycles.shown_on(first, ((0, 0), (0.3, 0), (0.3, 1), (0, 1)), "First")
+    cycles.shown_on(second, ((0.7, 0), (1, 0), (1, 1), (0.7, 1)), "Second")
+    for obj in bpy.data.objects:
+        if obj.type == "MESH":
+            obj.data.materials[0].node_tree.nodes["Image Texture"].extension = "EXTEND"
+    bake()
+    stored = cycles.level(cycles.cache_file(tmp_path), 4)[..., :3]
+    np.testing.assert_allclose(stored[:, 0], np.broadcast_to(GREEN, (4, 3)), atol=0.03)
+    np.testing.assert_allclose(stored[:, 3], np.broadcast_to(BLUE, (4, 3)), atol=0.03)
+
+
+@needs_cache
+def test_colour_spaces_of_a_file_have_a_cache_file_each(scene, tmp_path, capfd):
+    first = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
+    second = bpy.data.images.load(str(tmp_path / "paint.png"), check_existing=False)
+    second.colorspace_settings.name = "Non-Color"
+    cycles.shown_on(first, name="First")
+    cycles.shown_on(second, name="Second")
+    bake()
+    assert len(cycles.cache_files(tmp_path)) == 2
+    assert "2 images (2 files), over 2 objects" in capfd.readouterr().out
+
+
+def udim(tmp_path, *, missing=False):
+    """Returns a UDIM image of two tiles, magenta but for the lower and the upper half."""
+    for number, rows, color in ((1001, slice(0, 32), GREEN), (1002, slice(32, 64), BLUE)):
+        pixels = np.zeros((64, 64, 3), np.float32)
+        pixels[:] = MAGENTA
+        pixels[rows] = color
+        if number == 1002 and missing:
+            continue
+        one = cycles.write_picture(tmp_path / f"paint.{number}.exr", pixels, "half")
+    bpy.data.images.remove(one)
+    image = bpy.data.images.load(str(tmp_path / "paint.1001.exr"))
+    image.source = "TILED"
+    if len(image.tiles) < 2:
+        image.tiles.new(1002)
+    assert [tile.number for tile in image.tiles] == [1001, 1002]
+    return image
+
+
+@needs_cache
+def test_tiles_are_weighed_by_what_lies_in_them(scene, tmp_path):
+    image = udim(tmp_path)
+    squares = [
+        ((0, 0), (1, 0), (1, 0.49), (0, 0.49)),
+        ((1, 0.51), (2, 0.51), (2, 1), (1, 1)),
+    ]
+    obj = scenes.quads("Tiled", squares)
+    obj.data.materials.append(cycles.emission("Tiled", image))
+    obj.data.materials[0].node_tree.nodes["Image Texture"].extension = "EXTEND"
+    bake()
+    for number, color in ((1001, GREEN), (1002, BLUE)):
+        stored = cycles.level(cycles.cache_file(tmp_path, f"paint.{number}"), 4)[..., :3]
+        np.testing.assert_allclose(stored, np.broadcast_to(color, stored.shape), atol=0.03)
+
+
+@needs_cache
+def test_an_image_of_one_colour_stays(scene, tmp_path, capfd):
+    pixels = np.full((128, 128, 3), 0.5, np.float32)
+    cycles.shown_on(cycles.write_picture(tmp_path / "flat.png", pixels, "uint8"))
+    generate()
+    before = contents(tmp_path)
+    assert bake() == {"FINISHED"}
+    assert contents(tmp_path) == before
+    assert "1 of one colour stay" in capfd.readouterr().out
+
+
+@needs_cache
+def test_cancelling_leaves_the_cache(scene, tmp_path, addon):
+    for name in ("one.png", "two.png"):
+        pixels = smooth(128, 128, 3, seed=len(name) + ord(name[0]))
+        cycles.shown_on(cycles.write_picture(tmp_path / name, pixels, "uint8"), name=name)
+    generate()
+    before = contents(tmp_path)
+    module = addon("mipmaps.texture_cache")
+    for most in (0.0, 0.3, 0.7, 0.999):
+        job = module.CacheBake.read(scene, scenes.depsgraph())
+        with pytest.raises(prefilter.Cancelled):
+            job.compute(lambda fraction, most=most: fraction <= most)
+        assert contents(tmp_path) == before
+
+
+@needs_cache
+def test_no_space_leaves_the_cache(scene, tmp_path, addon, monkeypatch):
+    for name in ("one.png", "two.png"):
+        pixels = smooth(128, 128, 3, seed=len(name) + ord(name[0]))
+        cycles.shown_on(cycles.write_picture(tmp_path / name, pixels, "uint8"), name=name)
+    generate()
+    before = contents(tmp_path)
+    original = addon("bridge.files.tx")._write
+    calls = []
+
+    def full(writer, path, *rest):
+        calls.append(path)
+        if len(calls) > 10:
+            raise OSError(f"cannot write '{path}': no space left")
+        original(writer, path, *rest)
+
+    monkeypatch.setattr(addon("bridge.files.tx"), "_write", full)
+    with pytest.raises(RuntimeError, match="no space left"):
+        bake()
+    assert contents(tmp_path) == before
+
+
+@needs_cache
+@pytest.mark.parametrize("has_cache", [False, True])
+def test_a_read_only_folder_is_an_error(scene, tmp_path, has_cache):
+    folder = tmp_path / "textures"
+    folder.mkdir()
+    cycles.shown_on(cycles.write_picture(folder / "paint.png", smooth(64, 64, 3), "uint8"))
+    if has_cache:
+        generate()
+    locked = folder / "blender_tx" if has_cache else folder
+    locked.chmod(0o555)
+    before = contents(tmp_path)
+    try:
+        with pytest.raises(RuntimeError, match=r"'paint\.png'.*read-only"):
+            bake()
+        assert contents(tmp_path) == before
+        assert has_cache or not (folder / "blender_tx").exists()
+    finally:
+        locked.chmod(0o755)
+
+
+@needs_cache
+def test_what_has_no_file_is_passed_over(scene, tmp_path, capfd):
+    cycles.shown_on(cycles.write_picture(tmp_path / "good.png", smooth(64, 64, 3), "uint8"))
+    made = bpy.data.images.new("Generated", 16, 16)
+    packed = cycles.write_picture(tmp_path / "packed.png", smooth(64, 64, 3), "uint8")
+    packed.pack()
+    dirty = cycles.write_picture(tmp_path / "dirty.png", smooth(64, 64, 3), "uint8")
+    dirty.pixels[0] = 0.25
+    gone = cycles.write_picture(tmp_path / "gone.png", smooth(64, 64, 3), "uint8")
+    (tmp_path / "gone.png").unlink()
+    movie = cycles.write_picture(tmp_path / "frames.png", smooth(64, 64, 3), "uint8")
+    movie.source = "SEQUENCE"
+    broken = cycles.write_picture(tmp_path / "broken.png", smooth(64, 64, 3), "uint8")
+    (tmp_path / "broken.png").write_bytes(b"no picture")
+    for image in (made, packed, dirty, gone, movie, broken):
+        cycles.shown_on(image, name=image.name)
+    assert bake() == {"FINISHED"}
+    output = capfd.readouterr().out
+    for text in (
+        "'Generated': found a generated image",
+        "'packed.png': found an image that is packed",
+        "'dirty.png': has changes that are not in its file",
+        "'gone.png': there is no file",
+        "'frames.png': found an image sequence",
+        "'broken.png': Blender cannot make a texture cache",
+        "texture cache of 1 image (1 file), over 1 object",
+    ):
+        assert text in output
+    assert [path.name.split(".")[0] for path in cycles.cache_files(tmp_path)] == ["good"]
+
+
+@needs_cache
+def test_a_tile_without_a_file_is_told(scene, tmp_path):
+    image = udim(tmp_path, missing=True)
+    cycles.shown_on(image)
+    with pytest.raises(RuntimeError, match=r"there is no file '.*paint\.1002\.exr'"):
+        bake()
+    assert not (tmp_path / "blender_tx").exists()
+
+
+def of_objects(tree, node):
+    coordinates = tree.nodes.new("ShaderNodeTexCoord")
+    tree.links.new(coordinates.outputs["Object"], node.inputs["Vector"])
+
+
+def of_the_world(tree, node):
+    del tree
+    world = bpy.data.worlds.new("Sky")
+    world.use_nodes = True
+    world.node_tree.nodes.new("ShaderNodeTexEnvironment").image = node.image
+    bpy.context.scene.world = world
+
+
+def of_a_curve(tree, node):
+    del tree
+    curve = bpy.data.curves.new("Rope", "CURVE")
+    curve.materials.append(bpy.data.objects["Quad"].data.materials[0])
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Rope", curve))
+    assert node.image is not None
+
+
+@needs_cache
+@pytest.mark.parametrize(
+    ("spoil", "reason"),
+    [
+        (of_objects, "gets its coordinates from 'Texture Coordinate' (Object)"),
+        (of_the_world, "the world 'Sky' shows it as an environment"),
+        (of_a_curve, "object 'Rope' (curve) shows it"),
+    ],
+)
+def test_levels_of_what_is_seen_otherwise_are_blenders(scene, tmp_path, capfd, spoil, reason):
+    cycles.shown_on(
+        cycles.write_picture(tmp_path / "good.png", smooth(64, 64, 3), "uint8"), name="G"
+    )
+    image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3, seed=9), "uint8")
+    tree = cycles.shown_on(image, LEFT).data.materials[0].node_tree
+    spoil(tree, tree.nodes["Image Texture"])
+    generate()
+    path = cycles.cache_file(tmp_path, "paint.png")
+    before = path.read_bytes()
+    assert bake() == {"FINISHED"}
+    assert path.read_bytes() == before
+    output = capfd.readouterr().out
+    assert f"'paint.png': {reason}" in output or reason in output
+    assert "its levels are Blender's" in output
+
+
+@needs_cache
+def test_what_lies_beyond_the_edges_must_be_of_one_kind(scene, tmp_path):
+    image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
+    wide = ((-0.5, 0), (1.5, 0), (1.5, 1), (-0.5, 1))
+    obj = cycles.shown_on(image, wide)
+    node = obj.data.materials[0].node_tree.nodes["Image Texture"]
+    node.extension = "MIRROR"
+    with pytest.raises(
+        RuntimeError, match="UVs leave it, where Image Texture nodes go on by MIRROR"
+    ):
+        bake()
+    node.extension = "CLIP"
+    assert bake() == {"FINISHED"}
+    cycles.shown_on(image, wide, "Other")
+    with pytest.raises(RuntimeError, match=r"CLIP, REPEAT|REPEAT, CLIP"):
+        bake()
+
+
+@needs_cache
+def test_nothing_to_bake_says_why(scene, tmp_path):
+    cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
+    with pytest.raises(RuntimeError, match="no image texture to bake; it has no mesh"):
+        bake()
+    scenes.quads("Bare")
+    with pytest.raises(RuntimeError, match=r"no material on a mesh that is rendered.*'Bare'"):
+        bake()
+
+
+@needs_cache
+def test_bad_geometry_is_told(scene, tmp_path):
+    image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
+    obj = cycles.shown_on(image)
+    obj.data.vertices[0].co.x = float("nan")
+    with pytest.raises(RuntimeError, match=r"object 'Quad': .*positions"):
+        bake()
+    obj.data.vertices[0].co.x = 0
+    for vertex in obj.data.vertices:
+        vertex.co = (0, 0, 0)
+    with pytest.raises(RuntimeError, match="no surface of the scene lies in it"):
+        bake()
+
+
+@needs_cache
+def test_nan_in_the_image_stays_there(scene, tmp_path):
+    pixels = smooth(64, 64, 3)
+    pixels[10, 10] = np.nan
+    cycles.shown_on(cycles.write_picture(tmp_path / "paint.exr", pixels, "float"))
+    assert bake() == {"FINISHED"}
+    for number in range(1, 7):
+        assert np.isfinite(cycles.level(cycles.cache_file(tmp_path), number)).all()
+
+
+@needs_cache
+@pytest.mark.parametrize("is_absolute", [False, True])
+def test_the_folder_of_the_preferences_is_used(scene, tmp_path, is_absolute):
+    folder = tmp_path / "cache" / "of textures"
+    paths = bpy.context.preferences.filepaths
+    paths.texture_cache_directory = str(folder) if is_absolute else "cache/of textures"
+    try:
+        cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8"))
+        generate()
+        (path,) = folder.glob("*.tx")
+        before = path.read_bytes()
+        bake()
+        assert list(folder.iterdir()) == [path]
+        assert path.read_bytes() != before
+        assert not (tmp_path / "blender_tx").exists()
+    finally:
+        paths.texture_cache_directory = ""
+
+
+@needs_cache
+def test_instances_count(scene, tmp_path):
+    pixels = np.zeros((64, 64, 3), np.float32)
+    pixels[:] = GREEN
+    image = cycles.write_picture(tmp_path / "paint.exr", pixels + smooth(64, 64, 3), "half")
+    source = cycles.shown_on(image)
+    scenes.collection_instance(source)
+    found = bpy.data.objects["Quad"]
+    for collection in list(found.users_collection):
+        if collection == scene.collection:
+            collection.objects.unlink(found)
+    assert bake() == {"FINISHED"}
+
+
+@needs_cache
+def test_the_command(tmp_path, scene):
+    cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8"))
+    scene.render.use_texture_cache = False
+    blend = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+
+    def run(*arguments):
+        return subprocess.run(
+            [bpy.app.binary_path, "--background", "--command", "prefilter", "bake-cache"]
+            + [str(argument) for argument in arguments],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+
+    result = run(blend, "--save", "--scene", scene.name)
+    assert result.returncode == 0, result.stderr
+    assert "texture cache of 1 image (1 file), over 1 object" in result.stdout
+    level = cycles.level(cycles.cache_file(tmp_path), 1)
+    bake()
+    np.testing.assert_array_equal(cycles.level(cycles.cache_file(tmp_path), 1), level)
+    bpy.ops.wm.open_mainfile(filepath=str(blend))
+    assert bpy.context.scene.render.use_texture_cache
+    for arguments, message in (
+        (("scene.glb",), "a .blend file is needed"),
+        ((tmp_path / "none.blend",), "there is no file"),
+        ((blend, "--scene", "Other"), "no scene named 'Other'"),
+    ):
+        result = run(*arguments)
+        assert result.returncode in (1, 2)
+        assert message in result.stderr
+        assert "Traceback" not in result.stderr
+
+
+@needs_cache
+def test_results_do_not_depend_on_threads(scene, tmp_path, addon):
+    cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(128, 64, 4), "uint8"))
+    module = addon("mipmaps.texture_cache")
+    found = []
+    for threads in (1, 2, 5):
+        job = module.CacheBake.read(scene, scenes.depsgraph(), threads=threads)
+        job.compute(lambda _: True)
+        job.write()
+        found.append(cycles.cache_file(tmp_path).read_bytes())
+    assert found[0] == found[1] == found[2]

@@ -1,0 +1,131 @@
+"""The house's walls: which modules of the add-on and of the package import which."""
+
+import ast
+from collections.abc import Collection, Iterator
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+ADDON = ROOT / "addon"
+PACKAGE = ROOT / "native" / "python" / "prefilter"
+FLOORS = ("core", "bridge")
+
+
+def modules(folder: Path) -> dict[str, Path]:
+    """Returns the files of a package by the names of their modules."""
+    found = {}
+    for path in (*folder.rglob("*.py"), *folder.rglob("*.pyi")):
+        names = path.relative_to(folder.parent).with_suffix("").parts
+        found[".".join(names[:-1] if names[-1] == "__init__" else names)] = path
+    return found
+
+
+def imports(folder: Path) -> dict[str, set[str]]:
+    """Returns which modules of a package each of them imports, for type checkers only or not."""
+    known = modules(folder)
+    return {name: set(imported(path, folder, known.keys())) for name, path in known.items()}
+
+
+def imported(path: Path, folder: Path, known: Collection[str]) -> Iterator[str]:
+    package = path.relative_to(folder.parent).parent.parts
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in known)
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else ()
+            base = ".".join((*above, *([node.module] if node.module else ())))
+            for alias in node.names:
+                # What is no module comes from the package itself.
+                name = f"{base}.{alias.name}"
+                module = name if name in known else base
+                if module in known:
+                    yield module
+
+
+def cycle(graph: dict[str, set[str]]) -> list[str]:
+    """Returns modules of which each imports one beside it, the first and the last too; or none."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return error.args[1]
+    return []
+
+
+def room(name: str) -> str:
+    """Returns the folder of the add-on that a module is in; empty for those beside the folders."""
+    parts = name.split(".")
+    return parts[1] if len(parts) > 1 and (ADDON / parts[1]).is_dir() else ""
+
+
+def wrong_imports(graph: dict[str, set[str]]) -> list[str]:
+    """Returns the imports that a room must not have: upward, or sideways into another subject."""
+    wrong = []
+    for name, others in graph.items():
+        for other in others:
+            here, there = room(name), room(other)
+            if not here or there == here:
+                continue
+            allowed = {"core": set(), "bridge": {"core"}}.get(here, set(FLOORS))
+            if there not in allowed:
+                wrong.append(f"{name} imports {other}")
+    return sorted(wrong)
+
+
+def write(folder: Path, files: dict[str, str]) -> Path:
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    return folder
+
+
+@pytest.mark.parametrize("folder", [ADDON, PACKAGE], ids=lambda folder: folder.name)
+def test_no_module_imports_itself_by_way_of_others(folder):
+    graph = imports(folder)
+    assert sum(map(len, graph.values())) > len(graph)
+    assert not cycle(graph)
+
+
+def test_rooms_import_what_is_below_them_only():
+    graph = imports(ADDON)
+    assert {room(name) for name in graph} > {"", *FLOORS}
+    assert not wrong_imports(graph)
+
+
+def test_every_subject_is_registered_and_has_nothing_beside_its_folder():
+    (line,) = (
+        node
+        for node in ast.parse((ADDON / "__init__.py").read_text()).body
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "SUBJECTS"
+    )
+    subjects = {element.id for element in line.value.elts}
+    assert subjects == {path.parent.name for path in ADDON.glob("*/__init__.py")} - {*FLOORS}
+    assert {path.name for path in ADDON.glob("*.py")} == {"__init__.py", "commands.py"}
+
+
+def test_a_wrong_import_is_found():
+    graph = {"addon.core.a": {"addon.bridge.b"}, "addon.mipmaps.c": {"addon.voxels.d", "addon"}}
+    assert wrong_imports(graph) == [
+        "addon.core.a imports addon.bridge.b",
+        "addon.mipmaps.c imports addon",
+        "addon.mipmaps.c imports addon.voxels.d",
+    ]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "from .. import other",
+        "from ..other import thing",
+        "import box.other",
+        "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from ..other import thing",
+        "def late():\n    from ..other import thing",
+    ],
+)
+def test_a_cycle_is_found(tmp_path, line):
+    files = {"__init__.py": "", "inner/__init__.py": "", "other.py": "from .inner import one"}
+    files["inner/one.py"] = line
+    found = cycle(imports(write(tmp_path / "box", files)))
+    assert sorted(set(found)) == ["box.inner.one", "box.other"]
