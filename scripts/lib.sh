@@ -35,22 +35,38 @@ declare -A root_packages=(
 note() { printf 'prefilter: %s\n' "$*" >&2; }
 fail() { note "$*"; exit 1; }
 
-# lock FILE: waits until no other process holds it, and holds it until `unlock` or the shell's end.
+declare -A lock_fds=() lock_depths=()
+
+# lock FILE: waits until no other process holds it, and holds it until as many calls of `unlock FILE`, or the
+# shell's end.
 lock() {
+  local fd depth=${lock_depths[$1]:-0}
+  lock_depths[$1]=$((depth + 1))
+  ((depth == 0)) || return 0
   mkdir -p "$(dirname "$1")"
-  exec {lock_fd}>"$1"
-  flock --timeout 2 "$lock_fd" && return
+  exec {fd}>"$1"
+  lock_fds[$1]=$fd
+  flock --timeout 2 "$fd" && return
   note "waiting for another run to finish ($1)"
-  flock "$lock_fd"
+  flock "$fd"
 }
 
-unlock() { exec {lock_fd}>&-; }
+unlock() {
+  local fd=${lock_fds[$1]} depth=${lock_depths[$1]}
+  lock_depths[$1]=$((depth - 1))
+  ((depth > 1)) || exec {fd}>&-
+}
 
-# use_suite SUITE: lets a root of that Debian release be the root; sets suite and root_dir.
+# build_lock PRESET: prints the file that is locked by who changes that build folder, or needs it to stay as it is.
+build_lock() { printf '%s\n' "$build_dir/.$1.lock"; }
+
+# use_suite SUITE: lets a root of that Debian release be the root; sets suite, root_dir and enter_root, the words
+# that run a command in it, with the host's folders at their places.
 use_suite() {
   [[ -n ${root_packages[$1]:-} ]] || fail "PREFILTER_SUITE: found '$1'; allowed are ${!root_packages[*]}"
   suite=$1
   root_dir=$cache_dir/$suite
+  enter_root=(unshare --mount --propagation unchanged -- "$source_dir/scripts/enter_root" "$root_dir" "$source_dir")
 }
 
 use_suite "${PREFILTER_SUITE:-trixie}"
@@ -232,7 +248,7 @@ ensure_root() {
     mapfile -t missing < <(missing_packages --root "$root_dir" "${packages[@]}")
     if ((${#missing[@]})); then
       note "installing ${missing[*]} in $root_dir"
-      logged root-install.log exec_in_root sh -c '
+      logged root-install.log "${enter_root[@]}" sh -c '
         export DEBIAN_FRONTEND=noninteractive
         apt-get -q update && apt-get -q -y install "$@" && apt-get -q clean' _ "${missing[@]}"
     fi
@@ -245,12 +261,6 @@ ensure_root() {
 # root_version PACKAGE: prints the version that the root has of it.
 root_version() {
   dpkg-query --admindir "$root_dir/var/lib/dpkg" -W -f '${Version}' "$1"
-}
-
-# exec_in_root COMMAND...: becomes a command in the Debian root, with the host's folders at their places.
-exec_in_root() {
-  exec unshare --mount --propagation unchanged -- \
-    "$source_dir/scripts/enter_root" "$root_dir" "$source_dir" "$@"
 }
 
 # The host's compiler builds for the root's Python too: it needs the headers, and no library. Sets blender_tag.
@@ -316,7 +326,7 @@ setup() {
   fi
   find_headers
   host_tag=$(/usr/bin/python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
-  unlock
+  unlock "$cache_dir/.lock"
 }
 
 # configured FOLDER NAME=VALUE...: whether that build folder was configured with these.
@@ -334,42 +344,47 @@ configured() {
 configure() {
   local preset=$1 folder=$build_dir/$1
   shift
-  ! configured "$folder" "CMAKE_HOME_DIRECTORY=$source_dir" "$@" || return 0
-  note "configuring build/$preset"
-  mkdir -p "$folder"
-  if ! (cd "$source_dir" && cmake --fresh --preset "$preset" "${@/#/-D}") </dev/null >"$folder/.configured" 2>&1; then
-    cat "$folder/.configured" >&2
-    fail "cmake failed"
+  lock "$(build_lock "$preset")"
+  if ! configured "$folder" "CMAKE_HOME_DIRECTORY=$source_dir" "$@"; then
+    note "configuring build/$preset"
+    mkdir -p "$folder"
+    if ! (cd "$source_dir" && cmake --fresh --preset "$preset" "${@/#/-D}") </dev/null >"$folder/.configured" 2>&1; then
+      cat "$folder/.configured" >&2
+      fail "cmake failed"
+    fi
   fi
+  unlock "$(build_lock "$preset")"
 }
 
 # compile PRESET TARGET...: runs ninja; prints, on standard error, only when there is work.
 compile() {
   local preset=$1
   shift
+  lock "$(build_lock "$preset")"
   NINJA_STATUS='[%f/%t %e s] ' ninja -C "$build_dir/$preset" "$@" </dev/null 2>&1 |
     sed --unbuffered -e '/^ninja: \(no work to do\|Entering directory\)/d' -e '/^-- /d' \
       -e '/Re-checking globbed directories/d' >&2
+  unlock "$(build_lock "$preset")"
 }
 
 configure_release() {
-  configure release "PREFILTER_PYTHON_HEADERS=$python_headers" \
-    "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir" "PREFILTER_SQUISH_SOURCE=$squish_dir"
+  configure release "PREFILTER_PYTHON_HEADERS=$python_headers" "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" \
+    "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir" "PREFILTER_SQUISH_SOURCE=$squish_dir"
 }
 
 # build_packages: brings the Python package of every Python up to date.
 build_packages() {
-  lock "$build_dir/.lock"
+  lock "$(build_lock release)"
   configure_release
   compile release "${python_tags[@]/#/package_}"
-  unlock
+  unlock "$(build_lock release)"
 }
 
 # exec_with_blender COMMAND...: becomes a command that has that Blender on PATH and the package importable.
 exec_with_blender() {
   if [[ $blender_kind == root ]]; then
     export PYTHONPATH=$build_dir/release/python/$blender_tag
-    exec_in_root "$@"
+    exec "${enter_root[@]}" "$@"
   fi
   local shim=$build_dir/blender-shim
   mkdir -p "$shim"
@@ -378,90 +393,25 @@ exec_with_blender() {
     PYTHONPATH="$build_dir/release/python/$host_tag${PYTHONPATH:+:$PYTHONPATH}" "$@"
 }
 
-version() {
-  local manifest cmake
-  manifest=$(sed -n 's/^version *= *"\([^"]*\)".*/\1/p' "$source_dir/blender_manifest.toml")
-  cmake=$(sed -n 's/^project(.*VERSION \([0-9.]*\).*/\1/p' "$source_dir/CMakeLists.txt")
-  [[ -n $manifest && $manifest == "$cmake" ]] ||
-    fail "blender_manifest.toml has version '$manifest', CMakeLists.txt '$cmake': they must be equal"
-  printf '%s\n' "$manifest"
+# package_with COMMAND ARGUMENT...: runs scripts/packaging.py, which gets to know how Blender is started.
+package_with() {
+  local blender=("$blender_file")
+  [[ $blender_kind != root ]] || blender=("${enter_root[@]}" blender)
+  /usr/bin/python3 "$source_dir/scripts/packaging.py" "$@" -- "${blender[@]}"
 }
 
-# fingerprint: a hash of everything that goes into the extension.
-fingerprint() {
-  (
-    cd "$source_dir"
-    find addon blender_manifest.toml LICENSE scripts/make_wheel.py scripts/lib.sh \
-      "${python_tags[@]/#/build/release/python/}" -name __pycache__ -prune -o -type f -print0 |
-      sort -z | xargs -0 sha256sum | sha256sum | cut -d ' ' -f 1
-  )
-}
-
-# package_extension: makes build/prefilter-<version>.zip where its contents are new. Packages must be built.
+# package_extension [--install FOLDER]: makes build/prefilter-<version>.zip where its contents are new, and sets
+# extension_zip to it. Packages must be built. FOLDER, for BLENDER_USER_RESOURCES, then has it installed and enabled.
 package_extension() {
-  lock "$build_dir/.lock"
-  local version mark tag stage=$build_dir/extension wheels
-  version=$(version)
-  extension_zip=$build_dir/prefilter-$version.zip
-  mark=$(fingerprint)
-  if [[ -e $extension_zip && $(cat "$build_dir/.packaged" 2>/dev/null) == "$mark" ]]; then
-    unlock
-    return
-  fi
-  note "packaging the extension"
-  rm -rf "$stage" "$build_dir/wheels"
-  mkdir -p "$stage/wheels"
-  for tag in "${python_tags[@]}"; do
-    /usr/bin/python3 "$source_dir/scripts/make_wheel.py" --package "$build_dir/release/python/$tag/prefilter" \
-      --tag "$tag" --version "$version" --license "$source_dir/LICENSE" \
-      --linked "$opensubdiv_dir" --linked "$squish_dir" --output "$build_dir/wheels" >&2
-  done
-  cp "$build_dir/wheels"/*.whl "$stage/wheels/"
-  cp -R "$source_dir/addon/." "$stage/"
-  find "$stage" -name __pycache__ -prune -exec rm -rf {} +
-  cp "$source_dir/LICENSE" "$stage/"
-  wheels=$(cd "$stage" && printf '"./%s", ' wheels/*.whl)
-  awk -v wheels="wheels = [${wheels%, }]" '/^\[/ && !done { print wheels "\n"; done = 1 } { print }
-    END { if (!done) print wheels }' "$source_dir/blender_manifest.toml" >"$stage/blender_manifest.toml"
-  blender_command extension build --source-dir "$stage" --output-filepath "$extension_zip.new.zip"
-  blender_command extension validate "$extension_zip.new.zip"
-  mv "$extension_zip.new.zip" "$extension_zip"
-  printf '%s\n' "$mark" >"$build_dir/.packaged"
-  unlock
-}
-
-# blender_command ARGUMENT...: `blender --command`, with factory settings; its output is shown if it fails.
-blender_command() {
-  local log
-  log=$(mktemp "$build_dir/blender-command.XXXXXX")
-  if ! (exec_with_blender blender --background --factory-startup --command "$@") </dev/null >"$log" 2>&1; then
-    cat "$log" >&2
-    rm -f "$log"
-    fail "blender --command $1 $2 failed"
-  fi
-  rm -f "$log"
-}
-
-# install_extension RESOURCES: installs and enables the packaged extension, as a user would, in a folder for
-# BLENDER_USER_RESOURCES. What was installed there goes first: Blender keeps a wheel whose name it knows.
-install_extension() {
-  rm -rf "$1/extensions"
-  mkdir -p "$1"
-  BLENDER_USER_RESOURCES=$1 blender_command extension install-file -r user_default -e "$extension_zip"
+  lock "$(build_lock release)"
+  extension_zip=$(package_with extension "${python_tags[@]/#/--tag=}" "--linked=$opensubdiv_dir" "--linked=$squish_dir" "$@")
+  unlock "$(build_lock release)"
 }
 
 # ensure_extension: packages the extension and installs it in build/blender/<tag>, where its contents are
 # new; then Blender is to use that folder, unless the caller has set BLENDER_USER_RESOURCES.
 ensure_extension() {
   [[ -z ${BLENDER_USER_RESOURCES:-} ]] || return 0
-  package_extension
-  local resources=$build_dir/blender/$blender_tag
-  lock "$build_dir/.lock"
-  if [[ $(cat "$resources/.installed" 2>/dev/null) != "$(cat "$build_dir/.packaged")" ]]; then
-    note "installing the extension in $resources"
-    install_extension "$resources"
-    cp "$build_dir/.packaged" "$resources/.installed"
-  fi
-  unlock
-  export BLENDER_USER_RESOURCES=$resources
+  package_extension --install "$build_dir/blender/$blender_tag"
+  export BLENDER_USER_RESOURCES=$build_dir/blender/$blender_tag
 }
