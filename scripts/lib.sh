@@ -125,11 +125,13 @@ ensure_packages() {
     printf '  apt-get install --no-install-recommends %s\n' "${missing[*]}" >&2
     exit 1
   fi
+  lock "$cache_dir/.apt.lock"
   note "installing ${missing[*]}"
   export DEBIAN_FRONTEND=noninteractive
   apt-get -q -o DPkg::Lock::Timeout=600 update </dev/null >/dev/null 2>&1 ||
     note "apt-get update had errors; going on with the lists there are"
   logged apt.log apt-get -q -y --no-install-recommends -o DPkg::Lock::Timeout=600 install "${missing[@]}"
+  unlock "$cache_dir/.apt.lock"
 }
 
 # choose_blender: sets blender_kind (host or root), and for a host's Blender blender_file and blender_tag.
@@ -310,14 +312,21 @@ find_headers() {
   [[ ! -e $folder ]] || pybind11_include=$folder
 }
 
-# setup: installs or makes what is missing, and sets blender_kind, blender_tag, host_tag, python_tags,
-# python_headers and pybind11_include.
-setup() {
+# setup_host: installs or fetches what building needs, and sets blender_kind and, for a host's Blender, blender_file.
+setup_host() {
   lock "$cache_dir/.lock"
   choose_blender
   ensure_packages "${host_packages[@]}"
   ensure_opensubdiv
   ensure_squish
+  unlock "$cache_dir/.lock"
+}
+
+# setup: installs or makes all that is missing, and sets blender_kind, blender_tag, host_tag, python_tags,
+# python_headers and pybind11_include.
+setup() {
+  lock "$cache_dir/.lock"
+  setup_host
   if [[ $blender_kind == root ]]; then
     ensure_root
     ensure_root_headers
