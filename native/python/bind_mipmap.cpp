@@ -1,8 +1,10 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <tuple>
 
 #include "convert.h"
+#include "prefilter/base/error.h"
 #include "prefilter/color/transfer.h"
 #include "prefilter/mipmap/mipmap_error.h"
 #include "prefilter/mipmap/mipmaps.h"
@@ -18,6 +20,12 @@ using WrapNames = std::pair<std::string, std::string>;
 
 WrapModes wrap_modes(const WrapNames& names) {
   return {wrap_mode(names.first), wrap_mode(names.second)};
+}
+
+Reader reader_of(const std::string& name) {
+  if (name == "linear") return Reader::kLinear;
+  if (name == "srgb-after") return Reader::kSrgbAfter;
+  throw_invalid("reader: '" + name + "' is not one of linear, srgb-after");
 }
 
 MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::optional<float> low,
@@ -144,6 +152,13 @@ void bind_mipmap(py::module_& m) {
   using ForBytes = std::vector<Array<std::uint8_t>> (*)(
       const Array<std::uint8_t>&, bool, const std::vector<const Surface*>&, std::string, WrapNames,
       std::optional<float>, std::optional<float>, int, bool, std::string, double, py::object, int);
+  m.def("mipmap_filters", [] {
+    std::vector<std::tuple<std::string, bool, bool>> filters;
+    for (const MipmapFilter& filter : mipmap_filters()) {
+      filters.emplace_back(name_of(filter), needs_surface(filter), is_fit(filter));
+    }
+    return filters;
+  });
   m.def("coarser_levels", static_cast<ForFloats>(&bound_mipmaps), py::arg("image"),
         py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"), py::arg("high"),
         py::arg("levels"), py::arg("premultiplied"), py::arg("reader"), py::arg("seam_weight"),

@@ -5,10 +5,10 @@ import prefilter
 import pytest
 from scenes import bilinear_taps, join, random_image, random_soup, soup, square, surface_samples
 
-PLAIN = ["box", "tent", "lanczos3"]
-COVERED = ["box-covered", "tent-covered", "lanczos3-covered"]
+PLAIN = ["box", "tent", "bspline2", "mitchell", "lanczos2", "lanczos3"]
+COVERED = ["box-covered", "mitchell-covered", "lanczos3-covered"]
 PAM = ["pam-box", "pam-bilinear", "pam-trilinear"]
-ALL = PLAIN + COVERED + PAM
+ALL = PLAIN + [f"{name}-covered" for name in PLAIN] + PAM
 CLAMP = ("clamp", "clamp")
 
 
@@ -51,23 +51,63 @@ def test_box_filters_are_block_means_under_an_even_parameterization(filter):
         assert np.abs(level - box_mean(image, k)).max() < 1e-6
 
 
-def test_tent_and_lanczos_are_their_kernels():
+def quadratic_b_spline(x):
+    """A box convolved with a tent: the mean of the tent over [x - 1/2, x + 1/2]."""
+    low, high = (np.clip(x + step, -1, 1) for step in (-0.5, 0.5))
+    return (high - high * np.abs(high) / 2) - (low - low * np.abs(low) / 2)
+
+
+def mitchell(x):
+    """Convex combination of the cubic B-spline and the Catmull-Rom spline, 1 : 2."""
+    x = np.abs(x)
+    b_spline = np.where(x < 1, 2 / 3 - x**2 + x**3 / 2, (2 - x) ** 3 / 6)
+    catmull_rom = np.where(x < 1, 1 - 2.5 * x**2 + 1.5 * x**3, 2 - 4 * x + 2.5 * x**2 - 0.5 * x**3)
+    return b_spline / 3 + catmull_rom * 2 / 3
+
+
+KERNELS = {
+    "box": (0.5, np.ones_like),
+    "tent": (1, lambda x: 1 - np.abs(x)),
+    "bspline2": (1.5, quadratic_b_spline),
+    "mitchell": (2, mitchell),
+    "lanczos2": (2, lambda x: np.sinc(x) * np.sinc(x / 2)),
+    "lanczos3": (3, lambda x: np.sinc(x) * np.sinc(x / 3)),
+}
+
+
+def test_filters_are_named_for_every_kernel():
+    names = [f.name for f in prefilter.MIPMAP_FILTERS]
+    assert names == ALL
+    assert [f.name for f in prefilter.MIPMAP_FILTERS if not f.needs_surface] == PLAIN
+    assert [f.name for f in prefilter.MIPMAP_FILTERS if f.is_fit] == PAM[1:]
+
+
+@pytest.mark.parametrize("name", PLAIN)
+def test_kernels_are_their_definitions(name):
+    """Over all texels, and over covered ones: filter(image * covered) / filter(covered)."""
+    radius, kernel = KERNELS[name]
+    offsets = (np.arange(-16, 20) + 0.5 - 2) / 4
+    weights = np.where(np.abs(offsets) < radius, kernel(offsets), 0)
+    weights /= weights.sum()
+
+    def filtered(image, row, column):
+        rows = (np.arange(-16, 20) + 4 * row) % 16
+        columns = (np.arange(-16, 20) + 4 * column) % 16
+        return weights @ image[np.ix_(rows, columns)] @ weights
+
     image = random_image(3, 16, 16, 1)
     flat = image[..., 0].astype(np.float64)
-    kernels = {
-        "tent": (1, lambda x: 1 - np.abs(x)),
-        "lanczos3": (3, lambda x: np.sinc(x) * np.sinc(x / 3)),
-    }
-    for filter, (radius, kernel) in kernels.items():
-        level = prefilter.mipmaps(image, filter=filter, wrap="repeat", bounds=None)[2]
-        offsets = (np.arange(-16, 20) + 0.5 - 2) / 4
-        weights = np.where(np.abs(offsets) < radius, kernel(offsets), 0)
-        weights /= weights.sum()
-        for row, column in [(0, 0), (1, 2), (3, 3)]:
-            rows = (np.arange(-16, 20) + 4 * row) % 16
-            columns = (np.arange(-16, 20) + 4 * column) % 16
-            expected = weights @ flat[np.ix_(rows, columns)] @ weights
-            assert level[row, column, 0] == pytest.approx(expected, abs=1e-6)
+    covered = np.zeros((16, 16))
+    covered[1:15, 2:15] = 1  # Every texel of level 2 has some.
+    touching = square((2 / 16, 1 / 16), (15 / 16, 15 / 16)).surface
+    options = {"wrap": "repeat", "bounds": None, "levels": 3}
+    plain = prefilter.mipmaps(image, filter=name, **options)[2]
+    masked = prefilter.mipmaps(image, touching, filter=f"{name}-covered", **options)[2]
+    for row, column in [(0, 0), (1, 2), (3, 3)]:
+        expected = filtered(flat, row, column)
+        assert plain[row, column, 0] == pytest.approx(expected, abs=2e-6)
+        expected = filtered(flat * covered, row, column) / filtered(covered, row, column)
+        assert masked[row, column, 0] == pytest.approx(expected, abs=1e-5)
 
 
 def test_weights_sum_to_the_surface_area():

@@ -23,7 +23,7 @@ void pad_row(const float* row, int size, int channels, Wrap mode, int before, in
   }
 }
 
-std::vector<Taps> all_taps(Kernel kernel, int source_size, int target_size) {
+std::vector<Taps> all_taps(const Kernel& kernel, int source_size, int target_size) {
   const double scale = static_cast<double>(source_size) / target_size;
   std::vector<Taps> taps;
   for (int j = 0; j < target_size; ++j) taps.push_back(downsampling_taps(kernel, scale, j));
@@ -43,7 +43,7 @@ void filter_row(const float* padded, int before, const std::vector<Taps>& taps, 
   }
 }
 
-Image filter_rows(const ImageView& source, int width, Kernel kernel, Wrap mode,
+Image filter_rows(const ImageView& source, int width, const Kernel& kernel, Wrap mode,
                   const Progress& progress, int threads) {
   const std::vector<Taps> taps = all_taps(kernel, source.width, width);
   const int taps_end = taps.back().first + static_cast<int>(taps.back().weights.size());
@@ -75,7 +75,7 @@ Image filter_rows(const ImageView& source, int width, Kernel kernel, Wrap mode,
   return target;
 }
 
-Image filter_columns(const ImageView& source, int height, Kernel kernel, Wrap mode,
+Image filter_columns(const ImageView& source, int height, const Kernel& kernel, Wrap mode,
                      const Progress& progress, int threads) {
   const std::vector<Taps> taps = all_taps(kernel, source.height, height);
   const std::ptrdiff_t row_values = static_cast<std::ptrdiff_t>(source.width) * source.channels;
@@ -98,8 +98,8 @@ Image filter_columns(const ImageView& source, int height, Kernel kernel, Wrap mo
 
 }  // namespace
 
-Image downsample(const ImageView& source, int width, int height, Kernel kernel, WrapModes wrap,
-                 const Progress& progress, int threads) {
+Image downsample(const ImageView& source, int width, int height, const Kernel& kernel,
+                 WrapModes wrap, const Progress& progress, int threads) {
   assert(width <= source.width && height <= source.height);
   Image rows = width == source.width
                    ? Image(source)

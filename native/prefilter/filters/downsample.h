@@ -10,7 +10,7 @@ namespace prefilter {
 
 /// The image of width x height texels, no more than the source's, each the kernel-weighted mean of
 /// the source around it. What lies outside of the source is as the wrap mode says.
-Image downsample(const ImageView& source, int width, int height, Kernel kernel, WrapModes wrap,
-                 const Progress& progress, int threads);
+Image downsample(const ImageView& source, int width, int height, const Kernel& kernel,
+                 WrapModes wrap, const Progress& progress, int threads);
 
 }  // namespace prefilter

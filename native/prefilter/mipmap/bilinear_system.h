@@ -8,7 +8,7 @@
 #include "prefilter/base/lanes.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
-#include "prefilter/mipmap/seams.h"
+#include "prefilter/mipmap/seam_links.h"
 #include "prefilter/solve/nine_point_system.h"
 #include "prefilter/texels/moment_sweep.h"
 

@@ -13,7 +13,7 @@
 #include "prefilter/base/text.h"
 #include "prefilter/color/srgb_decoder.h"
 #include "prefilter/color/transfer.h"
-#include "prefilter/mipmap/mipmaps.h"
+#include "prefilter/mipmap/argument_checks.h"
 #include "prefilter/moments/four_point_rule.h"
 #include "prefilter/texels/coverage.h"
 #include "prefilter/texels/levels.h"
@@ -241,7 +241,7 @@ std::vector<double> measure_decoded(const std::vector<ImageView>& levels, const 
 
 void check(const std::vector<ImageView>& levels, const ImageView& image,
            const std::vector<const Surface*>& surfaces, const std::vector<double>& mip_values) {
-  check_mipmap_image(image);
+  check_channels(image);
   if (surfaces.empty()) throw_invalid("surface: none was given; at least one is needed");
   check_surface_area(surfaces);
   const int full = full_level_count(image.width, image.height);

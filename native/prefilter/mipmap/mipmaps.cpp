@@ -1,6 +1,6 @@
-// Chapter 7. Equation 7.1 with a box is kPamBox, where the texels of the image are boxes too, so
-// that an even parameterization gives the plain box filter; section 7.3 level by level is
-// kPamBilinear.
+// Chapter 7. SurfaceFilter::kBox is equation 7.1 with a box, where the texels of the image are
+// boxes too, so that an even parameterization gives the plain box filter; section 7.3 level by
+// level is SurfaceFilter::kBilinear.
 #include "prefilter/mipmap/mipmaps.h"
 
 #include <algorithm>
@@ -13,11 +13,12 @@
 #include "prefilter/base/text.h"
 #include "prefilter/color/transfer.h"
 #include "prefilter/filters/push_pull.h"
+#include "prefilter/mipmap/argument_checks.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/encoded_fit.h"
 #include "prefilter/mipmap/filtered_image.h"
 #include "prefilter/mipmap/pam_box.h"
-#include "prefilter/mipmap/seams.h"
+#include "prefilter/mipmap/seam_links.h"
 #include "prefilter/mipmap/texture_space.h"
 #include "prefilter/mipmap/trilinear_system.h"
 #include "prefilter/texels/coverage.h"
@@ -28,56 +29,14 @@
 namespace prefilter {
 namespace {
 
-struct NamedFilter {
-  const char* name;
-  MipmapFilter filter;
-};
-
-constexpr NamedFilter kFilters[] = {
-    {"box", MipmapFilter::kBox},
-    {"tent", MipmapFilter::kTent},
-    {"lanczos3", MipmapFilter::kLanczos3},
-    {"box-covered", MipmapFilter::kBoxCovered},
-    {"tent-covered", MipmapFilter::kTentCovered},
-    {"lanczos3-covered", MipmapFilter::kLanczos3Covered},
-    {"pam-box", MipmapFilter::kPamBox},
-    {"pam-bilinear", MipmapFilter::kPamBilinear},
-    {"pam-trilinear", MipmapFilter::kPamTrilinear},
-};
-
 // Which texels of the image a filter reads.
 enum class Reads { kAll, kTouched, kWeighted, kLookedUp };
 
-Reads reads_of(MipmapFilter filter) {
-  switch (filter) {
-    case MipmapFilter::kBox:
-    case MipmapFilter::kTent:
-    case MipmapFilter::kLanczos3:
-      return Reads::kAll;
-    case MipmapFilter::kBoxCovered:
-    case MipmapFilter::kTentCovered:
-    case MipmapFilter::kLanczos3Covered:
-      return Reads::kTouched;
-    case MipmapFilter::kPamBox:
-      return Reads::kWeighted;
-    case MipmapFilter::kPamBilinear:
-    case MipmapFilter::kPamTrilinear:
-      return Reads::kLookedUp;
+Reads reads_of(const MipmapFilter& filter) {
+  if (const auto* in_texture = std::get_if<TextureSpaceFilter>(&filter)) {
+    return in_texture->weighting == Weighting::kAll ? Reads::kAll : Reads::kTouched;
   }
-  return Reads::kAll;
-}
-
-Kernel kernel_of(MipmapFilter filter) {
-  switch (filter) {
-    case MipmapFilter::kTent:
-    case MipmapFilter::kTentCovered:
-      return Kernel::kTent;
-    case MipmapFilter::kLanczos3:
-    case MipmapFilter::kLanczos3Covered:
-      return Kernel::kLanczos3;
-    default:
-      return Kernel::kBox;
-  }
+  return is_fit(filter) ? Reads::kLookedUp : Reads::kWeighted;
 }
 
 class Builder {
@@ -176,7 +135,7 @@ class Builder {
 
   std::vector<Image> texture_space_levels() const {
     const Progress progress = options_.progress.part(0.16, 0.97);
-    const Kernel kernel = kernel_of(options_.filter);
+    const Kernel& kernel = *std::get<TextureSpaceFilter>(options_.filter).kernel;
     std::vector<Image> levels;
     for (int level = 1; level < level_count_; ++level) {
       const Progress part = progress.part(static_cast<double>(level - 1) / (level_count_ - 1),
@@ -192,8 +151,9 @@ class Builder {
 
   std::vector<Image> fitted_levels() const {
     const auto fit = [this]<int C>() {
-      return options_.filter == MipmapFilter::kPamTrilinear ? solve_together<C>()
-                                                            : solve_levels<C>();
+      return std::get<SurfaceFilter>(options_.filter) == SurfaceFilter::kTrilinear
+                 ? solve_together<C>()
+                 : solve_levels<C>();
     };
     switch (channels_) {
       case 1:
@@ -381,66 +341,30 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
     throw_invalid("threads: " + std::to_string(options.threads) +
                   "; a positive number is needed, or 0 for all processors");
   }
-  if (options.filter == MipmapFilter::kPamTrilinear && options.reader != Reader::kLinear) {
+  if (options.filter == MipmapFilter(SurfaceFilter::kTrilinear) &&
+      options.reader != Reader::kLinear) {
     throw_invalid(
         "reader: 'srgb-after' goes with pam-bilinear: such readers do not interpolate between "
         "levels; use linear for pam-trilinear");
   }
-  if (reads_of(options.filter) == Reads::kAll) return;
+  if (!needs_surface(options.filter)) return;
   if (surfaces.empty()) {
-    throw_invalid(
-        "surface: none was given, and this filter needs one; without a surface use box, tent "
-        "or lanczos3");
+    std::string others;
+    for (const MipmapFilter& filter : mipmap_filters()) {
+      if (!needs_surface(filter)) others += (others.empty() ? "" : ", ") + name_of(filter);
+    }
+    throw_invalid("surface: none was given, and " + name_of(options.filter) +
+                  " needs one; without a surface use one of " + others);
   }
   check_surface_area(surfaces);
 }
 
 }  // namespace
 
-MipmapFilter mipmap_filter(const std::string& name) {
-  std::string names;
-  for (const NamedFilter& filter : kFilters) {
-    if (name == filter.name) return filter.filter;
-    names += (names.empty() ? "" : ", ") + std::string(filter.name);
-  }
-  throw_invalid("filter: '" + name + "' is not one of " + names);
-}
-
-Reader reader_of(const std::string& name) {
-  if (name == "linear") return Reader::kLinear;
-  if (name == "srgb-after") return Reader::kSrgbAfter;
-  throw_invalid("reader: '" + name + "' is not one of linear, srgb-after");
-}
-
-void check_mipmap_image(const ImageView& image) {
-  if (image.channels < 1 || image.channels > kMaxChannels) {
-    throw_invalid("image: " + std::to_string(image.channels) + " channels; 1 to 4 are allowed");
-  }
-}
-
-void check_surface_area(const std::vector<const Surface*>& surfaces) {
-  double area = 0.0;
-  for (const Surface* surface : surfaces) area += surface->total_area();
-  if (!(area > 0.0) || !std::isfinite(area)) {
-    throw_invalid("surface: the triangles have an area of " + to_text(area) +
-                  " in all; a positive, finite one is needed");
-  }
-}
-
-void throw_outside() {
-  throw_invalid(
-      "surface: none of it lies inside of the image, and with the wrap mode border only what "
-      "does counts; use clamp or repeat, or move the uvs");
-}
-
-void check_mapped(const TexelTriangles& triangles) {
-  if (!(triangles.total_mass > 0.0)) throw_outside();
-}
-
 std::vector<Image> coarser_levels(const TexelSource& image,
                                   const std::vector<const Surface*>& surfaces,
                                   const MipmapOptions& options) {
-  check_mipmap_image({nullptr, image.width, image.height, image.channels});
+  check_channels({nullptr, image.width, image.height, image.channels});
   check_options(image, surfaces, options);
   return Builder(image, surfaces, options).run();
 }

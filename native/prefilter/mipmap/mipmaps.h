@@ -2,35 +2,16 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
+#include "prefilter/mipmap/mipmap_filter.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/texels/reader.h"
-#include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
-
-enum class MipmapFilter {
-  kBox,  // texture space: every texel counts, and the surface is not looked at
-  kTent,
-  kLanczos3,
-  kBoxCovered,  // texture space: texels that no triangle touches are ignored
-  kTentCovered,
-  kLanczos3Covered,
-  kPamBox,        // means over the surface: equation 7.1 with a box
-  kPamBilinear,   // least squares for bilinear lookups, each level by itself: section 7.3
-  kPamTrilinear,  // least squares for trilinear lookups, all levels together: section 7.3
-};
-
-/// The reader of a public name: "linear" or "srgb-after". Throws Error for any other.
-Reader reader_of(const std::string& name);
-
-/// The filter of a public name such as "pam-bilinear". Throws Error for any other, naming all.
-MipmapFilter mipmap_filter(const std::string& name);
 
 /// Lowest and highest value of a texel; either may be open.
 struct Bounds {
@@ -39,7 +20,7 @@ struct Bounds {
 };
 
 struct MipmapOptions {
-  MipmapFilter filter = MipmapFilter::kPamBilinear;
+  MipmapFilter filter = SurfaceFilter::kBilinear;
   WrapModes wrap;
   Bounds bounds;
   // How many levels to return, with level 0; 0 = down to 1 x 1.
@@ -48,7 +29,8 @@ struct MipmapOptions {
   // it yet. They are multiplied, filtered and divided again. True: every channel is filtered as it
   // stands.
   bool premultiplied = false;
-  // Fitted to by kPamBilinear; the levels of the other filters are the same for all readers.
+  // Fitted to by SurfaceFilter::kBilinear; the levels of the other filters are the same for all
+  // readers.
   Reader reader = Reader::kLinear;
   // What the square of the difference across UV seams, over a strip one texel of the level wide,
   // counts against the error over the surface. For the fitted filters.
@@ -60,11 +42,12 @@ struct MipmapOptions {
 /// Levels of an image: 0 is the image itself, each other half as wide and high, rounded down, and
 /// never less than 1.
 ///
-/// A level of kPamBilinear minimises the integral over the surface of the squared difference
-/// between the bilinear lookups of the level and of the image, subject to the bounds; those of
-/// kPamTrilinear the integral over all mip values too, of trilinear lookups, with the mean over the
-/// surface as the last level. Levels of the other filters are clipped to the bounds. Texels that
-/// the surface does not read have no influence; in the levels they are filled by push-pull.
+/// A level of SurfaceFilter::kBilinear minimises the integral over the surface of the squared
+/// difference between the bilinear lookups of the level and of the image, subject to the bounds;
+/// those of SurfaceFilter::kTrilinear the integral over all mip values too, of trilinear lookups,
+/// with the mean over the surface as the last level. Levels of the other filters are clipped to the
+/// bounds. Texels that the surface does not read have no influence; in the levels they are filled
+/// by push-pull.
 ///
 /// Throws Error where channels are not 1 to 4, levels or bounds are out of range, a filter that
 /// needs a surface gets none or none that lies inside of the image, no triangle has an area, or a
@@ -78,17 +61,5 @@ std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surfa
 std::vector<Image> coarser_levels(const TexelSource& image,
                                   const std::vector<const Surface*>& surfaces,
                                   const MipmapOptions& options);
-
-/// Throws Error unless the image has 1 to 4 channels.
-void check_mipmap_image(const ImageView& image);
-
-/// Throws Error: none of the surface lies inside of the image.
-[[noreturn]] void throw_outside();
-
-/// Throws Error unless some of the surface lies inside of the image.
-void check_mapped(const TexelTriangles& triangles);
-
-/// Throws Error unless the surfaces have a positive, finite area in all.
-void check_surface_area(const std::vector<const Surface*>& surfaces);
 
 }  // namespace prefilter

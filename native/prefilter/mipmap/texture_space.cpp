@@ -11,15 +11,15 @@ constexpr float kLeastWeight = 0.1F;
 
 }  // namespace
 
-Image filter_level(const ImageView& image, int level, Kernel kernel, WrapModes wrap,
+Image filter_level(const ImageView& image, int level, const Kernel& kernel, WrapModes wrap,
                    const Progress& progress, int threads) {
   return downsample(image, level_size(image.width, level), level_size(image.height, level), kernel,
                     wrap, progress, threads);
 }
 
 Image filter_covered_level(const ImageView& image, const std::vector<unsigned char>& covered,
-                           int level, Kernel kernel, WrapModes wrap, const Progress& progress,
-                           int threads) {
+                           int level, const Kernel& kernel, WrapModes wrap,
+                           const Progress& progress, int threads) {
   Image masked(image.width, image.height, image.channels);
   Image mask(image.width, image.height, 1);
   for (std::size_t i = 0; i < covered.size(); ++i) {
@@ -32,13 +32,13 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
   }
   const int width = level_size(image.width, level);
   const int height = level_size(image.height, level);
-  const auto reduce = [&](const Image& source, Kernel with, double from, double to) {
+  const auto reduce = [&](const Image& source, const Kernel& with, double from, double to) {
     return downsample(source.view(), width, height, with, wrap, progress.part(from, to), threads);
   };
   Image sums = reduce(masked, kernel, 0.0, 0.4);
   Image weights = reduce(mask, kernel, 0.4, 0.5);
-  const Image box_sums = reduce(masked, Kernel::kBox, 0.5, 0.8);
-  const Image box_weights = reduce(mask, Kernel::kBox, 0.8, 0.9);
+  const Image box_sums = reduce(masked, box_kernel(), 0.5, 0.8);
+  const Image box_weights = reduce(mask, box_kernel(), 0.8, 0.9);
   for (std::size_t i = 0; i < weights.data.size(); ++i) {
     const bool box = weights.data[i] < kLeastWeight;
     const float weight = box ? box_weights.data[i] : weights.data[i];

@@ -12,7 +12,7 @@
 namespace prefilter {
 
 /// One level, filtered from the full-size image with the kernel scaled to the level's texels.
-Image filter_level(const ImageView& image, int level, Kernel kernel, WrapModes wrap,
+Image filter_level(const ImageView& image, int level, const Kernel& kernel, WrapModes wrap,
                    const Progress& progress, int threads);
 
 /// The same over covered texels alone, renormalised: filter(image * covered) / filter(covered). A
@@ -20,7 +20,7 @@ Image filter_level(const ImageView& image, int level, Kernel kernel, WrapModes w
 /// lobes leaves less than a tenth of the weight, the box over the texel's square takes its place.
 /// Uncovered texels are not read, and may be anything. `covered` has 0 or 1 a texel.
 Image filter_covered_level(const ImageView& image, const std::vector<unsigned char>& covered,
-                           int level, Kernel kernel, WrapModes wrap, const Progress& progress,
-                           int threads);
+                           int level, const Kernel& kernel, WrapModes wrap,
+                           const Progress& progress, int threads);
 
 }  // namespace prefilter

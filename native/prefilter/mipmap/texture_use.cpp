@@ -5,7 +5,7 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/filters/push_pull.h"
-#include "prefilter/mipmap/mipmaps.h"
+#include "prefilter/mipmap/argument_checks.h"
 #include "prefilter/texels/coverage.h"
 #include "prefilter/texels/texel_triangles.h"
 
@@ -36,7 +36,7 @@ Image texel_weights(const std::vector<const Surface*>& surfaces, int width, int 
 
 Image fill_unused(const ImageView& image, const std::vector<const Surface*>& surfaces,
                   WrapModes wrap, const Progress& progress, int threads) {
-  check_mipmap_image(image);
+  check_channels(image);
   check(surfaces, image.width, image.height);
   const std::vector<unsigned char> read =
       looked_up_texels(surfaces, image.width, image.height, wrap, progress.part(0.0, 0.6), threads);

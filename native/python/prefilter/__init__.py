@@ -9,7 +9,7 @@ from ._native import Cancelled
 from .color import to_linear, to_srgb
 from .contours import contour
 from .cutout import keep_coverage
-from .mipmap import mipmap_error, mipmaps, seam_contrast
+from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
 from .nearest import nearest_points
 from .normals import normal_mipmaps
 from .surface import Surface
@@ -21,8 +21,10 @@ from .voxel import ClosedMesh, Octree, close_holes, voxelize
 __version__ = VERSION
 
 __all__ = [
+    "MIPMAP_FILTERS",
     "Cancelled",
     "ClosedMesh",
+    "MipmapFilter",
     "Octree",
     "Surface",
     "close_holes",

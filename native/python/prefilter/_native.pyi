@@ -81,6 +81,7 @@ def covered_share(
     progress: ProgressCallback | None,
     threads: int,
 ) -> float: ...
+def mipmap_filters() -> list[tuple[str, bool, bool]]: ...
 def coarser_levels(
     image: npt.NDArray[np.float32],
     surfaces: list[Surface],

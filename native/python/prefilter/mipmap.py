@@ -1,6 +1,7 @@
 """Mipmaps of a texture on a surface (chapter 7)."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +21,24 @@ from ._border.arguments import (
 )
 from ._border.arrays import as_bytes, as_image, as_threads
 from .surface import Surface, as_surfaces
+
+
+class MipmapFilter(NamedTuple):
+    """A filter that `mipmaps` has.
+
+    Attributes:
+        name: What it is called: "tent", "tent-covered" or "pam-bilinear".
+        needs_surface: Whether it is made over the surface, or the texels that the surface touches.
+        is_fit: Whether it is a least-squares fit: the only ones that `seam_weight` changes.
+    """
+
+    name: str
+    needs_surface: bool
+    is_fit: bool
+
+
+MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters())
+"""All filters: each kernel, each with "-covered" behind, and those over the surface."""
 
 
 def mipmaps(
@@ -44,15 +63,16 @@ def mipmaps(
     the bounds. "pam-trilinear" does the same for all levels together and trilinear lookups,
     averaged over all mip values; level 0 is the image and the last level, of 1 x 1 texel, its mean
     over the surface. "pam-box" takes means over the surface (equation 7.1). The other filters work
-    in texture space: "box", "tent", "lanczos3", and with "-covered" behind them the same over
-    texels that some triangle touches. Texels that the surface does not read have no influence on
-    the "pam-" and "-covered" filters; they are filled from what is around them (push-pull).
+    in texture space: kernels, "box", "tent" or "lanczos3", over all texels, and with "-covered"
+    behind their names over texels that some triangle touches. `MIPMAP_FILTERS` has all names.
+    Texels that the surface does not read have no influence on the "pam-" and "-covered" filters;
+    they are filled from what is around them (push-pull).
 
     Args:
         image: (height, width, 1 to 4 channels), scene-linear, row 0 at v = 0. Any sides. Bytes
             (uint8) stand for a 255th each; see `encoding`.
-        surface: One surface, or several that share the image. Not needed for the plain filters.
-        filter: One of the names above.
+        surface: One surface, or several that share the image. Not needed for plain kernels.
+        filter: A name of `MIPMAP_FILTERS`.
         wrap: What lookups read outside of the image: "clamp", "repeat" or "border" (zero, and
             surface outside of the unit square weighs nothing), or a pair of these for u and v.
         bounds: (low, high) that texels of the levels may take; either may be None, and None stands

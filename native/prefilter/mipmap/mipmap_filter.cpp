@@ -1,0 +1,57 @@
+#include "prefilter/mipmap/mipmap_filter.h"
+
+#include "prefilter/base/error.h"
+
+namespace prefilter {
+
+std::vector<MipmapFilter> mipmap_filters() {
+  std::vector<MipmapFilter> filters;
+  for (const Weighting weighting : {Weighting::kAll, Weighting::kCovered}) {
+    for (const Kernel& kernel : kernels()) {
+      filters.emplace_back(TextureSpaceFilter{&kernel, weighting});
+    }
+  }
+  for (const SurfaceFilter filter :
+       {SurfaceFilter::kBox, SurfaceFilter::kBilinear, SurfaceFilter::kTrilinear}) {
+    filters.emplace_back(filter);
+  }
+  return filters;
+}
+
+std::string name_of(const MipmapFilter& filter) {
+  if (const auto* in_texture = std::get_if<TextureSpaceFilter>(&filter)) {
+    const std::string kernel(in_texture->kernel->name());
+    return in_texture->weighting == Weighting::kAll ? kernel : kernel + "-covered";
+  }
+  switch (std::get<SurfaceFilter>(filter)) {
+    case SurfaceFilter::kBox:
+      return "pam-box";
+    case SurfaceFilter::kBilinear:
+      return "pam-bilinear";
+    case SurfaceFilter::kTrilinear:
+      return "pam-trilinear";
+  }
+  return {};
+}
+
+MipmapFilter mipmap_filter(const std::string& name) {
+  std::string names;
+  for (const MipmapFilter& filter : mipmap_filters()) {
+    const std::string own = name_of(filter);
+    if (name == own) return filter;
+    names += (names.empty() ? "" : ", ") + own;
+  }
+  throw_invalid("filter: '" + name + "' is not one of " + names);
+}
+
+bool needs_surface(const MipmapFilter& filter) {
+  const auto* in_texture = std::get_if<TextureSpaceFilter>(&filter);
+  return in_texture == nullptr || in_texture->weighting != Weighting::kAll;
+}
+
+bool is_fit(const MipmapFilter& filter) {
+  const auto* over_surface = std::get_if<SurfaceFilter>(&filter);
+  return over_surface != nullptr && *over_surface != SurfaceFilter::kBox;
+}
+
+}  // namespace prefilter
