@@ -5,7 +5,7 @@ import prefilter
 import pytest
 from scenes import bilinear_taps, join, random_image, random_soup, soup, square, surface_samples
 
-PLAIN = ["box", "tent", "bspline2", "mitchell", "lanczos2", "lanczos3"]
+PLAIN = ["box", "tent", "bspline2", "mitchell", "lanczos2", "lanczos3", "gaussian"]
 COVERED = ["box-covered", "mitchell-covered", "lanczos3-covered"]
 PAM = ["pam-box", "pam-bilinear", "pam-trilinear"]
 ALL = PLAIN + [f"{name}-covered" for name in PLAIN] + PAM
@@ -72,6 +72,7 @@ KERNELS = {
     "mitchell": (2, mitchell),
     "lanczos2": (2, lambda x: np.sinc(x) * np.sinc(x / 2)),
     "lanczos3": (3, lambda x: np.sinc(x) * np.sinc(x / 3)),
+    "gaussian": (2, lambda x: np.exp(-np.pi * x**2)),
 }
 
 
