@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "convert.h"
+#include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/contour/grid_contour.h"
 #include "prefilter/contour/tree_contour.h"

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "convert.h"
+#include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/color/transfer.h"
 #include "prefilter/mipmap/mipmap_error.h"

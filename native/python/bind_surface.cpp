@@ -1,12 +1,14 @@
 #include <pybind11/stl.h>
 
 #include <cstring>
+#include <memory>
 #include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
 
 #include "convert.h"
+#include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/spatial/nearest.h"
 #include "prefilter/surface/subdivision.h"
@@ -146,8 +148,8 @@ std::tuple<Array<std::int64_t>, Array<double>, Array<double>> bound_nearest(
 }  // namespace
 
 void bind_surface(py::module_& m) {
-  py::class_<Surface>(m, "Surface")
-      .def(py::init([](Surface& taken) { return std::move(taken); }), py::arg("taken"))
+  py::class_<Surface, std::shared_ptr<Surface>>(m, "Surface")
+      .def(py::init([](std::shared_ptr<Surface> shared) { return shared; }), py::arg("shared"))
       .def(py::init(&bound_surface), py::arg("positions"), py::arg("triangles"), py::arg("uvs"),
            py::arg("weights"), py::arg("weights_of"))
       .def("placed", &bound_placed, py::arg("matrices"))

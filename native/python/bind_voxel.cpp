@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "convert.h"
+#include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/voxel/close_holes.h"
 #include "prefilter/voxel/combine.h"
@@ -162,21 +163,9 @@ std::size_t byte_count(const Octree& octree) {
 }  // namespace
 
 void bind_voxel(py::module_& m) {
-  py::class_<Octree>(m, "Octree")
-      .def(py::init([](Octree& taken) { return std::move(taken); }), py::arg("taken"))
-      .def("dense", &bound_dense, py::arg("depth"), py::arg("progress"), py::arg("threads"))
-      .def("values", &bound_values, py::arg("points"), py::arg("threads"))
-      .def("classify", &bound_classify, py::arg("points"), py::arg("tolerance"), py::arg("threads"))
-      .def(
-          "box_occupancy",
-          [](const Octree& octree, const Corners& box) {
-            return box_occupancy(octree, to_box(box));
-          },
-          py::arg("box"))
-      .def("combine", &bound_combine, py::arg("other"), py::arg("operation"), py::arg("progress"),
-           py::arg("threads"))
-      .def("coarsened", &coarsened, py::arg("depth"))
-      .def("levels", &bound_levels)
+  m.attr("MAX_DEPTH") = kMaxTreeDepth;
+  py::class_<Octree, std::shared_ptr<Octree>>(m, "Octree")
+      .def(py::init([](std::shared_ptr<Octree> shared) { return shared; }), py::arg("shared"))
       .def_property_readonly("volume", &volume)
       .def_property_readonly("root", [](const Octree& octree) { return octree.cells.root; })
       .def_property_readonly("depth", [](const Octree& octree) { return octree.depth; })
@@ -187,6 +176,19 @@ void bind_voxel(py::module_& m) {
       .def_property_readonly("node_count",
                              [](const Octree& octree) { return octree.cells.cell_count(); })
       .def_property_readonly("nbytes", &byte_count);
+  m.def("dense_values", &bound_dense, py::arg("octree"), py::arg("depth"), py::arg("progress"),
+        py::arg("threads"));
+  m.def("values_at", &bound_values, py::arg("octree"), py::arg("points"), py::arg("threads"));
+  m.def("classify", &bound_classify, py::arg("octree"), py::arg("points"), py::arg("tolerance"),
+        py::arg("threads"));
+  m.def(
+      "box_occupancy",
+      [](const Octree& octree, const Corners& box) { return box_occupancy(octree, to_box(box)); },
+      py::arg("octree"), py::arg("box"));
+  m.def("combine", &bound_combine, py::arg("octree"), py::arg("other"), py::arg("operation"),
+        py::arg("progress"), py::arg("threads"));
+  m.def("coarsened", &coarsened, py::arg("octree"), py::arg("depth"));
+  m.def("levels_of", &bound_levels, py::arg("octree"));
   m.def("voxelize", &bound_voxelize, py::arg("positions"), py::arg("triangles"), py::arg("depth"),
         py::arg("bounds"), py::arg("progress"), py::arg("threads"));
   m.def("close_holes", &bound_close_holes, py::arg("positions"), py::arg("triangles"),

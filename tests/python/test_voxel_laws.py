@@ -1,12 +1,12 @@
 """What must hold of octrees, whatever the mesh."""
 
-import contextlib
 import time
 from itertools import pairwise
 
 import numpy as np
 import prefilter
 import pytest
+from octrees import octrees_are_same
 from solids import Solid, box, crumpled, join, random_rotation, sphere, torus
 
 UNIT = (np.zeros(3), np.ones(3))
@@ -19,21 +19,6 @@ EMPTY = sphere(0.3, 1, (0.5, 0.5, 0.5)).flipped()
 def voxelized(solid: Solid, depth: int = DEPTH, bounds=UNIT, **options) -> prefilter.Octree:
     return prefilter.voxelize(
         solid.positions, solid.triangles, depth=depth, bounds=bounds, **options
-    )
-
-
-def same(first: prefilter.Octree, second: prefilter.Octree) -> bool:
-    """The same tree, bit for bit."""
-    own, other = first.levels(), second.levels()
-    return (
-        first.depth == second.depth
-        and first.bounds == second.bounds
-        and len(own) == len(other)
-        and all(
-            np.array_equal(a, b)
-            for x, y in zip(own, other, strict=True)
-            for a, b in zip(x, y, strict=True)
-        )
     )
 
 
@@ -51,11 +36,11 @@ def test_threads_do_not_change_a_bit(name):
     other = voxelized(B, 7, threads=1)
     for threads in (2, 3, 7, 0):
         again = voxelized(solid, 8, threads=threads)
-        assert same(first, again)
+        assert octrees_are_same(first, again)
         assert np.array_equal(first.dense(6, threads=1), again.dense(6, threads=threads))
         for operation in ("union", "intersection", "difference"):
             made = (getattr(first, operation)(other, threads=t) for t in (1, threads))
-            assert same(*made)
+            assert octrees_are_same(*made)
 
 
 def test_the_order_of_triangles_hardly_matters():
@@ -186,7 +171,7 @@ def test_set_laws(pair):
     assert nothing.difference(a).volume == 0
     for operation in ("union", "intersection"):
         ab, ba = getattr(a, operation)(b), getattr(b, operation)(a)
-        assert same(ab, ba)
+        assert octrees_are_same(ab, ba)
         again = getattr(ab, operation)(b)
         assert np.array_equal(again.dense(), ab.dense())
     # Absorption.
@@ -256,33 +241,6 @@ def test_bounds_that_share_no_corner_keep_the_volume():
     inside = a.intersection(b)
     full = voxelized(sphere(0.2, 4, (0.5, 0.5, 0.5)), 6).intersection(voxelized(A, 6))
     assert inside.volume == pytest.approx(full.volume, rel=2e-3)
-
-
-@pytest.mark.parametrize("name", SOLIDS)
-def test_saved_and_loaded(name, tmp_path):
-    octree = voxelized(SOLIDS[name], 6, (np.array([-0.1, 0, 0.2]), np.array([1, 1.5, 0.9])))
-    octree.save(tmp_path / "solid.npz")
-    assert [path.name for path in tmp_path.iterdir()] == ["solid.npz"]
-    loaded = prefilter.Octree.load(tmp_path / "solid.npz")
-    assert isinstance(loaded, prefilter.Octree)
-    assert same(octree, loaded)
-    assert loaded.volume == octree.volume
-    assert np.array_equal(loaded.dense(4), octree.dense(4))
-
-
-@pytest.mark.parametrize("share", [0.1, 0.5, 0.9])
-def test_a_damaged_file_is_told_or_loads_the_same(share, tmp_path):
-    octree = voxelized(A, 4)
-    octree.save(tmp_path / "solid.npz")
-    content = (tmp_path / "solid.npz").read_bytes()
-    (tmp_path / "cut.npz").write_bytes(content[: int(len(content) * share)])
-    with pytest.raises((ValueError, OSError), match=r"cut\.npz"):
-        prefilter.Octree.load(tmp_path / "cut.npz")
-    damaged = bytearray(content)
-    damaged[int(len(content) * share)] ^= 0x55
-    (tmp_path / "flipped.npz").write_bytes(bytes(damaged))
-    with contextlib.suppress(ValueError, OSError):
-        assert same(prefilter.Octree.load(tmp_path / "flipped.npz"), octree)
 
 
 def test_progress_rises_to_one():

@@ -16,11 +16,12 @@ from .surface import Surface
 from .texture_use import fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
 from .version import VERSION
-from .voxel import ClosedMesh, Octree, close_holes, voxelize
+from .voxel import MAX_DEPTH, ClosedMesh, Octree, close_holes, voxelize
 
 __version__ = VERSION
 
 __all__ = [
+    "MAX_DEPTH",
     "MIPMAP_FILTERS",
     "Cancelled",
     "ClosedMesh",

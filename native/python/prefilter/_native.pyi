@@ -1,6 +1,7 @@
 """The native module. The package around it checks and converts arguments; call that."""
 
-from typing import overload
+from collections.abc import Sequence
+from typing import Final, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +12,7 @@ class Cancelled(Exception): ...  # noqa: N818
 
 class Surface:
     @overload
-    def __init__(self, taken: Surface) -> None: ...
+    def __init__(self, shared: Surface) -> None: ...
     @overload
     def __init__(
         self,
@@ -84,7 +85,7 @@ def covered_share(
 def mipmap_filters() -> list[tuple[str, bool, bool]]: ...
 def coarser_levels(
     image: npt.NDArray[np.float32],
-    surfaces: list[Surface],
+    surfaces: Sequence[Surface],
     filter: str,
     wrap: tuple[str, str],
     low: float | None,
@@ -99,7 +100,7 @@ def coarser_levels(
 def coarser_byte_levels(
     image: npt.NDArray[np.uint8],
     srgb: bool,
-    surfaces: list[Surface],
+    surfaces: Sequence[Surface],
     filter: str,
     wrap: tuple[str, str],
     low: float | None,
@@ -112,9 +113,9 @@ def coarser_byte_levels(
     threads: int,
 ) -> list[npt.NDArray[np.uint8]]: ...
 def mipmap_error(
-    levels: list[npt.NDArray[np.float32]],
+    levels: Sequence[npt.NDArray[np.float32]],
     image: npt.NDArray[np.float32],
-    surfaces: list[Surface],
+    surfaces: Sequence[Surface],
     mip_values: list[float],
     wrap: tuple[str, str],
     reader: str,
@@ -122,13 +123,13 @@ def mipmap_error(
     threads: int,
 ) -> list[float]: ...
 def seam_contrast(
-    levels: list[npt.NDArray[np.float32]],
-    surfaces: list[Surface],
+    levels: Sequence[npt.NDArray[np.float32]],
+    surfaces: Sequence[Surface],
     wrap: tuple[str, str],
     progress: ProgressCallback | None,
 ) -> list[float]: ...
 def texel_weights(
-    surfaces: list[Surface],
+    surfaces: Sequence[Surface],
     width: int,
     height: int,
     wrap: tuple[str, str],
@@ -137,7 +138,7 @@ def texel_weights(
 ) -> npt.NDArray[np.float32]: ...
 def fill_unused(
     image: npt.NDArray[np.float32],
-    surfaces: list[Surface],
+    surfaces: Sequence[Surface],
     wrap: tuple[str, str],
     progress: ProgressCallback | None,
     threads: int,
@@ -151,21 +152,10 @@ def lookup_means(
     threads: int,
 ) -> npt.NDArray[np.float32]: ...
 
+MAX_DEPTH: Final[int]
+
 class Octree:
-    def __init__(self, taken: Octree) -> None: ...
-    def dense(
-        self, depth: int, progress: ProgressCallback | None, threads: int
-    ) -> npt.NDArray[np.float32]: ...
-    def values(self, points: npt.NDArray[np.float64], threads: int) -> npt.NDArray[np.float32]: ...
-    def classify(
-        self, points: npt.NDArray[np.float64], tolerance: float, threads: int
-    ) -> npt.NDArray[np.int8]: ...
-    def box_occupancy(self, box: tuple[list[float], list[float]]) -> float: ...
-    def combine(
-        self, other: Octree, operation: str, progress: ProgressCallback | None, threads: int
-    ) -> Octree: ...
-    def coarsened(self, depth: int) -> Octree: ...
-    def levels(self) -> list[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]]: ...
+    def __init__(self, shared: Octree) -> None: ...
     @property
     def volume(self) -> float: ...
     @property
@@ -179,6 +169,27 @@ class Octree:
     @property
     def nbytes(self) -> int: ...
 
+def dense_values(
+    octree: Octree, depth: int, progress: ProgressCallback | None, threads: int
+) -> npt.NDArray[np.float32]: ...
+def values_at(
+    octree: Octree, points: npt.NDArray[np.float64], threads: int
+) -> npt.NDArray[np.float32]: ...
+def classify(
+    octree: Octree, points: npt.NDArray[np.float64], tolerance: float, threads: int
+) -> npt.NDArray[np.int8]: ...
+def box_occupancy(octree: Octree, box: tuple[list[float], list[float]]) -> float: ...
+def combine(
+    octree: Octree,
+    other: Octree,
+    operation: str,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> Octree: ...
+def coarsened(octree: Octree, depth: int) -> Octree: ...
+def levels_of(
+    octree: Octree,
+) -> list[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]]: ...
 def voxelize(
     positions: npt.NDArray[np.float64],
     triangles: npt.NDArray[np.int64],
@@ -193,7 +204,7 @@ def close_holes(
     progress: ProgressCallback | None,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], int, int]: ...
 def make_octree(
-    levels: list[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]],
+    levels: Sequence[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]],
     root: float,
     bounds: tuple[list[float], list[float]],
     depth: int,

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
-from typing import overload
+from typing import cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -11,7 +11,7 @@ from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
 from ._border.arrays import FloatArray, as_image, as_threads, check_shape
 from .mipmap import mipmaps
-from .surface import Surface
+from .surface import Surface, as_surfaces
 from .texture_use import fill_unused, texel_weights
 
 # A texel of neutral grey decodes to a vector of this length at most, for 8 bits a channel.
@@ -110,15 +110,18 @@ def normal_mipmaps(
     share = 1.0 if rough is None else 0.5
     vectors = _decoded(image, encoded, _part(report, 0.0, 0.2 * share))
     try:
-        directions = mipmaps(
-            vectors,
-            surface,
-            filter=filter,
-            wrap=wrap,
-            bounds=None,
-            levels=levels,
-            progress=_part(report, 0.2 * share, share),
-            threads=threads,
+        directions = cast(
+            "list[FloatArray]",
+            mipmaps(
+                vectors,
+                surface,
+                filter=filter,
+                wrap=wrap,
+                bounds=None,
+                levels=levels,
+                progress=_part(report, 0.2 * share, share),
+                threads=threads,
+            ),
         )
     except ValueError as error:
         raise ValueError(re.sub("^image:", "normals:", str(error))) from error
@@ -135,9 +138,13 @@ def normal_mipmaps(
 
     filled, mean = rough, _MEANS.get(filter, "box")
     if mean != "box":
-        options = {"wrap": wrap, "threads": threads}
-        vectors = fill_unused(vectors, surface, progress=_part(report, 0.5, 0.58), **options)
-        filled = fill_unused(rough, surface, progress=_part(report, 0.58, 0.65), **options)
+        vectors, filled = (
+            fill_unused(image, as_surfaces(surface), wrap=wrap, progress=part, threads=threads)
+            for image, part in (
+                (vectors, _part(report, 0.5, 0.58)),
+                (rough, _part(report, 0.58, 0.65)),
+            )
+        )
     _check_finite("roughness", filled)
     shown = _native.lookup_means(
         vectors,
@@ -147,16 +154,19 @@ def normal_mipmaps(
         _part(report, 0.65, 0.8),
         as_threads(threads),
     )
-    means = mipmaps(
-        shown,
-        surface,
-        filter=mean,
-        wrap=wrap,
-        bounds=None,
-        levels=levels,
-        premultiplied=True,
-        progress=_part(report, 0.8, 0.95),
-        threads=threads,
+    means = cast(
+        "list[FloatArray]",
+        mipmaps(
+            shown,
+            surface,
+            filter=mean,
+            wrap=wrap,
+            bounds=None,
+            levels=levels,
+            premultiplied=True,
+            progress=_part(report, 0.8, 0.95),
+            threads=threads,
+        ),
     )
     rougher = [rough.copy()]
     for level in means[1:]:
@@ -185,7 +195,7 @@ def _unit(vectors: np.ndarray) -> FloatArray:
         lengths = np.linalg.norm(vectors.astype(np.float64), axis=2, keepdims=True)
         unit = vectors / np.maximum(lengths, _NO_DIRECTION)
     unit[lengths[..., 0] < _NO_DIRECTION] = (0, 0, 1)
-    return unit.astype(np.float32)
+    return np.asarray(unit, np.float32)
 
 
 def _decoded(image: FloatArray, encoded: bool, progress: ProgressCallback | None) -> FloatArray:
@@ -205,7 +215,7 @@ def _roughness_of(means: FloatArray) -> FloatArray:
     variance = -2 * values[..., 2:3] - (values[..., :3] ** 2).sum(axis=2, keepdims=True)
     variance = np.clip(variance, 0, 1)
     lost = variance / (1 + np.sqrt(1 - variance))  # 1 - L, without cancellation.
-    return (np.clip(values[..., 3:] + 2 * lost, 0, 1) ** 0.25).astype(np.float32)
+    return np.asarray(np.clip(values[..., 3:] + 2 * lost, 0, 1) ** 0.25, np.float32)
 
 
 def _above(
@@ -222,8 +232,10 @@ def _above(
     below = vectors[..., 2] < 0
     if below.any() and surface is not None:
         height, width = below.shape
-        options = {"wrap": wrap, "progress": progress, "threads": threads}
-        below &= texel_weights(surface, width, height, **options) > 0
+        weights = texel_weights(
+            surface, width, height, wrap=wrap, progress=progress, threads=threads
+        )
+        below &= weights > 0
     lowest = np.array((-np.inf, -np.inf, 0), np.float32)
     return level if below.any() else np.maximum(level, lowest)
 

@@ -7,7 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._border.arguments import ProgressCallback, as_name, as_progress
+from ._border.arguments import ProgressCallback, as_int, as_name, as_progress
 from ._border.arrays import as_floats, as_indices, check_shape
 
 Sharp = tuple[npt.ArrayLike, npt.ArrayLike]
@@ -136,7 +136,7 @@ class Surface(_native.Surface):
                 as_name("scheme", scheme),
                 as_name("boundary", boundary),
                 as_name("uv_smooth", uv_smooth),
-                _small_int("level", level, "1 to 10 are allowed"),
+                as_int("level", level, "a whole number from 1 to 10 is needed"),
                 as_progress(progress),
             )
         )
@@ -190,12 +190,12 @@ class Surface(_native.Surface):
             ValueError: That is no tile's number.
         """
         part = super().udim_tile(
-            _small_int("number", number, "a UDIM tile has a number from 1001 to 9999")
+            as_int("number", number, "a UDIM tile has a whole number from 1001 to 9999")
         )
         return None if part is None else self._take(part)
 
     @classmethod
-    def merged(cls, surfaces: Iterable["Surface"]) -> list[Self]:
+    def merged(cls, surfaces: Iterable["Surface"]) -> list["Surface"]:
         """Joins surfaces that differ in space only, such as the poses of an animated mesh.
 
         Surfaces with the same triangles and texture coordinates become one that has the areas of
@@ -229,7 +229,7 @@ class Surface(_native.Surface):
 
     @classmethod
     def _take(cls, native: _native.Surface) -> Self:
-        """Makes one of what the native module has made, which is empty afterwards."""
+        """Makes one of what the native module has made."""
         surface = cls.__new__(cls)
         _native.Surface.__init__(surface, native)
         return surface
@@ -299,11 +299,3 @@ def _mask(name: str, mask: npt.ArrayLike | None, length: int) -> np.ndarray | No
             f"{name}: shape {found.shape} of {found.dtype}; ({length},) of bool is needed"
         )
     return np.ascontiguousarray(found)
-
-
-def _small_int(name: str, value: int, allowed: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise ValueError(f"{name}: {value!r}; a whole number is needed")
-    if not -(2**31) <= value < 2**31:
-        raise ValueError(f"{name}: {value}; {allowed}")
-    return int(value)

@@ -1,24 +1,22 @@
 """Voxels: how much of each cell of a grid is inside of a shape."""
 
 import os
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import BinaryIO, Self
+from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._border.arguments import ProgressCallback, as_name, as_number, as_progress
+from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
 from ._border.arrays import as_floats, as_indices, as_threads
-from ._border.output import as_target, replace_file
+from .octree_files import read_octree, write_octree
 
 Corner = Sequence[float] | npt.NDArray[np.floating]
 Box = tuple[Corner, Corner]
 
-MAX_DEPTH = 12
-_FORMAT = "prefilter octree 1"
+MAX_DEPTH = _native.MAX_DEPTH
 
 
 class Octree(_native.Octree):
@@ -34,6 +32,12 @@ class Octree(_native.Octree):
         node_count: Cells of all depths, the root included.
         nbytes: What the octree takes in memory.
     """
+
+    def __init__(self, octree: _native.Octree) -> None:
+        """Another name for an octree: both share the cells, which never change."""
+        if not isinstance(octree, _native.Octree):
+            raise ValueError(f"octree: a {type(octree).__name__}; an Octree is needed")
+        super().__init__(octree)
 
     def dense(
         self,
@@ -58,8 +62,8 @@ class Octree(_native.Octree):
             MemoryError: The grid would not fit into memory.
             Cancelled: `progress` returned False.
         """
-        wanted = self.depth if depth is None else as_depth(depth, 0)
-        return super().dense(wanted, as_progress(progress), as_threads(threads))
+        wanted = self.depth if depth is None else _as_depth(depth, 0)
+        return _native.dense_values(self, wanted, as_progress(progress), as_threads(threads))
 
     def values(self, points: npt.ArrayLike, *, threads: int = 0) -> npt.NDArray[np.float32]:
         """The occupancies of the leaves that hold the points; 0 outside of the bounds.
@@ -68,7 +72,7 @@ class Octree(_native.Octree):
             points: (points, 3).
             threads: 0 means all processors.
         """
-        return super().values(_as_points(points), as_threads(threads))
+        return _native.values_at(self, _as_points(points), as_threads(threads))
 
     def classify(
         self, points: npt.ArrayLike, *, tolerance: float = 1e-5, threads: int = 0
@@ -86,7 +90,7 @@ class Octree(_native.Octree):
         limit = as_number("tolerance", tolerance)
         if not 0.0 <= limit < 0.5:
             raise ValueError(f"tolerance: {tolerance!r}; a number from 0 to below 0.5 is needed")
-        return super().classify(_as_points(points), limit, as_threads(threads))
+        return _native.classify(self, _as_points(points), limit, as_threads(threads))
 
     def box_occupancy(self, low: Corner, high: Corner) -> float:
         """The share of a box that is inside of the shape: the exact integral over the cells.
@@ -96,7 +100,7 @@ class Octree(_native.Octree):
             high: The high corner, above it along each axis. The box may leave the bounds; nothing
                 is inside there.
         """
-        return super().box_occupancy(_as_box("box", (low, high)))
+        return _native.box_occupancy(self, _as_box("box", (low, high)))
 
     def union(
         self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
@@ -130,7 +134,7 @@ class Octree(_native.Octree):
         *,
         interpolant: str = "occupancy",
         isovalue: float = 0.5,
-        cleanup: bool = False,
+        cleanup: bool = True,
         progress: ProgressCallback | None = None,
         threads: int = 0,
     ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]:
@@ -145,7 +149,7 @@ class Octree(_native.Octree):
                 the leaves around, and reproduces planes; "linear" is marching cubes.
             isovalue: Above 0 and up to 1. Leaves of at least that are inside. For other values than
                 0.5, interpolation is linear.
-            cleanup: Collapse short edges, for triangles that are not thin.
+            cleanup: Collapse short edges: fewer triangles, and none that are thin.
             progress: Called with the fraction done; returning False stops the work.
             threads: 0 means all processors. The result does not depend on it.
 
@@ -172,30 +176,19 @@ class Octree(_native.Octree):
 
     def coarsened(self, depth: int) -> "Octree":
         """The octree down to a depth of 0 to 12: means of what was finer."""
-        return Octree(super().coarsened(as_depth(depth, 0)))
+        return Octree(_native.coarsened(self, _as_depth(depth, 0)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the octree as a compressed NumPy archive (.npz).
 
-        It is written beside `path` and renamed, so a failure leaves what was there.
+        It is written beside `path` and renamed, so a failure leaves what was there. A symbolic link
+        stays; the file that it leads to is replaced.
 
         Raises:
-            OSError: The file can't be written.
+            ValueError: `path` is no path.
+            OSError: The file can't be written, or is a device or a pipe.
         """
-        arrays: dict[str, np.ndarray] = {
-            "format": np.array(_FORMAT),
-            "depth": np.array(self.depth),
-            "bounds": np.array(self.bounds),
-            "root": np.array(self.root, np.float32),
-        }
-        for k, (blocks, split) in enumerate(self.levels()):
-            arrays[f"values{k}"] = blocks
-            arrays[f"split{k}"] = split
-
-        def write(file: BinaryIO) -> None:
-            np.savez_compressed(file, **arrays)
-
-        replace_file(as_target(path), write)
+        write_octree(path, self)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
@@ -204,20 +197,9 @@ class Octree(_native.Octree):
         Raises:
             OSError: The file can't be read.
             ValueError: It is no octree, or a damaged one.
+            MemoryError: The octree would not fit into memory.
         """
-        try:
-            source = os.fsdecode(path)
-        except (TypeError, ValueError) as error:
-            raise ValueError(f"path: {path!r}; the path of a file is needed") from error
-        try:
-            with np.load(source, allow_pickle=False) as archive:
-                arrays = {name: archive[name] for name in archive.files}
-        except (zipfile.BadZipFile, ValueError, EOFError) as error:
-            raise ValueError(f"path: {source!r} holds no octree: {error}") from error
-        try:
-            return cls(_octree_of(arrays))
-        except (KeyError, ValueError, TypeError) as error:
-            raise ValueError(f"path: {source!r} holds no octree: {error}") from error
+        return cls(read_octree(path))
 
     def _combined(
         self,
@@ -228,7 +210,9 @@ class Octree(_native.Octree):
     ) -> "Octree":
         if not isinstance(other, _native.Octree):
             raise ValueError(f"other: a {type(other).__name__}; an Octree is needed")
-        return Octree(super().combine(other, operation, as_progress(progress), as_threads(threads)))
+        return Octree(
+            _native.combine(self, other, operation, as_progress(progress), as_threads(threads))
+        )
 
 
 def voxelize(
@@ -268,7 +252,7 @@ def voxelize(
     box = None if bounds is None else _as_box("bounds", bounds)
     return Octree(
         _native.voxelize(
-            points, indices, as_depth(depth, 1), box, as_progress(progress), as_threads(threads)
+            points, indices, _as_depth(depth, 1), box, as_progress(progress), as_threads(threads)
         )
     )
 
@@ -322,14 +306,8 @@ def close_holes(
     )
 
 
-def as_depth(depth: int, lowest: int) -> int:
-    if (
-        isinstance(depth, bool)
-        or not isinstance(depth, int | np.integer)
-        or not lowest <= depth <= MAX_DEPTH
-    ):
-        raise ValueError(f"depth: {depth!r}; a whole number from {lowest} to {MAX_DEPTH} is needed")
-    return int(depth)
+def _as_depth(depth: int, lowest: int) -> int:
+    return as_int("depth", depth, f"a whole number from {lowest} to {MAX_DEPTH} is needed")
 
 
 def _as_points(points: npt.ArrayLike) -> np.ndarray:
@@ -348,18 +326,3 @@ def _as_box(name: str, box: Box) -> tuple[list[float], list[float]]:
     if corners.shape != (2, 3):
         raise ValueError(f"{name}: shape {corners.shape}; two corners, (2, 3), are needed")
     return corners[0].tolist(), corners[1].tolist()
-
-
-def _octree_of(arrays: dict[str, np.ndarray]) -> _native.Octree:
-    if str(arrays["format"]) != _FORMAT:
-        raise ValueError(f"its format is {str(arrays['format'])!r}; {_FORMAT!r} is needed")
-    levels = []
-    while f"values{len(levels)}" in arrays:
-        k = len(levels)
-        values = as_floats(f"values{k}", arrays[f"values{k}"], ("blocks", 8), np.float32)
-        split = arrays[f"split{k}"]
-        if split.dtype != np.uint8 or split.shape != values.shape[:1]:
-            raise ValueError(f"split{k} has not a byte for each block")
-        levels.append((values, np.ascontiguousarray(split)))
-    bounds = _as_box("bounds", arrays["bounds"])
-    return _native.make_octree(levels, float(arrays["root"]), bounds, int(arrays["depth"]))

@@ -57,6 +57,14 @@ def as_size(argument: str, size: int) -> int:
     return int(size)
 
 
+def as_int(argument: str, value: int, allowed: str) -> int:
+    """A whole number that the native module can take as an int, whose range it checks."""
+    is_int = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not is_int or not -(2**31) <= value < 2**31:
+        raise ValueError(f"{argument}: {value!r}; {allowed}")
+    return int(value)
+
+
 def as_number(argument: str, number: float) -> float:
     if isinstance(number, bool) or not isinstance(number, int | float | np.number):
         raise ValueError(f"{argument}: {number!r}; a number is needed")

@@ -9,7 +9,7 @@ import numpy.typing as npt
 # What the native module takes as an int; larger counts mean the same to it.
 _LARGEST_INT = 2**30
 
-FloatArray: TypeAlias = npt.NDArray[np.float32] | npt.NDArray[np.float64]
+FloatArray: TypeAlias = npt.NDArray[np.float32]
 
 
 def as_floats(

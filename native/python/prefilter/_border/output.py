@@ -11,19 +11,32 @@ from typing import BinaryIO
 _WRITE_BITS = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
 
 
-def as_target(path: str | os.PathLike[str]) -> Path:
-    """The file that a path stands for, symbolic links resolved, if it can be written.
-
-    Root may write what has no write bits; that is left alone all the same.
-    """
+def as_path(path: str | os.PathLike[str]) -> str:
     try:
-        target = Path(os.path.realpath(os.fsdecode(path)))
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"path: {path!r}; the path of a file is needed") from error
+        given = os.fsdecode(path)
+    except TypeError:
+        given = "\0"
+    if "\0" in given:
+        raise ValueError(f"path: {path!r}; the path of a file is needed")
+    return given
+
+
+def as_target(path: str | os.PathLike[str]) -> Path:
+    """The regular file that a path stands for, or will, if it can be written.
+
+    Symbolic links are followed: `replace_file` replaces what they lead to. Root may write what has
+    no write bits; that is left alone all the same.
+
+    Raises:
+        ValueError: That is no path.
+        OSError: The file is a folder, a device or the like; or it, or its folder, is read-only; or
+            there is no such folder.
+    """
+    given = as_path(path)
+    _check_regular(given)
+    target = Path(os.path.realpath(given))
     if not target.parent.is_dir():
         raise OSError(f"path: there is no folder '{target.parent}'")
-    if target.is_dir():
-        raise OSError(f"path: '{target}' is a folder")
     for place in (target, target.parent) if target.exists() else (target.parent,):
         writable = os.access(place, os.W_OK) and place.stat().st_mode & _WRITE_BITS
         if not writable:
@@ -37,9 +50,22 @@ def replace_file(target: Path, write: Callable[[BinaryIO], object]) -> None:
     try:
         with new.open("xb") as file:
             write(file)
+        _check_regular(target)
         if target.exists():
             shutil.copymode(target, new)
         os.replace(new, target)
     except BaseException:
         new.unlink(missing_ok=True)
         raise
+
+
+def _check_regular(path: str | Path) -> None:
+    """Raises OSError for what is there and is no regular file: a file renamed would replace it."""
+    try:
+        mode = os.stat(path).st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return
+    if not stat.S_ISREG(mode):
+        kinds = {stat.S_IFDIR: "folder", stat.S_IFIFO: "pipe", stat.S_IFSOCK: "socket"}
+        kind = kinds.get(stat.S_IFMT(mode), "device")
+        raise OSError(f"path: '{path}' is a {kind}; a regular file, or a new one, is needed")

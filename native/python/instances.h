@@ -1,0 +1,43 @@
+// The classes of the native module, passed to C++ only once their __init__ has run.
+//
+// Python can make an object without that (Class.__new__(Class)); pybind11 would hand out memory
+// that nothing has set. Include this in every file that binds functions of these classes.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <utility>
+
+#include "prefilter/surface/surface.h"
+#include "prefilter/voxel/octree.h"
+
+namespace prefilter::python {
+
+/// Throws TypeError for an object whose __init__ has not run.
+template <typename T>
+class InstanceCaster : public pybind11::detail::type_caster_base<T> {
+ public:
+  bool load(pybind11::handle source, bool convert) {
+    return this->template load_impl<InstanceCaster<T>>(source, convert);
+  }
+
+  // Called by load_impl.
+  void load_value(pybind11::detail::value_and_holder&& instance) {
+    if (!instance.holder_constructed()) {
+      throw pybind11::type_error(std::string(this->typeinfo->type->tp_name) +
+                                 ": an object whose __init__ has not run holds nothing");
+    }
+    pybind11::detail::type_caster_base<T>::load_value(std::move(instance));
+  }
+};
+
+}  // namespace prefilter::python
+
+template <>
+class pybind11::detail::type_caster<prefilter::Octree>
+    : public prefilter::python::InstanceCaster<prefilter::Octree> {};
+
+template <>
+class pybind11::detail::type_caster<prefilter::Surface>
+    : public prefilter::python::InstanceCaster<prefilter::Surface> {};

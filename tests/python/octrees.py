@@ -1,0 +1,20 @@
+"""Octrees compared."""
+
+import numpy as np
+import prefilter
+from prefilter import _native
+
+
+def octrees_are_same(first: prefilter.Octree, second: prefilter.Octree) -> bool:
+    """The same tree, bit for bit."""
+    own, other = _native.levels_of(first), _native.levels_of(second)
+    return (
+        first.depth == second.depth
+        and first.bounds == second.bounds
+        and len(own) == len(other)
+        and all(
+            np.array_equal(a, b)
+            for x, y in zip(own, other, strict=True)
+            for a, b in zip(x, y, strict=True)
+        )
+    )

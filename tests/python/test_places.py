@@ -1,0 +1,95 @@
+"""Where files are written: regular files are replaced, through links; all else is left alone."""
+
+import os
+import stat
+
+import numpy as np
+import prefilter
+import pytest
+
+LEVELS = [np.full((2, 2, 4), 0.5, np.float32)]
+OCTREE = prefilter.voxelize(
+    np.array([(0.0, 0, 0), (1, 0, 0), (0, 1, 0)]), np.array([(0, 1, 2)]), depth=1
+)
+WRITERS = {
+    "Octree.save": OCTREE.save,
+    "write_dds": lambda path: prefilter.write_dds(path, LEVELS),
+    "write_ktx2": lambda path: prefilter.write_ktx2(path, LEVELS),
+}
+
+
+@pytest.fixture(params=WRITERS)
+def write(request):
+    return WRITERS[request.param]
+
+
+def make_pipe(path):
+    os.mkfifo(path)
+    return "pipe"
+
+
+def make_device(path):
+    """The same device as /dev/full, in a folder of the test's."""
+    try:
+        os.mknod(path, 0o666 | stat.S_IFCHR, os.makedev(1, 7))
+    except PermissionError:
+        pytest.skip("devices are made by root only")
+    return "device"
+
+
+def make_folder(path):
+    path.mkdir()
+    return "folder"
+
+
+@pytest.mark.parametrize("make", [make_pipe, make_device, make_folder])
+@pytest.mark.parametrize("is_linked", [False, True])
+def test_what_is_no_regular_file_stays(write, make, is_linked, tmp_path):
+    place = tmp_path / "out"
+    kind = make(place)
+    before = os.lstat(place)
+    given = tmp_path / "link" if is_linked else place
+    if is_linked:
+        given.symlink_to(place)
+    with pytest.raises(OSError, match=f"path: '{given}' is a {kind}; a regular file"):
+        write(given)
+    after = os.lstat(place)
+    assert (after.st_ino, after.st_mode) == (before.st_ino, before.st_mode)
+    assert {path.name for path in tmp_path.iterdir()} == {"out", given.name}
+
+
+def test_a_device_that_takes_the_place_meanwhile_stays(tmp_path):
+    path = tmp_path / "out.dds"
+
+    def take_the_place(fraction):
+        if not path.exists():
+            make_pipe(path)
+
+    with pytest.raises(OSError, match="is a pipe"):
+        prefilter.write_dds(path, LEVELS, progress=take_the_place)
+    assert [path.name for path in tmp_path.iterdir()] == ["out.dds"]
+    assert path.is_fifo()
+
+
+@pytest.mark.parametrize("is_there", [True, False])
+def test_what_a_link_leads_to_is_replaced(write, is_there, tmp_path):
+    folder = tmp_path / "other"
+    folder.mkdir()
+    target, link = folder / "out", tmp_path / "link"
+    if is_there:
+        target.write_bytes(b"before")
+        target.chmod(0o640)
+    link.symlink_to(target)
+    write(link)
+    assert link.is_symlink()
+    assert len(target.read_bytes()) > 6
+    assert [path.name for path in folder.iterdir()] == ["out"]
+    if is_there:
+        assert stat.S_IMODE(target.stat().st_mode) == 0o640
+
+
+def test_a_link_to_itself_is_told(write, tmp_path):
+    link = tmp_path / "link"
+    link.symlink_to(link)
+    with pytest.raises(OSError, match="link"):
+        write(link)
