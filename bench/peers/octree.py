@@ -48,7 +48,7 @@ def work_on(mesh: Path, arguments: Sequence[str]) -> Callable[[], Any]:
         octree = prefilter.voxelize(**loaded, depth=depth, bounds=bounds, threads=threads)
         if len(arguments) < 7:
             return octree.nbytes
-        return octree.contour(interpolant=arguments[6], threads=threads)
+        return octree.contour(interpolant=arguments[6], cleanup=False, threads=threads)
 
     return work
 

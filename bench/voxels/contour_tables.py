@@ -77,7 +77,9 @@ def plane_errors(count: int, seed: int = 0, n: int = 16) -> dict[str, PlaneError
         exact = plane_occupancies(n, normal, offset)
         cut = core & (exact > 0) & (exact < 1)
         for name, found in differences.items():
-            positions, triangles = prefilter.contour(exact.astype(np.float32), interpolant=name)
+            positions, triangles = prefilter.contour(
+                exact.astype(np.float32), interpolant=name, cleanup=False
+            )
             octree = prefilter.voxelize(
                 positions.astype(float), triangles, depth=4, bounds=([0, 0, 0], [n, n, n])
             )
@@ -116,7 +118,9 @@ def sphere_errors(grid: np.ndarray, center: np.ndarray, radius: float) -> dict[s
     errors = {}
     for name in (*INTERPOLANTS, ON_SPHERE):
         interpolant = "plane" if name == ON_SPHERE else name
-        positions, triangles = prefilter.contour(grid.astype(np.float32), interpolant=interpolant)
+        positions, triangles = prefilter.contour(
+            grid.astype(np.float32), interpolant=interpolant, cleanup=False
+        )
         points = positions.astype(float) - center
         if name == ON_SPHERE:
             points = on_the_sphere(positions, center, radius)

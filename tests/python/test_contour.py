@@ -44,7 +44,7 @@ def test_vertices_lie_on_planes(interpolant, most):
         normal /= np.linalg.norm(normal)
         offset = normal @ (8 + random.uniform(-0.5, 0.5, 3))
         grid = slab(16, normal, offset).astype(np.float32)
-        positions, triangles = prefilter.contour(grid, interpolant=interpolant)
+        positions, triangles = prefilter.contour(grid, interpolant=interpolant, cleanup=False)
         assert is_closed(triangles)
         inner = positions[((positions > 5) & (positions < 11)).all(axis=1)]
         assert np.abs(inner @ normal - offset).max() < most
@@ -69,7 +69,9 @@ def test_normals_on_a_sphere_of_fifteen_cells(center):
     )
     means, largest = {}, {}
     for interpolant in INTERPOLANTS:
-        errors, areas = normal_errors(*octree.contour(interpolant=interpolant), center)
+        errors, areas = normal_errors(
+            *octree.contour(interpolant=interpolant, cleanup=False), center
+        )
         means[interpolant] = np.average(errors, weights=areas)
         largest[interpolant] = errors[areas > 1e-6 * areas.sum()].max()
     assert means["plane"] < 0.79
@@ -83,7 +85,7 @@ def test_a_box_of_ones_is_the_same_anywhere(interpolant, low):
     """Its edges are cut off by 1/8 of a cell, and its corners by 5/48."""
     grid = np.zeros((20, 17, 16))
     grid[low : low + 8, low : low + 8, low : low + 8] = 1
-    positions, triangles = prefilter.contour(grid, interpolant=interpolant)
+    positions, triangles = prefilter.contour(grid, interpolant=interpolant, cleanup=False)
     assert is_closed(triangles)
     assert len(positions) == 6 * 64
     assert enclosed(positions, triangles) == pytest.approx(512 - 12 * 7 / 8 - 8 * 5 / 48, abs=1e-3)
@@ -102,11 +104,11 @@ def test_signed_distances_have_the_iso_value_zero():
 def test_spacing_and_origin_place_the_cells():
     random = np.random.default_rng(1)
     grid = random.random((5, 6, 7))
-    plain, triangles = prefilter.contour(grid)
-    larger, same = prefilter.contour(grid, spacing=4)
+    plain, triangles = prefilter.contour(grid, cleanup=False)
+    larger, same = prefilter.contour(grid, spacing=4, cleanup=False)
     np.testing.assert_array_equal(triangles, same)
     np.testing.assert_array_equal(larger, plain * 4)
-    placed, others = prefilter.contour(grid, spacing=(0.5, 2, 3), origin=(1, -2, 4))
+    placed, others = prefilter.contour(grid, spacing=(0.5, 2, 3), origin=(1, -2, 4), cleanup=False)
     assert is_closed(others)  # The diagonals are the best ones where the surface is.
     np.testing.assert_allclose(placed, plain * (0.5, 2, 3) + (1, -2, 4), rtol=1e-5, atol=1e-5)
 
@@ -120,6 +122,16 @@ def test_threads_and_types_do_not_matter():
     ):
         np.testing.assert_array_equal(first[0], other[0])
         np.testing.assert_array_equal(first[1], other[1])
+
+
+def test_clean_up_is_the_default():
+    grid = np.random.default_rng(3).random((9, 9, 9)).astype(np.float32)
+    solid = solids.sphere(0.4, 3, (0.5, 0.5, 0.5))
+    octree = prefilter.voxelize(solid.positions, solid.triangles, depth=5)
+    for make in (lambda **options: prefilter.contour(grid, **options), octree.contour):
+        cleaned, raw = make(), make(cleanup=False)
+        assert len(cleaned[1]) < len(raw[1])
+        np.testing.assert_array_equal(cleaned[1], make(cleanup=True)[1])
 
 
 def test_stops_when_asked():

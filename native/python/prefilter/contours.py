@@ -18,7 +18,7 @@ def contour(
     isovalue: float = 0.5,
     spacing: npt.ArrayLike = 1.0,
     origin: npt.ArrayLike = 0.0,
-    cleanup: bool = False,
+    cleanup: bool = True,
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> Mesh | Outlines:
@@ -38,7 +38,7 @@ def contour(
         isovalue: Samples of at least this are inside.
         spacing: Size of a cell, above 0: one number, or one an axis.
         origin: The low corner of cell (0, 0, 0): one number, or one an axis.
-        cleanup: Collapse short edges of a surface, for triangles that are not thin.
+        cleanup: Collapse short edges of a surface: fewer triangles, and none that are thin.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
