@@ -1,4 +1,4 @@
-"""Evaluated meshes to `prefilter.Surface`: the part of each mesh that wears an image."""
+"""Evaluated meshes to `prefilter.Surface`: the part of each mesh that uses an image."""
 
 import re
 from collections import Counter, defaultdict

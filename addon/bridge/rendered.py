@@ -1,4 +1,4 @@
-"""What a render of a scene shows: which objects wear an image, and who else looks at it."""
+"""What a render of a scene shows: which objects use an image, and who else reads it."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ class Viewers:
     """What shows an image.
 
     Attributes:
-        objects: The objects whose meshes, or those that they are instancers of, wear it.
+        objects: The objects whose meshes, or those that they are instancers of, use it.
         others: What shows it in a way that is no UV map on a mesh.
     """
 

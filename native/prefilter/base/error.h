@@ -10,7 +10,7 @@
 namespace prefilter {
 
 enum class ErrorCode {
-  kInvalidArgument,  // a value that the caller can mend
+  kInvalidArgument,  // a value that the caller can correct
   kCancelled,        // the progress callback asked to stop
   kOutOfMemory,      // the result would not fit into memory
 };

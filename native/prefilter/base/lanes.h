@@ -5,7 +5,7 @@
 
 namespace prefilter {
 
-/// A float for each of kMaxChannels channels; the ones that an image lacks are along for the ride.
+/// A float for each of kMaxChannels channels; those that an image lacks are unused.
 using Lanes [[gnu::vector_size(kMaxChannels * sizeof(float))]] = float;
 
 inline Lanes lane_max(Lanes a, Lanes b) { return a > b ? a : b; }

@@ -8,7 +8,7 @@ namespace prefilter {
 
 enum class Interpolant {
   kOccupancy,  // a line that leaves each of two cells its share: chapter 5
-  kPlane,      // the surface that leaves the cells around theirs
+  kPlane,      // the surface that preserves neighbouring cells
   kLinear,     // samples of a smooth function: marching cubes
 };
 

@@ -1,4 +1,5 @@
-// The interpolant "plane": vertices moved to the surface that leaves the cells around theirs.
+// The interpolant "plane": vertices moved to the surface that preserves the volume of the
+// neighbouring cells.
 #pragma once
 
 #include "prefilter/contour/contour_options.h"

@@ -1,4 +1,5 @@
-// Where the surface that leaves the cells around theirs cuts the line between two cells' centres.
+// Where the line between two cells' centres meets the surface that preserves the volume of the
+// neighbouring cells.
 //
 // Beyond the text, whose two samples cannot fix a plane in space. Along the axis that the surface
 // faces most, the occupancies of a column of cells, from full ones to empty ones, add up to the

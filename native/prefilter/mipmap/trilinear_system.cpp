@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-// A millionth of a thousandth of the first error is left then, were it not for rounding.
+// The error is then 1e-9 of the first: below rounding.
 constexpr int kMostRounds = 16;
 constexpr int kSweepsPerRound = 4;
 // 1/6, as the equations are divided by 2/3.

@@ -14,7 +14,7 @@ namespace prefilter {
 struct Caps {
   std::vector<std::array<double, 3>> positions;  // numbered on from the mesh's own
   std::vector<std::array<std::int64_t, 3>> triangles;
-  std::size_t open_edges = 0;  // that are not run through as often one way as the other
+  std::size_t open_edges = 0;  // unbalanced: traversed more often in one direction
   std::size_t holes = 0;       // loops of such edges
 };
 

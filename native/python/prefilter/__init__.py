@@ -1,4 +1,4 @@
-"""Prefilter: images and shapes filtered for the surface that wears them.
+"""Prefilter: images and shapes filtered for the surface that uses them.
 
 Arrays are numpy, float32 or float64 in, float32 out. Images have shape (height, width, channels),
 row 0 at v = 0 (the bottom row, as in Blender and OpenGL). Bad arguments raise ValueError, with a

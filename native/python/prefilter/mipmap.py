@@ -56,7 +56,7 @@ def mipmaps(
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> list[npt.NDArray[np.float32]] | list[npt.NDArray[np.uint8]]:
-    """The levels of an image's mipmap, each right for the surface that wears it.
+    """The levels of an image's mipmap, each fitted to the surface that uses it.
 
     "pam-bilinear" minimises, level by level, the integral over the surface of the squared
     difference between a bilinear lookup of the level and one of the image (section 7.3), within

@@ -264,7 +264,7 @@ class ClosedMesh:
     Attributes:
         positions: (vertices, 3) float64: the mesh's own, and those of the caps.
         triangles: (triangles, 3) int64: the mesh's own first.
-        open_edges: Edges of the mesh that are not run through as often one way as the other.
+        open_edges: Unbalanced edges of the mesh: traversed more often in one direction.
         holes: Loops of such edges.
     """
 
