@@ -1,7 +1,6 @@
 """The bake into Cycles' texture cache: that renders use it, and that nothing else changes."""
 
 import os
-import subprocess
 
 import bpy
 import cycles_scenes as cycles
@@ -10,6 +9,7 @@ import OpenImageIO as oiio
 import prefilter
 import pytest
 import scenes
+from command_line import run
 
 HAS_CACHE = "use_texture_cache" in bpy.types.RenderSettings.bl_rna.properties
 needs_cache = pytest.mark.skipif(not HAS_CACHE, reason="Blender 5.2 or later is needed")
@@ -628,31 +628,20 @@ def test_the_command(tmp_path, scene):
     scene.render.use_texture_cache = False
     blend = tmp_path / "scene.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-
-    def run(*arguments):
-        return subprocess.run(
-            [bpy.app.binary_path, "--background", "--command", "prefilter", "bake-cache"]
-            + [str(argument) for argument in arguments],
-            capture_output=True,
-            text=True,
-            timeout=120,
-            check=False,
-        )
-
-    result = run(blend, "--save", "--scene", scene.name)
+    result = run("bake-cache", blend, "--save", "--scene", scene.name)
     assert result.returncode == 0, result.stderr
     assert "texture cache of 1 image (1 file), over 1 object" in result.stdout
     level = cycles.level(cycles.cache_file(tmp_path), 1)
-    bake()
-    np.testing.assert_array_equal(cycles.level(cycles.cache_file(tmp_path), 1), level)
     bpy.ops.wm.open_mainfile(filepath=str(blend))
     assert bpy.context.scene.render.use_texture_cache
+    bake()
+    np.testing.assert_array_equal(cycles.level(cycles.cache_file(tmp_path), 1), level)
     for arguments, message in (
         (("scene.glb",), "a .blend file is needed"),
         ((tmp_path / "none.blend",), "there is no file"),
         ((blend, "--scene", "Other"), "no scene named 'Other'"),
     ):
-        result = run(*arguments)
+        result = run("bake-cache", *arguments)
         assert result.returncode in (1, 2)
         assert message in result.stderr
         assert "Traceback" not in result.stderr

@@ -1,0 +1,30 @@
+"""`blender --background --command prefilter ...`, in a Blender of its own."""
+
+import bpy
+import numpy as np
+import OpenImageIO as oiio
+import scenes
+from command_line import assert_fails, run, run_blender
+
+
+def test_a_blender_of_its_own_does_what_this_one_does(tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(16, 16)))
+    path = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    results = [
+        runner("bake", path.name, "--output", name, cwd=tmp_path)
+        for runner, name in ((run, "here.tif"), (run_blender, "there.tif"))
+    ]
+    here, there = (
+        oiio.ImageBuf(str(tmp_path / name), 0, 1).get_pixels("float")
+        for name in ("here.tif", "there.tif")
+    )
+    np.testing.assert_array_equal(here, there)
+    assert [result.returncode for result in results] == [0, 0]
+    assert results[0].stdout.replace("here", "there") in results[1].stdout
+    assert results[0].stderr in results[1].stderr
+
+
+def test_its_exit_status_is_that_of_the_command(tmp_path):
+    assert_fails(run_blender("bake", tmp_path / "none.blend", "--save"), "none.blend")
+    assert_fails(run_blender("bake", "none.blend", "--frames=5"), "--frames", status=2)
