@@ -1,6 +1,7 @@
 """Arrays of a mesh: where its vertices and corners are, and weights that a user has painted."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import numpy as np
@@ -97,7 +98,7 @@ def read_weights(
         raise ValueError(
             f"{found} of the type {attribute.data_type}; a number, a colour or a boolean is needed"
         )
-    values = np.empty(count, types[attribute.data_type])
+    values: NDArray[Any] = np.empty(count, types[attribute.data_type])
     attribute.data.foreach_get("value", values)
     return Weights(attribute.domain, values.astype(np.float64))
 

@@ -157,8 +157,8 @@ def _image_nodes(
 
 def _use(node: bpy.types.Node, groups: Groups) -> ImageUse:
     uv_map, matrix = _trace(node.inputs["Vector"], groups)
-    rows = tuple((row[0], row[1], row[3]) for row in matrix[:2])
-    return ImageUse(uv_map, rows, node.extension)
+    first, second = ((row[0], row[1], row[3]) for row in matrix[:2])
+    return ImageUse(uv_map, (first, second), node.extension)
 
 
 def _trace(socket: bpy.types.NodeSocket, groups: Groups) -> tuple[str, Matrix]:

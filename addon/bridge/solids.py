@@ -124,11 +124,11 @@ def read_solids(
     for instance in depsgraph.object_instances if chosen else ():
         if not instance.is_instance or instance.object.type != "MESH":
             continue
-        reader = readers.get(instance.parent.original)
-        if reader is not None:
+        parent = instance.parent.original
+        if parent in readers:
             matrix = np.array(instance.matrix_world, np.float64)
-            is_made_up = instance.instance_object.original == instance.parent.original
-            reader.read(instance.object, matrix, is_made_up=is_made_up)
+            is_made_up = instance.instance_object.original == parent
+            readers[parent].read(instance.object, matrix, is_made_up=is_made_up)
     return [reader.solid for reader in readers.values()]
 
 

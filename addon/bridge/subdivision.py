@@ -139,7 +139,7 @@ def _creases(mesh: bpy.types.Mesh) -> dict[str, tuple[NDArray[np.int32], NDArray
     if "crease_vert" in mesh.attributes:
         crease = np.empty(len(mesh.vertices), np.float32)
         mesh.attributes["crease_vert"].data.foreach_get("value", crease)
-        chosen = np.flatnonzero(crease > 0)
+        chosen = np.flatnonzero(crease > 0).astype(np.int32)
         found["corners"] = chosen, _sharpness(crease[chosen])
     return found
 

@@ -21,4 +21,5 @@ def unassociated(texels: FloatArray) -> FloatArray:
 
 def at_most_opaque(texels: FloatArray) -> FloatArray:
     """Returns associated texels whose alpha is at most 1, of the same straight colors."""
-    return texels / np.maximum(texels[..., 3:], 1.0)
+    divisor: FloatArray = np.maximum(texels[..., 3:], 1.0)
+    return texels / divisor

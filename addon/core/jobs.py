@@ -2,7 +2,7 @@
 
 import threading
 from collections.abc import Callable
-from typing import Generic, TypeVar
+from typing import Generic, TypeVar, cast
 
 import prefilter
 
@@ -61,7 +61,7 @@ class Job(Generic[T]):
         self._thread.join()
         if self._error is not None:
             raise self._error
-        return self._result
+        return cast(T, self._result)
 
     def _run(self) -> None:
         try:

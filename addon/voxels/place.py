@@ -25,7 +25,8 @@ class Place:
         # A matrix of tiny numbers is fine, one that is flat is not.
         if not np.all(lengths > 0.0) or abs(np.linalg.det(linear / lengths)) < 1e-6:
             raise ValueError(f"object '{obj.name}': its scale is 0 along an axis")
-        return cls(obj.name, matrix[:3, 3].copy(), np.linalg.inv(linear))
+        to_local = np.asarray(np.linalg.inv(linear), np.float64)
+        return cls(obj.name, matrix[:3, 3].copy(), to_local)
 
     def localize(
         self, positions: NDArray[np.floating], triangles: NDArray[np.int32]

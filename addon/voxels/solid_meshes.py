@@ -145,9 +145,8 @@ def _joined_colors(meshes: list[SolidMesh]) -> dict[str, Colors]:
     for name, data_type in types.items():
         values, corners, start = [], [], 0
         for mesh in meshes:
-            color = mesh.colors.get(name)
-            if color is None:
-                color = Colors(data_type, _WHITE, np.zeros_like(mesh.triangles))
+            white = Colors(data_type, _WHITE, np.zeros_like(mesh.triangles))
+            color = mesh.colors.get(name, white)
             values.append(color.values)
             corners.append(color.corners + start)
             start += len(color.values)

@@ -92,6 +92,7 @@ def save(target: Path, names: Sequence[str]) -> None:
     extension = target.suffix.lower()
     for obj in bpy.context.view_layer.objects:
         obj.select_set(obj.name in names)
+    staged: staging.StagedFile | staging.StagedFolder
     try:
         if extension == ".blend":
             staged = staging.stage_with(
