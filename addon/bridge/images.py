@@ -7,7 +7,9 @@ What Blender keeps in `Image.pixels` (rows from the bottom, always four channels
 * a float image: scene-linear values, with associated alpha. Blender converts on load.
 
 Alpha is coverage unless the alpha mode is Channel Packed or None or the colour space is data; then
-the four channels are independent.
+the four channels are independent. But a material may use the alpha of a Channel Packed image as
+coverage all the same, as those of Blender's glTF importer do: colours are straight then, of
+floats too, as such an image is not converted on load.
 """
 
 import os
@@ -40,6 +42,7 @@ _KIND_OF_TYPE = {
     "RENDER_RESULT": "a render result",
     "COMPOSITING": "a compositor result",
 }
+_INDEPENDENT = frozenset({"CHANNEL_PACKED", "NONE"})
 _LINEAR_REC709_NAMES = frozenset({"Linear", "Linear Rec.709"})
 
 
@@ -61,35 +64,39 @@ class Picture:
         stored: (height, width, 3 or 4) values as Blender keeps them, row 0 at the bottom. An alpha
             that is 1 everywhere is left out.
         is_float: Whether the datablock holds floats instead of bytes.
+        is_integer: Whether the values come from integers, of bytes or of a file of more bits.
         encoding: How `stored` relates to scene-linear values.
         colorspace: The name of the datablock's colour space.
         is_data: Whether the colour space says that the values are no colours.
         alpha_mode: The datablock's alpha mode.
         linear_space: The name of Blender's scene-linear space.
         ocio_config: Path of Blender's OpenColorIO configuration.
+        covers: Whether alpha is known to be coverage, whatever the alpha mode.
     """
 
     name: str
     full_name: str
     stored: FloatArray
     is_float: bool
+    is_integer: bool
     encoding: Encoding
     colorspace: str
     is_data: bool
     alpha_mode: str
     linear_space: str
     ocio_config: str
+    covers: bool = False
 
     @property
     def alpha_is_coverage(self) -> bool:
         """Whether there is an alpha channel that says how much of a texel is covered."""
-        independent = self.is_data or self.alpha_mode in {"CHANNEL_PACKED", "NONE"}
-        return self.stored.shape[2] == 4 and not independent
+        known = self.covers or self.alpha_mode not in _INDEPENDENT
+        return self.stored.shape[2] == 4 and known and not self.is_data
 
     @property
     def alpha_is_straight(self) -> bool:
         """Whether colours have to be multiplied by alpha before they are filtered."""
-        return self.alpha_is_coverage and not self.is_float
+        return self.alpha_is_coverage and (not self.is_float or self.alpha_mode in _INDEPENDENT)
 
 
 def find(name: str) -> bpy.types.Image:
@@ -130,6 +137,7 @@ def read(image: bpy.types.Image) -> Picture:
         full_name=image.name_full,
         stored=stored,
         is_float=image.is_float,
+        is_integer=not image.is_float or _has_integer_file(image),
         encoding=_encoding(image, linear_space),
         colorspace=space.name,
         is_data=space.is_data,
@@ -137,6 +145,19 @@ def read(image: bpy.types.Image) -> Picture:
         linear_space=linear_space,
         ocio_config=_ocio_config(),
     )
+
+
+def _has_integer_file(image: bpy.types.Image) -> bool:
+    """Tells whether the pixels come from a file of integers, as 16-bit PNG; Blender has floats."""
+    if image.source != "FILE":
+        return False
+    if image.packed_file is None:
+        return openimageio.holds_integers(bpy.path.abspath(image.filepath, library=image.library))
+    with tempfile.TemporaryDirectory() as folder:
+        copy = os.path.join(folder, "picture")
+        with open(copy, "wb") as file:
+            file.write(image.packed_file.data)
+        return openimageio.holds_integers(copy)
 
 
 def check_untiled(image: bpy.types.Image) -> None:

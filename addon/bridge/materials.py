@@ -98,9 +98,47 @@ def feeds_normal_map(material: bpy.types.Material, image: bpy.types.Image) -> bo
     )
 
 
+def has_alpha_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
+    """Tells whether a material shows as much of the surface as the alpha of an image says.
+
+    So it does where the Alpha output of an Image Texture node leads to the input Alpha of a shader,
+    or to the factor of a Mix Shader that has a Transparent BSDF on one side. An image whose alpha
+    mode is None has no alpha to a shader.
+    """
+    if image.alpha_mode == "NONE" or not material.use_nodes or material.node_tree is None:
+        return False
+    return any(
+        _comes_from(socket, groups, image, set(), output="Alpha")
+        for socket, groups in _coverage_inputs(material.node_tree)
+    )
+
+
+def _coverage_inputs(tree: bpy.types.NodeTree) -> Iterator[tuple[bpy.types.NodeSocket, Groups]]:
+    """Yields the inputs of shaders that say how much of the surface they show."""
+    for node, groups in _nodes(tree, ()):
+        if node.type == "MIX_SHADER":
+            factor, *shaders = node.inputs
+            if any(_is_transparent(shader) for shader in shaders):
+                yield factor, groups
+        elif any(output.type == "SHADER" for output in node.outputs):
+            yield from ((socket, groups) for socket in node.inputs if socket.name == "Alpha")
+
+
+def _is_transparent(shader: bpy.types.NodeSocket) -> bool:
+    link = _link_into(shader)
+    while link is not None and link.from_node.type == "REROUTE":
+        link = _link_into(link.from_node.inputs[0])
+    return link is not None and link.from_node.type == "BSDF_TRANSPARENT"
+
+
 def _comes_from(
-    socket: bpy.types.NodeSocket, groups: Groups, image: bpy.types.Image, seen: set[Any]
+    socket: bpy.types.NodeSocket,
+    groups: Groups,
+    image: bpy.types.Image,
+    seen: set[Any],
+    output: str = "",
 ) -> bool:
+    """Tells whether a socket gets its value from an image, or from an output of its node."""
     link = _link_into(socket)
     if link is None:
         return False
@@ -110,49 +148,52 @@ def _comes_from(
         return False
     seen.add(place)
     if node.type == "TEX_IMAGE":
-        return node.image == image and not node.mute
+        return node.image == image and not node.mute and output in {"", source.name}
     if node.type == "GROUP" and node.node_tree is not None and not node.mute:
-        outputs = [
+        ends = [
             inner
             for inner in node.node_tree.nodes
             if inner.type == "GROUP_OUTPUT" and inner.is_active_output
         ]
         inside = (*groups, node)
         return any(
-            _comes_from(_socket(output.inputs, source.identifier), inside, image, seen)
-            for output in outputs
+            _comes_from(_socket(end.inputs, source.identifier), inside, image, seen, output)
+            for end in ends
         )
     if node.type == "GROUP_INPUT" and groups:
-        return _comes_from(_socket(groups[-1].inputs, source.identifier), groups[:-1], image, seen)
+        outside = _socket(groups[-1].inputs, source.identifier)
+        return _comes_from(outside, groups[:-1], image, seen, output)
     # What a factor holds is no normals, and other textures make their colors themselves.
     inputs = [] if node.type.startswith("TEX_") else node.inputs
     return any(
-        _comes_from(input_, groups, image, seen) for input_ in inputs if input_.name not in _FACTORS
+        _comes_from(input_, groups, image, seen, output)
+        for input_ in inputs
+        if input_.name not in _FACTORS
     )
+
+
+def _nodes(tree: bpy.types.NodeTree, groups: Groups) -> Iterator[tuple[bpy.types.Node, Groups]]:
+    """Yields the nodes that are not muted, those in groups too, each with the groups around it."""
+    for node in tree.nodes:
+        if node.mute:
+            continue
+        if node.type == "GROUP" and node.node_tree is not None:
+            yield from _nodes(node.node_tree, (*groups, node))
+        else:
+            yield node, groups
 
 
 def _nodes_of_type(
     tree: bpy.types.NodeTree, groups: Groups, node_type: str
 ) -> Iterator[tuple[bpy.types.Node, Groups]]:
-    for node in tree.nodes:
-        if node.mute:
-            continue
-        if node.type == node_type:
-            yield node, groups
-        elif node.type == "GROUP" and node.node_tree is not None:
-            yield from _nodes_of_type(node.node_tree, (*groups, node), node_type)
+    return ((node, inside) for node, inside in _nodes(tree, groups) if node.type == node_type)
 
 
 def _image_nodes(
     tree: bpy.types.NodeTree, groups: Groups, kind: str = "TEX_IMAGE"
 ) -> Iterator[tuple[bpy.types.Node, Groups]]:
-    for node in tree.nodes:
-        if node.mute:
-            continue
-        if node.type == kind and node.image is not None:
-            yield node, groups
-        elif node.type == "GROUP" and node.node_tree is not None:
-            yield from _image_nodes(node.node_tree, (*groups, node), kind)
+    nodes = _nodes_of_type(tree, groups, kind)
+    return ((node, inside) for node, inside in nodes if node.image is not None)
 
 
 def _use(node: bpy.types.Node, groups: Groups) -> ImageUse:

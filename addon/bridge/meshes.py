@@ -118,16 +118,21 @@ def image_surfaces(
     return found
 
 
-def images_of_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Image]:
-    """Returns the images that the materials of objects and collections on them show, each once."""
-    found: dict[bpy.types.Image, None] = {}
+def materials_of_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Material]:
+    """Returns the materials of objects and collections on them, each once."""
+    found: dict[bpy.types.Material, None] = {}
     for obj in objects:
         collection = obj.instance_collection if obj.instance_type == "COLLECTION" else None
         for shown in (obj, *(collection.all_objects if collection is not None else ())):
-            for slot in shown.material_slots:
-                if slot.material is not None:
-                    found.update(dict.fromkeys(images_of(slot.material)))
+            slots = shown.material_slots
+            found.update((slot.material, None) for slot in slots if slot.material is not None)
     return list(found)
+
+
+def images_of_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Image]:
+    """Returns the images that the materials of objects and collections on them show, each once."""
+    shown = (image for material in materials_of_objects(objects) for image in images_of(material))
+    return list(dict.fromkeys(shown))
 
 
 def _search(

@@ -72,6 +72,21 @@ def color_convert(
     return converted
 
 
+def holds_integers(path: str) -> bool:
+    """Tells whether a picture file has integers in it; False where that cannot be found out."""
+    try:
+        oiio = module()
+    except OSError:
+        return False
+    reader = oiio.ImageInput.open(path)
+    if reader is None:
+        oiio.geterror()
+        return False
+    kind = reader.spec().format.basetype
+    reader.close()
+    return kind not in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
+
+
 def write_picture(path: Path, pixels: NDArray[Any], color_space: str) -> None:
     """Writes integers as a picture file, just as they are; a fourth channel is straight alpha.
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from .materials import image_uses, images_of
+from .materials import has_alpha_of, image_uses, images_of
 
 
 @dataclass
@@ -15,10 +15,12 @@ class Viewers:
     Attributes:
         objects: The objects whose meshes, or those that they are instancers of, use it.
         others: What shows it in a way that is no UV map on a mesh.
+        alpha_covers: Whether a material shows as much of a mesh as the image's alpha says.
     """
 
     objects: dict[bpy.types.Object, None] = field(default_factory=dict)
     others: dict[str, None] = field(default_factory=dict)
+    alpha_covers: bool = False
 
 
 def viewers(
@@ -71,6 +73,7 @@ def _add_object(
             if shown.type == "MESH":
                 entry.objects[owner] = None
                 entry.others.update(dict.fromkeys(image_uses(material, image)[1]))
+                entry.alpha_covers = entry.alpha_covers or has_alpha_of(material, image)
             else:
                 entry.others[f"object '{owner.name}' ({shown.type.lower()}) shows it"] = None
         _add_environment(found, material, f"the material '{material.name}'")

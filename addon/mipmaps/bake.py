@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-import numpy as np
 import prefilter
 
 from ..bridge import images, materials, meshes
@@ -339,11 +338,7 @@ class Bake:
     def _bounds(self, linear: FloatArray) -> tuple[float | None, float | None] | None:
         if self._settings.bounds != "auto":
             return _LIMITS[self._settings.bounds]
-        finite = np.isfinite(linear)
-        low = 0.0 if linear.min(where=finite, initial=0.0) >= 0.0 else None
-        within_one = linear.max(where=finite, initial=0.0) <= 1.0
-        high = 1.0 if not self._picture.is_float and within_one else None
-        return low, high
+        return contents.automatic_bounds(linear, is_integer=self._picture.is_integer)
 
     def _summary(self, names: Sequence[str]) -> str:
         baked = f"Baked '{self.image_name}'"

@@ -37,7 +37,7 @@ WRAPS_V = {"same": Choice("Same as U", "The same as along U"), **_MODES}
 BOUNDS = {
     "auto": Choice(
         "Automatic",
-        "0 to 1 for byte images, 0 and up for float images; less a limit that the image passes",
+        "0 to 1 for images of integers, 0 and up for others; wider where the image goes beyond",
     ),
     "unit": Choice("0 to 1", "Values stay between 0 and 1"),
     "positive": Choice("0 and Up", "Values stay at or above 0"),

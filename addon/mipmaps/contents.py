@@ -47,7 +47,7 @@ def as_content(picture: Picture, content: str) -> Picture:
         space = picture.linear_space if picture.is_float else picture.colorspace
         changed = replace(picture, encoding=Encoding.NONE, is_data=True, colorspace=space)
         return picture if picture.is_data else changed
-    return replace(picture, is_data=False)
+    return replace(picture, is_data=False, covers=picture.covers or content == "cutout")
 
 
 def check_cutout(picture: Picture) -> None:
@@ -69,6 +69,13 @@ def check_roughness(picture: Picture, roughness: Picture) -> None:
             f"roughness: '{roughness.name}' has {wide} x {high} texels; the {width} x {height} of "
             f"'{picture.name}' are needed"
         )
+
+
+def automatic_bounds(linear: FloatArray, *, is_integer: bool) -> tuple[float, float | None]:
+    """Returns the range of light: 0 to 1 for integers, else 0 and up; wider where the image is."""
+    finite = np.isfinite(linear)
+    low = float(linear.min(where=finite, initial=0.0))
+    return low, float(linear.max(where=finite, initial=1.0)) if is_integer else None
 
 
 def plain_levels(
@@ -149,7 +156,7 @@ def normal_levels(
             roughness.linear,
             surfaces,
             premultiplied=True,
-            bounds=None if roughness.picture.is_float else (0.0, 1.0),
+            bounds=automatic_bounds(roughness.linear, is_integer=roughness.picture.is_integer),
             progress=share(progress, 0.0, 1 / steps),
             **options,
         )

@@ -1,11 +1,12 @@
 """The first step of a bake: everything that it needs is copied out of Blender, and checked."""
 
 from collections.abc import Generator, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
 
-from ..bridge import images, materials
+from ..bridge import images, materials, meshes
 from ..bridge.files import engines, textures
 from ..bridge.images import Picture
 from ..core.wording import listed
@@ -74,12 +75,10 @@ def reading(
     pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
     for picture in pictures:
         _check_levels(picture, settings.levels)
-    is_normal_map = any(
-        materials.feeds_normal_map(slot.material, image)
-        for obj in objects
-        for slot in obj.material_slots
-        if slot.material is not None
-    )
+    used_by = meshes.materials_of_objects(objects)
+    is_normal_map = any(materials.feeds_normal_map(material, image) for material in used_by)
+    if any(materials.has_alpha_of(material, image) for material in used_by):
+        pictures = [replace(picture, covers=True) for picture in pictures]
     content = contents.resolved(settings.content, pictures[0], is_normal_map=is_normal_map)
     is_encoded = pictures[0].encoding is not images.Encoding.NONE
     pictures = [contents.as_content(picture, content) for picture in pictures]

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 import prefilter
 
-from ..bridge import images, materials, meshes, rendered
+from ..bridge import images, materials, meshes, openimageio, rendered
 from ..bridge.files import tx
 from ..bridge.files.staging import StagedFile
 from ..bridge.images import FloatArray
@@ -20,6 +20,7 @@ from ..core.alpha import associated, at_most_opaque, unassociated
 from ..core.jobs import Progress, go_on
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
+from .contents import automatic_bounds
 
 NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
 
@@ -37,6 +38,7 @@ class _Worn:
         objects: The name of the object of each surface.
         extensions: What Image Texture nodes do outside of the image.
         obstacle: Why its levels are to stay as Blender makes them, or empty.
+        alpha_covers: Whether a material takes its alpha for coverage, whatever the alpha mode.
     """
 
     names: list[str]
@@ -45,6 +47,7 @@ class _Worn:
     objects: list[str] = field(default_factory=list)
     extensions: list[str] = field(default_factory=list)
     obstacle: str = ""
+    alpha_covers: bool = False
 
     def share(self, other: "_Worn") -> None:
         """Adds the surfaces of an image with the same cache file."""
@@ -53,6 +56,7 @@ class _Worn:
         self.objects.extend(other.objects)
         self.extensions.extend(other.extensions)
         self.obstacle = self.obstacle or other.obstacle
+        self.alpha_covers = self.alpha_covers or other.alpha_covers
 
     @property
     def who(self) -> str:
@@ -218,6 +222,7 @@ def _read_image(
             tx.Source(path, space.name, space.is_data, image.alpha_mode, cache_folder),
             extensions=list(found.extensions),
             obstacle=obstacle,
+            alpha_covers=seen.alpha_covers,
         )
         for surface, name in zip(found.surfaces, found.objects, strict=True):
             part = surface if number is None else surface.udim_tile(number)
@@ -242,36 +247,42 @@ def _levels(
     is_opaque = stored.shape[2] == 4 and bool(np.all(stored[..., 3] == 1))
     if is_opaque:
         stored = np.ascontiguousarray(stored[..., :3])
-    covers = stored.shape[2] == 4 and worn.source.alpha_is_coverage
+    is_associated = stored.shape[2] == 4 and worn.source.alpha_is_associated
+    covers = stored.shape[2] == 4 and worn.alpha_covers and not worn.source.is_data
     fit = partial(
-        prefilter.mipmaps, surface=worn.surfaces, wrap=wrap, progress=progress, threads=threads
+        prefilter.mipmaps,
+        surface=worn.surfaces,
+        wrap=wrap,
+        premultiplied=is_associated or not covers,
+        progress=progress,
+        threads=threads,
     )
     if texture.is_encoded:
-        straight = unassociated(stored) if covers else stored
+        straight = unassociated(stored) if is_associated else stored
         levels = [
             prefilter.to_srgb(level, threads=threads)
             for level in fit(
                 prefilter.to_linear(straight, threads=threads),
-                premultiplied=not covers,
+                premultiplied=not (is_associated or covers),
                 reader="srgb-after",
             )[1:]
         ]
-        if covers:
+        if is_associated:
             levels = [associated(level) for level in levels]
     elif texture.is_float:
-        levels = fit(stored, premultiplied=True, bounds=_float_bounds(stored))[1:]
-        if covers:
+        is_integer = openimageio.holds_integers(str(worn.source.path))
+        bounds = automatic_bounds(stored, is_integer=is_integer)
+        levels = fit(stored, bounds=bounds)[1:]
+        if is_associated:
             levels = [at_most_opaque(level) for level in levels]
+        elif covers:
+            for level in levels:
+                np.minimum(level[..., 3], 1, out=level[..., 3])
     else:
-        levels = fit(stored, premultiplied=True)[1:]
+        levels = fit(stored)[1:]
     if is_opaque:
         levels = [np.pad(level, ((0, 0), (0, 0), (0, 1)), constant_values=1) for level in levels]
     return levels
-
-
-def _float_bounds(values: FloatArray) -> tuple[float | None, None]:
-    """Returns bounds that keep light positive."""
-    return (0.0 if values.min(where=np.isfinite(values), initial=0.0) >= 0.0 else None), None
 
 
 def _wrap(worn: _Worn) -> str:

@@ -172,7 +172,7 @@ def _png_pixels(picture: Picture, level: FloatArray) -> np.ndarray[Any, Any]:
     """Returns bytes, or 16 bits, with rows from the top and straight alpha."""
     if not picture.is_float:
         return np.ascontiguousarray(_bytes(level)[::-1])
-    if picture.alpha_is_coverage:
+    if picture.alpha_is_coverage and not picture.alpha_is_straight:
         level = unassociated(level)
     if not picture.is_data:
         level = prefilter.to_srgb(level)

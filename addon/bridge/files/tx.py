@@ -64,8 +64,8 @@ class Source:
         return self.path.parent / (self.cache_folder or _DEFAULT_FOLDER)
 
     @property
-    def alpha_is_coverage(self) -> bool:
-        """Whether a fourth channel says how much of a texel is covered."""
+    def alpha_is_associated(self) -> bool:
+        """Whether the colours of a cache file are multiplied by its fourth channel."""
         return not self.is_data and self.alpha_mode in {"STRAIGHT", "PREMUL"}
 
 

@@ -133,9 +133,8 @@ def test_mirror_and_disagreement_are_said(bake):
     ("is_float", "low", "colorspace", "bounds", "expected"),
     [
         (False, 0, "sRGB", "auto", (0, 1)),
-        (False, 0, "Filmic sRGB", "auto", (0, None)),
         (True, 0, None, "auto", (0, None)),
-        (True, -1, None, "auto", (None, None)),
+        (True, -1, None, "auto", (-1, None)),
         (True, 0, None, "unit", (0, 1)),
         (False, 0, "sRGB", "positive", (0, None)),
         (False, 0, "sRGB", "none", None),
@@ -144,9 +143,53 @@ def test_mirror_and_disagreement_are_said(bake):
 def test_bounds(bake, calls, is_float, low, colorspace, bounds, expected):
     values = scenes.noise(4, 4) + low
     values[0, 0] = 1
+    values[1, 1, :3] = low
     image = scenes.image("Paint", values, is_float=is_float, colorspace=colorspace)
     bake(image, filter="box", bounds=bounds)
     assert calls[0]["bounds"] == expected
+
+
+def test_bounds_reach_as_far_as_a_wide_color_space(bake, calls):
+    image = scenes.image("Paint", scenes.noise(4, 4), colorspace="Filmic sRGB")
+    bake(image, filter="box")
+    low, high = calls[0]["bounds"]
+    assert low == 0
+    assert high > 1
+
+
+def striped(low, high):
+    """A float image whose lookups jump between two values, which makes a free fit overshoot."""
+    values = np.full((32, 32, 4), low, np.float32)
+    values[:, ::5, :3] = high
+    values[3, 3, :3] = -1e-6
+    values[..., 3] = 1
+    return values
+
+
+def test_light_falls_no_deeper_than_the_image(bake):
+    """A texel that is a little below 0 once let levels fall to -10 beside a highlight."""
+    image = scenes.image("Light", striped(0.01, 50), is_float=True)
+    names = bake(image, [scenes.textured_quad(image)]).images
+    assert min(scenes.pixels(name).min() for name in names) >= -1e-6
+
+
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_integers_of_many_bits_stay_within_one(bake, tmp_path, is_packed):
+    """Blender has a 16-bit PNG as floats."""
+    pixels = np.round(np.clip(striped(0.01, 1), 0, 1) * 65535).astype(np.uint16)
+    path = str(tmp_path / "deep.png")
+    writer = oiio.ImageOutput.create(path)
+    assert writer.open(path, oiio.ImageSpec(32, 32, 4, "uint16"))
+    assert writer.write_image(pixels)
+    writer.close()
+    image = bpy.data.images.load(path)
+    image.colorspace_settings.name = "Linear Rec.709"
+    if is_packed:
+        image.pack()
+    assert image.is_float
+    names = bake(image, [scenes.textured_quad(image)]).images
+    assert bpy.data.images[names[0]].is_float
+    assert max(scenes.pixels(name).max() for name in names) <= 1
 
 
 def test_values_that_are_not_finite_leave_the_bounds(bake, calls):

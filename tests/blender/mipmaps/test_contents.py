@@ -373,6 +373,93 @@ def test_packed_channels_are_independent(bake, alpha_mode, filter):
     assert np.abs(found[0][..., 3] - found[1][..., 3]).max() > 0.1
 
 
+LEAF = np.float32((40, 110, 20)) / 255
+
+
+def gltf_leaf(is_float=False):
+    """A Channel Packed image, as Blender's glTF importer makes: a leaf where alpha is, and white.
+
+    White is what no alpha shows. A 16-bit file gives floats that are straight, too.
+    """
+    values = leaves()
+    shown = values[..., 3:] > 0
+    color = scenes.to_linear(LEAF) if is_float else LEAF
+    values[..., :3] = np.where(shown, color, np.float32(1))
+    return scenes.image("Leaf", values, alpha_mode="CHANNEL_PACKED", is_float=is_float)
+
+
+def drive_alpha(material, way):
+    """Lets the alpha of a material's image say how much of the surface it shows; returns how."""
+    tree = material.node_tree
+    texture = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    alpha = texture.outputs["Alpha"]
+    if way in {"mask", "mix"}:
+        math = tree.nodes.new("ShaderNodeMath")
+        math.operation = "GREATER_THAN"
+        tree.links.new(alpha, math.inputs[0])
+        alpha = math.outputs[0]
+    if way != "mix":
+        tree.links.new(alpha, shader.inputs["Roughness" if way == "data" else "Alpha"])
+        return
+    mix = tree.nodes.new("ShaderNodeMixShader")
+    tree.links.new(alpha, mix.inputs[0])
+    tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+    tree.links.new(shader.outputs[0], mix.inputs[2])
+
+
+def colors_shown(is_float):
+    """The sRGB colors of level 5's texels, which are straight."""
+    found = scenes.pixels("Leaf.mip5")[..., :3]
+    return scenes.to_srgb(found) if is_float else found
+
+
+@pytest.mark.parametrize("is_float", [False, True])
+@pytest.mark.parametrize("filter", ["box", "pam-bilinear"])
+def test_hidden_colors_stay_out_of_a_cutout_whatever_the_alpha_mode(bake, filter, is_float):
+    image = gltf_leaf(is_float)
+    quad = scenes.textured_quad(image)
+    bake(image, [quad], filter=filter, content="cutout", wrap="clamp")
+    found = colors_shown(is_float)
+    np.testing.assert_allclose(found, np.broadcast_to(LEAF, found.shape), atol=1.5 / 255)
+    assert bpy.data.images["Leaf.mip5"].alpha_mode == "CHANNEL_PACKED"
+
+
+@pytest.mark.parametrize(
+    ("way", "covers"), [("direct", True), ("mask", True), ("mix", True), ("data", False)]
+)
+def test_alpha_that_a_material_shows_by_is_coverage(bake, way, covers):
+    image = gltf_leaf()
+    quad = scenes.textured_quad(image)
+    drive_alpha(quad.active_material, way)
+    bake(image, [quad], filter="box", wrap="clamp")
+    assert (np.abs(colors_shown(False) - LEAF).max() < 1.5 / 255) == covers
+    bake(image, [quad], filter="box", wrap="clamp", content="data")
+    plain = leaves()[..., 3].mean() * LEAF[0] + (1 - leaves()[..., 3].mean())
+    assert colors_shown(False)[0, 0, 0] == pytest.approx(plain, abs=1.1 / 255)
+
+
+def test_alpha_of_an_instanced_collection_is_coverage(bake):
+    image = gltf_leaf()
+    quad = scenes.textured_quad(image)
+    drive_alpha(quad.active_material, "direct")
+    bake(image, [scenes.collection_instance(quad)], wrap="clamp")
+    assert np.abs(colors_shown(False) - LEAF).max() < 1.5 / 255
+
+
+def test_bc1_keeps_the_alpha_of_a_cutout(bake, tmp_path):
+    """Punch-through blocks, read by OpenImageIO: what the cut-out shows, and nothing else."""
+    path = tmp_path / "leaf.dds"
+    image = gltf_leaf()
+    quad = scenes.textured_quad(image)
+    options = {"filepath": str(path), "texture_format": "bc1", "use_images": False}
+    bake(image, [quad], content="cutout", wrap="clamp", **options)
+    found = oiio.ImageBuf(str(path)).get_pixels("float")[::-1]
+    np.testing.assert_array_equal(found[..., 3], leaves()[..., 3])
+    seen = found[found[..., 3] > 0][:, :3]
+    np.testing.assert_allclose(seen, np.broadcast_to(LEAF, seen.shape), atol=6 / 255)
+
+
 def test_light_may_pass_one(bake):
     """HDR, by the surface error: levels go where the light is, and not below zero."""
     values = np.zeros((16, 16, 4), np.float32)

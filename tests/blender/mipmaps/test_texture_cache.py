@@ -292,6 +292,58 @@ def test_channels_that_are_no_alpha_do_not_mix(scene, tmp_path, mode):
 
 
 @needs_cache
+@pytest.mark.parametrize("kind", ["uint8", "float"])
+def test_packed_alpha_that_a_material_shows_by_is_coverage(scene, tmp_path, kind):
+    """As Blender's glTF importer sets images up: what alpha hides is in no level."""
+    pixels = np.ones((64, 64, 4), np.float32)
+    pixels[::4, :, :3] = GREEN
+    pixels[..., 3] = 0
+    pixels[::4, :, 3] = 1
+    name = "leaf.png" if kind == "uint8" else "leaf.exr"
+    image = cycles.write_picture(tmp_path / name, pixels, kind)
+    image.alpha_mode = "CHANNEL_PACKED"
+    quad = scenes.textured_quad(image)
+    tree = quad.active_material.node_tree
+    node = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    tree.links.new(node.outputs["Alpha"], shader.inputs["Alpha"])
+    bake()
+    for number in (2, 4):
+        stored = cycles.level(cycles.cache_file(tmp_path), number)
+        np.testing.assert_allclose(
+            stored[..., :3], np.broadcast_to(GREEN, stored[..., :3].shape), atol=0.02
+        )
+        assert stored[..., 3].mean() == pytest.approx(0.25, abs=0.02)
+
+
+@needs_cache
+def test_levels_fall_no_deeper_than_the_image(scene, tmp_path):
+    pixels = np.full((64, 64, 3), 0.01, np.float32)
+    pixels[:, ::5] = 50
+    pixels[3, 3] = -1e-6
+    cycles.shown_on(cycles.write_picture(tmp_path / "light.exr", pixels, "float"))
+    bake()
+    path = cycles.cache_file(tmp_path)
+    assert min(cycles.level(path, number).min() for number in range(1, 7)) >= -1e-6
+
+
+@needs_cache
+def test_deep_integers_stay_within_one(scene, tmp_path):
+    """Blender caches a 16-bit file of another colour space as floats."""
+    pixels = np.full((64, 64, 3), 0.01, np.float32)
+    pixels[:, ::5] = 1
+    image = cycles.write_picture(tmp_path / "deep.png", pixels, "uint16")
+    image.colorspace_settings.name = "ACEScg"
+    cycles.shown_on(image)
+    bake()
+    path = cycles.cache_file(tmp_path)
+    reader = oiio.ImageInput.open(str(path))
+    assert reader.format_name() == "openexr"
+    highest = cycles.level(path, 0).max()
+    assert max(cycles.level(path, number).max() for number in range(1, 7)) <= max(1, highest)
+
+
+@needs_cache
 def test_weights_are_those_of_all_objects(scene, tmp_path):
     pixels = np.zeros((64, 64, 3), np.float32)
     pixels[:] = MAGENTA
