@@ -13,9 +13,9 @@ import prefilter
 
 from ..bridge import images, materials, meshes
 from ..bridge.files import engines, textures
-from ..bridge.files.staging import StagedFile
+from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray, Picture
-from ..bridge.level_images import StagedLevels, stage_levels
+from ..bridge.level_images import StagedLevels, level_name, stage_levels
 from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
@@ -90,6 +90,11 @@ class Bake:
     def wrap(self) -> tuple[str, str]:
         """What lookups read outside of the image along u and v."""
         return self._wrap
+
+    @property
+    def staged_files(self) -> Sequence[StagedFile]:
+        """The finished files, beside their targets."""
+        return self._staged
 
     @property
     def reader(self) -> str:
@@ -265,8 +270,7 @@ class Bake:
             OSError: The file cannot be put into place, or an image cannot be made; nothing was
                 written then.
         """
-        self.stage_images()
-        return self.commit()
+        return write_all([self])[0]
 
     def stage_images(self) -> None:
         """Makes the level images, which replace none yet.
@@ -284,24 +288,14 @@ class Bake:
             self.discard()
             raise
 
-    def commit(self) -> Outcome:
-        """Puts what is staged into place.
-
-        Raises:
-            OSError: The file cannot be put into place; nothing was written then.
-        """
-        try:
-            for staged in self._staged:
-                staged.commit()
-        except BaseException:
-            self.discard()
-            raise
+    def finish(self) -> Outcome:
+        """Puts the level images into place; the files are there already."""
         names: list[str] = []
         for staged in self._staged_levels:
             made = staged.commit()
             names += made
             base = staged.picture.name
-            if any(name != f"{base}.mip{i}" for i, name in enumerate(made, start=1)):
+            if any(name != level_name(base, i) for i, name in enumerate(made, start=1)):
                 self.warnings.append(f"the level images are named {listed(made)}")
         self._staged_levels.clear()
         self.discard()
@@ -356,6 +350,24 @@ class Bake:
         results += [textures.shown(target) for target in targets if target is not None]
         parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
         return " ".join(parts)
+
+
+def write_all(bakes: Sequence[Bake]) -> list[Outcome]:
+    """Writes what bakes have computed: everything, or nothing.
+
+    Raises:
+        OSError: A file cannot be put into place, or an image cannot be made; nothing was written
+            then, but for files that the message names.
+    """
+    try:
+        for one in bakes:
+            one.stage_images()
+        commit_all([file for one in bakes for file in one.staged_files])
+    except BaseException:
+        for one in bakes:
+            one.discard()
+        raise
+    return [one.finish() for one in bakes]
 
 
 def reads_encoded(picture: Picture) -> bool:

@@ -14,7 +14,7 @@ import prefilter
 
 from ..bridge import images, materials, meshes, openimageio, rendered
 from ..bridge.files import tx
-from ..bridge.files.staging import StagedFile
+from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray
 from ..core.alpha import associated, at_most_opaque, unassociated
 from ..core.jobs import Progress, go_on
@@ -141,15 +141,14 @@ class CacheBake:
         """Puts the files into place, and turns the scene's texture cache on.
 
         Raises:
-            OSError: A file cannot be put into place.
+            OSError: A file cannot be put into place; nothing was written then.
         """
-        written = []
+        files = [staged for _, staged in self._staged]
         try:
-            for _, staged in self._staged:
-                staged.commit()
-                written.append(str(staged.target))
+            commit_all(files)
         finally:
             self.discard()
+        written = [str(staged.target) for staged in files]
         scene = bpy.data.scenes.get(self._scene)
         if scene is not None:
             scene.render.use_texture_cache = True

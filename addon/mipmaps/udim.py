@@ -11,7 +11,7 @@ from ..bridge.images import Picture
 from ..core.jobs import Progress
 from ..core.outcome import Outcome
 from ..core.wording import listed
-from .bake import Bake
+from .bake import Bake, write_all
 from .choices import TEXTURE_SPACE_FILTERS, Settings
 
 
@@ -50,13 +50,7 @@ class TiledBake:
 
     def write(self) -> Outcome:
         """Writes all tiles, once everything is staged; see `Bake.write`."""
-        try:
-            for one in self._bakes:
-                one.stage_images()
-            outcomes = [one.commit() for one in self._bakes]
-        except BaseException:
-            self.discard()
-            raise
+        outcomes = write_all(self._bakes)
         for outcome in outcomes:
             self.warnings.extend(outcome.warnings)
         names = [name for outcome in outcomes for name in outcome.images]

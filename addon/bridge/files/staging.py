@@ -4,7 +4,7 @@ import os
 import secrets
 import shutil
 import stat
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -39,13 +39,64 @@ class StagedFolder:
     def commit(self) -> None:
         """Moves the files into place, the target last, and removes the folder."""
         written = sorted(self.temporary.iterdir(), key=lambda path: path.name == self.target.name)
-        for path in written:
-            StagedFile(path, self.target.with_name(path.name)).commit()
+        commit_all([StagedFile(path, self.target.with_name(path.name)) for path in written])
         self.discard()
 
     def discard(self) -> None:
         """Removes the temporary folder."""
         shutil.rmtree(self.temporary, ignore_errors=True)
+
+
+def commit_all(files: Sequence[StagedFile]) -> None:
+    """Renames files into place: all of them, or none.
+
+    Raises:
+        OSError: One cannot be put into place, and the others are as they were; but for those that
+            the message names.
+    """
+    if len(files) == 1:
+        files[0].commit()
+        return
+    kept: list[tuple[Path, Path | None]] = []
+    try:
+        for file in files:
+            kept.append((file.target, _second_name(file.target)))
+            file.commit()
+    except BaseException as error:
+        lost = [text for target, earlier in kept if (text := _put_back(target, earlier))]
+        if lost:
+            raise OSError("; ".join([str(error), *lost])) from error
+        raise
+    for _, earlier in kept:
+        if earlier is not None:
+            earlier.unlink(missing_ok=True)
+
+
+def _second_name(target: Path) -> Path | None:
+    """Gives a file a second name that outlasts its replacement; None where there is no file."""
+    if not target.exists():
+        return None
+    other = target.with_name(f".prefilter-{secrets.token_hex(4)}{target.suffix}")
+    try:
+        os.link(target, other)
+    except OSError:  # Some file systems have no links.
+        shutil.copy2(target, other)
+    return other
+
+
+def _put_back(target: Path, earlier: Path | None) -> str:
+    """Undoes a replacement; returns what is to be told where that fails, else nothing."""
+    try:
+        if earlier is None:
+            target.unlink(missing_ok=True)
+        else:
+            os.replace(earlier, target)
+            # Renaming does nothing where both are still names of one file.
+            earlier.unlink(missing_ok=True)
+    except OSError as error:
+        kept = "" if earlier is None else f", what it was is in '{earlier}'"
+        return f"file '{target}' was written and cannot be taken back{kept}: {error}"
+    return ""
 
 
 def check_plain_target(path: str, ending: str) -> Path:
@@ -107,10 +158,15 @@ def stage_with(target: Path, write: Callable[[Path], object]) -> StagedFile:
 
 
 def check_writable(path: Path) -> None:
-    """Raises OSError if a file or its folder is read-only.
+    """Raises OSError if a file or its folder is read-only, or if it is no regular file.
 
-    Root may write what has no write bits; a path without them is left alone all the same.
+    Root may write what has no write bits; a path without them is left alone all the same. A device
+    or a pipe would not be written to, but replaced.
     """
+    if path.is_dir():
+        raise OSError(f"file '{path}' is a folder")
+    if path.exists() and not path.is_file():
+        raise OSError(f"file '{path}' is a device or a pipe; only regular files are replaced")
     if path.exists() and not _is_writable(path):
         raise OSError(f"file '{path}' is read-only")
     if not _is_writable(path.parent):
@@ -121,8 +177,6 @@ def check_place(path: str, target: Path) -> None:
     """Raises OSError unless a file can be written; `path` is what the user calls it."""
     if not target.parent.is_dir():
         raise OSError(f"file '{path}': there is no folder '{target.parent}'")
-    if target.is_dir():
-        raise OSError(f"file '{path}' is a folder")
     check_writable(target)
 
 

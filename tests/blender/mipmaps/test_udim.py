@@ -45,14 +45,17 @@ def reference(bake, values, name):
 def test_tiles_are_baked_like_images(bake, tiles):
     image, strip, values = tiles
     outcome = bake(image, [strip])
-    names = [f"Skin.1001.mip{i}" for i in (1, 2, 3)] + [f"Skin.1012.mip{i}" for i in (1, 2, 3, 4)]
+    names = [f"Skin.1001.mip{i:02d}" for i in (1, 2, 3)] + [
+        f"Skin.1012.mip{i:02d}" for i in (1, 2, 3, 4)
+    ]
     assert outcome.images == names
     assert outcome.warnings == []
     for number, pixels in values.items():
         alone = reference(bake, pixels, f"Alone{number}")
         for level in (1, 2, 3):
             np.testing.assert_array_equal(
-                scenes.pixels(f"Skin.{number}.mip{level}"), scenes.pixels(f"{alone}.mip{level}")
+                scenes.pixels(f"Skin.{number}.mip{level:02d}"),
+                scenes.pixels(f"{alone}.mip{level:02d}"),
             )
     assert len(bpy.data.images) == 1 + 7 + 2 + 7
 
@@ -65,7 +68,7 @@ def test_packed_tiles(bake, tiles, tmp_path):
     bake(image, [strip], filter="box")
     linear = scenes.to_linear(values[1012][..., :3])
     expected = scenes.to_srgb(scenes.halved(linear))
-    found = scenes.pixels("Skin.1012.mip1")[..., :3]
+    found = scenes.pixels("Skin.1012.mip01")[..., :3]
     np.testing.assert_allclose(found, expected, atol=0.51 / 255)
 
 
@@ -88,8 +91,8 @@ def test_files_for_engines(bake, tiles, tmp_path):
         file = read_dds(tmp_path / f"out.{number}.dds")
         np.testing.assert_array_equal(file.levels[0], np.rint(255 * pixels))
     found = sorted(path.name for path in tmp_path.glob("out*.png"))
-    assert found == [f"out.1001.{i}.png" for i in range(4)] + [
-        f"out.1012.{i}.png" for i in range(5)
+    assert found == [f"out.1001.{i:02d}.png" for i in range(4)] + [
+        f"out.1012.{i:02d}.png" for i in range(5)
     ]
 
 
@@ -99,7 +102,7 @@ def test_tiles_without_surface_are_left_out(bake, tiles):
     only.data.materials.append(scenes.material("Skin", image))
     outcome = bake(image, [only])
     assert outcome.warnings == ["tile 1012 is left out: no surface lies in it"]
-    assert outcome.images == [f"Skin.1001.mip{i}" for i in (1, 2, 3)]
+    assert outcome.images == [f"Skin.1001.mip{i:02d}" for i in (1, 2, 3)]
     away = scenes.quads("Away", [np.add(LEFT, (5, 0))])
     away.data.materials.append(only.active_material)
     with pytest.raises(ValueError, match="no surface lies in its tiles, '1001', '1012'"):
@@ -128,6 +131,27 @@ def test_failure_in_the_second_tile_leaves_nothing(bake, tiles, tmp_path):
     assert [path.name for path in folder.iterdir()] == ["out.1012.exr"]
 
 
+def test_files_of_tiles_are_all_written_or_none(bake, addon, tiles, tmp_path, monkeypatch):
+    image, strip, _ = tiles
+    folder = tmp_path / "out"
+    folder.mkdir()
+    (folder / "out.1001.exr").write_bytes(b"before")
+    staging = addon("bridge.files.staging")
+    replace = staging.os.replace
+
+    def fail_once(source, target):
+        if target.name == "out.1012.exr":
+            raise PermissionError("no rename")
+        replace(source, target)
+
+    monkeypatch.setattr(staging.os, "replace", fail_once)
+    with pytest.raises(OSError, match="no rename"):
+        bake(image, [strip], filepath=str(folder / "out.exr"))
+    assert [i.name for i in bpy.data.images] == ["Skin"]
+    assert [path.name for path in folder.iterdir()] == ["out.1001.exr"]
+    assert (folder / "out.1001.exr").read_bytes() == b"before"
+
+
 def test_the_operator_takes_tiles(tiles):
     assert bpy.ops.prefilter.bake_mipmaps(image="Skin") == {"FINISHED"}
-    assert "Skin.1012.mip4" in bpy.data.images
+    assert "Skin.1012.mip04" in bpy.data.images
