@@ -77,7 +77,7 @@ def main(folder: Path) -> None:
         errors[name] = surface_errors(model, levels[name])
         print(f"rendering it with levels of {label}", flush=True)
         for level in SHOWN_LEVELS:
-            shown.image = bpy.data.images[f"{IMAGE}.mip{level}"]
+            shown.image = bpy.data.images[f"{IMAGE}.mip{level:02d}"]
             note = f"surface error {errors[name][level - 1]:.3f}"
             panels[level].append((f"{label}, level {level}", note, render(folder)))
     print_table(errors)
@@ -254,8 +254,8 @@ def quiet() -> Iterator[None]:
 def read_levels() -> list[Array]:
     """Returns the image and its levels as sRGB, rows from the bottom."""
     names = [IMAGE]
-    while f"{IMAGE}.mip{len(names)}" in bpy.data.images:
-        names.append(f"{IMAGE}.mip{len(names)}")
+    while f"{IMAGE}.mip{len(names):02d}" in bpy.data.images:
+        names.append(f"{IMAGE}.mip{len(names):02d}")
     levels = []
     for name in names:
         image = bpy.data.images[name]

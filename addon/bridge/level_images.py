@@ -10,6 +10,7 @@ from .images import FloatArray, Picture
 from .new_images import new_packed, suffixed
 
 _SOURCE_KEY = "prefilter_level_of"
+_MOST_LEVELS = 31
 
 
 @dataclass(frozen=True)
@@ -30,14 +31,16 @@ class StagedLevels:
         Returns:
             The names of the images. One that belongs to another image gets a number behind it.
         """
+        made_before = _earlier_levels(self.picture)
         for number, image in enumerate(self.images, start=1):
-            name = level_name(self.picture.name, number)
-            earlier = _earlier_level(name, self.picture)
             image[_SOURCE_KEY] = self.picture.full_name
-            if earlier is not None:
-                earlier.user_remap(image)
-                bpy.data.images.remove(earlier)
-            image.name = name
+            _replace(made_before.pop(number, []), image)
+            image.name = level_name(self.picture.name, number)
+        for number, (deeper, *twins) in made_before.items():
+            _replace(twins, deeper)
+            name = level_name(self.picture.name, number)
+            if _unnumbered(deeper.name) != name:
+                deeper.name = name
         return [image.name for image in self.images]
 
     def discard(self) -> None:
@@ -48,10 +51,10 @@ class StagedLevels:
 
 
 def stage_levels(picture: Picture, levels: Sequence[FloatArray]) -> StagedLevels:
-    """Makes packed image datablocks of levels, to be named `<image>.mip1`, `<image>.mip2` ...
+    """Makes packed image datablocks of levels, to be named `<image>.mip01`, `<image>.mip02` ...
 
     An image of an earlier bake is replaced, so that materials that showed it show the new one.
-    Deeper levels of an earlier bake are left as they are. Every image keeps a fake user, as Blender
+    Deeper levels of an earlier bake are kept. Every image keeps a fake user, as Blender
     saves no unused datablock.
 
     A byte level has the picture's colour space, and straight alpha where the picture's is
@@ -85,17 +88,33 @@ def level_name(image_name: str, number: int) -> str:
 
     A base that is too long is cut, and gets a hash of what it was.
     """
-    return suffixed(image_name, f"mip{number}")
+    return suffixed(image_name, f"mip{number:02d}")
 
 
-def _earlier_level(name: str, picture: Picture) -> bpy.types.Image | None:
-    """Returns the image of that name, or of that name and a number, that a bake made before."""
-    form = re.compile(re.escape(name) + r"(\.\d{3,})?")
-    found = [
-        image
-        for image in bpy.data.images
-        if image.library is None
-        and form.fullmatch(image.name)
-        and image.get(_SOURCE_KEY) == picture.full_name
-    ]
-    return min(found, key=lambda image: image.name, default=None)
+def _earlier_levels(picture: Picture) -> dict[int, list[bpy.types.Image]]:
+    """Returns the level images that bakes of a picture have made, in the order of their names.
+
+    The first versions of the add-on named level 1 `<image>.mip1`.
+    """
+    numbers = {}
+    for number in range(1, _MOST_LEVELS):
+        numbers[level_name(picture.name, number)] = number
+        numbers[suffixed(picture.name, f"mip{number}")] = number
+    found: dict[int, list[bpy.types.Image]] = {}
+    for image in bpy.data.images:
+        number = numbers.get(_unnumbered(image.name))
+        is_ours = image.library is None and image.get(_SOURCE_KEY) == picture.full_name
+        if is_ours and number is not None:
+            found.setdefault(number, []).append(image)
+    return found
+
+
+def _unnumbered(name: str) -> str:
+    """Returns a name without the number that Blender adds to one that is taken."""
+    return re.sub(r"\.\d{3,}$", "", name)
+
+
+def _replace(earlier: Sequence[bpy.types.Image], image: bpy.types.Image) -> None:
+    for other in earlier:
+        other.user_remap(image)
+        bpy.data.images.remove(other)

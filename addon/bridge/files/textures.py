@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core import alpha
+from ...core.wording import listed
 from .. import images, openimageio
 from ..images import FloatArray, Picture
 from .staging import StagedFile, check_place, stage_with
@@ -52,14 +53,31 @@ def check_target(path: str) -> Path:
 
 def numbered(target: Path, number: int) -> Path:
     """Returns the file of a level where each has its own, symbolic links resolved."""
-    return Path(os.path.realpath(target.with_suffix(f".{number}{target.suffix}")))
+    return Path(os.path.realpath(target.with_suffix(f".{number:02d}{target.suffix}")))
 
 
 def shown(target: Path) -> str:
     """Returns how to call a file, or the files of all levels."""
     if target.suffix.lower() != ".png":
         return f"'{target}'"
-    return f"'{target.with_suffix(f'.0{target.suffix}')}' and so on"
+    return f"'{numbered(target, 0)}' and so on"
+
+
+def left_by_earlier_versions(target: Path) -> list[str]:
+    """Returns a warning of level files under names that were given once, such as `wood.0.png`."""
+    if target.suffix.lower() != ".png":
+        return []
+    found = [
+        path.name
+        for number in range(10)
+        if (path := target.with_suffix(f".{number}{target.suffix}")).exists()
+    ]
+    if not found:
+        return []
+    return [
+        f"levels are now '{numbered(target, 0).name}' and so on; left as they are, from an earlier "
+        f"bake: {listed(found)}"
+    ]
 
 
 def stage(

@@ -196,7 +196,7 @@ def test_levels_survive_saving(addon, tmp_path, is_float, alpha_mode, colorspace
     )
     levels = [scenes.noise(4, 2, alpha=True, seed=2), scenes.noise(2, 1, alpha=True, seed=3)]
     names = write_levels(addon, made, levels)
-    assert names == ["Paint.mip1", "Paint.mip2"]
+    assert names == ["Paint.mip01", "Paint.mip02"]
     path = str(tmp_path / "saved.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)
@@ -212,7 +212,7 @@ def test_levels_survive_saving(addon, tmp_path, is_float, alpha_mode, colorspace
 def test_levels_are_updated_in_place(addon):
     made = scenes.image("Paint", scenes.noise(8, 8))
     write_levels(addon, made, [scenes.noise(4, 4), scenes.noise(2, 2)])
-    shown = scenes.material("Shows level", bpy.data.images["Paint.mip1"])
+    shown = scenes.material("Shows level", bpy.data.images["Paint.mip01"])
     count = len(bpy.data.images)
     bpy.data.images.remove(made)
     wider = scenes.image("Paint", scenes.noise(2, 16), is_float=True)
@@ -220,10 +220,33 @@ def test_levels_are_updated_in_place(addon):
     write_levels(addon, wider, [level])
     assert len(bpy.data.images) == count
     node = next(node for node in shown.node_tree.nodes if node.type == "TEX_IMAGE")
-    assert node.image == bpy.data.images["Paint.mip1"]
+    assert node.image == bpy.data.images["Paint.mip01"]
     assert node.image.is_float
-    np.testing.assert_allclose(scenes.pixels("Paint.mip1"), level, atol=1e-6)
-    assert tuple(bpy.data.images["Paint.mip2"].size) == (2, 2)
+    np.testing.assert_allclose(scenes.pixels("Paint.mip01"), level, atol=1e-6)
+    assert tuple(bpy.data.images["Paint.mip02"].size) == (2, 2)
+
+
+def test_levels_sort_by_their_names(addon):
+    names = [addon("bridge.level_images").level_name("Paint", number) for number in range(1, 31)]
+    assert names == sorted(names)
+
+
+def test_levels_of_earlier_versions_leave_no_twins(addon):
+    """They were named mip1, mip2 ... mip10; those that the bake does not make get the new names."""
+    made = scenes.image("Paint", scenes.noise(8, 8))
+    for name in ("mip1", "mip2", "mip2.001", "mip3", "mip9", "mip10"):
+        scenes.image(f"Paint.{name}", scenes.noise(2, 2))["prefilter_level_of"] = "Paint"
+    scenes.image("Paint.mip4", scenes.noise(2, 2))
+    shown = scenes.material("Shows level", bpy.data.images["Paint.mip2.001"])
+    levels = [scenes.noise(4, 4), scenes.noise(2, 2, seed=2)]
+    assert write_levels(addon, made, levels) == ["Paint.mip01", "Paint.mip02"]
+    assert [image.name for image in bpy.data.images] == [
+        "Paint", "Paint.mip01", "Paint.mip02", "Paint.mip03", "Paint.mip09", "Paint.mip10",
+        "Paint.mip4",
+    ]  # fmt: skip
+    node = next(node for node in shown.node_tree.nodes if node.type == "TEX_IMAGE")
+    assert node.image == bpy.data.images["Paint.mip02"]
+    np.testing.assert_allclose(scenes.pixels("Paint.mip02"), levels[1], atol=1e-6)
 
 
 @pytest.mark.parametrize("count", [54, 55, 63])
@@ -232,19 +255,19 @@ def test_long_names_stay_distinct(addon, count):
     for _ in range(2):
         names = [write_levels(addon, twin, [scenes.noise(1, 1)])[0] for twin in twins]
         assert len(set(names)) == 2
-        assert all(name.endswith(".mip1") for name in names)
+        assert all(name.endswith(".mip01") for name in names)
         assert all(name in bpy.data.images for name in names)
     assert len(bpy.data.images) == 4
 
 
 def test_an_image_of_the_user_keeps_its_pixels(addon):
     made = scenes.image("Paint", scenes.noise(4, 4))
-    scenes.image("Paint.mip1", scenes.noise(2, 2, seed=7))
+    scenes.image("Paint.mip01", scenes.noise(2, 2, seed=7))
     for seed in (2, 3):
         levels = [scenes.noise(2, 2, seed=seed), scenes.noise(1, 1, seed=seed)]
-        assert write_levels(addon, made, levels) == ["Paint.mip1.001", "Paint.mip2"]
-        np.testing.assert_allclose(scenes.pixels("Paint.mip1.001"), levels[0], atol=1e-6)
-    np.testing.assert_allclose(scenes.pixels("Paint.mip1"), scenes.noise(2, 2, seed=7), atol=1e-6)
+        assert write_levels(addon, made, levels) == ["Paint.mip01.001", "Paint.mip02"]
+        np.testing.assert_allclose(scenes.pixels("Paint.mip01.001"), levels[0], atol=1e-6)
+    np.testing.assert_allclose(scenes.pixels("Paint.mip01"), scenes.noise(2, 2, seed=7), atol=1e-6)
     assert len(bpy.data.images) == 4
 
 
@@ -263,5 +286,5 @@ def test_failure_while_staging_leaves_no_image(addon, monkeypatch):
 def test_long_names_keep_their_suffix(addon):
     made = scenes.image("ä" * 30, scenes.noise(2, 2))
     names = write_levels(addon, made, [scenes.noise(1, 1)])
-    assert names[0].endswith(".mip1")
+    assert names[0].endswith(".mip01")
     assert names[0] in bpy.data.images

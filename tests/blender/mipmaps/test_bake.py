@@ -25,11 +25,11 @@ def calls(addon, monkeypatch):
 def test_srgb_is_filtered_as_light(bake):
     values = scenes.noise(8, 16)
     outcome = bake(scenes.image("Paint", values), filter="box")
-    assert outcome.images == [f"Paint.mip{i}" for i in (1, 2, 3, 4)]
+    assert outcome.images == [f"Paint.mip{i:02d}" for i in (1, 2, 3, 4)]
     linear = scenes.to_linear(values[..., :3])
     for number in (1, 2, 3):
         linear = scenes.halved(linear)
-        found = scenes.pixels(f"Paint.mip{number}")
+        found = scenes.pixels(f"Paint.mip{number:02d}")
         assert found.shape == (8 >> number, 16 >> number, 4)
         np.testing.assert_allclose(found[..., :3], scenes.to_srgb(linear), atol=0.51 / 255)
         np.testing.assert_array_equal(found[..., 3], 1)
@@ -39,7 +39,7 @@ def test_data_is_filtered_as_it_is(bake):
     values = scenes.noise(8, 8, alpha=True)
     bake(scenes.image("Normals", values, colorspace="Non-Color"), filter="box")
     expected = scenes.halved(values)
-    np.testing.assert_allclose(scenes.pixels("Normals.mip1"), expected, atol=0.51 / 255)
+    np.testing.assert_allclose(scenes.pixels("Normals.mip01"), expected, atol=0.51 / 255)
 
 
 def test_straight_alpha_weighs_colour(bake):
@@ -47,7 +47,7 @@ def test_straight_alpha_weighs_colour(bake):
     bake(scenes.image("Leaf", values, colorspace="Linear Rec.709"), filter="box")
     alpha = scenes.halved(values[..., 3:])
     color = scenes.halved(values[..., :3] * values[..., 3:]) / alpha
-    found = scenes.pixels("Leaf.mip1")
+    found = scenes.pixels("Leaf.mip01")
     np.testing.assert_allclose(found[..., 3:], alpha, atol=0.51 / 255)
     np.testing.assert_allclose(found[..., :3], color, atol=0.51 / 255)
 
@@ -56,8 +56,8 @@ def test_straight_alpha_weighs_colour(bake):
 def test_float_channels_are_filtered_as_they_are(bake, alpha_mode):
     values = 9 * scenes.noise(8, 8, alpha=True)
     bake(scenes.image("Light", values, is_float=True, alpha_mode=alpha_mode), filter="box")
-    assert bpy.data.images["Light.mip1"].is_float
-    np.testing.assert_allclose(scenes.pixels("Light.mip1"), scenes.halved(values), rtol=1e-5)
+    assert bpy.data.images["Light.mip01"].is_float
+    np.testing.assert_allclose(scenes.pixels("Light.mip01"), scenes.halved(values), rtol=1e-5)
 
 
 def test_surface_decides_the_weights(bake):
@@ -75,9 +75,9 @@ def test_surface_decides_the_weights(bake):
     )
     pair.data.materials.append(scenes.material("Cloth", image))
     bake(image, [pair], filter="pam-box", wrap="clamp")
-    np.testing.assert_allclose(scenes.pixels("Flag.mip3")[0, 0], (0.5, 0, 0.5, 1), atol=0.003)
+    np.testing.assert_allclose(scenes.pixels("Flag.mip03")[0, 0], (0.5, 0, 0.5, 1), atol=0.003)
     bake(image, [pair], filter="box", wrap="clamp")
-    np.testing.assert_allclose(scenes.pixels("Flag.mip3")[0, 0], (0.75, 0, 0.25, 1), atol=0.003)
+    np.testing.assert_allclose(scenes.pixels("Flag.mip03")[0, 0], (0.75, 0, 0.25, 1), atol=0.003)
 
 
 def test_objects_share_an_image_by_area(bake):
@@ -92,7 +92,7 @@ def test_objects_share_an_image_by_area(bake):
         obj.data.materials.append(material)
     right.scale = (3, 1, 1)
     outcome = bake(image, [left, right], filter="pam-box", wrap="clamp")
-    np.testing.assert_allclose(scenes.pixels("Flag.mip2")[0, 0], (0.25, 0, 0.75, 1), atol=0.003)
+    np.testing.assert_allclose(scenes.pixels("Flag.mip02")[0, 0], (0.25, 0, 0.75, 1), atol=0.003)
     assert "2 objects" in outcome.summary
 
 
@@ -157,10 +157,10 @@ def test_bounds_reach_as_far_as_a_wide_color_space(bake, calls):
     assert high > 1
 
 
-def striped(low, high):
-    """A float image whose lookups jump between two values, which makes a free fit overshoot."""
-    values = np.full((32, 32, 4), low, np.float32)
-    values[:, ::5, :3] = high
+def striped(most, few):
+    """Texels that jump between two values, which makes a free fit overshoot; one is below 0."""
+    values = np.full((32, 32, 4), most, np.float32)
+    values[:, ::5, :3] = few
     values[3, 3, :3] = -1e-6
     values[..., 3] = 1
     return values
@@ -176,7 +176,7 @@ def test_light_falls_no_deeper_than_the_image(bake):
 @pytest.mark.parametrize("is_packed", [False, True])
 def test_integers_of_many_bits_stay_within_one(bake, tmp_path, is_packed):
     """Blender has a 16-bit PNG as floats."""
-    pixels = np.round(np.clip(striped(0.01, 1), 0, 1) * 65535).astype(np.uint16)
+    pixels = np.round(np.clip(striped(1, 0), 0, 1) * 65535).astype(np.uint16)
     path = str(tmp_path / "deep.png")
     writer = oiio.ImageOutput.create(path)
     assert writer.open(path, oiio.ImageSpec(32, 32, 4, "uint16"))
@@ -207,7 +207,7 @@ def test_levels_limit_the_images_and_not_the_file(bake, tmp_path):
     path = tmp_path / "out.exr"
     image = scenes.image("Paint", scenes.noise(16, 16))
     outcome = bake(image, filter="box", levels=3, filepath=str(path))
-    assert outcome.images == ["Paint.mip1", "Paint.mip2"]
+    assert outcome.images == ["Paint.mip01", "Paint.mip02"]
     assert path.exists()
     assert "2 level images" in outcome.summary
     assert str(path) in outcome.summary
@@ -291,11 +291,11 @@ def test_failures_of_the_library_name_the_object(bake):
 
 def test_names_that_are_taken_are_told(bake):
     image = scenes.image("Paint", scenes.noise(4, 4))
-    scenes.image("Paint.mip2", scenes.noise(4, 4))
+    scenes.image("Paint.mip02", scenes.noise(4, 4))
     outcome = bake(image, filter="box")
-    assert outcome.images == ["Paint.mip1", "Paint.mip2.001"]
+    assert outcome.images == ["Paint.mip01", "Paint.mip02.001"]
     (warning,) = outcome.warnings
-    assert "'Paint.mip1', 'Paint.mip2.001'" in warning
+    assert "'Paint.mip01', 'Paint.mip02.001'" in warning
     assert bake(image, filter="box").images == outcome.images
 
 
@@ -430,7 +430,7 @@ def test_importance_moves_the_mean(bake):
     care = pair.data.attributes.new("Care", "FLOAT", "FACE")
     care.data.foreach_set("value", [3.0, 1.0])
     bake(picture, [pair], filter="pam-box", importance="Care")
-    assert scenes.pixels("Paint.mip1")[0, 0, 0] == pytest.approx(0.75, abs=1 / 255)
+    assert scenes.pixels("Paint.mip01")[0, 0, 0] == pytest.approx(0.75, abs=1 / 255)
     care.data.foreach_set("value", [0.0, 0.0])
     with pytest.raises(ValueError, match="importance: 'Care' is 0 wherever objects 'Pair' use"):
         bake(picture, [pair], importance="Care")
@@ -454,6 +454,6 @@ def test_limit_surface_moves_the_mean(bake):
     means = []
     for modifier.levels, limit in ((1, True), (6, False), (1, False)):
         bake(picture, [box], filter="pam-box", use_subdivision_limit=limit)
-        means.append(scenes.pixels("Paint.mip1")[0, 0, 0])
+        means.append(scenes.pixels("Paint.mip01")[0, 0, 0])
     assert means[0] == pytest.approx(means[1], abs=1.01 / 255)
     assert abs(means[2] - means[1]) > 4 / 255

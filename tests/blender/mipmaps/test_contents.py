@@ -70,18 +70,18 @@ def test_normal_levels_have_the_length_1(bake):
     )
     expected = prefilter.normal_mipmaps(np.ascontiguousarray(values[..., :3]), quad)
     for number, level in enumerate(expected[1:], start=1):
-        found = scenes.pixels(f"Bumps.mip{number}")
+        found = scenes.pixels(f"Bumps.mip{number:02d}")
         np.testing.assert_allclose(found[..., :3], level, atol=0.6 / 255)
-        lengths = np.linalg.norm(vectors_of(f"Bumps.mip{number}"), axis=2)
+        lengths = np.linalg.norm(vectors_of(f"Bumps.mip{number:02d}"), axis=2)
         np.testing.assert_allclose(lengths, 1, atol=0.01)
-        assert bpy.data.images[f"Bumps.mip{number}"].colorspace_settings.name == "Non-Color"
+        assert bpy.data.images[f"Bumps.mip{number:02d}"].colorspace_settings.name == "Non-Color"
 
 
 def test_data_shortens_normals(bake):
     """What "normal" is for: as plain data, the same map loses length."""
     image = scenes.image("Bumps", bumps(16, 16), colorspace="Non-Color")
     bake(image, [scenes.textured_quad(image)], content="data")
-    assert np.linalg.norm(vectors_of("Bumps.mip4")) < 0.95
+    assert np.linalg.norm(vectors_of("Bumps.mip04")) < 0.95
 
 
 def test_box_levels_of_normals_are_means_of_vectors(bake):
@@ -91,7 +91,7 @@ def test_box_levels_of_normals_are_means_of_vectors(bake):
     vectors /= np.linalg.norm(vectors, axis=2, keepdims=True)
     mean = scenes.halved(vectors)
     mean /= np.linalg.norm(mean, axis=2, keepdims=True)
-    np.testing.assert_allclose(vectors_of("Bumps.mip1"), mean, atol=1.1 / 255)
+    np.testing.assert_allclose(vectors_of("Bumps.mip01"), mean, atol=1.1 / 255)
 
 
 def test_use_in_a_normal_map_node_is_found(bake):
@@ -161,7 +161,7 @@ def test_color_space_of_a_normal_map_is_warned_of(bake):
     outcome = bake(image, filter="box", content="normal")
     assert any("color space sRGB" in warning for warning in outcome.warnings)
     # The values are normals as they are stored, all the same.
-    np.testing.assert_allclose(np.linalg.norm(vectors_of("Bumps.mip1"), axis=2), 1, atol=0.01)
+    np.testing.assert_allclose(np.linalg.norm(vectors_of("Bumps.mip01"), axis=2), 1, atol=0.01)
 
 
 @pytest.mark.parametrize("is_float", [False, True])
@@ -174,18 +174,20 @@ def test_roughness_gets_what_normals_lose(bake, is_float):
         image, [scenes.textured_quad(image)], content="normal", roughness="Rough", filter="box",
         wrap="clamp",
     )  # fmt: skip
-    assert outcome.images == [f"{name}.mip{i}" for name in ("Bumps", "Rough") for i in (1, 2, 3, 4)]
+    assert outcome.images == [
+        f"{name}.mip{i:02d}" for name in ("Bumps", "Rough") for i in (1, 2, 3, 4)
+    ]
     _, expected = prefilter.normal_mipmaps(
         np.ascontiguousarray(values[..., :3]),
         filter="box",
         roughness=np.ascontiguousarray(rough[..., :1]),
     )
     plain = scenes.halved(rough[..., :3] ** 4) ** 0.25
-    found = scenes.pixels("Rough.mip1")[..., :3]
+    found = scenes.pixels("Rough.mip01")[..., :3]
     assert (found > plain - 0.03).mean() > 0.95
     assert found.mean() > plain.mean() + 0.02
     for number, level in enumerate(expected[1:], start=1):
-        found = scenes.pixels(f"Rough.mip{number}")
+        found = scenes.pixels(f"Rough.mip{number:02d}")
         np.testing.assert_allclose(found[..., :3], np.repeat(level, 3, 2), atol=0.6 / 255)
         np.testing.assert_array_equal(found[..., 3], 1)
 
@@ -195,7 +197,7 @@ def test_packed_roughness_leaves_the_other_channels_data(bake):
     image = scenes.image("Bumps", values, colorspace="Non-Color")
     scenes.image("Packed", packed, colorspace="Non-Color")
     bake(image, filter="box", content="normal", roughness="Packed", roughness_channel="green")
-    found = scenes.pixels("Packed.mip1")
+    found = scenes.pixels("Packed.mip01")
     plain = scenes.halved(packed)
     np.testing.assert_allclose(found[..., [0, 2]], plain[..., [0, 2]], atol=0.51 / 255)
     _, expected = prefilter.normal_mipmaps(
@@ -212,9 +214,9 @@ def test_fourth_channel_of_a_normal_map_is_data(bake):
     values[..., 3] = scenes.noise(8, 8, seed=6)[..., 0]
     image = scenes.image("Bumps", values, colorspace="Non-Color", alpha_mode="CHANNEL_PACKED")
     bake(image, filter="box", content="normal")
-    found = scenes.pixels("Bumps.mip1")
+    found = scenes.pixels("Bumps.mip01")
     np.testing.assert_allclose(found[..., 3], scenes.halved(values[..., 3]), atol=0.51 / 255)
-    np.testing.assert_allclose(np.linalg.norm(vectors_of("Bumps.mip1"), axis=2), 1, atol=0.01)
+    np.testing.assert_allclose(np.linalg.norm(vectors_of("Bumps.mip01"), axis=2), 1, atol=0.01)
 
 
 def test_roughness_to_a_file(bake, tmp_path):
@@ -233,7 +235,9 @@ def test_roughness_to_a_file(bake, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bumps.tif", "rough.tif"]
     rough = oiio.ImageBuf(str(tmp_path / "rough.tif"), 0, 4).get_pixels("float")
     bake(image, filter="box", content="normal", roughness="Rough")
-    np.testing.assert_allclose(rough[0, 0, 0], scenes.pixels("Rough.mip4")[0, 0, 0], atol=0.6 / 255)
+    np.testing.assert_allclose(
+        rough[0, 0, 0], scenes.pixels("Rough.mip04")[0, 0, 0], atol=0.6 / 255
+    )
 
 
 def test_failure_writes_neither_image_nor_file(bake, addon, tmp_path, monkeypatch):
@@ -306,10 +310,10 @@ def test_cutout_keeps_what_is_shown(bake, is_float):
                          is_float=is_float)  # fmt: skip
     wanted = kept(values[..., 3])
     bake(image, filter="box", content="color", wrap="clamp")
-    assert kept(scenes.pixels("Leaf.mip2")[..., 3]) < 0.1 * wanted
+    assert kept(scenes.pixels("Leaf.mip02")[..., 3]) < 0.1 * wanted
     bake(image, filter="box", content="cutout", wrap="clamp")
     for number in (1, 2):
-        found = scenes.pixels(f"Leaf.mip{number}")
+        found = scenes.pixels(f"Leaf.mip{number:02d}")
         assert kept(found[..., 3]) == pytest.approx(wanted, abs=0.02)
         shown = found[found[..., 3] > 0.1]
         straight = shown[:, :3] / shown[:, 3:] if is_float else shown[:, :3]
@@ -326,7 +330,7 @@ def test_threshold_counts(bake):
         bake(image, filter="box", content="cutout", threshold=threshold, wrap="clamp")
         wanted = kept(values[..., 3], threshold)
         for number in (1, 2):
-            found = kept(scenes.pixels(f"Leaf.mip{number}")[..., 3], threshold)
+            found = kept(scenes.pixels(f"Leaf.mip{number:02d}")[..., 3], threshold)
             assert found == pytest.approx(wanted, abs=0.02)
 
 
@@ -335,7 +339,7 @@ def test_gray_image_is_a_mask_to_cut_out(bake):
     values[..., 3] = 1
     image = scenes.image("Mask", values, colorspace="Non-Color")
     bake(image, filter="box", content="cutout", wrap="clamp")
-    found = scenes.pixels("Mask.mip2")
+    found = scenes.pixels("Mask.mip02")
     assert kept(found[..., 0]) == pytest.approx(kept(values[..., 0]), abs=0.02)
     np.testing.assert_array_equal(found[..., :1], found[..., 1:2])
     np.testing.assert_array_equal(found[..., 3], 1)
@@ -344,8 +348,8 @@ def test_gray_image_is_a_mask_to_cut_out(bake):
 def test_data_of_an_srgb_image_stays_as_stored(bake):
     values = scenes.noise(8, 8, alpha=True)
     bake(scenes.image("Mask", values), filter="box", content="data")
-    np.testing.assert_allclose(scenes.pixels("Mask.mip1"), scenes.halved(values), atol=0.51 / 255)
-    assert bpy.data.images["Mask.mip1"].colorspace_settings.name == "sRGB"
+    np.testing.assert_allclose(scenes.pixels("Mask.mip01"), scenes.halved(values), atol=0.51 / 255)
+    assert bpy.data.images["Mask.mip01"].colorspace_settings.name == "sRGB"
 
 
 def test_color_of_a_data_image_has_coverage(bake):
@@ -353,7 +357,7 @@ def test_color_of_a_data_image_has_coverage(bake):
     bake(scenes.image("Leaf", values, colorspace="Non-Color"), filter="box", content="color")
     alpha = scenes.halved(values[..., 3:])
     color = scenes.halved(values[..., :3] * values[..., 3:]) / alpha
-    np.testing.assert_allclose(scenes.pixels("Leaf.mip1")[..., :3], color, atol=0.51 / 255)
+    np.testing.assert_allclose(scenes.pixels("Leaf.mip01")[..., :3], color, atol=0.51 / 255)
 
 
 @pytest.mark.parametrize("alpha_mode", ["CHANNEL_PACKED", "NONE"])
@@ -368,7 +372,7 @@ def test_packed_channels_are_independent(bake, alpha_mode, filter):
         image = scenes.image(name, pixels, alpha_mode=alpha_mode)
         quad = scenes.textured_quad(image, f"Quad {name}")
         bake(image, [quad], filter=filter)
-        found.append(scenes.pixels(f"{name}.mip1"))
+        found.append(scenes.pixels(f"{name}.mip01"))
     np.testing.assert_allclose(found[0][..., :3], found[1][..., :3], atol=1.01 / 255)
     assert np.abs(found[0][..., 3] - found[1][..., 3]).max() > 0.1
 
@@ -410,7 +414,7 @@ def drive_alpha(material, way):
 
 def colors_shown(is_float):
     """The sRGB colors of level 5's texels, which are straight."""
-    found = scenes.pixels("Leaf.mip5")[..., :3]
+    found = scenes.pixels("Leaf.mip05")[..., :3]
     return scenes.to_srgb(found) if is_float else found
 
 
@@ -422,7 +426,7 @@ def test_hidden_colors_stay_out_of_a_cutout_whatever_the_alpha_mode(bake, filter
     bake(image, [quad], filter=filter, content="cutout", wrap="clamp")
     found = colors_shown(is_float)
     np.testing.assert_allclose(found, np.broadcast_to(LEAF, found.shape), atol=1.5 / 255)
-    assert bpy.data.images["Leaf.mip5"].alpha_mode == "CHANNEL_PACKED"
+    assert bpy.data.images["Leaf.mip05"].alpha_mode == "CHANNEL_PACKED"
 
 
 @pytest.mark.parametrize(
@@ -467,7 +471,7 @@ def test_light_may_pass_one(bake):
     values[5:7, 5:7, :3] = 4000
     image = scenes.image("Lamp", values, is_float=True)
     bake(image, [scenes.textured_quad(image)], wrap="clamp")
-    found = scenes.pixels("Lamp.mip1")[..., :3]
+    found = scenes.pixels("Lamp.mip01")[..., :3]
     assert found.max() > 1000
     assert found.min() >= 0
 
@@ -513,7 +517,7 @@ def test_roughness_left_out_is_said(bake):
     scenes.image("Rough", gray(8, 8), colorspace="Non-Color")
     outcome = bake(image, filter="box", roughness="Rough")
     assert any("'Rough' is left out" in warning for warning in outcome.warnings)
-    assert outcome.images == ["Paint.mip1", "Paint.mip2", "Paint.mip3"]
+    assert outcome.images == ["Paint.mip01", "Paint.mip02", "Paint.mip03"]
 
 
 def test_operator_has_the_settings():
@@ -522,7 +526,7 @@ def test_operator_has_the_settings():
     assert bpy.ops.prefilter.bake_mipmaps(
         image="Leaf", content="cutout", threshold=0.4, filter="box", wrap="clamp"
     ) == {"FINISHED"}
-    found = scenes.pixels("Leaf.mip2")[..., 3]
+    found = scenes.pixels("Leaf.mip02")[..., 3]
     assert kept(found, 0.4) == pytest.approx(kept(leaves()[..., 3], 0.4), abs=0.02)
 
 
@@ -533,7 +537,7 @@ def test_operator_gives_roughness_to_normal_maps_only(capfd):
     # Set for a normal map before, and not shown in the panel for other contents.
     options = {"image": "Bumps", "roughness": "Rough"}
     assert bpy.ops.prefilter.bake_mipmaps(content="data", **options) == {"FINISHED"}
-    assert "Rough.mip1" not in bpy.data.images
+    assert "Rough.mip01" not in bpy.data.images
     assert "Warning" not in capfd.readouterr().out
     assert bpy.ops.prefilter.bake_mipmaps(**options) == {"FINISHED"}
-    assert "Rough.mip1" in bpy.data.images
+    assert "Rough.mip01" in bpy.data.images

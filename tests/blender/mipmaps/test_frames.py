@@ -29,7 +29,7 @@ def pulse():
 
 
 def last_texel():
-    return scenes.pixels("Paint.mip2")[0, 0, 0]
+    return scenes.pixels("Paint.mip02")[0, 0, 0]
 
 
 def test_frames_are_averaged(bake, pulse):

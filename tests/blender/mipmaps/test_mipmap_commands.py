@@ -48,7 +48,7 @@ def test_blend_saved_in_place(blend):
     assert "4 level images" in result.stdout
     assert "100 %" in result.stderr
     bpy.ops.wm.open_mainfile(filepath=str(blend))
-    assert tuple(bpy.data.images["Paint.mip1"].size) == (8, 8)
+    assert tuple(bpy.data.images["Paint.mip01"].size) == (8, 8)
 
 
 def test_blend_to_file_leaves_the_blend(blend, tmp_path):

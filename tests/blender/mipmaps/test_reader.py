@@ -40,7 +40,7 @@ def test_each_reader_sees_its_own_levels_best(bake):
     found = {}
     for reader in ("linear", "srgb-after"):
         bake(image, bpy.context.selected_objects, reader=reader, wrap="clamp")
-        found[reader] = [scenes.pixels(f"Paint.mip{k}")[..., :3] for k in (1, 2, 3)]
+        found[reader] = [scenes.pixels(f"Paint.mip{k:02d}")[..., :3] for k in (1, 2, 3)]
     for linear, encoded in zip(found["linear"], found["srgb-after"], strict=True):
         own, others = errors(encoded, values[..., :3]), errors(linear, values[..., :3])
         assert own[0] < 0.98 * others[0]
@@ -57,7 +57,7 @@ def test_levels_are_those_of_the_library(bake, content):
     light[..., :3] = scenes.to_linear(values[..., :3])
     expected = prefilter.mipmaps(light, QUAD, reader="srgb-after")[2]
     others = prefilter.mipmaps(light, QUAD)[2]
-    stored = scenes.pixels("Paint.mip2")[..., :3]
+    stored = scenes.pixels("Paint.mip02")[..., :3]
     np.testing.assert_allclose(stored, scenes.to_srgb(expected[..., :3]), atol=0.6 / 255)
     assert np.abs(stored - scenes.to_srgb(others[..., :3])).max() > 4 / 255
 
@@ -69,12 +69,12 @@ def test_other_images_are_read_as_light(bake, options):
     _, _, image = checks(**options)
     outcome = bake(image, bpy.context.selected_objects, reader="linear")
     assert outcome.warnings == []
-    expected = scenes.pixels("Paint.mip2")
+    expected = scenes.pixels("Paint.mip02")
     outcome = bake(image, bpy.context.selected_objects, reader="srgb-after")
     assert outcome.warnings == [
         "reader: 'Paint' is no 8-bit sRGB image, so it is read as linear light"
     ]
-    np.testing.assert_array_equal(scenes.pixels("Paint.mip2"), expected)
+    np.testing.assert_array_equal(scenes.pixels("Paint.mip02"), expected)
 
 
 def test_a_file_that_is_read_as_light_gets_a_warning(bake, tmp_path):

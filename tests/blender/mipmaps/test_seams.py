@@ -96,4 +96,4 @@ def test_the_comparison_can_be_cancelled(bake, paint):
     with pytest.raises(prefilter.Cancelled):
         bake(image, [sheet], seam_weight=1.0, progress=progress)
     assert told == sorted(told)
-    assert "Paint.mip1" not in bpy.data.images
+    assert "Paint.mip01" not in bpy.data.images

@@ -62,7 +62,9 @@ def test_level_images_hold_the_same_bytes(bake, tmp_path, kind):
     bake(scenes.image("Paint", scenes.noise(8, 8, alpha=True)), f"out.{kind}", use_images=True)
     levels = READERS[kind](tmp_path / f"out.{kind}").levels
     for number in (1, 2, 3):
-        np.testing.assert_array_equal(levels[number], as_bytes(scenes.pixels(f"Paint.mip{number}")))
+        np.testing.assert_array_equal(
+            levels[number], as_bytes(scenes.pixels(f"Paint.mip{number:02d}"))
+        )
 
 
 def test_data_is_not_marked_as_srgb(bake, tmp_path, kind):
@@ -193,13 +195,13 @@ def test_values_that_no_half_float_holds(bake, tmp_path, kind):
 def test_a_png_for_each_level(bake, tmp_path):
     values = scenes.noise(8, 4, alpha=True)
     outcome = bake(scenes.image("Paint", values), "out.png", use_images=True)
-    assert sorted(os.listdir(tmp_path)) == [f"out.{number}.png" for number in range(4)]
-    assert "out.0.png' and so on" in outcome.summary
-    np.testing.assert_array_equal(read_png(tmp_path / "out.0.png"), as_bytes(values))
+    assert sorted(os.listdir(tmp_path)) == [f"out.{number:02d}.png" for number in range(4)]
+    assert "out.00.png' and so on" in outcome.summary
+    np.testing.assert_array_equal(read_png(tmp_path / "out.00.png"), as_bytes(values))
     for number in (1, 2, 3):
-        expected = as_bytes(scenes.pixels(f"Paint.mip{number}"))
-        np.testing.assert_array_equal(read_png(tmp_path / f"out.{number}.png"), expected)
-    spec = oiio.ImageBuf(str(tmp_path / "out.1.png")).spec()
+        expected = as_bytes(scenes.pixels(f"Paint.mip{number:02d}"))
+        np.testing.assert_array_equal(read_png(tmp_path / f"out.{number:02d}.png"), expected)
+    spec = oiio.ImageBuf(str(tmp_path / "out.01.png")).spec()
     assert spec.get_string_attribute("oiio:ColorSpace") in {"sRGB", "srgb_rec709_scene"}
 
 
@@ -208,7 +210,7 @@ def test_png_of_floats_has_16_bits_and_straight_alpha(bake, tmp_path):
     values[..., :3], values[..., 3] = 0.1, 0.5
     values[0] = 0
     bake(scenes.image("Light", values, is_float=True), "out.png")
-    pixels = read_png(tmp_path / "out.0.png")
+    pixels = read_png(tmp_path / "out.00.png")
     assert pixels.dtype == np.uint16
     assert np.all(pixels[0] == 0)
     expected = 65535 * np.append(scenes.to_srgb(np.full(3, 0.2)), 0.5)
@@ -236,12 +238,12 @@ def test_failure_leaves_no_png_and_no_other(bake, addon, tmp_path, monkeypatch):
 
 
 def test_read_only_level_file_is_left_alone(bake, tmp_path):
-    level = tmp_path / "out.2.png"
+    level = tmp_path / "out.02.png"
     level.write_bytes(b"kept")
     level.chmod(0o444)
-    with pytest.raises(OSError, match=r"out\.2\.png' is read-only"):
+    with pytest.raises(OSError, match=r"out\.02\.png' is read-only"):
         bake(scenes.image("Paint", scenes.noise(8, 8)), "out.png")
-    assert os.listdir(tmp_path) == ["out.2.png"]
+    assert os.listdir(tmp_path) == ["out.02.png"]
 
 
 def test_read_only_file_is_left_alone(bake, tmp_path, kind):

@@ -18,15 +18,15 @@ def test_bakes_by_name():
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.textured_quad(image)
     assert bake(image="Paint") == {"FINISHED"}
-    assert tuple(bpy.data.images["Paint.mip3"].size) == (1, 1)
-    assert bpy.data.images["Paint.mip1"].packed_file is not None
+    assert tuple(bpy.data.images["Paint.mip03"].size) == (1, 1)
+    assert bpy.data.images["Paint.mip01"].packed_file is not None
 
 
 def test_invoke_in_the_background_executes():
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.textured_quad(image)
     assert bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Paint") == {"FINISHED"}
-    assert "Paint.mip3" in bpy.data.images
+    assert "Paint.mip03" in bpy.data.images
 
 
 def test_says_what_it_did(capfd):
@@ -59,7 +59,7 @@ def test_only_selected_objects_count():
     for obj in (left, right):
         obj.data.materials.append(material)
     bake(image="Flag", filter="pam-box", wrap="clamp")
-    np.testing.assert_allclose(scenes.pixels("Flag.mip2")[0, 0], (1, 0, 0, 1), atol=0.003)
+    np.testing.assert_allclose(scenes.pixels("Flag.mip02")[0, 0], (1, 0, 0, 1), atol=0.003)
 
 
 def test_object_in_edit_mode_counts():
@@ -74,7 +74,7 @@ def test_file_beside_the_blend(tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
     bake(image="Paint", use_images=False, filepath="//paint.exr")
     assert (tmp_path / "paint.exr").exists()
-    assert "Paint.mip1" not in bpy.data.images
+    assert "Paint.mip01" not in bpy.data.images
 
 
 def test_file_for_engines(tmp_path):
@@ -151,4 +151,4 @@ def test_frames_and_instances():
     bpy.context.scene.frame_set(5)
     assert bake(image="Paint", use_frames=True, frame_start=2, frame_end=4) == {"FINISHED"}
     assert bpy.context.scene.frame_current == 5
-    assert "Paint.mip3" in bpy.data.images
+    assert "Paint.mip03" in bpy.data.images

@@ -15,10 +15,10 @@ def test_panel_and_modal_bake(in_window, tmp_path):
     assert found["polls_with_image"]
     assert found["started"] == ["RUNNING_MODAL"]
     assert not found["polls_while_running"]
-    assert found["after_bake"] == ["Big", "Paint", "Paint.mip1", "Paint.mip2", "Paint.mip3"]
+    assert found["after_bake"] == ["Big", "Paint", "Paint.mip01", "Paint.mip02", "Paint.mip03"]
     assert found["after_cancel"] == found["after_bake"]
     assert found["frame_while_reading"] != 9
     assert found["frame_after_cancel"] == 9
-    assert found["after_frames"] == sorted([*found["after_bake"], "Big.mip1"])
+    assert found["after_frames"] == sorted([*found["after_bake"], "Big.mip01"])
     assert found["polls_in_next_file"]
     assert found["in_next_file"] == ["Next"]

@@ -113,7 +113,7 @@ def test_copy_is_baked_like_the_image():
     bpy.ops.prefilter.bake_mipmaps(image="Paint.filled", wrap="clamp")
     for number in (1, 2, 3):
         np.testing.assert_array_equal(
-            scenes.pixels(f"Paint.filled.mip{number}"), scenes.pixels(f"Paint.mip{number}")
+            scenes.pixels(f"Paint.filled.mip{number:02d}"), scenes.pixels(f"Paint.mip{number:02d}")
         )
 
 
