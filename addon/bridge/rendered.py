@@ -1,11 +1,11 @@
 """What a render of a scene shows: which objects use an image, and who else reads it."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import bpy
 
 from .materials import has_alpha_of, image_uses, images_of
+from .users import materials_of_evaluated
 
 
 @dataclass
@@ -67,7 +67,7 @@ def _rendered_objects(scene: bpy.types.Scene) -> dict[bpy.types.Object, None]:
 def _add_object(
     found: dict[bpy.types.Image, Viewers], owner: bpy.types.Object, shown: bpy.types.Object
 ) -> None:
-    for material in _materials(shown):
+    for material in materials_of_evaluated(shown):
         for image in images_of(material):
             entry = found.setdefault(image, Viewers())
             if shown.type == "MESH":
@@ -77,13 +77,6 @@ def _add_object(
             else:
                 entry.others[f"object '{owner.name}' ({shown.type.lower()}) shows it"] = None
         _add_environment(found, material, f"the material '{material.name}'")
-
-
-def _materials(obj: bpy.types.Object) -> Iterable[bpy.types.Material]:
-    """Returns an evaluated object's materials; geometry nodes may set some that no slot has."""
-    materials = [slot.material for slot in obj.material_slots]
-    materials.extend(getattr(obj.data, "materials", ()))
-    return dict.fromkeys(material.original for material in materials if material is not None)
 
 
 def _add_others(

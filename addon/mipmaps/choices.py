@@ -70,6 +70,12 @@ CONTENTS = {
         "Cut-Out", "Color whose alpha test keeps as much of the surface at every level"
     ),
 }
+OBJECTS = {
+    "all": Choice("All Users", "All visible objects of the scene that use the image"),
+    "selected": Choice(
+        "Selected", "The selected objects and those in Edit Mode, as far as they use the image"
+    ),
+}
 TEXTURE_FORMATS = {
     "auto": Choice("Automatic", "Bytes for byte images, half floats for float images"),
     "rgba8": Choice("8-Bit", "Four bytes a texel, uncompressed"),
@@ -98,6 +104,7 @@ class Settings:
         wrap_v: A key of `WRAPS_V`: the same along v.
         bounds: A key of `BOUNDS`.
         reader: A key of `READERS`: how the levels of an 8-bit sRGB image are looked up.
+        objects: A key of `OBJECTS`: which objects count.
         levels: How many levels to make, the image itself included; 0 for all.
         use_images: Whether to write an image datablock for each level.
         filepath: A mip-mapped file to write; empty for none. It gets every level.
@@ -125,6 +132,7 @@ class Settings:
     wrap_v: str = "same"
     bounds: str = "auto"
     reader: str = "linear"
+    objects: str = "all"
     levels: int = 0
     use_images: bool = True
     filepath: str = ""

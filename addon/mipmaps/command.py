@@ -16,7 +16,7 @@ from ..bridge import images, meshes, new_images
 from ..bridge.files import engines, staging
 from ..core import command
 from ..core.wording import listed
-from . import choices, reading, texture_cache
+from . import choices, reading, texture_cache, users
 from .view import errors, figure
 
 _IMPORTERS: dict[str, Callable[[str], Any]] = {
@@ -152,7 +152,7 @@ def _add_bake(commands: Any) -> None:
         metavar="FILE",
         default="",
         help="a file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 for "
-        "engines; .png makes NAME.0.png, NAME.1.png, ...",
+        "engines; .png makes NAME.00.png, NAME.01.png, ...",
     )
     parser.add_argument(
         "--save",
@@ -170,7 +170,7 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         help="a mesh object or collection instance that counts; repeat for several (default: all "
-        "that use the image)",
+        "visible ones that use the image)",
     )
     parser.add_argument(
         "--image",
@@ -286,6 +286,9 @@ def _plot(options: argparse.Namespace) -> None:
     objects = _chosen(_load(os.path.abspath(options.file), extension), options.object)
     image, is_picture = _image(options.image, objects, "auto")
     images.check_untiled(image)
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    objects, warnings = _users(image, objects, options.object)
+    command.warn(warnings)
     filters = list(dict.fromkeys(options.filters or errors.default_filters(options.reader)))
     source = reading.read(
         image,
@@ -293,7 +296,7 @@ def _plot(options: argparse.Namespace) -> None:
         choices.Settings(
             wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds, reader=options.reader
         ),
-        bpy.context.evaluated_depsgraph_get(),
+        depsgraph,
         all_faces=is_picture,
         needs_surface=True,
     )
@@ -310,8 +313,7 @@ def _plot(options: argparse.Namespace) -> None:
             else:
                 write = partial(Path.write_text, data=curves.table())
             staged.append(staging.stage_with(target, write))
-        for file in staged:
-            file.commit()
+        staging.commit_all(staged)
     finally:
         for file in staged:
             file.discard()
@@ -361,10 +363,27 @@ def _bake(options: argparse.Namespace) -> None:
         settings = replace(
             settings, use_frames=True, frame_start=start, frame_end=end, frame_step=step
         )
+    objects, warnings = _users(image, objects, options.object)
+    command.warn(warnings)
     outcome = command.done(reading.read(image, objects, settings, depsgraph, all_faces=is_picture))
     if options.save:
         _save(path)
     command.tell(outcome)
+
+
+def _users(
+    image: bpy.types.Image,
+    objects: list[bpy.types.Object],
+    names: Sequence[str],
+) -> tuple[list[bpy.types.Object], list[str]]:
+    """Returns those that use the image of objects that nobody has named, and warnings.
+
+    Where none does, all are returned.
+    """
+    if names:
+        return objects, []
+    shown, warnings = users.users_of(image, bpy.context)
+    return [obj for obj in objects if obj in shown] or objects, warnings
 
 
 def _image(

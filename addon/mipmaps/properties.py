@@ -55,6 +55,12 @@ class BakeProperties:
         items=items(choices.CONTENTS),
         default=choices.Settings.content,
     )
+    objects: EnumProperty(
+        name="Objects",
+        description="Whose surfaces decide how much each texel counts",
+        items=items(choices.OBJECTS),
+        default=choices.Settings.objects,
+    )
     threshold: FloatProperty(
         name="Threshold",
         description="The alpha from which on the material shows the surface",
@@ -135,8 +141,8 @@ class BakeProperties:
     )
     use_images: BoolProperty(
         name="Level Images",
-        description="Keep each level as a packed image named after the image, with .mip1, .mip2 "
-        "and so on",
+        description="Keep each level as a packed image named after the image, with .mip01, "
+        ".mip02 and so on",
         default=choices.Settings.use_images,
     )
     filepath: StringProperty(
@@ -190,6 +196,7 @@ class BakeProperties:
         row.prop(self, "bounds")
         layout.prop(self, "levels")
         layout.separator()
+        layout.prop(self, "objects")
         layout.prop(self, "importance")
         layout.prop(self, "seam_weight")
         layout.prop(self, "use_subdivision_limit")

@@ -106,7 +106,7 @@ def reading(
     )
     needs_surface = needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
     if needs_surface and not found.surfaces:
-        raise ValueError(_no_surface(image, objects, found.problems))
+        raise ValueError(_no_surface(image, objects, settings.objects, found.problems))
     if settings.importance and found.surfaces and not any(s.area for s in found.surfaces):
         raise ValueError(
             f"importance: '{settings.importance}' is 0 wherever objects "
@@ -126,6 +126,9 @@ def reading(
             f"image '{image.name}' has the color space {pictures[0].colorspace}; a shader "
             f"reads normals right in Non-Color only"
         )
+    for target in (*targets, roughness_target):
+        if target is not None:
+            job.warnings.extend(textures.left_by_earlier_versions(target))
     if settings.reader != "linear":
         job.warnings.extend(_odd_readers(pictures[0], targets))
     if settings.roughness and roughness is None:
@@ -185,12 +188,16 @@ def _read_roughness(
 
 
 def _no_surface(
-    image: bpy.types.Image, objects: Iterable[bpy.types.Object], problems: Sequence[str]
+    image: bpy.types.Image,
+    objects: Iterable[bpy.types.Object],
+    choice: str,
+    problems: Sequence[str],
 ) -> str:
     start = f"image '{image.name}': no surface to bake for"
     if problems:
         return f"{start}; {'; '.join(problems)}"
     found = ", ".join(f"'{obj.name}' ({obj.type.lower()})" for obj in objects)
     if not found:
-        return f"{start}; no object is selected"
+        none = "object is selected" if choice == "selected" else "visible object uses it"
+        return f"{start}; no {none}"
     return f"{start}; no material on a face of a mesh uses it, among {found}"

@@ -8,9 +8,10 @@ from bpy.props import StringProperty
 
 from ...core.operator import TICK_SECONDS, Work
 from ...core.outcome import FAILURES
-from .. import reading
+from .. import reading, users
+from ..choices import TEXTURE_SPACE_FILTERS
 from ..properties import BakeProperties
-from .source import ImageOperator, image_to_read, selected_objects
+from .source import ImageOperator, image_to_read
 
 
 class PREFILTER_OT_bake_mipmaps(BakeProperties, ImageOperator, bpy.types.Operator):
@@ -19,8 +20,7 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, ImageOperator, bpy.types.Operato
     bl_idname = "prefilter.bake_mipmaps"
     bl_label = "Bake Mipmaps"
     bl_description = (
-        "Make the mipmap levels of the image, weighted by the surface of the selected meshes that "
-        "use it"
+        "Make the mipmap levels of the image, weighted by the surface of the meshes that use it"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking mipmaps"
@@ -30,6 +30,11 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, ImageOperator, bpy.types.Operato
         description="The image to bake; the image of the editor if empty",
         options={"SKIP_SAVE"},
     )
+
+    @classmethod
+    def reads_surface(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the filter of the panel looks at a surface."""
+        return context.scene.prefilter_bake.filter not in TEXTURE_SPACE_FILTERS
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the settings in the redo panel."""
@@ -100,9 +105,7 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, ImageOperator, bpy.types.Operato
             self._start(self._bake.compute)
 
     def _what_to_read(self, context: bpy.types.Context) -> tuple[Any, ...]:
-        return (
-            image_to_read(context, self.image),
-            selected_objects(context),
-            self.to_settings(),
-            context.evaluated_depsgraph_get(),
-        )
+        image, settings = image_to_read(context, self.image), self.to_settings()
+        objects, warnings = users.objects_to_read(context, image, settings.objects)
+        self.warn(warnings)
+        return image, objects, settings, context.evaluated_depsgraph_get()

@@ -21,7 +21,7 @@ class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
     bl_idname = "prefilter.fill_unused"
     bl_label = "Fill Unused Texels"
     bl_description = (
-        "Make a copy of the image in which the texels that no lookup on the selected meshes reads "
+        "Make a copy of the image in which the texels that no lookup on the meshes reads "
         "continue those that are read, so that no filter or compressor sees the background"
     )
     bl_options = {"REGISTER", "UNDO"}

@@ -18,7 +18,8 @@ class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
     bl_label = "Plot Error"
     bl_description = (
         "Measure how far the levels of each filter are from the image over the surface of the "
-        "selected meshes, and plot it against the mip value, as an image and a text with the values"
+        "meshes that use it, and plot it against the mip value, as an image and a text with the "
+        "values"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Measuring errors"

@@ -35,6 +35,15 @@ class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
         default="box",
     )
 
+    @classmethod
+    def reads_surface(cls, context: bpy.types.Context) -> bool:
+        """Tells whether one of the filters of the panels looks at a surface."""
+        filters = {
+            context.scene.prefilter_bake.filter,
+            context.window_manager.prefilter_view.compare,
+        }
+        return not choices.TEXTURE_SPACE_FILTERS.issuperset(filters)
+
     def read(self, context: bpy.types.Context) -> Work:
         """Copies the image and its surfaces."""
         settings = context.scene.prefilter_bake.to_settings()

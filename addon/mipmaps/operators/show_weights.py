@@ -20,7 +20,7 @@ class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
     bl_idname = "prefilter.show_weights"
     bl_label = "Show Texel Weights"
     bl_description = (
-        "Make a picture of how much of the selected meshes' surface lies in each texel of the image"
+        "Make a picture of how much of the meshes' surface lies in each texel of the image"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Weighing texels"

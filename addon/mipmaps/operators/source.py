@@ -6,6 +6,7 @@ import bpy
 
 from ...bridge import derived, images
 from ...core.operator import BackgroundOperator
+from .. import users
 from ..bake import Bake
 from ..choices import Settings
 from ..reading import read
@@ -15,52 +16,56 @@ class ImageOperator(BackgroundOperator):
     """A mixin: works on an image, that of the editor if none is named."""
 
     @classmethod
+    def reads_surface(cls, context: bpy.types.Context) -> bool:
+        """Tells whether a surface is needed, with the settings of the panels."""
+        del context
+        return True
+
+    @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there is an image, and whether the operator does not run already."""
         if not super().poll(context):
             return False
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
-            if context.space_data.image is None:
+            image = shown_image(context)
+            if image is None:
                 cls.poll_message_set("Open an image in this editor first")
                 return False
+            if cls.reads_surface(context):
+                reason = users.why_none(context, image, context.scene.prefilter_bake.objects)
+                if reason:
+                    cls.poll_message_set(reason)
+                    return False
         elif not bpy.data.images:
             cls.poll_message_set("There is no image in this file")
             return False
         return True
 
 
-def image_to_read(
-    context: bpy.types.Context, name: str, *, pictured: bool = False
-) -> bpy.types.Image:
-    """Returns the image of a name, or that of the editor if the name is empty.
+def shown_image(context: bpy.types.Context) -> bpy.types.Image | None:
+    """Returns the image of the editor, or that which it shows a picture about, as an error plot."""
+    shown = getattr(context.space_data, "image", None)
+    return derived.pictured(shown) or shown
 
-    Args:
-        context: The context.
-        name: The image's name, or empty.
-        pictured: Whether an image is meant where the editor shows a picture about it, such as its
-            error plot.
+
+def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
+    """Returns the image of a name, or that of the editor if the name is empty.
 
     Raises:
         ValueError: There is no such image.
     """
     if name:
         return images.find(name)
-    shown = getattr(context.space_data, "image", None)
-    image = (derived.pictured(shown) if pictured else None) or shown
+    image = shown_image(context)
     if image is None:
         raise ValueError("image: no name is given, and the editor shows no image")
     return image
 
 
-def selected_objects(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """Returns the objects that are selected or in Edit Mode."""
-    return [obj for obj in context.view_layer.objects if obj.select_get() or obj.mode == "EDIT"]
-
-
 def read_source(
     context: bpy.types.Context, name: str, settings: Settings, *, needs_surface: bool = True
 ) -> Bake:
-    """Reads an image and the selected objects that wear it.
+    """Reads an image and the objects that use it.
 
     Args:
         context: The context.
@@ -72,17 +77,20 @@ def read_source(
     Raises:
         ValueError: There is no such image, or no surface.
     """
-    image = image_to_read(context, name, pictured=True)
+    image = image_to_read(context, name)
     images.check_untiled(image)
-    return read(
+    objects, warnings = users.objects_to_read(context, image, settings.objects)
+    source = read(
         image,
-        selected_objects(context),
+        objects,
         replace(
             settings, use_images=True, filepath="", levels=0, roughness="", roughness_filepath=""
         ),
         context.evaluated_depsgraph_get(),
         needs_surface=needs_surface,
     )
+    source.warnings.extend(warnings)
+    return source
 
 
 def show_in_editor(context: bpy.types.Context, image: bpy.types.Image) -> None:

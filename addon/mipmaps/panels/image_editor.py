@@ -2,7 +2,9 @@
 
 import bpy
 
+from .. import users
 from ..operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
+from ..operators.source import shown_image
 from ..properties import copy_bake_properties
 
 _ICON = "TEXTURE"
@@ -20,6 +22,10 @@ class PREFILTER_PT_bake(bpy.types.Panel):
         """Draws the panel."""
         settings = context.scene.prefilter_bake
         settings.draw_in(self.layout)
+        image = shown_image(context)
+        if image is not None:
+            text = users.what_is_read(context, image, settings.objects, [settings.filter])
+            self.layout.label(text=text, icon="INFO")
         row = self.layout.row()
         row.scale_y = 1.5
         _draw_operator(row, settings)

@@ -43,6 +43,11 @@ def of_no_area(quad):
 
 def not_selected(quad):
     quad.select_set(False)
+    bpy.context.scene.prefilter_bake.objects = "selected"
+
+
+def of_no_user(quad):
+    quad.hide_set(True)
 
 
 def with_a_broken_vertex(quad):
@@ -91,9 +96,13 @@ def with_vectors(quad):
 ROWS = {
     "no name": Row(["image: no name is given"], named=""),
     "another name": Row(["image: ", "no image named 'Pain'", "'Paint'"], named="Pain"),
-    "no object": Row(["image 'Paint'", "no object is selected"], change=not_selected),
+    "no object": Row(
+        ["image 'Paint'", "no object is selected"], {"objects": "selected"}, change=not_selected
+    ),
+    "no user": Row(["image 'Paint'", "no visible object uses it"], change=of_no_user),
     "no material": Row(
         ["image 'Paint'", "no material on a face of a mesh uses it", "'Quad' (mesh)"],
+        {"objects": "selected"},
         change=without_material,
     ),
     "no UVs": Row(["image 'Paint'", "object 'Quad' has no UV map"], change=without_uvs),
