@@ -16,6 +16,7 @@ WRAP_OF_EXTENSION = {
 }
 """The library's wrap mode for what an Image Texture node does outside of its image."""
 
+_ONE_COLOR = frozenset({"BSDF_DIFFUSE", "EMISSION"})
 _FACTORS = frozenset({"Fac", "Factor"})
 
 Groups = tuple[bpy.types.Node, ...]
@@ -95,6 +96,21 @@ def feeds_normal_map(material: bpy.types.Material, image: bpy.types.Image) -> bo
     return any(
         _comes_from(node.inputs["Color"], groups, image, set())
         for node, groups in _nodes_of_type(material.node_tree, (), "NORMAL_MAP")
+    )
+
+
+def has_base_color_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
+    """Tells whether a shader of a material gets its base color from an image.
+
+    That is the input Base Color, or the only color of a Diffuse BSDF and an Emission.
+    """
+    if not material.use_nodes or material.node_tree is None:
+        return False
+    return any(
+        _comes_from(socket, groups, image, set(), output="Color")
+        for node, groups in _nodes(material.node_tree, ())
+        for socket in node.inputs
+        if socket.name == ("Color" if node.type in _ONE_COLOR else "Base Color")
     )
 
 

@@ -12,11 +12,11 @@ from typing import Any
 
 import bpy
 
-from ..bridge import images, meshes, new_images
-from ..bridge.files import engines, staging
+from ..bridge import images, new_images
+from ..bridge.files import engines, staging, textures
 from ..core import command
 from ..core.wording import listed
-from . import choices, reading, texture_cache, users
+from . import choices, reading, texture_cache, udim, unnamed, users
 from .view import errors, figure
 
 _IMPORTERS: dict[str, Callable[[str], Any]] = {
@@ -55,8 +55,10 @@ _CHOSEN = {
 }
 """Options with a table of choices: the table, what stands for a value, and help."""
 _BAKE_NOTES = """\
-Without --image, the image that the meshes use is baked; name it where they use several. A picture
-file that no material uses is taken as the texture of all faces, with the active UV map.
+Without --image, the images are baked that are base colors of the meshes' materials; or all that
+the materials show where none is. Of several, each gets a file: texture.exr becomes
+texture.NAME.exr. A picture file that no material uses is taken as the texture of all faces, with
+the active UV map.
 
 examples:
   prefilter bake scene.blend --image Wood --save
@@ -66,7 +68,8 @@ examples:
 
 _PLOT_NOTES = """\
 The figure is that of the dissertation (7.7): solid lines are the root mean square errors over the
-surface at each mip value, dashed ones those over all mip values. The image is chosen as for bake.
+surface at each mip value, dashed ones those over all mip values. The image is chosen as for bake,
+and has to be named where that would bake several.
 
 examples:
   prefilter plot spot.obj --image spot.png --output error.png
@@ -284,7 +287,11 @@ def _plot(options: argparse.Namespace) -> None:
         if path
     ]
     objects = _chosen(_load(os.path.abspath(options.file), extension), options.object)
-    image, is_picture = _image(options.image, objects, "auto")
+    chosen, is_picture = _images(options.image, objects, "auto")
+    if len(chosen) > 1:
+        found = listed(image.name for image in chosen)
+        raise ValueError(f"--image: needed, as the meshes use {found}")
+    image = chosen[0]
     images.check_untiled(image)
     depsgraph = bpy.context.evaluated_depsgraph_get()
     objects, warnings = _users(image, objects, options.object)
@@ -336,8 +343,13 @@ def _bake(options: argparse.Namespace) -> None:
     objects = _chosen(_load(path, extension), options.object)
     if options.save:
         staging.check_writable(Path(path))
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    image, is_picture = _image(options.image, objects, options.content)
+    chosen, is_picture = _images(options.image, objects, options.content)
+    if len(chosen) > 1 and (options.roughness or options.roughness_output):
+        raise ValueError(f"--roughness: needs --image, as {len(chosen)} images are baked without")
+    targets = unnamed.output_paths(options.output, chosen)
+    for image, target in zip(chosen, targets, strict=True):
+        for file in udim.paths(target, images.tile_numbers(image)):
+            textures.check_target(file)
     settings = choices.Settings(
         filter=options.filter,
         wrap=options.wrap,
@@ -346,7 +358,6 @@ def _bake(options: argparse.Namespace) -> None:
         reader=options.reader,
         levels=options.levels,
         use_images=options.save,
-        filepath=options.output,
         threads=options.threads,
         use_subdivision_limit=options.use_subdivision_limit,
         importance=options.importance,
@@ -363,12 +374,19 @@ def _bake(options: argparse.Namespace) -> None:
         settings = replace(
             settings, use_frames=True, frame_start=start, frame_end=end, frame_step=step
         )
-    objects, warnings = _users(image, objects, options.object)
-    command.warn(warnings)
-    outcome = command.done(reading.read(image, objects, settings, depsgraph, all_faces=is_picture))
+    for image, target in zip(chosen, targets, strict=True):
+        users_of_it, warnings = _users(image, objects, options.object)
+        command.warn(warnings)
+        work = reading.read(
+            image,
+            users_of_it,
+            replace(settings, filepath=target),
+            bpy.context.evaluated_depsgraph_get(),
+            all_faces=is_picture,
+        )
+        command.tell(command.done(work))
     if options.save:
         _save(path)
-    command.tell(outcome)
 
 
 def _users(
@@ -386,15 +404,18 @@ def _users(
     return [obj for obj in objects if obj in shown] or objects, warnings
 
 
-def _image(
+def _images(
     name: str | None, objects: Sequence[bpy.types.Object], content: str
-) -> tuple[bpy.types.Image, bool]:
-    """Returns the image to bake, and whether it is a picture file from the command line."""
+) -> tuple[list[bpy.types.Image], bool]:
+    """Returns the images to bake, and whether it is a picture file from the command line."""
     if name is None:
-        return _only_image(objects), False
+        chosen, line = unnamed.images_to_bake(objects)
+        if line:
+            print(line)
+        return chosen, False
     if name not in bpy.data.images and os.path.isfile(name):
-        return _loaded("--image", name, is_data=content in {"normal", "data"}), True
-    return images.find(name), False
+        return [_loaded("--image", name, is_data=content in {"normal", "data"})], True
+    return [images.find(name)], False
 
 
 def _roughness_name(name: str) -> str:
@@ -414,14 +435,6 @@ def _loaded(option: str, path: str, *, is_data: bool) -> bpy.types.Image:
     if is_data and image not in before:
         image.colorspace_settings.is_data = True
     return image
-
-
-def _only_image(objects: Sequence[bpy.types.Object]) -> bpy.types.Image:
-    used = meshes.images_of_objects(objects)
-    if len(used) == 1:
-        return used[0]
-    found = listed(image.name for image in used) or "none"
-    raise ValueError(f"--image: needed, as the meshes use {found}")
 
 
 def _checked_extension(options: argparse.Namespace) -> str:

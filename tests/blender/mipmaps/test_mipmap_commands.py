@@ -216,3 +216,83 @@ def test_file_for_engines(obj_and_picture, tmp_path):
     assert_fails(run(*arguments, tmp_path / "out.dds", "--texture-format", "bc7"), "bc7", status=2)
     assert not (tmp_path / "out.tif").exists()
     assert not (tmp_path / "out.dds").exists()
+
+
+def gltf_of_five(folder, *, colors=1):
+    """Writes a glTF file whose materials use three other images beside their base colors."""
+    material = bpy.data.materials.new("Metal")
+    quad = scenes.quads("Quad", [scenes.UNIT_SQUARE] * colors)
+    for index in range(colors):
+        material = bpy.data.materials.new(f"Metal {index}")
+        material.use_nodes = True
+        quad.data.materials.append(material)
+        quad.data.polygons[index].material_index = index
+        tree = material.node_tree
+        shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+        bumps = tree.nodes.new("ShaderNodeNormalMap")
+        tree.links.new(bumps.outputs[0], shader.inputs["Normal"])
+        for name, socket in (
+            (f"Albedo {index}", shader.inputs["Base Color"]),
+            ("Bumps", bumps.inputs["Color"]),
+            ("Rough", shader.inputs["Roughness"]),
+            ("Glow", shader.inputs["Emission Color"]),
+        ):
+            image = bpy.data.images.get(name)
+            if image is None:
+                image = scenes.image(name, scenes.noise(8, 8, seed=len(bpy.data.images)))
+            tree.links.new(scenes.image_node(tree, image).outputs["Color"], socket)
+        shader.inputs["Emission Strength"].default_value = 1
+    path = folder / "model.gltf"
+    bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLTF_SEPARATE")
+    return path
+
+
+def test_base_color_of_a_model_with_more_images(tmp_path):
+    path = gltf_of_five(tmp_path)
+    result = run("bake", path.name, "--output", "texture.exr", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "Without --image: base colors, 'Albedo 0'; not " in result.stdout
+    for name in ("Bumps", "Rough", "Glow"):
+        assert f"'{name}'" in result.stdout
+    assert [path.name for path in tmp_path.glob("*.exr")] == ["texture.exr"]
+
+
+def test_a_file_a_base_color(tmp_path):
+    path = gltf_of_five(tmp_path, colors=2)
+    result = run("bake", path.name, "--output", "texture.png", "--filter", "box", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert "base colors, 'Albedo 0', 'Albedo 1'; not " in result.stdout
+    assert sorted(path.name for path in tmp_path.glob("texture*")) == [
+        f"texture.Albedo_{index}.{number:02d}.png" for index in (0, 1) for number in range(4)
+    ]
+    result = run("bake", path.name, "--output", "o.exr", "--roughness", "Rough", cwd=tmp_path)
+    assert_fails(result, "--roughness: needs --image, as 2 images are baked")
+    assert_fails(
+        run("plot", path.name, "--table", "error.csv", cwd=tmp_path),
+        "--image: needed, as the meshes use 'Albedo 0', 'Albedo 1'",
+    )
+    assert not list(tmp_path.glob("o.*"))
+
+
+@pytest.fixture
+def unnamed(addon):
+    return addon("mipmaps.unnamed")
+
+
+def test_all_images_where_none_is_a_base_color(unnamed):
+    first, second = (scenes.image(name, scenes.noise(4, 4)) for name in ("One", "Two"))
+    quads = [scenes.textured_quad(image, image.name) for image in (first, second)]
+    found, line = unnamed.images_to_bake(quads)
+    assert found == [first, second]
+    assert line == "Without --image: all images, as none is a base color, 'One', 'Two'"
+    assert unnamed.images_to_bake(quads[:1]) == ([first], "")
+
+
+def test_files_of_several_images(unnamed):
+    names = ("Wood", "Wood.png", "Wood oak/ö.tga")
+    images = [scenes.image(name, scenes.noise(2, 2)) for name in names]
+    assert unnamed.output_paths("a/t.exr", images[:1]) == ["a/t.exr"]
+    assert unnamed.output_paths("", images) == ["", "", ""]
+    assert unnamed.output_paths("a/t.exr", images) == [
+        *("a/t.Wood.exr", "a/t.Wood_2.exr", "a/t.Wood_oak__.exr")
+    ]

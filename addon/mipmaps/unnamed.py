@@ -1,0 +1,61 @@
+"""The images that a command bakes where none is named, and the files that it writes for them."""
+
+import os
+from collections.abc import Sequence
+
+import bpy
+
+from ..bridge import materials, meshes
+from ..core.wording import listed
+
+
+def images_to_bake(objects: Sequence[bpy.types.Object]) -> tuple[list[bpy.types.Image], str]:
+    """Returns the images that are base colors of materials, or else all that materials show.
+
+    Args:
+        objects: Whose materials.
+
+    Returns:
+        The images, and a line that says which of several they are; empty where there is no choice.
+
+    Raises:
+        ValueError: The materials show no image.
+    """
+    used = meshes.images_of_objects(objects)
+    if not used:
+        raise ValueError("--image: needed, as the meshes use none")
+    shown_by = meshes.materials_of_objects(objects)
+    colors = [
+        image
+        for image in used
+        if any(materials.has_base_color_of(material, image) for material in shown_by)
+    ]
+    chosen = colors or used
+    if len(used) == 1:
+        return used, ""
+    kind = "base colors" if colors else "all images, as none is a base color"
+    line = f"Without --image: {kind}, {listed(image.name for image in chosen)}"
+    left_out = [image.name for image in used if image not in chosen]
+    return chosen, f"{line}; not {listed(left_out)}" if left_out else line
+
+
+def output_paths(path: str, images: Sequence[bpy.types.Image]) -> list[str]:
+    """Returns the file of each image: that of one, or with names of images before the ending.
+
+    What is no letter, digit or dash in a name becomes "_", and an ending such as .png is left out.
+    """
+    if len(images) == 1 or not path:
+        return [path] * len(images)
+    stem, extension = os.path.splitext(path)
+    paths: list[str] = []
+    for image in images:
+        base, ending = os.path.splitext(image.name)
+        known = ending.lower() in bpy.path.extensions_image
+        name = bpy.path.clean_name(base if known else image.name)
+        found = f"{stem}.{name}{extension}"
+        number = 2
+        while found in paths:
+            found = f"{stem}.{name}_{number}{extension}"
+            number += 1
+        paths.append(found)
+    return paths
