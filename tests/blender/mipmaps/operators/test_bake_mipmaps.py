@@ -48,25 +48,11 @@ def test_warns_of_what_it_left_out(capfd):
     assert "Warning: object 'NoMap' has no UV map" in capfd.readouterr().out
 
 
-def test_only_selected_objects_count():
-    values = np.zeros((4, 4, 4), np.float32)
-    values[:, :2] = (1, 0, 0, 1)
-    values[:, 2:] = (0, 0, 1, 1)
-    image = scenes.image("Flag", values, colorspace="Non-Color")
-    material = scenes.material("Cloth", image)
-    left = scenes.quads("Left", [((0, 0), (0.5, 0), (0.5, 1), (0, 1))], select=True)
-    right = scenes.quads("Right", [((0.5, 0), (1, 0), (1, 1), (0.5, 1))], select=False)
-    for obj in (left, right):
-        obj.data.materials.append(material)
-    bake(image="Flag", filter="pam-box", wrap="clamp")
-    np.testing.assert_allclose(scenes.pixels("Flag.mip02")[0, 0], (1, 0, 0, 1), atol=0.003)
-
-
 def test_object_in_edit_mode_counts():
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.textured_quad(image)
     bpy.ops.object.mode_set(mode="EDIT")
-    assert bake(image="Paint") == {"FINISHED"}
+    assert bake(image="Paint", objects="selected") == {"FINISHED"}
 
 
 def test_file_beside_the_blend(tmp_path):
