@@ -257,7 +257,7 @@ def test_texture_space_filters_need_no_mesh(bake):
     for name in ("box", "tent", "lanczos3"):
         bake(image, filter=name)
     for name in ("box-covered", "tent-covered", "lanczos3-covered", "pam-box", "pam-bilinear"):
-        with pytest.raises(ValueError, match=r"'Paint': no surface.*no object"):
+        with pytest.raises(ValueError, match=r"'Paint': no surface.*no visible object"):
             bake(image, filter=name)
 
 

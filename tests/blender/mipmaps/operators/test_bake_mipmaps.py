@@ -4,7 +4,6 @@ from functools import partial
 from types import SimpleNamespace
 
 import bpy
-import numpy as np
 import pytest
 import scenes
 from texture_readers import read_dds
