@@ -18,8 +18,36 @@ import scenes
 # For texture_readers; behind this folder, as both have modules named scenes.
 sys.path.append(str(Path(__file__).resolve().parents[1] / "python"))
 
+HERE = Path(__file__).parent
 PACKAGE = "bl_ext.user_default.prefilter"
+# Arguments, numbers, files of our own: the tests of these are the same whichever Blender runs them.
+SAME_IN_ANY_BLENDER = {
+    "bridge/files/test_engines.py",
+    "core/test_jobs.py",
+    "mipmaps/test_bad_inputs.py",
+    "mipmaps/test_contents.py",
+    "mipmaps/test_mipmap_commands.py",
+    "mipmaps/test_reader.py",
+    "mipmaps/test_seams.py",
+    "mipmaps/view/test_canvas.py",
+    "mipmaps/view/test_errors.py",
+    "voxels/test_voxel_commands.py",
+}
 TEXTURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "textured"
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Declares the marker, and checks that the list is of files that are there."""
+    config.addinivalue_line("markers", "once: the same whichever Blender runs it, so one does")
+    missing = [name for name in SAME_IN_ANY_BLENDER if not (HERE / name).exists()]
+    assert not missing, missing
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Marks what one Blender runs for all."""
+    for item in items:
+        if item.path.relative_to(HERE).as_posix() in SAME_IN_ANY_BLENDER:
+            item.add_marker(pytest.mark.once)
 
 
 @pytest.fixture(autouse=True)

@@ -4,10 +4,40 @@ import os
 import sys
 from pathlib import Path
 
+import pytest
+
 # Set before numpy is there: threads that share small matrices wait for each other most of the time.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 sys.path.insert(0, str(Path(__file__).parent))
 
+# Numbers, and the sources: the tests of these are the same whichever Python runs them.
+SAME_IN_ANY_PYTHON = {
+    "test_boolean.py",
+    "test_contour.py",
+    "test_cutout.py",
+    "test_floors.py",
+    "test_mipmaps_laws.py",
+    "test_mipmaps_oracle.py",
+    "test_normals.py",
+    "test_places.py",
+    "test_reader.py",
+    "test_seams.py",
+    "test_structure.py",
+    "test_subdivision.py",
+    "test_surfaces.py",
+    "test_texture_use.py",
+    "test_voxel_laws.py",
+    "test_voxelize_oracle.py",
+}
+
 
 def pytest_configure(config):
-    config.addinivalue_line("markers", "heavy: long, and the same whichever Python runs it")
+    config.addinivalue_line("markers", "once: the same whichever Python runs it, so one does")
+    missing = [name for name in SAME_IN_ANY_PYTHON if not Path(__file__).with_name(name).exists()]
+    assert not missing, missing
+
+
+def pytest_collection_modifyitems(items):
+    for item in items:
+        if item.path.name in SAME_IN_ANY_PYTHON:
+            item.add_marker(pytest.mark.once)

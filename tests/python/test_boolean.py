@@ -22,8 +22,6 @@ from solids import (
     winding_numbers,
 )
 
-pytestmark = pytest.mark.heavy
-
 INTERPOLANTS = ("occupancy", "plane", "linear")
 VOLUME_BAR, ERROR_BAR = 0.005, 0.001
 

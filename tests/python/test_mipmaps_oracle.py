@@ -17,8 +17,6 @@ from scenes import (
     wrap_indices,
 )
 
-pytestmark = pytest.mark.heavy
-
 # The part of BilinearSystem's documentation that a caller can see: texels are pulled to the mean of
 # the image under their tent by this times the mean diagonal.
 PULL = 1e-3

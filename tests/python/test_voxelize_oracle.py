@@ -16,8 +16,6 @@ from solids import (
     torus,
 )
 
-pytestmark = pytest.mark.heavy
-
 UNIT = (np.zeros(3), np.ones(3))
 ROUNDING = 2e-6
 
