@@ -191,6 +191,13 @@ void bind_voxel(py::module_& m) {
   m.def("levels_of", &bound_levels, py::arg("octree"));
   m.def("voxelize", &bound_voxelize, py::arg("positions"), py::arg("triangles"), py::arg("depth"),
         py::arg("bounds"), py::arg("progress"), py::arg("threads"));
+  m.def(
+      "cube_around",
+      [](const Corners& box, int depth) {
+        const Box cube = cube_around(to_box(box), depth);
+        return Corners{cube.low, cube.high};
+      },
+      py::arg("box"), py::arg("depth"));
   m.def("close_holes", &bound_close_holes, py::arg("positions"), py::arg("triangles"),
         py::arg("progress"));
   m.def("make_octree", &bound_make_octree, py::arg("levels"), py::arg("root"), py::arg("bounds"),

@@ -80,6 +80,7 @@ FUNCTIONS = {
         prefilter.voxelize,
         {"positions": BOX.positions, "triangles": BOX.triangles, "depth": 3},
     ),
+    "cube_around": (prefilter.cube_around, {"bounds": ((0, 0, 0), (1, 1, 1))}),
     "nearest_points": (
         prefilter.nearest_points,
         {"points": QUAD, "positions": BOX.positions, "triangles": BOX.triangles},
@@ -536,6 +537,10 @@ NEAREST_ROWS = [
         ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
     )
 ]
+CUBE_ROWS = [
+    ("cube_around", {"bounds": (0, 0, 0)}, ["bounds: shape (3,)", "(2, 3)"]),
+    ("cube_around", {"depth": 13}, ["depth: 13", "a whole number from 1 to 12"]),
+]
 CLOSE_ROWS = [
     ("close_holes", arguments, words)
     for arguments, words in (
@@ -566,7 +571,7 @@ CONTOUR_ROWS = [
         ({"progress": 3}, ["progress: 3", "a callable"]),
     )
 ]
-ROWS += VOXEL_ROWS + NEAREST_ROWS + CLOSE_ROWS + CONTOUR_ROWS
+ROWS += VOXEL_ROWS + NEAREST_ROWS + CUBE_ROWS + CLOSE_ROWS + CONTOUR_ROWS
 # Where something stands in the way on the disk.
 PLACES = [
     ("nowhere/out.dds", ["path: there is no folder", "nowhere"]),

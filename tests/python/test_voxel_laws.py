@@ -289,3 +289,15 @@ def test_nasty_meshes_that_are_fine():
     huge = solid.transformed(1e150 * np.eye(3))
     found = voxelized(huge, bounds=(np.zeros(3), np.full(3, 1e150)))
     assert np.abs(found.dense() - expected).max() < 2e-6
+
+
+@pytest.mark.parametrize(("depth", "margin"), [(1, 0.25), (2, 0.5), (3, 1), (4, 2), (8, 2)])
+def test_the_cube_around_a_box(depth, margin):
+    corners = np.array([[-1.0, 0, 2], [0, 2, 2], [-1, 1, 6]])
+    box = corners.min(axis=0), corners.max(axis=0)
+    cells = 1 << depth
+    low, high = prefilter.cube_around(box, depth=depth)
+    np.testing.assert_allclose(high - low, 4 * cells / (cells - 2 * margin), rtol=1e-14)
+    np.testing.assert_allclose((low + high) / 2, [-0.5, 1, 4], rtol=1e-14)
+    tree = prefilter.voxelize(corners, [[0, 1, 2]], depth=depth)
+    np.testing.assert_array_equal(tree.bounds, (low, high))

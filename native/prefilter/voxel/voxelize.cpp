@@ -54,21 +54,6 @@ Box box_of(const SolidMesh& mesh) {
   return box;
 }
 
-// The cube around the mesh with its margin.
-Box cube_around(const Box& box, int depth) {
-  const double longest = std::max({box.size(0), box.size(1), box.size(2)});
-  const double cells = std::ldexp(1.0, depth);
-  const double margin = std::min(kMarginCells, cells * kMarginShare);
-  const double half = longest * cells / (cells - 2.0 * margin) / 2.0;
-  Box cube;
-  for (int a = 0; a < 3; ++a) {
-    const double middle = box.low[a] + box.size(a) / 2.0;
-    cube.low[a] = middle - half;
-    cube.high[a] = middle + half;
-  }
-  return cube;
-}
-
 // The area vector's absolute components, summed: the number of unit cells that a large plane figure
 // passes through.
 double cells_met(const std::array<Point3, 3>& corners) {
@@ -133,6 +118,21 @@ void check_surface(const RootTriangles& mesh, int depth, int threads) {
                kBytesPerCell * std::ldexp(all.cells, 2 * depth));
 }
 }  // namespace
+
+Box cube_around(const Box& box, int depth) {
+  check_depth(depth, 1, "depth");
+  const double longest = std::max({box.size(0), box.size(1), box.size(2)});
+  const double cells = std::ldexp(1.0, depth);
+  const double margin = std::min(kMarginCells, cells * kMarginShare);
+  const double half = longest * cells / (cells - 2.0 * margin) / 2.0;
+  Box cube;
+  for (int a = 0; a < 3; ++a) {
+    const double middle = box.low[a] + box.size(a) / 2.0;
+    cube.low[a] = middle - half;
+    cube.high[a] = middle + half;
+  }
+  return cube;
+}
 
 void check_mesh(const SolidMesh& mesh) {
   if (mesh.triangles.empty()) throw_invalid("triangles: none; at least one is needed");

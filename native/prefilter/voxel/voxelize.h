@@ -28,13 +28,17 @@ struct VoxelizeOptions {
 ///
 /// The mesh may be anything: open, leaky, intersecting itself. Inside is where it winds around once
 /// or more; values are clamped to [0, 1]. A hole disturbs the cells around it alone (see
-/// analyse_triangles). Without `bounds` the root is the cube around the mesh's box that leaves a
-/// margin of two cells on all sides (n / 8 of them where the grid is less than n = 16 cells wide).
+/// analyse_triangles). Without `bounds` the root is cube_around the mesh's box.
 ///
 /// Throws Error for a depth out of range, a mesh without triangles or where all have zero area, an
 /// index that names no vertex, a position that is not finite, and bounds of no volume;
 /// Error(kOutOfMemory) for a tree that would not fit into memory; Error(kCancelled).
 Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options);
+
+/// The cube around a box that leaves a margin of two of the 2^depth cells along an axis on all
+/// sides of the longest one, or an eighth of them where they are fewer than 16. Throws Error for a
+/// depth out of range.
+Box cube_around(const Box& box, int depth);
 
 /// Throws Error for a mesh without triangles, an index that names no vertex, or a position that is
 /// not finite.

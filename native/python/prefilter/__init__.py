@@ -16,7 +16,7 @@ from .surface import Surface
 from .texture_use import fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
 from .version import VERSION
-from .voxel import MAX_DEPTH, ClosedMesh, Octree, close_holes, voxelize
+from .voxel import MAX_DEPTH, ClosedMesh, Octree, close_holes, cube_around, voxelize
 
 __version__ = VERSION
 
@@ -30,6 +30,7 @@ __all__ = [
     "Surface",
     "close_holes",
     "contour",
+    "cube_around",
     "fill_unused",
     "keep_coverage",
     "mipmap_error",

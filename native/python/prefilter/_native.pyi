@@ -198,6 +198,9 @@ def voxelize(
     progress: ProgressCallback | None,
     threads: int,
 ) -> Octree: ...
+def cube_around(
+    box: tuple[list[float], list[float]], depth: int
+) -> tuple[list[float], list[float]]: ...
 def close_holes(
     positions: npt.NDArray[np.float64],
     triangles: npt.NDArray[np.int64],

@@ -236,7 +236,7 @@ def voxelize(
         triangles: (triangles, 3) integer indices of vertices, counter-clockwise from outside.
         depth: 1 to 12; the grid has 2^depth cells along each axis.
         bounds: (low corner, high corner) of the grid; its cells need not be cubes. What is outside
-            of it is cut off. None stands for a cube around the mesh, with two cells to spare.
+            of it is cut off. None stands for `cube_around` the mesh.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
@@ -255,6 +255,23 @@ def voxelize(
             points, indices, _as_depth(depth, 1), box, as_progress(progress), as_threads(threads)
         )
     )
+
+
+def cube_around(bounds: Box, *, depth: int = 8) -> tuple[np.ndarray, np.ndarray]:
+    """The cube that `voxelize` takes for a mesh in a box: (low corner, high corner).
+
+    It leaves two cells on all sides of the box where that is longest, or an eighth of the cells
+    where they are fewer than 16 along an axis.
+
+    Args:
+        bounds: (low corner, high corner) of the box.
+        depth: 1 to 12; the cube has 2^depth cells along each axis.
+
+    Raises:
+        ValueError: A shape or type is wrong, or `depth` is out of range.
+    """
+    low, high = _native.cube_around(_as_box("bounds", bounds), _as_depth(depth, 1))
+    return np.array(low), np.array(high)
 
 
 @dataclass(frozen=True)
