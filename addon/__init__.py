@@ -1,9 +1,15 @@
 """Prefilter: mipmaps that know the mesh, and voxels of any mesh, in Blender."""
 
-from . import mipmaps, voxels
+from importlib import import_module
+
 from .commands import Commands
 from .core.registration import registration
 
-SUBJECTS = (mipmaps, voxels)
+SUBJECTS = (
+    "mipmaps",
+    "voxels",
+)
+"""The folders of the subjects, in the order in which they are registered."""
 
-register, unregister = registration(*SUBJECTS, Commands(SUBJECTS))
+_packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
+register, unregister = registration(*_packages, Commands(SUBJECTS))

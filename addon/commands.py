@@ -1,11 +1,10 @@
 """`blender --background --command prefilter ...`: the operators without a window."""
 
 import argparse
-import importlib
-import importlib.util
 import sys
 from collections.abc import Sequence
-from types import ModuleType
+from importlib import import_module
+from importlib.util import find_spec
 
 import bpy
 
@@ -17,8 +16,8 @@ _PROGRAM = "blender --background --command prefilter"
 class Commands:
     """The commands of all subjects, which the function `add` of their module `command` adds."""
 
-    def __init__(self, subjects: Sequence[ModuleType]) -> None:
-        """Takes the packages of the subjects."""
+    def __init__(self, subjects: Sequence[str]) -> None:
+        """Takes the folders of the subjects."""
         self._subjects = subjects
         self._handle: object = None
 
@@ -37,7 +36,7 @@ class Commands:
             The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments.
         """
         try:
-            options = self._parser().parse_args(arguments)
+            options = self.parser().parse_args(arguments)
             options.execute(options)
         except SystemExit as end:
             return end.code if isinstance(end.code, int) else 0
@@ -46,14 +45,15 @@ class Commands:
             return 1
         return 0
 
-    def _parser(self) -> argparse.ArgumentParser:
+    def parser(self) -> argparse.ArgumentParser:
+        """Returns what reads the arguments."""
         parser = argparse.ArgumentParser(
             prog=_PROGRAM,
             description="Filters images for the surfaces that use them, and meshes in voxels.",
         )
         commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
         for subject in self._subjects:
-            name = f"{subject.__name__}.command"
-            if importlib.util.find_spec(name) is not None:
-                importlib.import_module(name).add(commands)
+            name = f"{__package__}.{subject}.command"
+            if find_spec(name) is not None:
+                import_module(name).add(commands)
         return parser

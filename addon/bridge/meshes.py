@@ -135,6 +135,11 @@ def images_of_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Ima
     return list(dict.fromkeys(shown))
 
 
+def may_show_image(obj: bpy.types.Object) -> bool:
+    """Returns whether an object is a mesh or an instance of a collection."""
+    return obj.type == "MESH" or obj.instance_type == "COLLECTION"
+
+
 def _search(
     objects: list[bpy.types.Object],
     image: bpy.types.Image,

@@ -1,5 +1,6 @@
 """What a user may choose for an option, and how it is presented."""
 
+import zlib
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -11,6 +12,18 @@ class Choice(NamedTuple):
     description: str
 
 
-def items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str]]:
-    """Returns the items of an enumeration property."""
+def items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str, str, int]]:
+    """Returns the items of an enumeration property.
+
+    Files keep the number of an item. It depends on the key alone, so what is new may stand
+    anywhere.
+    """
+    return [
+        (key, choice.label, choice.description, "", zlib.crc32(key.encode()) & 0x7FFFFFFF)
+        for key, choice in choices.items()
+    ]
+
+
+def flag_items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str]]:
+    """Returns the items of an enumeration property of which a user chooses several."""
     return [(key, choice.label, choice.description) for key, choice in choices.items()]

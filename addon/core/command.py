@@ -1,11 +1,11 @@
 """What the commands share: options, progress, messages."""
 
 import argparse
+import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Protocol
 
-from .choices import Choice
 from .jobs import Progress
 from .outcome import Outcome
 
@@ -23,12 +23,6 @@ class Work(Protocol):
         """Removes what is left of results that were not written."""
 
 
-def table(title: str, options: dict[str, Choice]) -> str:
-    """Returns choices with their descriptions, for the end of a help text."""
-    rows = (f"  {key:<18}{choice.description}" for key, choice in options.items())
-    return "\n".join([f"{title}:", *rows])
-
-
 def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
     """Adds a command whose help ends in notes, which keep their lines."""
     return commands.add_parser(
@@ -40,23 +34,12 @@ def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse
     )
 
 
-def add_threads(parser: argparse.ArgumentParser) -> None:
-    """Adds the option `--threads`."""
-    parser.add_argument(
-        "--threads",
-        metavar="N",
-        type=count,
-        default=0,
-        help="how many threads to use; 0 uses all (default: 0)",
-    )
-
-
-def count(text: str) -> int:
-    """Reads a number from 0 up."""
-    value = int(text) if text.isdecimal() else -1
-    if value < 0:
-        raise argparse.ArgumentTypeError(f"found '{text}'; a number from 0 up is needed")
-    return value
+def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Sequence[str]) -> str:
+    """Returns the extension of a file; ends the program unless it is allowed."""
+    extension = os.path.splitext(path)[1].lower()
+    if extension not in allowed:
+        options.usage_error(f"{name}: found '{path}'; allowed: {', '.join(allowed)}")
+    return extension
 
 
 def done(work: Work) -> Outcome:

@@ -22,6 +22,11 @@ def share(progress: Progress, start: float, end: float) -> Progress:
     return lambda fraction: progress(start + (end - start) * fraction)
 
 
+def parts(progress: Progress, count: int) -> list[Progress]:
+    """Returns what reports the progress of each of several equal parts of the work."""
+    return [share(progress, i / count, (i + 1) / count) for i in range(count)]
+
+
 class Job(Generic[T]):
     """Runs a callable in a thread.
 

@@ -1,6 +1,6 @@
 """Words that several messages share."""
 
-from collections.abc import Iterable, Sized
+from collections.abc import Iterable, Sequence, Sized
 
 _MOST_LISTED = 5
 
@@ -15,3 +15,8 @@ def listed(names: Iterable[str]) -> str:
 def counted(things: Sized, noun: str) -> str:
     """Returns how many things there are, such as "2 files"."""
     return f"{len(things)} {noun}{'' if len(things) == 1 else 's'}"
+
+
+def either(words: Sequence[str]) -> str:
+    """Returns words with commas and "or" between them."""
+    return f"{', '.join(words[:-1])} or {words[-1]}" if len(words) > 1 else "".join(words)

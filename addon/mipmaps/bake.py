@@ -20,7 +20,7 @@ from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
 from . import contents, frames, seams
-from .choices import CONTENTS, FILTERS, Settings
+from .choices import CONTENTS, FILTERS, FITTED_FILTERS, Settings
 
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
 _FIRST_FILTERED = 0.6  # The same where they are then compared with others.
@@ -212,7 +212,7 @@ class Bake:
     def _heeds_seams(self) -> bool:
         return (
             self._settings.seam_weight > 0.0
-            and self._settings.filter in seams.FILTERS
+            and self._settings.filter in FITTED_FILTERS
             and self._content in {"color", "data"}
         )
 

@@ -1,10 +1,14 @@
-"""What a user may choose for a bake, and how the choices are presented."""
+"""What a user may set for a bake, a preview and an error plot."""
 
+import re
 from dataclasses import dataclass
 
-from ..core.choices import Choice
+import prefilter
 
-FILTERS = {
+from ..core.choices import Choice
+from ..core.options import number, one_of, switch, text, threads
+
+_PAM = {
     "pam-bilinear": Choice(
         "PAM Bilinear", "Best fit over the surface, for readers that interpolate between texels"
     ),
@@ -13,19 +17,32 @@ FILTERS = {
         "Best fit of all levels together, for readers that interpolate between levels too, as GPUs",
     ),
     "pam-box": Choice("PAM Box", "Average of the surface under each texel"),
-    "box": Choice("Box", "Average of four texels, whether a face uses them or not"),
-    "tent": Choice("Tent", "Smoother than Box, whether a face uses the texels or not"),
-    "lanczos3": Choice("Lanczos 3", "Sharper than Box, whether a face uses the texels or not"),
-    "box-covered": Choice("Box, Covered Texels", "Box over the texels that a face touches"),
-    "tent-covered": Choice("Tent, Covered Texels", "Tent over the texels that a face touches"),
-    "lanczos3-covered": Choice(
-        "Lanczos 3, Covered Texels", "Lanczos 3 over the texels that a face touches"
-    ),
 }
-TEXTURE_SPACE_FILTERS = frozenset({"box", "tent", "lanczos3"})
+_COVERED = "-covered"
+
+
+def _kernel_choice(name: str) -> Choice:
+    """Returns how a filter of the library is presented whose kernel weighs texels alike."""
+    kernel = name.removesuffix(_COVERED)
+    label = re.sub(r"(?<=[a-z])(?=\d)", " ", kernel).replace("-", " ").title()
+    if name == kernel:
+        return Choice(label, f"{label} over all texels, whether a face uses them or not")
+    return Choice(f"{label}, Covered Texels", f"{label} over the texels that a face touches")
+
+
+FILTERS = _PAM | {
+    one.name: _kernel_choice(one.name)
+    for one in sorted(prefilter.MIPMAP_FILTERS, key=lambda one: one.needs_surface)
+    if one.name not in _PAM
+}
+TEXTURE_SPACE_FILTERS = frozenset(
+    one.name for one in prefilter.MIPMAP_FILTERS if not one.needs_surface
+)
+FITTED_FILTERS = frozenset(one.name for one in prefilter.MIPMAP_FILTERS if one.is_fit)
+"""Those that heed seams."""
 
 _MODES = {
-    "clamp": Choice("Clamp", "The border texels go on"),
+    "clamp": Choice("Clamp", "Extend edge pixels"),
     "repeat": Choice("Repeat", "The image tiles the plane"),
     "border": Choice("Border", "Black and transparent"),
 }
@@ -96,57 +113,170 @@ ROUGHNESS_CHANNELS = {
 
 @dataclass(frozen=True)
 class Settings:
-    """What to bake and where to put it.
+    """What to bake and where to put it."""
 
-    Attributes:
-        filter: A key of `FILTERS`.
-        wrap: A key of `WRAPS`: what lies outside of the image along u.
-        wrap_v: A key of `WRAPS_V`: the same along v.
-        bounds: A key of `BOUNDS`.
-        reader: A key of `READERS`: how the levels of an 8-bit sRGB image are looked up.
-        objects: A key of `OBJECTS`: which objects count.
-        levels: How many levels to make, the image itself included; 0 for all.
-        use_images: Whether to write an image datablock for each level.
-        filepath: A mip-mapped file to write; empty for none. It gets every level.
-        threads: How many threads to use; 0 for all.
-        use_subdivision_limit: Whether objects with a Catmull-Clark modifier on top count as their
-            limit surface.
-        importance: The name of a vertex group or attribute that areas are multiplied by; empty for
-            none.
-        seam_weight: How much it counts that the two sides of UV seams agree; see
-            `prefilter.mipmaps`.
-        use_frames: Whether to average over the frames below, instead of taking the current one.
-        frame_start: The first frame.
-        frame_end: The last frame.
-        frame_step: How far the frames are apart.
-        content: A key of `CONTENTS`: what the image holds.
-        threshold: The alpha from which on a cut-out is shown; above 0, at most 1.
-        roughness: The name of an image that gets what a normal map's levels lose; empty for none.
-        roughness_channel: A key of `ROUGHNESS_CHANNELS`.
-        roughness_filepath: A mip-mapped file of the roughness to write; empty for none.
-        texture_format: A key of `TEXTURE_FORMATS`: how a DDS or KTX 2 file holds texels.
-    """
+    filter: str = one_of(
+        "pam-bilinear",
+        "Filter",
+        "How a texel of a level is made from the image",
+        FILTERS,
+        metavar="FILTER",
+    )
+    reader: str = one_of(
+        "linear",
+        "Reader",
+        "What looks up the levels; PAM Bilinear fits them to it, and the preview and the error "
+        "plot show what it sees",
+        READERS,
+        metavar="READER",
+    )
+    wrap: str = one_of(
+        "auto", "Wrap U", "What lies outside of the image along U", WRAPS, metavar="MODE"
+    )
+    wrap_v: str = one_of(
+        "same", "Wrap V", "What lies outside of the image along V", WRAPS_V, metavar="MODE"
+    )
+    content: str = one_of(
+        "auto",
+        "Content",
+        "What the image holds, which decides how its levels are made",
+        CONTENTS,
+        metavar="CONTENT",
+    )
+    threshold: float = number(
+        0.5,
+        "Threshold",
+        "Alpha at or above this is visible",
+        low=0.0,
+        high=1.0,
+        is_above=True,
+        subtype="FACTOR",
+        metavar="ALPHA",
+    )
+    roughness: str = text(
+        "",
+        "Roughness",
+        "An image of the roughness of the same surface, which compensates for detail lost in "
+        "normal map levels. Leave empty for none",
+        flag_description="An image of the roughness of the same surface, which compensates for "
+        "detail lost in normal map levels: its name in the file, or the path of a picture file",
+        metavar="NAME",
+    )
+    roughness_channel: str = one_of(
+        "all",
+        "Channel",
+        "Where the roughness image holds roughness; its other channels are filtered as data",
+        ROUGHNESS_CHANNELS,
+        metavar="CHANNEL",
+    )
+    bounds: str = one_of(
+        "auto",
+        "Value Range",
+        "The range, in scene-linear values, that the texels of a level stay in",
+        BOUNDS,
+        metavar="RANGE",
+    )
+    levels: int = number(
+        0,
+        "Levels",
+        "Number of levels, the image itself included; 0 makes all of them. A file always gets all",
+        low=0,
+        display={"soft_max": 16},
+        metavar="N",
+    )
+    objects: str = one_of(
+        "all", "Objects", "Whose surfaces decide how much each texel counts", OBJECTS, flag=""
+    )
+    importance: str = text(
+        "",
+        "Importance",
+        "A vertex group or attribute that says where texels matter more: areas are multiplied by "
+        "it; leave empty for none",
+        metavar="NAME",
+    )
+    seam_weight: float = number(
+        0.0,
+        "Seams",
+        "How much it counts that the two sides of a UV seam agree in every level: 0 leaves seams "
+        "alone, 1 halves the visible step. For PAM Bilinear and PAM Trilinear",
+        low=0.0,
+        display={"soft_max": 2.0, "step": 10},
+        flag="--seams",
+        metavar="WEIGHT",
+    )
+    use_subdivision_limit: bool = switch(
+        True,
+        "Subdivision Limit",
+        "Objects with a Catmull-Clark modifier on top count as the smooth surface that subdividing "
+        "forever would give",
+        flag_description="Take Catmull-Clark modifiers as they are, not as their limit surface",
+    )
+    use_frames: bool = switch(
+        False,
+        "Frame Range",
+        "Average over frames of the animation instead of the current one only",
+        flag="",
+    )
+    frame_start: int = number(1, "Start", "The first frame of the average", flag="")
+    frame_end: int = number(250, "End", "The last frame of the average", flag="")
+    frame_step: int = number(
+        1, "Step", "How far the frames of the average are apart", low=1, flag=""
+    )
+    use_images: bool = switch(
+        True,
+        "Level Images",
+        "Keep each level as a packed image named after the image, with .mip01, .mip02 and so on",
+        flag="",
+    )
+    filepath: str = text(
+        "",
+        "File",
+        "A file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 for "
+        "engines; .png writes one file per level. Leave empty for none",
+        subtype="FILE_PATH",
+        flag="--output",
+        flag_description="A file of all levels to write: .exr, .tif or .tx for renderers, .dds or "
+        ".ktx2 for engines; .png makes NAME.00.png, NAME.01.png, ...",
+        metavar="FILE",
+    )
+    roughness_filepath: str = text(
+        "",
+        "Roughness File",
+        "A file of the roughness to write, like the one of the image; leave empty for none",
+        subtype="FILE_PATH",
+        flag="--roughness-output",
+        flag_description="A file of the roughness to write, like --output",
+        metavar="FILE",
+    )
+    texture_format: str = one_of(
+        "auto",
+        "Texture Format",
+        "How a DDS or KTX 2 file holds texels",
+        TEXTURE_FORMATS,
+        metavar="FORMAT",
+    )
+    threads: int = threads()
 
-    filter: str = "pam-bilinear"
-    wrap: str = "auto"
-    wrap_v: str = "same"
-    bounds: str = "auto"
-    reader: str = "linear"
-    objects: str = "all"
-    levels: int = 0
-    use_images: bool = True
-    filepath: str = ""
-    threads: int = 0
-    use_subdivision_limit: bool = True
-    importance: str = ""
-    seam_weight: float = 0.0
-    use_frames: bool = False
-    frame_start: int = 1
-    frame_end: int = 250
-    frame_step: int = 1
-    content: str = "auto"
-    threshold: float = 0.5
-    roughness: str = ""
-    roughness_channel: str = "all"
-    roughness_filepath: str = ""
-    texture_format: str = "auto"
+
+@dataclass(frozen=True)
+class PreviewSettings:
+    """What a preview shows beside the levels of a bake."""
+
+    compare: str = one_of(
+        "box", "Compare With", "The filter on the left of the wipe", FILTERS, flag=""
+    )
+
+
+@dataclass(frozen=True)
+class PlotSettings:
+    """What an error plot compares: by default the filters of figure 7.7."""
+
+    filters: tuple[str, ...] = one_of(
+        ("pam-bilinear", "pam-trilinear", "pam-box", "box"),
+        "Filters",
+        "The filters to compare",
+        FILTERS,
+        flag_description="The filters to compare; by default without pam-trilinear for --reader "
+        "srgb-after",
+        metavar="FILTER",
+    )

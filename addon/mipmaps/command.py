@@ -1,10 +1,9 @@
 """The commands `bake`, `plot` and `bake-cache`."""
 
 import argparse
-import math
 import os
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -12,48 +11,20 @@ from typing import Any
 
 import bpy
 
-from ..bridge import images, new_images
-from ..bridge.files import engines, staging, textures
+from ..bridge import images, meshes, new_images
+from ..bridge.files import engines, scenes, staging, textures
 from ..core import command
-from ..core.wording import listed
-from . import choices, reading, texture_cache, udim, unnamed, users
+from ..core.flags import add_flags, given, tables
+from ..core.wording import either, listed
+from . import reading, texture_cache, udim, unnamed, users
+from .choices import PlotSettings, Settings
 from .view import errors, figure
 
-_IMPORTERS: dict[str, Callable[[str], Any]] = {
-    ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
-    ".gltf": lambda path: bpy.ops.import_scene.gltf(filepath=path),
-    ".obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
-}
-_EXTENSIONS = (".blend", *_IMPORTERS)
-
-
+_WANTED = "mesh object"
+_PLOTTED = ("wrap", "wrap_v", "bounds", "reader")
+"""The settings of a bake that matter to a plot."""
 _BAKE_HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
 _PLOT_HELP = "plot the error of filters over the mip value, on the meshes that use an image"
-
-
-_TABLES = (
-    command.table("filters", choices.FILTERS),
-    command.table("wrap modes", choices.WRAPS | choices.WRAPS_V),
-    command.table("value ranges", choices.BOUNDS),
-    command.table("readers", choices.READERS),
-    command.table("contents", choices.CONTENTS),
-)
-_FORMAT_TABLE = command.table("texture formats, for .dds and .ktx2", choices.TEXTURE_FORMATS)
-_CHOSEN = {
-    "filter": (choices.FILTERS, "FILTER", "how a texel of a level is made"),
-    "wrap": (choices.WRAPS, "MODE", "what lies outside of the image along u"),
-    "wrap-v": (choices.WRAPS_V, "MODE", "the same along v"),
-    "bounds": (choices.BOUNDS, "RANGE", "the values that texels of a level may have"),
-    "reader": (choices.READERS, "READER", "what looks up the levels of an 8-bit sRGB image"),
-    "content": (choices.CONTENTS, "CONTENT", "what the image holds"),
-    "roughness-channel": (
-        choices.ROUGHNESS_CHANNELS,
-        "CHANNEL",
-        "where the roughness image holds roughness",
-    ),
-    "texture-format": (choices.TEXTURE_FORMATS, "FORMAT", "how a .dds or .ktx2 file holds texels"),
-}
-"""Options with a table of choices: the table, what stands for a value, and help."""
 _BAKE_NOTES = """\
 Without --image, the images are baked that are base colors of the meshes' materials; or all that
 the materials show where none is. Of several, each gets a file: texture.exr becomes
@@ -92,70 +63,14 @@ def add(commands: Any) -> None:
 
 
 def _add_bake(commands: Any) -> None:
-    parser = command.add_command(commands, "bake", _BAKE_HELP, *_TABLES, _FORMAT_TABLE, _BAKE_NOTES)
+    parser = command.add_command(commands, "bake", _BAKE_HELP, *tables(Settings), _BAKE_NOTES)
     _add_scene(parser)
-    defaults = choices.Settings()
-    _add_choices(parser, *_CHOSEN)
-    parser.add_argument(
-        "--levels",
-        metavar="N",
-        type=command.count,
-        default=defaults.levels,
-        help="how many levels to make, the image itself included; 0 makes all (default: 0)",
-    )
-    parser.add_argument(
-        "--threshold",
-        metavar="ALPHA",
-        type=_alpha,
-        default=defaults.threshold,
-        help="the alpha from which on a cut-out is shown; above 0, at most 1 (default: 0.5)",
-    )
-    parser.add_argument(
-        "--roughness",
-        metavar="NAME",
-        default="",
-        help="an image that gets what the levels of a normal map lose: its name in the file, or "
-        "the path of a picture file",
-    )
-    parser.add_argument(
-        "--roughness-output",
-        metavar="FILE",
-        default="",
-        help="a file of the roughness to write, like --output",
-    )
-    command.add_threads(parser)
-    parser.add_argument(
-        "--importance",
-        metavar="NAME",
-        default=defaults.importance,
-        help="a vertex group or attribute that areas are multiplied by",
-    )
-    parser.add_argument(
-        "--seams",
-        metavar="WEIGHT",
-        type=_weight,
-        default=defaults.seam_weight,
-        help="how much it counts that the two sides of a UV seam agree: 0 leaves seams alone, 1 "
-        "halves what shows of them (default: 0)",
-    )
-    parser.add_argument(
-        "--no-subdivision-limit",
-        dest="use_subdivision_limit",
-        action="store_false",
-        help="take Catmull-Clark modifiers as they are, not as their limit surface",
-    )
+    add_flags(parser, Settings)
     parser.add_argument(
         "--frames",
         metavar="START:END[:STEP]",
         type=_frames,
         help="average over these frames of the animation (default: the current frame only)",
-    )
-    parser.add_argument(
-        "--output",
-        metavar="FILE",
-        default="",
-        help="a file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 for "
-        "engines; .png makes NAME.00.png, NAME.01.png, ...",
     )
     parser.add_argument(
         "--save",
@@ -166,7 +81,7 @@ def _add_bake(commands: Any) -> None:
 
 
 def _add_scene(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a .blend, .glb, .gltf or .obj file")
+    parser.add_argument("file", metavar="FILE", help=f"a file: {either(scenes.SOURCES)}")
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -182,32 +97,12 @@ def _add_scene(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _add_choices(parser: argparse.ArgumentParser, *flags: str) -> None:
-    defaults = choices.Settings()
-    for flag in flags:
-        table, metavar, text = _CHOSEN[flag]
-        default = getattr(defaults, flag.replace("-", "_"))
-        parser.add_argument(
-            f"--{flag}",
-            choices=table,
-            default=default,
-            metavar=metavar,
-            help=f"{text} (default: {default})",
-        )
-
-
 def _add_plot(commands: Any) -> None:
-    parser = command.add_command(commands, "plot", _PLOT_HELP, *_TABLES, _PLOT_NOTES)
+    notes = (*tables(PlotSettings), *tables(Settings, *_PLOTTED), _PLOT_NOTES)
+    parser = command.add_command(commands, "plot", _PLOT_HELP, *notes)
     _add_scene(parser)
-    parser.add_argument(
-        "--filters",
-        metavar="FILTER",
-        nargs="+",
-        choices=choices.FILTERS,
-        help=f"the filters to compare (default: {' '.join(errors.DEFAULT_FILTERS)}; without "
-        f"pam-trilinear for --reader srgb-after)",
-    )
-    _add_choices(parser, "wrap", "wrap-v", "bounds", "reader")
+    add_flags(parser, PlotSettings)
+    add_flags(parser, Settings, *_PLOTTED)
     parser.add_argument("--output", metavar="FILE", default="", help="a .png file to write")
     parser.add_argument(
         "--table", metavar="FILE", default="", help="a .csv file to write the values to"
@@ -221,7 +116,7 @@ def _add_bake_cache(commands: Any) -> None:
     parser.add_argument(
         "--scene", metavar="NAME", help="the scene that is rendered (default: the active one)"
     )
-    command.add_threads(parser)
+    add_flags(parser, Settings, "threads")
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
     )
@@ -229,11 +124,9 @@ def _add_bake_cache(commands: Any) -> None:
 
 
 def _bake_cache(options: argparse.Namespace) -> None:
-    extension = os.path.splitext(options.file)[1].lower()
-    if extension != ".blend":
-        options.usage_error(f"FILE: found '{options.file}'; a .blend file is needed")
+    command.check_ending(options, "FILE", options.file, [".blend"])
     path = os.path.abspath(options.file)
-    _load(path, extension)
+    scenes.load([path], meshes.may_show_image, _WANTED)
     if options.save:
         staging.check_writable(Path(path))
     scene = bpy.context.scene if options.scene is None else bpy.data.scenes.get(options.scene)
@@ -242,20 +135,11 @@ def _bake_cache(options: argparse.Namespace) -> None:
         raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {known}")
     bpy.context.window.scene = scene
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    outcome = command.done(texture_cache.CacheBake.read(scene, depsgraph, threads=options.threads))
+    work = texture_cache.CacheBake.read(scene, depsgraph, **given(options, Settings))
+    outcome = command.done(work)
     if options.save:
-        _save(path)
+        scenes.save_open(path)
     command.tell(outcome)
-
-
-def _weight(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0.0 <= value < math.inf:
-        raise argparse.ArgumentTypeError(f"found '{text}'; a number of at least 0 is needed")
-    return value
 
 
 def _frames(text: str) -> tuple[int, int, int]:
@@ -265,20 +149,8 @@ def _frames(text: str) -> tuple[int, int, int]:
     return int(found[1]), int(found[2]), int(found[3] or 1)
 
 
-def _alpha(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0.0 < value <= 1.0:
-        raise argparse.ArgumentTypeError(
-            f"found '{text}'; a number above 0 and at most 1 is needed"
-        )
-    return value
-
-
 def _plot(options: argparse.Namespace) -> None:
-    extension = _checked_extension(options)
+    command.check_ending(options, "FILE", options.file, scenes.SOURCES)
     if not options.output and not options.table:
         options.usage_error("nothing to write: give --output FILE or --table FILE")
     targets = [
@@ -286,7 +158,7 @@ def _plot(options: argparse.Namespace) -> None:
         for path, ending in ((options.output, ".png"), (options.table, ".csv"))
         if path
     ]
-    objects = _chosen(_load(os.path.abspath(options.file), extension), options.object)
+    objects = _objects(options)
     chosen, is_picture = _images(options.image, objects, "auto")
     if len(chosen) > 1:
         found = listed(image.name for image in chosen)
@@ -296,20 +168,19 @@ def _plot(options: argparse.Namespace) -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     objects, warnings = _users(image, objects, options.object)
     command.warn(warnings)
-    filters = list(dict.fromkeys(options.filters or errors.default_filters(options.reader)))
+    settings = Settings(**given(options, Settings))
+    filters = given(options, PlotSettings).get("filters", errors.default_filters(settings.reader))
     source = reading.read(
         image,
         objects,
-        choices.Settings(
-            wrap=options.wrap, wrap_v=options.wrap_v, bounds=options.bounds, reader=options.reader
-        ),
+        settings,
         depsgraph,
         all_faces=is_picture,
         needs_surface=True,
     )
     progress = command.ProgressLine()
     try:
-        curves = errors.measure(source, filters, progress)
+        curves = errors.measure(source, list(dict.fromkeys(filters)), progress)
     finally:
         progress.end()
     staged = []
@@ -329,51 +200,30 @@ def _plot(options: argparse.Namespace) -> None:
 
 
 def _bake(options: argparse.Namespace) -> None:
-    extension = _checked_extension(options)
+    extension = command.check_ending(options, "FILE", options.file, scenes.SOURCES)
+    settings = _settings(options)
     if options.save and extension != ".blend":
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
-    if not options.save and not options.output:
+    if not options.save and not settings.filepath:
         options.usage_error("nothing to write: give --output FILE or --save")
-    paths = (options.output, options.roughness_output)
-    if options.texture_format != "auto" and not any(map(engines.has_formats, paths)):
+    paths = (settings.filepath, settings.roughness_filepath)
+    if settings.texture_format != "auto" and not any(map(engines.has_formats, paths)):
         options.usage_error(
-            f"--texture-format: found '{options.texture_format}', which is for .dds and .ktx2 files"
+            f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
+            f"files"
         )
     path = os.path.abspath(options.file)
-    objects = _chosen(_load(path, extension), options.object)
+    objects = _objects(options)
     if options.save:
         staging.check_writable(Path(path))
-    chosen, is_picture = _images(options.image, objects, options.content)
-    if len(chosen) > 1 and (options.roughness or options.roughness_output):
+    chosen, is_picture = _images(options.image, objects, settings.content)
+    if len(chosen) > 1 and (settings.roughness or settings.roughness_filepath):
         raise ValueError(f"--roughness: needs --image, as {len(chosen)} images are baked without")
-    targets = unnamed.output_paths(options.output, chosen)
+    targets = unnamed.output_paths(settings.filepath, chosen)
     for image, target in zip(chosen, targets, strict=True):
         for file in udim.paths(target, images.tile_numbers(image)):
             textures.check_target(file)
-    settings = choices.Settings(
-        filter=options.filter,
-        wrap=options.wrap,
-        wrap_v=options.wrap_v,
-        bounds=options.bounds,
-        reader=options.reader,
-        levels=options.levels,
-        use_images=options.save,
-        threads=options.threads,
-        use_subdivision_limit=options.use_subdivision_limit,
-        importance=options.importance,
-        seam_weight=options.seams,
-        content=options.content,
-        threshold=options.threshold,
-        roughness=_roughness_name(options.roughness),
-        roughness_channel=options.roughness_channel,
-        roughness_filepath=options.roughness_output,
-        texture_format=options.texture_format,
-    )
-    if options.frames:
-        start, end, step = options.frames
-        settings = replace(
-            settings, use_frames=True, frame_start=start, frame_end=end, frame_step=step
-        )
+    settings = replace(settings, roughness=_roughness_name(settings.roughness))
     for image, target in zip(chosen, targets, strict=True):
         users_of_it, warnings = _users(image, objects, options.object)
         command.warn(warnings)
@@ -386,7 +236,20 @@ def _bake(options: argparse.Namespace) -> None:
         )
         command.tell(command.done(work))
     if options.save:
-        _save(path)
+        scenes.save_open(path)
+
+
+def _settings(options: argparse.Namespace) -> Settings:
+    settings = Settings(**given(options, Settings), use_images=options.save)
+    if not options.frames:
+        return settings
+    start, end, step = options.frames
+    return replace(settings, use_frames=True, frame_start=start, frame_end=end, frame_step=step)
+
+
+def _objects(options: argparse.Namespace) -> list[bpy.types.Object]:
+    (objects,) = scenes.load([options.file], meshes.may_show_image, _WANTED)
+    return scenes.chosen(objects, options.object, _WANTED)
 
 
 def _users(
@@ -435,55 +298,3 @@ def _loaded(option: str, path: str, *, is_data: bool) -> bpy.types.Image:
     if is_data and image not in before:
         image.colorspace_settings.is_data = True
     return image
-
-
-def _checked_extension(options: argparse.Namespace) -> str:
-    """Returns the extension of FILE; ends the program where it is not a known one."""
-    extension = os.path.splitext(options.file)[1].lower()
-    if extension not in _EXTENSIONS:
-        options.usage_error(f"FILE: found '{options.file}'; allowed are {', '.join(_EXTENSIONS)}")
-    return extension
-
-
-def _load(path: str, extension: str) -> list[bpy.types.Object]:
-    """Loads a file and returns its mesh objects and collection instances."""
-    if not os.path.isfile(path):
-        raise OSError(f"FILE: there is no file '{path}'")
-    before: set[bpy.types.Object] = set()
-    try:
-        if extension == ".blend":
-            bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
-        else:
-            before = set(bpy.data.objects)
-            _IMPORTERS[extension](path)
-    except RuntimeError as error:
-        raise OSError(f"FILE: cannot load '{path}': {str(error).strip()}") from error
-    objects = bpy.context.view_layer.objects
-    loaded = [obj for obj in objects if obj not in before and _has_surface(obj)]
-    if not loaded:
-        raise ValueError(f"FILE: found no mesh object in '{path}'")
-    return loaded
-
-
-def _has_surface(obj: bpy.types.Object) -> bool:
-    """Returns whether an object is a mesh or an instance of a collection."""
-    return obj.type == "MESH" or obj.instance_type == "COLLECTION"
-
-
-def _chosen(objects: list[bpy.types.Object], names: Sequence[str]) -> list[bpy.types.Object]:
-    """Returns the objects with these names, in their order; without names, all of them."""
-    by_name = {obj.name: obj for obj in objects}
-    for name in names:
-        if name not in by_name:
-            raise ValueError(
-                f"--object: found no mesh named '{name}'; the file has {listed(by_name)}"
-            )
-    return [by_name[name] for name in names] if names else objects
-
-
-def _save(path: str) -> None:
-    """Saves the open .blend file."""
-    try:
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-    except RuntimeError as error:
-        raise OSError(f"--save: cannot write '{path}': {str(error).strip()}") from error

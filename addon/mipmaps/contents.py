@@ -9,6 +9,7 @@ import prefilter
 
 from ..bridge.images import Encoding, FloatArray, Picture
 from ..core.jobs import Progress, share
+from .choices import TEXTURE_SPACE_FILTERS
 
 Bounds = tuple[float | None, float | None] | None
 
@@ -121,7 +122,7 @@ def cutout_levels(
     )
     kept = prefilter.keep_coverage(
         made,
-        None if options["filter"] in {"box", "tent", "lanczos3"} else surfaces,
+        None if options["filter"] in TEXTURE_SPACE_FILTERS else surfaces,
         threshold=threshold,
         wrap=options["wrap"],
         premultiplied=picture.alpha_is_coverage and not picture.alpha_is_straight,

@@ -48,11 +48,8 @@ def surfaces_over(
 
 def chosen(settings: Settings) -> range:
     """Returns the frames to average over; raises ValueError if there are none."""
-    if settings.frame_step < 1:
-        raise ValueError(f"frame_step: found {settings.frame_step}; 1 and up is needed")
     if settings.frame_end < settings.frame_start:
         raise ValueError(
-            f"frame_end: found {settings.frame_end}, which is before frame_start, "
-            f"{settings.frame_start}"
+            f"End: found {settings.frame_end}, which is before Start, {settings.frame_start}"
         )
     return range(settings.frame_start, settings.frame_end + 1, settings.frame_step)

@@ -9,6 +9,7 @@ import bpy
 from ..bridge import images, materials, meshes
 from ..bridge.files import engines, textures
 from ..bridge.images import Picture
+from ..core.options import check
 from ..core.wording import listed
 from . import contents, frames, udim
 from .bake import Bake, reads_encoded, roughness_format
@@ -68,6 +69,7 @@ def reading(
     Returns:
         The bake.
     """
+    check(settings)
     numbers = images.tile_numbers(image)
     targets = [textures.check_target(path) for path in udim.paths(settings.filepath, numbers)]
     if not targets and not settings.use_images:

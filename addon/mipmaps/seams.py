@@ -2,9 +2,6 @@
 
 from collections.abc import Sequence
 
-FILTERS = frozenset({"pam-bilinear", "pam-trilinear"})
-"""The filters that heed the setting."""
-
 
 def note(image_name: str, without: Sequence[float], weighed: Sequence[float]) -> str:
     """Returns a line that compares contrasts of levels 1 and up; empty where there is no seam.

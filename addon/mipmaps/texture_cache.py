@@ -17,7 +17,7 @@ from ..bridge.files import tx
 from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray
 from ..core.alpha import associated, at_most_opaque, unassociated
-from ..core.jobs import Progress, go_on
+from ..core.jobs import Progress, go_on, parts, share
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
 from .contents import automatic_bounds
@@ -119,8 +119,8 @@ class CacheBake:
         """
         try:
             shared = self._make(progress)
-            for index, (path, worn) in enumerate(shared.items()):
-                advance = partial(_advance, progress, index, len(shared))
+            steps = parts(share(progress, _MADE, 1.0), len(shared))
+            for (path, worn), advance in zip(shared.items(), steps, strict=True):
                 go_on(advance, 0.0)
                 try:
                     if worn.obstacle:
@@ -162,8 +162,9 @@ class CacheBake:
     def _make(self, progress: Progress) -> dict[tx.Path, _Worn]:
         """Makes the cache files; images that share one are joined."""
         shared: dict[tx.Path, _Worn] = {}
-        for index, worn in enumerate(self._worn):
-            go_on(progress, _MADE * index / len(self._worn))
+        steps = parts(share(progress, 0.0, _MADE), len(self._worn))
+        for worn, advance in zip(self._worn, steps, strict=True):
+            go_on(advance, 0.0)
             try:
                 path = tx.make(worn.source)
             except OSError as error:
@@ -300,10 +301,6 @@ def _wrap(worn: _Worn) -> str:
 
 def _is_inside(surfaces: Iterable[prefilter.Surface]) -> bool:
     return all(np.all((surface.uvs >= 0) & (surface.uvs <= 1)) for surface in surfaces)
-
-
-def _advance(progress: Progress, index: int, count: int, fraction: float) -> bool:
-    return progress(_MADE + (1 - _MADE) * (index + fraction) / count)
 
 
 def _nothing(scene: bpy.types.Scene, warnings: Sequence[str]) -> str:

@@ -3,12 +3,11 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 from ..bridge import meshes
 from ..bridge.images import Picture
-from ..core.jobs import Progress
+from ..core.jobs import Progress, parts
 from ..core.outcome import Outcome
 from ..core.wording import listed
 from .bake import Bake, write_all
@@ -42,8 +41,8 @@ class TiledBake:
     def compute(self, progress: Progress) -> None:
         """Computes tile by tile; see `Bake.compute`."""
         try:
-            for index, one in enumerate(self._bakes):
-                one.compute(partial(self._advance, progress, index))
+            for one, part in zip(self._bakes, parts(progress, len(self._bakes)), strict=True):
+                one.compute(part)
         except BaseException:
             self.discard()
             raise
@@ -68,9 +67,6 @@ class TiledBake:
         """Removes what was staged, if it was not put into place."""
         for one in self._bakes:
             one.discard()
-
-    def _advance(self, progress: Progress, index: int, fraction: float) -> bool:
-        return progress((index + fraction) / len(self._bakes))
 
 
 def tiles(

@@ -9,7 +9,8 @@ import numpy as np
 import prefilter
 
 from ..bridge import new_meshes, solids
-from ..core.jobs import Progress, go_on, share
+from ..core.jobs import Progress, go_on, parts, share
+from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import listed
 from .choices import BooleanSettings
@@ -51,6 +52,7 @@ class Boolean:
         Raises:
             ValueError: There are too few objects, or one is unfit.
         """
+        check(settings)
         if active is None or not others:
             raise ValueError("select two objects or more, one of them active")
         new_meshes.check_editable(active)
@@ -80,10 +82,10 @@ class Boolean:
             grid = choose_grid(self._box([mesh.box for mesh in meshes]), self._settings)
             check_memory(grid, sum(mesh.area for mesh in meshes))
         trees = []
-        for i, (solid, mesh) in enumerate(zip(self._read, meshes, strict=True)):
-            start, end = (VOXELIZED * k / len(meshes) for k in (i, i + 1))
+        steps = parts(share(progress, 0.0, VOXELIZED), len(meshes))
+        for solid, mesh, part in zip(self._read, meshes, steps, strict=True):
             with naming(solid.name):
-                trees.append(voxelized(mesh, grid, self._settings, share(progress, start, end)))
+                trees.append(voxelized(mesh, grid, self._settings, part))
         combine = getattr(prefilter.Octree, self._settings.operation)
         tree = reduce(
             partial(

@@ -1,12 +1,12 @@
-"""What a user may choose for voxels and booleans, and how the choices are presented."""
+"""What a user may set for voxels and booleans."""
 
 import math
 from dataclasses import dataclass
 
-from ..core.choices import Choice
+import prefilter
 
-MOST_DEPTH = 12
-LEAST_SIZE = 1e-6
+from ..core.choices import Choice
+from ..core.options import number, one_of, switch, text, threads
 
 RESOLUTIONS = {
     "depth": Choice("Depth", "Halve the cube around the object this many times"),
@@ -14,7 +14,7 @@ RESOLUTIONS = {
 }
 INTERPOLANTS = {
     "plane": Choice(
-        "Plane", "A plane through each cell, fitted to its neighbours too: the smoothest"
+        "Plane", "A plane through each cell, fitted to its neighbors too: the smoothest"
     ),
     "occupancy": Choice("Occupancy", "A plane that leaves each cell the volume that it has"),
     "linear": Choice("Linear", "Values interpolated between cells, as marching cubes do: ripples"),
@@ -26,9 +26,9 @@ OUTPUTS = {
     ),
 }
 OPERATIONS = {
-    "difference": Choice("Difference", "What the active object has, and the others have not"),
-    "union": Choice("Union", "What any of the objects has"),
-    "intersection": Choice("Intersection", "What all of the objects have"),
+    "difference": Choice("Difference", "Subtract the others from the active object"),
+    "union": Choice("Union", "Keep what lies in any of the objects"),
+    "intersection": Choice("Intersection", "Keep what lies in all of the objects"),
 }
 OPERANDS = {
     "keep": Choice("Keep", "The other objects stay as they are"),
@@ -39,56 +39,98 @@ OPERANDS = {
 
 @dataclass(frozen=True)
 class VoxelSettings:
-    """How to voxelize, and what to make of it.
+    """How to voxelize, and what to make of it."""
 
-    Attributes:
-        resolution: A key of `RESOLUTIONS`: which of the two below counts.
-        depth: Cells along an axis are 2 to the power of this; 1 to 12.
-        voxel_size: The side of a cell in world space, above 0.
-        interpolant: A key of `INTERPOLANTS`: how the surface runs through cells.
-        use_close_holes: Whether holes get caps before the mesh is voxelized.
-        use_cleanup: Whether to collapse short edges: fewer triangles, and no slivers to shade.
-        use_materials: Whether triangles get the material of the nearest face of the source.
-        use_colors: Whether vertices get the colour attributes of the nearest point of the source.
-        use_smooth: Whether the result is shaded smooth.
-        smooth_angle: Edges with a greater angle, in radians, stay sharp.
-        threads: How many threads to use; 0 for all.
-    """
-
-    resolution: str = "depth"
-    depth: int = 7
-    voxel_size: float = 0.1
-    interpolant: str = "plane"
-    use_close_holes: bool = True
-    use_cleanup: bool = True
-    use_materials: bool = True
-    use_colors: bool = True
-    use_smooth: bool = True
-    smooth_angle: float = math.radians(30.0)
-    threads: int = 0
+    resolution: str = one_of(
+        "depth", "Resolution", "How the size of the cells is given", RESOLUTIONS, flag=""
+    )
+    depth: int = number(
+        8,
+        "Depth",
+        "Octree depth: 8 gives 256 cells per axis, and each step quadruples the triangles",
+        low=1,
+        high=prefilter.MAX_DEPTH,
+        display={"soft_max": 10},
+        metavar="N",
+    )
+    voxel_size: float = number(
+        0.1,
+        "Voxel Size",
+        "The side of a cell in world space",
+        low=1e-6,
+        subtype="DISTANCE",
+        display={"soft_min": 0.001, "precision": 4, "step": 1},
+        flag_description="The side of a cell in world space, instead of a depth",
+        metavar="LENGTH",
+    )
+    interpolant: str = one_of(
+        "occupancy",
+        "Interpolant",
+        "How the surface runs through the cells",
+        INTERPOLANTS,
+        metavar="NAME",
+    )
+    use_close_holes: bool = switch(
+        True,
+        "Close Holes",
+        "Close each hole by triangles to the middle of its border; without them the surface ends "
+        "in steps there",
+        flag_description="Leave holes open; the surface ends in steps there",
+    )
+    use_cleanup: bool = switch(
+        True,
+        "Clean Up",
+        "Collapse short edges: a quarter fewer triangles, and no slivers, which shade badly",
+        flag_description="Keep all triangles, slivers too",
+    )
+    use_materials: bool = switch(
+        True,
+        "Materials",
+        "Triangles get the material of the nearest face",
+        flag_description="Do not keep the materials of the nearest faces",
+    )
+    use_colors: bool = switch(
+        True,
+        "Color Attributes",
+        "Vertices get the colors of the nearest point of the surface",
+        flag_description="Do not keep the color attributes of the nearest points",
+    )
+    use_smooth: bool = switch(True, "Smooth Shading", "Shade the result smooth", flag="")
+    smooth_angle: float = number(
+        math.radians(30.0),
+        "Angle",
+        "Edges between faces that meet at a greater angle stay sharp",
+        low=0.0,
+        high=math.pi,
+        subtype="ANGLE",
+        flag_description="Edges with a greater angle stay sharp; 0 shades flat",
+        metavar="DEGREES",
+    )
+    threads: int = threads()
 
 
 @dataclass(frozen=True)
 class VoxelizeSettings(VoxelSettings):
-    """What `prefilter.voxelize` does.
+    """What `prefilter.voxelize` does."""
 
-    Attributes:
-        output: A key of `OUTPUTS`.
-        filepath: The OpenVDB file of a volume; empty for one beside the .blend file.
-    """
-
-    output: str = "mesh"
-    filepath: str = ""
+    output: str = one_of("mesh", "Output", "What to make", OUTPUTS, flag="")
+    filepath: str = text(
+        "",
+        "File",
+        "The OpenVDB file of the volume; empty for one beside the .blend file, named after the "
+        "object",
+        subtype="FILE_PATH",
+        flag="",
+    )
 
 
 @dataclass(frozen=True)
 class BooleanSettings(VoxelSettings):
-    """What `prefilter.boolean` does.
+    """What `prefilter.boolean` does."""
 
-    Attributes:
-        operation: A key of `OPERATIONS`.
-        operands: A key of `OPERANDS`: what becomes of the other objects.
-    """
-
-    operation: str = "difference"
-    operands: str = "hide"
+    operation: str = one_of(
+        "difference", "Operation", "What to keep", OPERATIONS, metavar="OPERATION"
+    )
+    operands: str = one_of(
+        "hide", "Others", "What becomes of the other selected objects", OPERANDS, flag=""
+    )

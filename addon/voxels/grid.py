@@ -4,10 +4,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import prefilter
 from numpy.typing import NDArray
 
 from ..core.memory import available_memory
-from .choices import MOST_DEPTH, VoxelSettings
+from .choices import VoxelSettings
 
 FloatArray = NDArray[np.float64]
 Box = tuple[FloatArray, FloatArray]
@@ -57,7 +58,7 @@ def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
     With a voxel size, cells begin at its multiples, so that grids of one size coincide.
 
     Raises:
-        ValueError: The depth or the voxel size is out of range, or the box has no extent.
+        ValueError: The voxel size makes too many cells, or the box has no extent.
     """
     low, high = box
     extent = float((high - low).max())
@@ -66,14 +67,12 @@ def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
     if settings.resolution == "depth":
         return _grid_of_depth(box, extent, settings.depth)
     size = settings.voxel_size
-    if not 0.0 < size < math.inf:
-        raise ValueError(f"voxel_size: found {size:g}; a number above 0 is needed")
     needed = extent / size + 2 * _MARGIN + 1
-    most = 1 << MOST_DEPTH
+    most = 1 << prefilter.MAX_DEPTH
     if needed > most:
         least = extent / (most - 2 * _MARGIN - 1)
         raise ValueError(
-            f"voxel_size: found {size:g}, which makes {needed:.0f} cells along an axis; up to "
+            f"Voxel Size: found {size:g}, which makes {needed:.0f} cells along an axis; up to "
             f"{most} are allowed, so it has to be at least {least:.3g}"
         )
     depth = max(1, math.ceil(math.log2(needed)))
@@ -108,9 +107,5 @@ def check_dense_memory(grid: Grid) -> None:
 
 
 def _grid_of_depth(box: Box, extent: float, depth: int) -> Grid:
-    if not 1 <= depth <= MOST_DEPTH:
-        raise ValueError(f"depth: found {depth}; 1 to {MOST_DEPTH} are allowed")
-    cells = 1 << depth
-    margin = min(_MARGIN, cells / 4)
-    side = extent * cells / (cells - 2 * margin)
-    return Grid((box[0] + box[1]) / 2 - side / 2, side, depth)
+    low, high = prefilter.cube_around(box, depth=depth)
+    return Grid(low, float((high - low).max()), depth)

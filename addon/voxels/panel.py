@@ -2,9 +2,10 @@
 
 import bpy
 
+from ..core.properties import copy
+from .choices import BooleanSettings, VoxelizeSettings
 from .operators.boolean import PREFILTER_OT_boolean
 from .operators.voxelize import PREFILTER_OT_voxelize
-from .properties import BooleanProperties, VoxelizeProperties, copy_voxel_properties
 
 _PARENT = "DATA_PT_remesh"
 
@@ -71,9 +72,9 @@ def _draw_convert_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None
 
 def _draw_voxelize(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     operator = layout.operator(PREFILTER_OT_voxelize.bl_idname, icon="MOD_REMESH")
-    copy_voxel_properties(context.scene.prefilter_voxelize, operator, VoxelizeProperties)
+    copy(context.scene.prefilter_voxelize, operator, VoxelizeSettings)
 
 
 def _draw_boolean(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     operator = layout.operator(PREFILTER_OT_boolean.bl_idname, icon="MOD_BOOLEAN")
-    copy_voxel_properties(context.scene.prefilter_boolean, operator, BooleanProperties)
+    copy(context.scene.prefilter_boolean, operator, BooleanSettings)

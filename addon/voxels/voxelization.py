@@ -11,7 +11,8 @@ from mathutils import Matrix
 
 from ..bridge import new_meshes, solids
 from ..bridge.files import staging, volumes
-from ..core.jobs import Progress, go_on, share
+from ..core.jobs import Progress, go_on, parts, share
+from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
 from .choices import VoxelizeSettings
@@ -60,6 +61,7 @@ class Voxelization:
             ValueError: There is no object, or one is unfit.
             OSError: The file of a volume cannot be written.
         """
+        check(settings)
         if not objects:
             raise ValueError("no object is selected that has a surface")
         is_volume = settings.output == "volume"
@@ -84,9 +86,8 @@ class Voxelization:
             MemoryError: A result does not fit into memory.
             prefilter.Cancelled: `progress` has said so.
         """
-        count = len(self._read)
-        for i, (place, solid) in enumerate(self._read):
-            part = share(progress, i / count, (i + 1) / count)
+        steps = parts(progress, len(self._read))
+        for i, ((place, solid), part) in enumerate(zip(self._read, steps, strict=True)):
             with naming(place.name):
                 self._results.append(self._compute_one(i, place, solid, part))
         go_on(progress, 1.0)

@@ -7,7 +7,7 @@ from typing import Any
 
 import bpy
 
-from ..new_meshes import is_solid
+from ...core.wording import listed
 from . import staging
 
 IMPORTERS: dict[str, Callable[[str], Any]] = {
@@ -32,16 +32,24 @@ EXPORTERS: dict[str, Callable[[str], Any]] = {
 }
 
 
-def load(paths: Sequence[str]) -> list[list[bpy.types.Object]]:
+SOURCES = (".blend", *IMPORTERS)
+TARGETS = (".blend", *EXPORTERS)
+
+
+def load(
+    paths: Sequence[str], is_wanted: Callable[[bpy.types.Object], bool], wanted: str
+) -> list[list[bpy.types.Object]]:
     """Loads files into one scene.
 
     A .blend file that comes first is opened; what the first scene of others shows is appended.
 
     Args:
-        paths: Their endings are ".blend" or keys of `IMPORTERS`.
+        paths: Their endings are in `SOURCES`.
+        is_wanted: Tells which objects count.
+        wanted: What they are called.
 
     Returns:
-        The visible objects of each file that may show something with an inside.
+        The objects of each file that count.
 
     Raises:
         OSError: A file is missing or cannot be read.
@@ -59,15 +67,34 @@ def load(paths: Sequence[str]) -> list[list[bpy.types.Object]]:
             _load_one(os.path.abspath(path), is_first=i == 0)
         except RuntimeError as error:
             raise OSError(f"FILE: cannot load '{path}': {str(error).strip()}") from error
-        objects = [
-            obj
-            for obj in bpy.context.view_layer.objects
-            if obj not in before and is_solid(obj) and obj.visible_get()
-        ]
+        everything = bpy.context.view_layer.objects
+        objects = [obj for obj in everything if obj not in before and is_wanted(obj)]
         if not objects:
-            raise ValueError(f"FILE: found no visible object with a surface in '{path}'")
+            raise ValueError(f"FILE: found no {wanted} in '{path}'")
         found.append(objects)
     return found
+
+
+def chosen(
+    objects: list[bpy.types.Object], names: Sequence[str], wanted: str
+) -> list[bpy.types.Object]:
+    """Returns the objects with these names, in their order; without names, all of them.
+
+    Args:
+        objects: Those that count.
+        names: What a user gives.
+        wanted: What objects that count are called.
+
+    Raises:
+        ValueError: There is no such object.
+    """
+    by_name = {obj.name: obj for obj in objects}
+    for name in names:
+        if name not in by_name:
+            raise ValueError(
+                f"--object: found no {wanted} named '{name}'; there are {listed(by_name)}"
+            )
+    return [by_name[name] for name in dict.fromkeys(names)] if names else objects
 
 
 def as_one(name: str, objects: Sequence[bpy.types.Object]) -> bpy.types.Object:
@@ -104,6 +131,14 @@ def save(target: Path, names: Sequence[str]) -> None:
     except RuntimeError as error:
         raise OSError(f"file '{target}': cannot write it: {str(error).strip()}") from error
     staged.commit()
+
+
+def save_open(path: str) -> None:
+    """Saves the .blend file that is open, as Blender does; raises OSError where that fails."""
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+    except RuntimeError as error:
+        raise OSError(f"--save: cannot write '{path}': {str(error).strip()}") from error
 
 
 def _load_one(path: str, *, is_first: bool) -> None:

@@ -1,11 +1,11 @@
 """`prefilter.plot_error`: the errors of filters over the mip value, as a figure and a table."""
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import StringProperty
 
 from ...bridge import derived
-from ...core.choices import items
 from ...core.operator import Work
+from ...core.properties import single_property
 from .. import choices
 from ..view import errors, figure
 from .source import ImageOperator, read_source, show_in_editor
@@ -29,13 +29,7 @@ class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
         description="The image to measure; the image of the editor if empty",
         options={"SKIP_SAVE"},
     )
-    filters: EnumProperty(
-        name="Filters",
-        description="The filters to compare",
-        items=items(choices.FILTERS),
-        options={"ENUM_FLAG"},
-        default=set(errors.DEFAULT_FILTERS),
-    )
+    filters: single_property(choices.PlotSettings, "filters")
 
     def read(self, context: bpy.types.Context) -> Work:
         """Copies the image and its surfaces."""

@@ -1,11 +1,11 @@
 """`prefilter.preview_levels` and `prefilter.end_preview`: levels in the place of their image."""
 
 import bpy
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import StringProperty
 
 from ...bridge import images
-from ...core.choices import items
 from ...core.operator import Work
+from ...core.properties import single_property
 from .. import choices
 from ..view import preview
 from .source import ImageOperator, read_source, show_in_editor
@@ -28,12 +28,7 @@ class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
         description="The image to preview; the image of the editor if empty",
         options={"SKIP_SAVE"},
     )
-    compare: EnumProperty(
-        name="Compare With",
-        description="The filter on the left of the wipe",
-        items=items(choices.FILTERS),
-        default="box",
-    )
+    compare: single_property(choices.PreviewSettings, "compare")
 
     @classmethod
     def reads_surface(cls, context: bpy.types.Context) -> bool:

@@ -2,10 +2,11 @@
 
 import bpy
 
+from ...core.properties import copy
 from .. import users
+from ..choices import Settings
 from ..operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from ..operators.source import shown_image
-from ..properties import copy_bake_properties
 
 _ICON = "TEXTURE"
 
@@ -50,4 +51,4 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
 
 def _draw_operator(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
     operator = layout.operator(PREFILTER_OT_bake_mipmaps.bl_idname, icon=_ICON)
-    copy_bake_properties(settings, operator)
+    copy(settings, operator, Settings)

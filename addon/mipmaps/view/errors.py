@@ -7,14 +7,10 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
-from ...core.jobs import Progress
+from ...core.jobs import Progress, parts, share
 from ..bake import Bake
-from ..choices import FILTERS
+from ..choices import FILTERS, PlotSettings
 
-# Those of figure 7.7.
-DEFAULT_FILTERS = tuple(
-    name for name in FILTERS if name in {"box", "pam-box", "pam-bilinear", "pam-trilinear"}
-)
 STEPS_PER_LEVEL = 8  # Even, for Simpson's rule.
 _FILTERING = 0.7  # The share of the time that is spent on filtering, roughly.
 
@@ -60,16 +56,18 @@ class ErrorCurves:
 
     def summary(self) -> str:
         """Returns the errors over all mip values, in words."""
-        parts = (
+        errors = (
             f"{FILTERS[name].label} {error:.4g}"
             for name, error in zip(self.filters, self.overall, strict=True)
         )
-        return f"Error of '{self.image}' over all mip values: {', '.join(parts)}"
+        return f"Error of '{self.image}' over all mip values: {', '.join(errors)}"
 
 
 def default_filters(reader: str) -> tuple[str, ...]:
     """Returns the filters to compare for a key of `choices.READERS`."""
-    return tuple(name for name in DEFAULT_FILTERS if reader == "linear" or name != "pam-trilinear")
+    return tuple(
+        name for name in PlotSettings.filters if reader == "linear" or name != "pam-trilinear"
+    )
 
 
 def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCurves:
@@ -89,12 +87,8 @@ def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCu
         raise ValueError("filters: none is chosen; at least one is needed")
     linear = source.linear(progress)
     errors = []
-    for index, name in enumerate(filters):
-
-        def part(low: float, high: float, done: int = index) -> Progress:
-            return lambda fraction: progress((done + low + (high - low) * fraction) / len(filters))
-
-        levels = source.filtered(linear, name, part(0.0, _FILTERING))
+    for name, part in zip(filters, parts(progress, len(filters)), strict=True):
+        levels = source.filtered(linear, name, share(part, 0.0, _FILTERING))
         last = len(levels) - 1
         mip_values = np.linspace(0.0, last, STEPS_PER_LEVEL * last + 1)
         with source.naming_objects():
@@ -106,7 +100,7 @@ def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCu
                     mip_values,
                     wrap=source.wrap,
                     reader=source.reader,
-                    progress=part(_FILTERING, 1.0),
+                    progress=share(part, _FILTERING, 1.0),
                 )
             )
     return ErrorCurves(source.image_name, tuple(filters), mip_values, np.array(errors))

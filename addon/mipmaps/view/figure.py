@@ -1,6 +1,8 @@
 """Figure 7.7: errors of mipmaps against the mip value, as a picture."""
 
+import colorsys
 import math
+import zlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,7 +38,6 @@ COLORS: dict[str, Color] = {
     "tent-covered": (0.25, 0.45, 0.55),
     "lanczos3-covered": (0.5, 0.2, 0.4),
 }
-_OTHER: Color = (0.4, 0.4, 0.4)
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ def draw(curves: ErrorCurves) -> FloatArray:
     canvas = Canvas(WIDTH, HEIGHT, PAPER)
     _draw_axes(canvas, axes, float(curves.errors.max()))
     for name, overall, errors in zip(curves.filters, curves.overall, curves.errors, strict=True):
-        color = COLORS.get(name, _OTHER)
+        color = _color(name)
         ends = axes.place([0.0, axes.last_level], [overall, overall])
         canvas.line(ends, color, width=_DASHED_LINE, dashes=_DASH)
         canvas.line(axes.place(curves.mip_values, errors), color, width=_LINE)
@@ -82,6 +83,12 @@ def draw(curves: ErrorCurves) -> FloatArray:
         canvas, "RMSE, scene-linear", 34, (_BOTTOM + HEIGHT - _TOP) / 2, anchor=0.5, upwards=True
     )
     return canvas.pixels()
+
+
+def _color(name: str) -> Color:
+    """Returns the color of a filter; one that is not in `COLORS` has a hue by its name."""
+    hue = zlib.crc32(name.encode()) / 2**32
+    return COLORS.get(name) or colorsys.hls_to_rgb(hue, 0.4, 0.6)
 
 
 def _draw_axes(canvas: Canvas, axes: Axes, top: float) -> None:
@@ -106,7 +113,7 @@ def _draw_axes(canvas: Canvas, axes: Axes, top: float) -> None:
 def _draw_legend(canvas: Canvas, curves: ErrorCurves) -> None:
     """Draws it at the lower right: errors grow, which leaves room below those of coarse levels."""
     rows = [
-        (FILTERS[name].label, COLORS.get(name, _OTHER), overall)
+        (FILTERS[name].label, _color(name), overall)
         for name, overall in zip(curves.filters, curves.overall, strict=True)
     ]
     texts = [f"{label}  ({overall:.3g} over all)" for label, _, overall in rows]

@@ -11,7 +11,7 @@ from bpy.app.handlers import persistent
 
 from ...bridge.images import FloatArray
 from ...core.alpha import associated
-from ...core.jobs import Progress
+from ...core.jobs import Progress, parts
 from ..bake import Bake
 from ..choices import Settings
 
@@ -75,11 +75,7 @@ def compute(source: Bake, image_uid: int, filters: Iterable[str], progress: Prog
     linear = source.linear(progress)
     names = list(dict.fromkeys(filters))
     levels = {}
-    for done, name in enumerate(names):
-
-        def part(fraction: float, done: int = done) -> bool:
-            return progress((done + fraction) / len(names))
-
+    for name, part in zip(names, parts(progress, len(names)), strict=True):
         levels[name] = source.filtered(linear, name, part)
     picture = source.picture
     if picture.alpha_is_straight:

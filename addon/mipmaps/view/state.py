@@ -1,11 +1,11 @@
 """What the editors show, in all windows: no part of the scene, so no undo changes it."""
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty
+from bpy.props import BoolProperty, FloatProperty, PointerProperty
 
-from ...core.choices import items
-from .. import choices
-from . import errors, preview
+from ...core.properties import single_property
+from ..choices import PlotSettings, PreviewSettings
+from . import preview
 
 
 def _redraw(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -49,19 +49,9 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
         max=1.0,
         update=_redraw,
     )
-    compare: EnumProperty(
-        name="Compare With",
-        description="The filter on the left of the wipe",
-        items=items(choices.FILTERS),
-        default="box",
-        update=_redraw,
-    )
-    plot_filters: EnumProperty(
-        name="Filters",
-        description="The filters to compare; Shift-click to choose several",
-        items=items(choices.FILTERS),
-        options={"ENUM_FLAG"},
-        default=set(errors.DEFAULT_FILTERS),
+    compare: single_property(PreviewSettings, "compare", update=_redraw)
+    plot_filters: single_property(
+        PlotSettings, "filters", description="The filters to compare; Shift-click to choose several"
     )
 
 

@@ -140,7 +140,7 @@ ROWS = {
     "folder": Row(["folder.exr", "is a folder"], {"filepath": "folder.exr"}),
     "read-only file": Row(["kept.exr", "is read-only"], {"filepath": "kept.exr"}),
     "frames": Row(
-        ["frame_end: found 1", "before frame_start, 5"],
+        ["End: found 1", "before Start, 5"],
         {"use_frames": True, "frame_start": 5, "frame_end": 1},
     ),
     "importance": Row(
@@ -248,7 +248,7 @@ def test_operator(name, folder):
         (["bake", "none.blend", "--save"], ["FILE: there is no file", "none.blend"], 1),
         (["bake", "broken.blend", "--save"], ["FILE: cannot load", "broken.blend"], 1),
         (["bake", "scene.blend", "--save", "--filter", "best"], ["--filter", "'best'"], 2),
-        (["bake", "scene.blend", "--save", "--levels", "-1"], ["--levels", "-1", "from 0"], 2),
+        (["bake", "scene.blend", "--save", "--levels", "-1"], ["--levels: found '-1'"], 2),
         (["bake", "scene.blend", "--save", "--seams", "nan"], ["--seams", "'nan'"], 2),
         (["bake", "scene.blend", "--save", "--threads", "two"], ["--threads", "'two'"], 2),
         (["bake", "scene.blend", "--save", "--reader", "gpu"], ["--reader", "srgb-after"], 2),

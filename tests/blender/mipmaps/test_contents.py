@@ -488,7 +488,7 @@ def test_light_may_pass_one(bake):
             "'Small' has 4 x 4 texels; the 8 x 8 of 'Paint' are needed",
         ),
         ({"content": "normal", "roughness_filepath": "/r.exr"}, "roughness file: needs the name"),
-        ({"content": "cutout", "threshold": 0.0}, "found no alpha|threshold: 0.0"),
+        ({"content": "cutout", "threshold": 0.0}, "Threshold: found 0; allowed: above 0, up to 1"),
     ],
 )
 def test_what_does_not_fit_is_refused(bake, settings, message):

@@ -85,8 +85,8 @@ def test_faces_that_come_and_go(bake, pulse):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"frame_start": 5, "frame_end": 4}, "frame_end: found 4, which is before frame_start"),
-        ({"frame_step": 0}, "frame_step: found 0; 1 and up"),
+        ({"frame_start": 5, "frame_end": 4}, "End: found 4, which is before Start, 5"),
+        ({"frame_step": 0}, "Step: found 0; allowed: 1 and up"),
     ],
 )
 def test_no_frames(bake, pulse, settings, message):

@@ -70,6 +70,20 @@ def test_obj_with_a_picture(obj_and_picture, tmp_path):
     assert (buffer.spec().width, buffer.spec().height) == (8, 4)
 
 
+def test_ply_with_a_picture(obj_and_picture, tmp_path):
+    _, picture = obj_and_picture
+    path = tmp_path / "quad.ply"
+    names = "".join(f"property float {name}\n" for name in "xyzst")
+    path.write_text(
+        f"ply\nformat ascii 1.0\nelement vertex 4\n{names}element face 1\n"
+        "property list uchar int vertex_indices\nend_header\n"
+        "0 0 0 0 0\n1 0 0 1 0\n1 1 0 1 1\n0 1 0 0 1\n4 0 1 2 3\n"
+    )
+    result = run("bake", path, "--image", picture, "--output", tmp_path / "out.exr")
+    assert result.returncode == 0, result.stderr
+    assert "over 1 object" in result.stdout
+
+
 def test_gltf(tmp_path):
     scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
     material = bpy.data.materials["Quad material"]

@@ -361,7 +361,7 @@ def plane():
         (
             bodies.cube,
             {"resolution": "size", "voxel_size": 1e-6},
-            "object 'Cube': voxel_size: found 1e-06.*4096 are allowed.*at least 0.000489",
+            "object 'Cube': Voxel Size: found 1e-06.*4096 are allowed.*at least 0.000489",
         ),
     ],
 )

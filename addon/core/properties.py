@@ -1,0 +1,68 @@
+"""Options as properties of Blender: of operators, and of the scene."""
+
+import math
+from typing import Any
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+
+from .choices import flag_items, items
+from .options import Option, declared, option
+
+_ABOVE = 1e-3
+"""How far above a limit that it must not have a property begins."""
+
+
+def properties(settings: type) -> dict[str, Any]:
+    """Returns the annotations of a class that has the options of a dataclass as properties."""
+    return {
+        name: _property(default, found)
+        for name, default, found in declared(settings)
+        if found.label
+    }
+
+
+def single_property(settings: type, name: str, **more: Any) -> Any:
+    """Returns one option as a property, with more arguments such as `update`."""
+    return _property(*option(settings, name), **more)
+
+
+def values(source: Any, settings: type) -> Any:
+    """Returns the settings that properties have; paths are absolute."""
+    found = {}
+    for name, _, declaration in declared(settings):
+        if declaration.label:
+            value = getattr(source, name)
+            is_path = declaration.subtype == "FILE_PATH"
+            found[name] = bpy.path.abspath(value) if is_path else value
+    return settings(**found)
+
+
+def copy(source: Any, target: Any, settings: type) -> None:
+    """Copies the options of a dataclass between a property group and an operator's properties."""
+    for name in properties(settings):
+        setattr(target, name, getattr(source, name))
+
+
+def _property(default: Any, declaration: Option, **more: Any) -> Any:
+    common = {
+        "name": declaration.label,
+        "description": declaration.description,
+        **declaration.display,
+        **more,
+    }
+    if declaration.choices:
+        if isinstance(default, tuple):
+            common |= {"options": {"ENUM_FLAG"}, "default": set(default)}
+            return EnumProperty(items=flag_items(declaration.choices), **common)
+        return EnumProperty(items=items(declaration.choices), default=default, **common)
+    common["default"] = default
+    if isinstance(default, bool):
+        return BoolProperty(**common)
+    common["subtype"] = declaration.subtype
+    if isinstance(default, str):
+        return StringProperty(**common)
+    low = declaration.low + _ABOVE if declaration.is_above else declaration.low
+    limits = {"min": low, "max": declaration.high}
+    common = {name: value for name, value in limits.items() if math.isfinite(value)} | common
+    return (IntProperty if isinstance(default, int) else FloatProperty)(**common)

@@ -1,0 +1,47 @@
+"""The add-on and the package have the same defaults."""
+
+import inspect
+
+import prefilter
+import pytest
+
+# What a setting has that stands for what the package leaves out.
+ABSENT = {"levels": (0, None), "roughness": ("", None)}
+
+
+def defaults(function):
+    parameters = inspect.signature(function).parameters.values()
+    return {one.name: one.default for one in parameters if one.default is not one.empty}
+
+
+@pytest.mark.parametrize(
+    ("settings", "function", "least"),
+    [
+        ("mipmaps.choices.Settings", prefilter.mipmaps, 5),
+        ("mipmaps.choices.Settings", prefilter.normal_mipmaps, 3),
+        ("mipmaps.choices.Settings", prefilter.keep_coverage, 2),
+        ("voxels.choices.VoxelSettings", prefilter.voxelize, 2),
+        ("voxels.choices.VoxelSettings", prefilter.Octree.contour, 3),
+    ],
+)
+def test_defaults_agree(addon, settings, function, least):
+    module, _, name = settings.rpartition(".")
+    declared = getattr(addon(module), name)()
+    compared = 0
+    for parameter, default in defaults(function).items():
+        # Blender knows more of these: what the material says, and what the image holds.
+        if parameter in {"wrap", "bounds"}:
+            continue
+        for field in (parameter, f"use_{parameter}"):
+            if hasattr(declared, field):
+                value = getattr(declared, field)
+                found = ABSENT.get(field, ())
+                assert (value, default) == found if found else value == default, field
+                compared += 1
+    assert compared >= least
+
+
+def test_the_format_of_texture_files(addon):
+    expected = addon("mipmaps.choices").Settings().texture_format
+    for write in (prefilter.write_dds, prefilter.write_ktx2):
+        assert defaults(write)["format"] == expected
