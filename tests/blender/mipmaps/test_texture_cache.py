@@ -689,7 +689,7 @@ def test_the_command(tmp_path, scene):
     bake()
     np.testing.assert_array_equal(cycles.level(cycles.cache_file(tmp_path), 1), level)
     for arguments, message in (
-        (("scene.glb",), "a .blend file is needed"),
+        (("scene.glb",), "found 'scene.glb'; allowed: .blend"),
         ((tmp_path / "none.blend",), "there is no file"),
         ((blend, "--scene", "Other"), "no scene named 'Other'"),
     ):
