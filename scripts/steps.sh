@@ -43,9 +43,12 @@ run_step() {
 
 # conclude FUNCTION: counts a step that has run.
 conclude() {
-  local status=1 seconds=0 processors result
-  read -r status seconds <"$results/$1.status" || true
-  processors=$(awk -F '[ms ]+' 'END { printf "%d", 60 * ($1 + $3) + $2 + $4 + 0.5 }' "$results/$1.times")
+  local status=1 seconds=0 processors=0 result
+  # A step that was killed has left nothing.
+  if [[ -e $results/$1.status ]]; then
+    read -r status seconds <"$results/$1.status"
+    processors=$(awk -F '[ms ]+' 'END { printf "%d", 60 * ($1 + $3) + $2 + $4 + 0.5 }' "$results/$1.times")
+  fi
   case $status in
     0)
       result=passed
@@ -83,7 +86,8 @@ run_side_by_side() {
       if ((running < $(nproc))) && is_ready "$function"; then
         printf '... %s\n' "${names[$function]}"
         {
-          run_step "$function" >"$results/$function.log" 2>&1
+          (run_step "$function") >"$results/$function.log" 2>&1 &
+          wait "$!" || true
           printf '%s\n' "$function" >&"$ends"
         } &
         running=$((running + 1))

@@ -44,6 +44,18 @@ def test_steps_that_fail_or_are_skipped_are_counted(tmp_path: Path) -> None:
     assert printed.endswith("1 passed, 1 failed, 1 skipped\n")
 
 
+def test_a_step_that_is_killed_has_failed(tmp_path: Path) -> None:
+    program = """
+killed() { kill -KILL "$(cut -d ' ' -f 4 "/proc/$BASHPID/stat")"; }
+good() { sleep 0.1; }
+step "the killed" killed
+step "the good" good
+"""
+    status, printed = run(program, tmp_path)
+    assert status == 1
+    assert printed.endswith("1 passed, 1 failed\n")
+
+
 @pytest.mark.parametrize(("only", "status"), [("bad", 1), ("good", 0), ("ugly", 0)])
 def test_a_step_by_itself_has_its_result(tmp_path: Path, only: str, status: int) -> None:
     found, printed = run(FAILING, tmp_path, only)
