@@ -96,7 +96,7 @@ def read_weights(
     types = {"FLOAT": np.float32, "INT": np.int32, "INT8": np.int8, "BOOLEAN": np.bool_}
     if attribute.data_type not in types:
         raise ValueError(
-            f"{found} of the type {attribute.data_type}; a number, a colour or a boolean is needed"
+            f"{found} of the type {attribute.data_type}; a number, a color or a boolean is needed"
         )
     values: NDArray[Any] = np.empty(count, types[attribute.data_type])
     attribute.data.foreach_get("value", values)

@@ -307,7 +307,7 @@ def _convert(picture: Picture, pixels: FloatArray, check: Check, *, decode: bool
         converted = openimageio.color_convert(colors, source, target, picture.ocio_config, check)
     except ValueError as error:
         raise ValueError(
-            f"image '{picture.name}': cannot convert its colour space '{picture.colorspace}': "
+            f"image '{picture.name}': cannot convert its color space '{picture.colorspace}': "
             f"{error}"
         ) from error
     result = pixels.copy()

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence, Sized
 
 _MOST_LISTED = 5
+_SCALES = ((1e9, "billion"), (1e6, "million"))
 
 
 def listed(names: Iterable[str]) -> str:
@@ -20,3 +21,12 @@ def counted(things: Sized, noun: str) -> str:
 def either(words: Sequence[str]) -> str:
     """Returns words with commas and "or" between them."""
     return f"{', '.join(words[:-1])} or {words[-1]}" if len(words) > 1 else "".join(words)
+
+
+def amount(number: float, noun: str) -> str:
+    """Returns how many things there are, rounded where there are very many: "1.6 million edges"."""
+    for scale, name in _SCALES:
+        if number >= scale:
+            return f"{number / scale:.3g} {name} {noun}s"
+    whole = round(number)
+    return f"{whole} {noun}{'' if whole == 1 else 's'}"

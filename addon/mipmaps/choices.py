@@ -10,11 +10,14 @@ from ..core.options import number, one_of, switch, text, threads
 
 _PAM = {
     "pam-bilinear": Choice(
-        "PAM Bilinear", "Best fit over the surface, for readers that interpolate between texels"
+        "PAM Bilinear",
+        "Parameterization-aware mipmaps (PAM): best fit over the surface, for readers that "
+        "interpolate between texels",
     ),
     "pam-trilinear": Choice(
         "PAM Trilinear",
-        "Best fit of all levels together, for readers that interpolate between levels too, as GPUs",
+        "Best fit of all levels together, for readers that also interpolate between levels, such "
+        "as GPUs",
     ),
     "pam-box": Choice("PAM Box", "Average of the surface under each texel"),
 }
@@ -47,14 +50,16 @@ _MODES = {
     "border": Choice("Border", "Black and transparent"),
 }
 WRAPS = {
-    "auto": Choice("As in Material", "What the Image Texture nodes of the image say"),
+    "auto": Choice(
+        "As in Material", "The extension mode of the Image Texture nodes that use the image"
+    ),
     **_MODES,
 }
 WRAPS_V = {"same": Choice("Same as U", "The same as along U"), **_MODES}
 BOUNDS = {
     "auto": Choice(
         "Automatic",
-        "0 to 1 for images of integers, 0 and up for others; wider where the image goes beyond",
+        "0 to 1 for integer images, 0 and up for float images; extended where the image exceeds it",
     ),
     "unit": Choice("0 to 1", "Values stay between 0 and 1"),
     "positive": Choice("0 and Up", "Values stay at or above 0"),
@@ -68,7 +73,7 @@ READERS = {
     "srgb-after": Choice(
         "Encoded",
         "Cycles on 8-bit sRGB images: encoded texels are interpolated, then decoded. Other images "
-        "are read as linear light all the same",
+        "are always read as linear light",
     ),
 }
 
@@ -82,15 +87,15 @@ CONTENTS = {
     "data": Choice(
         "Data", "Roughness, masks, packed channels: values as they are stored, each by itself"
     ),
-    "normal": Choice("Normal Map", "Filtered as vectors, which keep the length 1"),
+    "normal": Choice("Normal Map", "Filtered as vectors and renormalized"),
     "cutout": Choice(
-        "Cut-Out", "Color whose alpha test keeps as much of the surface at every level"
+        "Cut-Out", "Color whose alpha test keeps the same share of the surface at every level"
     ),
 }
 OBJECTS = {
     "all": Choice("All Users", "All visible objects of the scene that use the image"),
     "selected": Choice(
-        "Selected", "The selected objects and those in Edit Mode, as far as they use the image"
+        "Selected", "The objects that use the image and are selected or in Edit Mode"
     ),
 }
 TEXTURE_FORMATS = {
@@ -104,7 +109,7 @@ TEXTURE_FORMATS = {
     "bc5": Choice("BC5", "Compressed red and green channels, a byte a texel: normal maps"),
 }
 ROUGHNESS_CHANNELS = {
-    "all": Choice("All", "The image holds nothing but roughness"),
+    "all": Choice("All", "The whole image holds roughness"),
     "red": Choice("Red", "The red channel holds roughness"),
     "green": Choice("Green", "The green channel holds roughness, as in glTF files"),
     "blue": Choice("Blue", "The blue channel holds roughness"),
@@ -118,23 +123,23 @@ class Settings:
     filter: str = one_of(
         "pam-bilinear",
         "Filter",
-        "How a texel of a level is made from the image",
+        "How the texels of a level are computed from the image",
         FILTERS,
         metavar="FILTER",
     )
     reader: str = one_of(
         "linear",
         "Reader",
-        "What looks up the levels; PAM Bilinear fits them to it, and the preview and the error "
-        "plot show what it sees",
+        "How renderers will read the levels. PAM Bilinear fits them to that; the preview and the "
+        "error plot show the result",
         READERS,
         metavar="READER",
     )
     wrap: str = one_of(
-        "auto", "Wrap U", "What lies outside of the image along U", WRAPS, metavar="MODE"
+        "auto", "Wrap U", "What lookups outside the image read along U", WRAPS, metavar="MODE"
     )
     wrap_v: str = one_of(
-        "same", "Wrap V", "What lies outside of the image along V", WRAPS_V, metavar="MODE"
+        "same", "Wrap V", "What lookups outside the image read along V", WRAPS_V, metavar="MODE"
     )
     content: str = one_of(
         "auto",
@@ -156,30 +161,30 @@ class Settings:
     roughness: str = text(
         "",
         "Roughness",
-        "An image of the roughness of the same surface, which compensates for detail lost in "
-        "normal map levels. Leave empty for none",
-        flag_description="An image of the roughness of the same surface, which compensates for "
-        "detail lost in normal map levels: its name in the file, or the path of a picture file",
+        "Roughness image of the same surface; its levels compensate for detail lost in normal map "
+        "levels. Leave empty for none",
+        flag_description="Roughness image of the same surface, whose levels compensate for detail "
+        "lost in normal map levels: its name in the file, or the path of a picture file",
         metavar="NAME",
     )
     roughness_channel: str = one_of(
         "all",
         "Channel",
-        "Where the roughness image holds roughness; its other channels are filtered as data",
+        "Channel of the roughness image that holds roughness; the others are filtered as data",
         ROUGHNESS_CHANNELS,
         metavar="CHANNEL",
     )
     bounds: str = one_of(
         "auto",
         "Value Range",
-        "The range, in scene-linear values, that the texels of a level stay in",
+        "Range of the texels of every level, in scene-linear values",
         BOUNDS,
         metavar="RANGE",
     )
     levels: int = number(
         0,
         "Levels",
-        "Number of levels, the image itself included; 0 makes all of them. A file always gets all",
+        "Number of levels, including the image itself; 0 makes all. Files always get all levels",
         low=0,
         display={"soft_max": 16},
         metavar="N",
@@ -190,15 +195,15 @@ class Settings:
     importance: str = text(
         "",
         "Importance",
-        "A vertex group or attribute that says where texels matter more: areas are multiplied by "
-        "it; leave empty for none",
+        "Vertex group or attribute that makes texels count more: areas are multiplied by it. "
+        "Leave empty for none",
         metavar="NAME",
     )
     seam_weight: float = number(
         0.0,
         "Seams",
-        "How much it counts that the two sides of a UV seam agree in every level: 0 leaves seams "
-        "alone, 1 halves the visible step. For PAM Bilinear and PAM Trilinear",
+        "How strongly to match the two sides of UV seams in every level: 0 ignores seams, 1 halves "
+        "the visible step. For PAM Bilinear and PAM Trilinear",
         low=0.0,
         display={"soft_max": 2.0, "step": 10},
         flag="--seams",
@@ -207,9 +212,9 @@ class Settings:
     use_subdivision_limit: bool = switch(
         True,
         "Subdivision Limit",
-        "Objects with a Catmull-Clark modifier on top count as the smooth surface that subdividing "
-        "forever would give",
-        flag_description="Take Catmull-Clark modifiers as they are, not as their limit surface",
+        "Treat objects whose last modifier is a Catmull-Clark subdivision as the smooth limit of "
+        "infinite subdivision",
+        flag_description="Use Catmull-Clark modifiers as they are, not their limit surface",
     )
     use_frames: bool = switch(
         False,
@@ -220,7 +225,7 @@ class Settings:
     frame_start: int = number(1, "Start", "The first frame of the average", flag="")
     frame_end: int = number(250, "End", "The last frame of the average", flag="")
     frame_step: int = number(
-        1, "Step", "How far the frames of the average are apart", low=1, flag=""
+        1, "Step", "Number of frames from one frame of the average to the next", low=1, flag=""
     )
     use_images: bool = switch(
         True,
@@ -231,27 +236,27 @@ class Settings:
     filepath: str = text(
         "",
         "File",
-        "A file of all levels to write: .exr, .tif or .tx for renderers, .dds or .ktx2 for "
+        "File for all levels: .exr, .tif or .tx for renderers, .dds or .ktx2 for "
         "engines; .png writes one file per level. Leave empty for none",
         subtype="FILE_PATH",
         flag="--output",
-        flag_description="A file of all levels to write: .exr, .tif or .tx for renderers, .dds or "
+        flag_description="File for all levels: .exr, .tif or .tx for renderers, .dds or "
         ".ktx2 for engines; .png makes NAME.00.png, NAME.01.png, ...",
         metavar="FILE",
     )
     roughness_filepath: str = text(
         "",
         "Roughness File",
-        "A file of the roughness to write, like the one of the image; leave empty for none",
+        "File for the levels of the roughness image. Leave empty for none",
         subtype="FILE_PATH",
         flag="--roughness-output",
-        flag_description="A file of the roughness to write, like --output",
+        flag_description="File for the levels of the roughness image, like --output",
         metavar="FILE",
     )
     texture_format: str = one_of(
         "auto",
         "Texture Format",
-        "How a DDS or KTX 2 file holds texels",
+        "Texel format of DDS and KTX 2 files",
         TEXTURE_FORMATS,
         metavar="FORMAT",
     )

@@ -55,8 +55,8 @@ def check_cutout(picture: Picture) -> None:
     """Raises ValueError unless an alpha test of the picture makes sense."""
     if picture.stored.shape[2] == 3 and not _is_gray(picture.stored):
         raise ValueError(
-            f"image '{picture.name}': found no alpha, and colours that are no mask; a cut-out "
-            f"needs alpha that is not 1 everywhere, or an image in greys"
+            f"image '{picture.name}': has no alpha, and is not a grayscale mask; a cut-out needs "
+            f"alpha that is not 1 everywhere, or a grayscale image"
         )
 
 

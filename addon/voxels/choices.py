@@ -14,15 +14,18 @@ RESOLUTIONS = {
 }
 INTERPOLANTS = {
     "plane": Choice(
-        "Plane", "A plane through each cell, fitted to its neighbors too: the smoothest"
+        "Plane", "A plane fitted to each cell and its neighbors: the most exact vertices"
     ),
-    "occupancy": Choice("Occupancy", "A plane that leaves each cell the volume that it has"),
-    "linear": Choice("Linear", "Values interpolated between cells, as marching cubes do: ripples"),
+    "occupancy": Choice("Occupancy", "A plane in each cell that preserves the volume of the cell"),
+    "linear": Choice(
+        "Linear", "Values interpolated between cells, as in marching cubes: shows ripples"
+    ),
 }
 OUTPUTS = {
-    "mesh": Choice("Mesh", "The surface takes the place of the object's mesh"),
+    "mesh": Choice("Mesh", "Replace the object's mesh by the surface"),
     "volume": Choice(
-        "Volume", "A new volume object of an OpenVDB file, with the share of each cell as density"
+        "Volume",
+        "Add a volume object with an OpenVDB file, whose density is the filled share of each cell",
     ),
 }
 OPERATIONS = {
@@ -42,7 +45,7 @@ class VoxelSettings:
     """How to voxelize, and what to make of it."""
 
     resolution: str = one_of(
-        "depth", "Resolution", "How the size of the cells is given", RESOLUTIONS, flag=""
+        "depth", "Resolution", "How to specify the size of the cells", RESOLUTIONS, flag=""
     )
     depth: int = number(
         8,
@@ -66,22 +69,22 @@ class VoxelSettings:
     interpolant: str = one_of(
         "occupancy",
         "Interpolant",
-        "How the surface runs through the cells",
+        "How the surface is placed inside the cells",
         INTERPOLANTS,
         metavar="NAME",
     )
     use_close_holes: bool = switch(
         True,
         "Close Holes",
-        "Close each hole by triangles to the middle of its border; without them the surface ends "
-        "in steps there",
+        "Close each hole with triangles to the center of its border. If off, the surface ends in "
+        "steps there",
         flag_description="Leave holes open; the surface ends in steps there",
     )
     use_cleanup: bool = switch(
         True,
         "Clean Up",
-        "Collapse short edges: a quarter fewer triangles, and no slivers, which shade badly",
-        flag_description="Keep all triangles, slivers too",
+        "Collapse short edges: about a quarter fewer triangles, and no slivers that shade badly",
+        flag_description="Keep all triangles, including slivers",
     )
     use_materials: bool = switch(
         True,
@@ -99,11 +102,11 @@ class VoxelSettings:
     smooth_angle: float = number(
         math.radians(30.0),
         "Angle",
-        "Edges between faces that meet at a greater angle stay sharp",
+        "Keep edges sharp where faces meet at a greater angle",
         low=0.0,
         high=math.pi,
         subtype="ANGLE",
-        flag_description="Edges with a greater angle stay sharp; 0 shades flat",
+        flag_description="Keep edges sharp where faces meet at a greater angle; 0 shades flat",
         metavar="DEGREES",
     )
     threads: int = threads()
@@ -117,8 +120,8 @@ class VoxelizeSettings(VoxelSettings):
     filepath: str = text(
         "",
         "File",
-        "The OpenVDB file of the volume; empty for one beside the .blend file, named after the "
-        "object",
+        "OpenVDB file of the volume. If empty, it is named after the object and written beside the "
+        ".blend file",
         subtype="FILE_PATH",
         flag="",
     )
@@ -132,5 +135,5 @@ class BooleanSettings(VoxelSettings):
         "difference", "Operation", "What to keep", OPERATIONS, metavar="OPERATION"
     )
     operands: str = one_of(
-        "hide", "Others", "What becomes of the other selected objects", OPERANDS, flag=""
+        "hide", "Others", "What to do with the other selected objects", OPERANDS, flag=""
     )

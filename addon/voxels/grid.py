@@ -8,6 +8,7 @@ import prefilter
 from numpy.typing import NDArray
 
 from ..core.memory import available_memory
+from ..core.wording import amount
 from .choices import VoxelSettings
 
 FloatArray = NDArray[np.float64]
@@ -63,7 +64,7 @@ def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
     low, high = box
     extent = float((high - low).max())
     if not extent > 0.0:
-        raise ValueError("its vertices are all at one place")
+        raise ValueError("all its vertices coincide")
     if settings.resolution == "depth":
         return _grid_of_depth(box, extent, settings.depth)
     size = settings.voxel_size
@@ -72,8 +73,8 @@ def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
     if needed > most:
         least = extent / (most - 2 * _MARGIN - 1)
         raise ValueError(
-            f"Voxel Size: found {size:g}, which makes {needed:.0f} cells along an axis; up to "
-            f"{most} are allowed, so it has to be at least {least:.3g}"
+            f"Voxel Size: {size:g} makes {needed:.0f} cells along an axis, and at most {most} are "
+            f"allowed; use {least:.3g} or more"
         )
     depth = max(1, math.ceil(math.log2(needed)))
     side = size * (1 << depth)
@@ -92,7 +93,8 @@ def check_memory(grid: Grid, area: float) -> None:
     if needed > free or 6 * crossed > _MOST_CORNERS:
         raise MemoryError(
             f"cells of {grid.spacing:.3g} need about {needed / 1e9:.3g} GB of memory, and "
-            f"{2 * crossed:.2g} triangles; {free / 1e9:.3g} GB are free: take fewer or larger cells"
+            f"{amount(2 * crossed, 'triangle')}; {free / 1e9:.3g} GB are free: use fewer or larger "
+            f"cells"
         )
 
 
@@ -102,7 +104,7 @@ def check_dense_memory(grid: Grid) -> None:
     if needed > free:
         raise MemoryError(
             f"a volume of {grid.cells}³ cells needs {needed / 1e9:.3g} GB of memory; "
-            f"{free / 1e9:.3g} GB are free: take fewer or larger cells"
+            f"{free / 1e9:.3g} GB are free: use fewer or larger cells"
         )
 
 

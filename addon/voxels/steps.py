@@ -11,6 +11,7 @@ from ..bridge import solids
 from ..bridge.files.staging import StagedFile
 from ..bridge.new_meshes import Contour
 from ..core.jobs import Progress, share
+from ..core.wording import amount
 from .choices import VoxelSettings
 from .grid import Grid
 from .place import Place
@@ -73,8 +74,8 @@ def contoured(
     )
     if len(triangles) == 0:
         raise ValueError(
-            "nothing is left: no cell is half full. What is thinner than a cell, or encloses "
-            "nothing, has no voxels"
+            "the result is empty: no cell is at least half full. Parts that are thinner than a "
+            "cell, or enclose nothing, have no voxels"
         )
     face_materials, colors = _transferred(
         mesh, positions, triangles, settings, share(progress, middle, 1.0)
@@ -135,7 +136,7 @@ def _transferred(
 def tell_defects(name: str, mesh: SolidMesh, warnings: list[str], notes: list[str]) -> None:
     """Adds what is odd about a mesh to warnings and notes."""
     if mesh.flipped:
-        warnings.append(f"object '{name}' was inside out; its faces count as turned")
+        warnings.append(f"object '{name}' was inside out; its normals were flipped")
     if mesh.open_edges:
         edges = "1 open edge" if mesh.open_edges == 1 else f"{mesh.open_edges} open edges"
         notes.append(f"object '{name}' has {edges}; the result is closed")
@@ -144,7 +145,7 @@ def tell_defects(name: str, mesh: SolidMesh, warnings: list[str], notes: list[st
 def told(result: Result) -> str:
     """Returns numbers about a result, in words."""
     cells = f"'{result.place.name}' in {result.grid.cells}³ cells of {_length(result.grid.spacing)}"
-    triangles = f"{result.triangles} triangles, " if result.contour is not None else ""
+    triangles = f"{amount(result.triangles, 'triangle')}, " if result.contour is not None else ""
     return f"{cells}: {triangles}volume {_in_units(result.volume, 'VOLUME')}"
 
 
@@ -157,4 +158,7 @@ def _in_units(value: float, category: str) -> str:
     if units.system == "NONE":
         return f"{value:.4g}"
     scaled = value * units.scale_length ** (3 if category == "VOLUME" else 1)
+    # Blender has no unit between a cubic meter and a millionth of it.
+    if units.system == "METRIC" and category == "VOLUME" and 1e-3 <= scaled < 1.0:
+        return f"{scaled:.4g} m³"
     return bpy.utils.units.to_string(units.system, category, scaled, precision=4)

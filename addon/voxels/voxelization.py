@@ -14,7 +14,7 @@ from ..bridge.files import staging, volumes
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
 from ..core.outcome import Outcome
-from ..core.wording import counted, listed
+from ..core.wording import amount, counted, listed
 from .choices import VoxelizeSettings
 from .grid import check_dense_memory, check_memory, choose_grid
 from .place import Place, naming, still_there
@@ -108,7 +108,7 @@ class Voxelization:
             summary = f"Voxelized {lines[0]}"
         else:
             total = sum(result.triangles for result in self._results)
-            summary = f"Voxelized {counted(lines, 'object')}: {total} triangles"
+            summary = f"Voxelized {counted(lines, 'object')}: {amount(total, 'triangle')}"
             self._notes = [*lines, *self._notes]
         return Outcome(summary, objects=made, warnings=self.warnings, notes=self._notes)
 

@@ -94,7 +94,7 @@ def _put_back(target: Path, earlier: Path | None) -> str:
             # Renaming does nothing where both are still names of one file.
             earlier.unlink(missing_ok=True)
     except OSError as error:
-        kept = "" if earlier is None else f", what it was is in '{earlier}'"
+        kept = "" if earlier is None else f"; the earlier file is kept as '{earlier}'"
         return f"file '{target}' was written and cannot be taken back{kept}: {error}"
     return ""
 
@@ -108,7 +108,7 @@ def check_plain_target(path: str, ending: str) -> Path:
     """
     target = Path(os.path.realpath(path))
     if target.suffix.lower() != ending:
-        raise ValueError(f"file '{path}': found extension '{target.suffix}'; {ending} is needed")
+        raise ValueError(f"file '{path}': unsupported extension '{target.suffix}'; use {ending}")
     check_place(path, target)
     return target
 

@@ -40,7 +40,7 @@ def check_target(path: str) -> Path:
     allowed = (*_FORMATS, *_OTHER_EXTENSIONS)
     if extension not in allowed:
         raise ValueError(
-            f"file '{path}': found extension '{target.suffix}'; allowed are {', '.join(allowed)}"
+            f"file '{path}': unsupported extension '{target.suffix}'; use {', '.join(allowed)}"
         )
     if extension == ".png":
         for number in range(_MOST_LEVELS):

@@ -132,10 +132,10 @@ ROWS = {
         {"use_images": False},
     ),
     "extension": Row(
-        ["'.jpg'", "allowed are ", ".exr"],
+        ["'.jpg'", "use ", ".exr"],
         {"filepath": "out.jpg"},
     ),
-    "no extension": Row(["extension ''", "allowed are "], {"filepath": "out"}),
+    "no extension": Row(["extension ''", "use "], {"filepath": "out"}),
     "no folder": Row(["there is no folder", "nowhere"], {"filepath": "nowhere/out.exr"}),
     "folder": Row(["folder.exr", "is a folder"], {"filepath": "folder.exr"}),
     "read-only file": Row(["kept.exr", "is read-only"], {"filepath": "kept.exr"}),
@@ -158,7 +158,7 @@ ROWS = {
         change=with_care(-1.0),
     ),
     "importance of vectors": Row(
-        ["'Care'", "FLOAT_VECTOR", "a number, a colour or a boolean is needed"],
+        ["'Care'", "FLOAT_VECTOR", "a number, a color or a boolean is needed"],
         {"importance": "Care"},
         change=with_vectors,
     ),
@@ -167,7 +167,7 @@ ROWS = {
         {"reader": "srgb-after", "filter": "pam-trilinear"},
     ),
     "cut-out": Row(
-        ["image 'Paint'", "found no alpha", "a cut-out needs alpha"], {"content": "cutout"}
+        ["image 'Paint'", "has no alpha", "a cut-out needs alpha"], {"content": "cutout"}
     ),
     "no roughness image": Row(
         ["no image named 'Rough'"], {"content": "normal", "roughness": "Rough"}

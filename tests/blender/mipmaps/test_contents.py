@@ -479,7 +479,7 @@ def test_light_may_pass_one(bake):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"content": "cutout"}, "'Paint': found no alpha, and colours that are no mask"),
+        ({"content": "cutout"}, "'Paint': has no alpha, and is not a grayscale mask"),
         ({"content": "color", "roughness": "Rough"}, "roughness: found 'Rough' with the content"),
         ({"content": "normal", "roughness": "Gone"}, "found no image named 'Gone'"),
         ({"content": "normal", "roughness": "Paint"}, "'Paint' is the normal map itself"),

@@ -134,7 +134,7 @@ def test_nothing_in_common():
 def test_nothing_left():
     other = bodies.cube("Other", size=4.0)
     first = bodies.cube("First")
-    with pytest.raises(RuntimeError, match="object 'First': nothing is left"):
+    with pytest.raises(RuntimeError, match="object 'First': the result is empty"):
         boolean(operands="delete")
     assert len(first.data.vertices) == 8
     assert not other.hide_get()

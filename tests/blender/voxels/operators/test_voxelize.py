@@ -355,13 +355,13 @@ def plane():
         (of_edges_alone, {}, "object 'Wire': found no faces"),
         (of_no_faces, {}, "object 'None': found no faces"),
         (with_a_broken_vertex, {}, "object 'Cube': vertex 3 .*nan.*finite"),
-        (at_one_place, {}, "object 'Cube': its vertices are all at one place"),
+        (at_one_place, {}, "object 'Cube': all its vertices coincide"),
         (flat, {}, "object 'Cube': its scale is 0 along an axis"),
-        (plane, {}, "object 'Plane': nothing is left"),
+        (plane, {}, "object 'Plane': the result is empty"),
         (
             bodies.cube,
             {"resolution": "size", "voxel_size": 1e-6},
-            "object 'Cube': Voxel Size: found 1e-06.*4096 are allowed.*at least 0.000489",
+            "object 'Cube': Voxel Size: 1e-06 makes .*4096 are allowed.*use 0.000489 or more",
         ),
     ],
 )
@@ -387,7 +387,7 @@ def test_objects_without_faces_are_left_out(capfd):
 def test_too_large_for_memory(addon, monkeypatch):
     monkeypatch.setattr(addon("voxels.grid"), "available_memory", lambda: 1e6)
     box = bodies.cube()
-    with pytest.raises(RuntimeError, match=r"need about .* GB of memory.*take fewer or larger"):
+    with pytest.raises(RuntimeError, match=r"need about .* GB of memory.*use fewer or larger"):
         voxelize(depth=10)
     assert len(box.data.vertices) == 8
 

@@ -1,0 +1,18 @@
+"""Numbers in reports."""
+
+import pytest
+
+
+@pytest.mark.parametrize(
+    ("number", "expected"),
+    [
+        (0, "0 triangles"),
+        (1, "1 triangle"),
+        (999_999, "999999 triangles"),
+        (1_600_000, "1.6 million triangles"),
+        (1.6e8, "160 million triangles"),
+        (2.34e9, "2.34 billion triangles"),
+    ],
+)
+def test_amounts_are_easy_to_read(addon, number: float, expected: str):
+    assert addon("core.wording").amount(number, "triangle") == expected
