@@ -4,23 +4,10 @@ import argparse
 import os
 import sys
 from collections.abc import Iterable, Sequence
-from typing import Any, Protocol
+from typing import Any
 
-from .jobs import Progress
+from .jobs import Work
 from .outcome import Outcome
-
-
-class Work(Protocol):
-    """Work on what was read from Blender."""
-
-    def compute(self, progress: Progress) -> None:
-        """Computes everything, and writes nothing."""
-
-    def write(self) -> Outcome:
-        """Writes the results."""
-
-    def discard(self) -> None:
-        """Removes what is left of results that were not written."""
 
 
 def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:

@@ -1,14 +1,30 @@
 """Long work, mostly off the main thread: progress, cancel, result."""
 
 import threading
+import time
 from collections.abc import Callable
-from typing import Generic, TypeVar, cast
+from typing import Generic, Protocol, TypeVar, cast
 
 import prefilter
+
+from .outcome import Outcome
 
 T = TypeVar("T")
 Progress = Callable[[float], bool]
 """Gets the fraction done, in [0, 1]; returns False once the work should stop."""
+
+
+class Work(Protocol):
+    """Work on what was read from Blender."""
+
+    def compute(self, progress: Progress) -> None:
+        """Computes everything, and writes nothing; may run in another thread."""
+
+    def write(self) -> Outcome:
+        """Writes the results."""
+
+    def discard(self) -> None:
+        """Removes what is left of results that were not written."""
 
 
 def go_on(progress: Progress, fraction: float) -> None:
@@ -44,6 +60,7 @@ class Job(Generic[T]):
         self._cancelled = threading.Event()
         self._result: T | None = None
         self._error: BaseException | None = None
+        self._seconds = 0.0
         self._thread = threading.Thread(target=self._run, name="prefilter job")
         self._thread.start()
 
@@ -57,6 +74,11 @@ class Job(Generic[T]):
         """Whether the callable has returned or raised."""
         return not self._thread.is_alive()
 
+    @property
+    def seconds(self) -> float:
+        """How long the callable has run, once it is done."""
+        return self._seconds
+
     def cancel(self) -> None:
         """Asks the callable to stop; it does so at its next progress call."""
         self._cancelled.set()
@@ -69,10 +91,12 @@ class Job(Generic[T]):
         return cast(T, self._result)
 
     def _run(self) -> None:
+        began = time.monotonic()
         try:
             self._result = self._work(self._advance)
         except BaseException as error:  # Handed on by result().
             self._error = error
+        self._seconds = time.monotonic() - began
 
     def _advance(self, fraction: float) -> bool:
         self._progress = fraction

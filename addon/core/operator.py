@@ -1,90 +1,210 @@
-"""An operator that works for a while: in another thread, with progress and Esc."""
+"""An operator that works for a while: in another thread, with progress and Esc; and its redo."""
 
-from collections.abc import Callable, Iterable
+import textwrap
+import time
+from collections.abc import Callable, Generator, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import bpy
 import prefilter
+from bpy.props import BoolProperty
 
-from .jobs import Job, Progress
+from .jobs import Job, Progress, Work
 from .outcome import FAILURES, Outcome
 
-Work = Callable[[Progress], Any]
-TICK_SECONDS = 0.1
+Compute = Callable[[Progress], Any]
+TICK_SECONDS = 0.05
 """How often a running operator looks at its thread."""
+QUICK_SECONDS = 1.0
+"""Work up to this long is redone at once when a user changes a setting; longer work waits for
+Apply, as it would freeze Blender."""
+
+_LINE_LENGTH = 44
+"""What fits into a redo panel."""
+_RUNNING = "It is running; press Esc to cancel it"
+# While settings are applied, the view may be turned, but nothing may change.
+_HARMLESS_EVENTS = frozenset(
+    {
+        *("MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "WINDOW_DEACTIVATE", "TIMER"),
+        *("MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"),
+        *("TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "NDOF_MOTION"),
+    }
+)
+
+
+@dataclass(frozen=True)
+class _Run:
+    """How long the last run of an operator took, to tell how long a redo will."""
+
+    seconds: float
+    load: Any
+    effort: float
 
 
 class BackgroundOperator:
     """A mixin: reads and writes on the main thread, and works in another with progress and Esc.
 
-    A subclass has `doing`, `read` and `finish`. Called from a script, it waits.
+    A subclass has `doing`, `read` and `finish`. Called from a script, it waits. In the redo panel
+    (Adjust Last Operation) a change of a setting is shown at once where the work is quick; where
+    it is expected to be slow, the panel has the button Apply, which works in the background too.
     """
 
     doing: ClassVar[str]
     """What the status bar says that goes on."""
 
-    _running: ClassVar[set[str]] = set()
-    _job: Job[Any] | None = None
+    use_apply: BoolProperty(
+        name="Apply",
+        description="Run again with these settings in the background. Press Esc to cancel",
+        default=False,
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
 
-    def read(self, context: bpy.types.Context) -> Work:
+    _running: ClassVar[set[str]] = set()
+    _applying: ClassVar[dict[str, float]] = {}
+    """By operator, how much of a redo in the background is done."""
+    _runs: ClassVar[dict[str, _Run]] = {}
+    _job: Job[Any] | None = None
+    _timer: bpy.types.Timer | None = None
+    _steps: Generator[float, None, Compute] | None = None
+    _replaced: int = 0
+    """The operator whose result this one is to replace; 0 for none."""
+    _waits: float = 0.0
+    """How many seconds the settings of the redo panel would take that are not applied."""
+    _problem: str = ""
+    """Why the settings of the redo panel cannot be applied."""
+
+    def read(self, context: bpy.types.Context) -> Compute:
         """Reads from Blender, and returns what then runs in a thread."""
         raise NotImplementedError
+
+    def reading(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
+        """Does what `read` does in steps, where it may take long, and yields the fraction done.
+
+        It may then run after the operator's own result is in place.
+        """
+        return self.read(context)
+        yield
 
     def finish(self, context: bpy.types.Context, result: Any) -> str:
         """Writes a result to Blender, and returns what to report."""
         raise NotImplementedError
 
+    def discard(self) -> None:
+        """Lets go of what was read and made, however little that is, when `finish` fails or is
+        not to come."""
+
+    def load(self) -> Any:
+        """Returns what `effort` needs to know about what was read and computed."""
+
+    def effort(self, load: Any) -> float:
+        """Returns how long the present settings take, in a unit of the operator's own.
+
+        Args:
+            load: What `load` returned after an earlier run on the same input.
+        """
+        del load
+        return 1.0
+
+    def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+        """Draws the settings in the redo panel."""
+        del context
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        for name in self._setting_names():
+            layout.prop(self, name)
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether the operator does not run already."""
         del context
-        if cls.bl_idname in BackgroundOperator._running:
-            cls.poll_message_set("It is running; press Esc to cancel it")
+        # A redo panel whose operator's poll fails is gone for good.
+        if cls._is_running() and cls._key() not in BackgroundOperator._applying:
+            cls.poll_message_set(_RUNNING)
             return False
         return True
 
+    @classmethod
+    def may_be_redone(cls, context: bpy.types.Context) -> bool:
+        """Returns whether the operator is the one that Adjust Last Operation adjusts.
+
+        Blender polls it in the state that its result has left, and undoes that afterwards: what was
+        selected may be hidden or gone. A poll has to let it pass; `read` says what is amiss.
+        """
+        last = context.active_operator
+        return last is not None and last.bl_idname == cls.bl_rna.identifier
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the redo panel."""
+        layout = self.layout
+        done = BackgroundOperator._applying.get(self._key())
+        column = layout.column()
+        column.enabled = done is None
+        self.draw_settings(context, column)
+        if done is not None:
+            layout.progress(factor=done, text=f"{round(100 * done)} %   Esc: Cancel")
+        elif self._problem:
+            for i, line in enumerate(textwrap.wrap(self._problem, _LINE_LENGTH)):
+                layout.label(text=line, icon="BLANK1" if i else "ERROR")
+        elif self._waits:
+            layout.label(text=f"Not applied: takes about {_spoken(self._waits)}", icon="INFO")
+            layout.prop(self, "use_apply", toggle=True, icon="CHECKMARK")
+
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Works and waits."""
-        try:
-            work = self.read(context)
-            self.report({"INFO"}, self.finish(context, work(lambda _: True)))
-        except FAILURES as error:
-            return self._fail(error)
-        return {"FINISHED"}
+        """Works and waits; a redo that would take long does not."""
+        if self._is_running():
+            return self._fail(_RUNNING)
+        if self.options.is_repeat_last and self._expected_seconds() > QUICK_SECONDS:
+            return self._start_again(use_apply=False)
+        if self.options.is_repeat:
+            return self._redo(context)
+        return self._work(context, lambda _: True)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Works in a thread, with progress and Esc to cancel."""
         del event
         if bpy.app.background:
             return self.execute(context)
+        if self._is_running():
+            return self._fail(_RUNNING)
+        if self.use_apply and self.may_be_redone(context):
+            self._replaced = context.active_operator.as_pointer()
+        self.use_apply = False
+        self._steps = self.reading(context)
+        self._seconds = 0.0
+        in_steps = type(self).reading is not BackgroundOperator.reading
         try:
-            work = self.read(context)
+            # Blender brings back what it has undone for the redo: nothing read then may be used
+            # in a later step.
+            if not (self._replaced and in_steps):
+                with self._discarding():
+                    self._go_on_reading()
         except FAILURES as error:
             return self._fail(error)
-        self._start(work)
         return self._enter(context)
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Shows progress, and writes the result once the thread is done."""
         if event.type == "ESC" and event.value == "PRESS":
+            if self._job is None:
+                self._let_go()
+                return self._end_cancelled(context)
             self._job.cancel()
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
-            return {"PASS_THROUGH"}
-        if not self._job.is_done:
-            self._show(context, self.doing, self._job.progress)
-            return {"PASS_THROUGH"}
-        self._leave(context)
+            return self._handed_on(event)
         try:
-            self.report({"INFO"}, self.finish(context, self._job.result()))
+            with self._discarding():
+                return self._tick(context)
         except prefilter.Cancelled:
-            self.report({"INFO"}, f"{self.doing} cancelled")
-            return {"CANCELLED"}
+            return self._end_cancelled(context)
         except FAILURES as error:
+            self._leave(context)
             return self._fail(error)
-        for area in context.screen.areas if context.screen else ():
-            area.tag_redraw()
-        return {"FINISHED"}
+        except BaseException:
+            self._leave(context)
+            raise
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Stops the thread when Blender ends the operator, such as for another file."""
@@ -97,11 +217,8 @@ class BackgroundOperator:
         except FAILURES as error:
             self.report({"WARNING"}, str(error))
         finally:
-            self.discard()
+            self._let_go()
             self._leave(context)
-
-    def discard(self) -> None:
-        """Lets go of what was read and made, when `finish` is not to come."""
 
     def tell(self, outcome: Outcome) -> str:
         """Reports what is good to know beside the summary, and returns that."""
@@ -115,18 +232,158 @@ class BackgroundOperator:
         for warning in warnings:
             self.report({"WARNING"}, warning)
 
-    def _fail(self, error: BaseException) -> set[str]:
+    def _tick(self, context: bpy.types.Context) -> set[str]:
+        """Goes on with what is to do: reading, waiting for the thread, writing."""
+        if self._job is None:
+            self._go_on_reading()
+        if self._job is None:
+            self._show(context, "Reading", self._fraction_read)
+            return {"RUNNING_MODAL"}
+        if not self._job.is_done:
+            self._show(context, self.doing, self._job.progress)
+            return {"PASS_THROUGH"}
+        result = self._job.result()
+        self._seconds += self._job.seconds
+        self._leave(context)
+        with self._in_place_of_last(context):
+            self._finish(context, result)
+        return {"FINISHED"}
+
+    def _work(self, context: bpy.types.Context, progress: Progress) -> set[str]:
+        self._seconds = 0.0
+        try:
+            with self._discarding():
+                with self._clock():
+                    result = self.read(context)(progress)
+                self._finish(context, result)
+        except FAILURES as error:
+            return self._fail(error)
+        return {"FINISHED"}
+
+    def _redo(self, context: bpy.types.Context) -> set[str]:
+        """Works with changed settings; CANCELLED has Blender bring back what it has undone."""
+        self._waits, self._problem = 0.0, ""
+        if self.use_apply:
+            self.use_apply = False
+            self._waits = self._expected_seconds()
+            return self._start_again(use_apply=True)
+        self._waits = self._expected_seconds()
+        if self._waits > QUICK_SECONDS:
+            return {"CANCELLED"}
+        deadline = _Deadline(QUICK_SECONDS)
+        try:
+            done = self._work(context, deadline)
+        except prefilter.Cancelled:
+            self._waits = deadline.expected_seconds()
+            self._note_run(self._waits, BackgroundOperator._runs.get(self._key()))
+            return {"CANCELLED"}
+        self._waits = 0.0
+        return done
+
+    def _start_again(self, *, use_apply: bool) -> set[str]:
+        """Starts another operator with the settings of this one in the background."""
+        settings = {name: getattr(self, name) for name in self._setting_names()}
+        start = getattr(bpy.ops.prefilter, self._key().partition(".")[2])
+        try:
+            start("INVOKE_DEFAULT", use_apply=use_apply, **settings)
+        except RuntimeError as error:
+            self._problem = str(error).removeprefix("Error: ").strip()
+        return {"CANCELLED"}
+
+    def _expected_seconds(self) -> float:
+        run = BackgroundOperator._runs.get(self._key())
+        return run.seconds * self.effort(run.load) / run.effort if run is not None else 0.0
+
+    def _note_run(self, seconds: float, earlier: _Run | None = None) -> None:
+        load = self.load() if earlier is None else earlier.load
+        BackgroundOperator._runs[self._key()] = _Run(seconds, load, self.effort(load))
+
+    def _go_on_reading(self) -> None:
+        """Reads for a tick's time; starts the thread once everything is read."""
+        end = time.monotonic() + TICK_SECONDS
+        with self._clock():
+            try:
+                while time.monotonic() < end:
+                    self._fraction_read = next(self._steps)
+            except StopIteration as done:
+                self._steps = None
+                self._job = Job(done.value)
+
+    def _finish(self, context: bpy.types.Context, result: Any) -> None:
+        with self._clock():
+            self.report({"INFO"}, self.finish(context, result))
+        self._note_run(self._seconds)
+
+    @contextmanager
+    def _in_place_of_last(self, context: bpy.types.Context) -> Iterator[None]:
+        """Undoes the operator that is replaced; brings that back where nothing replaces it."""
+        is_undone = False
+        if self._replaced:
+            last = context.active_operator
+            if last is None or last.as_pointer() != self._replaced:
+                raise ValueError("Not applied: something else has changed meanwhile")
+            if "UNDO" in self.bl_options:
+                bpy.ops.ed.undo()
+                is_undone = True
+        try:
+            yield
+        except BaseException:
+            if is_undone:
+                bpy.ops.ed.redo()
+            raise
+
+    @contextmanager
+    def _clock(self) -> Iterator[None]:
+        began = time.monotonic()
+        try:
+            yield
+        finally:
+            self._seconds += time.monotonic() - began
+
+    @contextmanager
+    def _discarding(self) -> Iterator[None]:
+        try:
+            yield
+        except BaseException:
+            self._let_go()
+            raise
+
+    def _let_go(self) -> None:
+        if self._steps is not None:
+            self._steps.close()
+        self.discard()
+
+    def _handed_on(self, event: bpy.types.Event) -> set[str]:
+        """Returns what an event leads to that says nothing to the operator."""
+        is_free = self._job is not None and not self._replaced
+        return {"PASS_THROUGH"} if is_free or event.type in _HARMLESS_EVENTS else {"RUNNING_MODAL"}
+
+    def _end_cancelled(self, context: bpy.types.Context) -> set[str]:
+        self._leave(context)
+        self.report({"INFO"}, f"{self.doing} cancelled")
+        return {"CANCELLED"}
+
+    def _fail(self, error: object) -> set[str]:
+        self._problem = str(error)
         self.report({"ERROR"}, str(error))
         return {"CANCELLED"}
 
-    def _key(self) -> str:
-        return type(self).bl_idname
+    @classmethod
+    def _is_running(cls) -> bool:
+        return cls._key() in BackgroundOperator._running
 
-    def _start(self, work: Work) -> None:
-        self._job = Job(work)
+    @classmethod
+    def _key(cls) -> str:
+        return cls.bl_idname
+
+    def _setting_names(self) -> list[str]:
+        properties = self.properties.bl_rna.properties
+        return [item.identifier for item in properties if not (item.is_hidden or item.is_readonly)]
 
     def _enter(self, context: bpy.types.Context) -> set[str]:
         BackgroundOperator._running.add(self._key())
+        if self._replaced:
+            BackgroundOperator._applying[self._key()] = 0.0
         manager = context.window_manager
         manager.progress_begin(0, 100)
         self._timer = manager.event_timer_add(TICK_SECONDS, window=context.window)
@@ -137,10 +394,77 @@ class BackgroundOperator:
         percent = round(100 * fraction)
         context.window_manager.progress_update(percent)
         context.workspace.status_text_set(f"{what}: {percent} %   Esc: Cancel")
+        if self._replaced:
+            BackgroundOperator._applying[self._key()] = fraction
+            _redraw(context, "HUD")
 
     def _leave(self, context: bpy.types.Context) -> None:
+        if self._timer is None:
+            return
         BackgroundOperator._running.discard(self._key())
+        BackgroundOperator._applying.pop(self._key(), None)
         context.window_manager.event_timer_remove(self._timer)
+        self._timer = None
         context.window_manager.progress_end()
         if context.workspace is not None:
             context.workspace.status_text_set(None)
+        # Buttons look as poll has last said; they take no click before they are drawn again.
+        _redraw(context)
+
+
+class WorkOperator(BackgroundOperator):
+    """A mixin: does `Work`. A subclass has `doing` and `read_work`."""
+
+    work: Work | None = None
+
+    def read_work(self, context: bpy.types.Context) -> Work:
+        """Reads from Blender, and returns what is to do."""
+        raise NotImplementedError
+
+    def read(self, context: bpy.types.Context) -> Compute:
+        """Reads from Blender, and returns what then runs in a thread."""
+        self.work = self.read_work(context)
+        return self.work.compute
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Writes the result, and returns what to report."""
+        del context, result
+        return self.tell(self.work.write())
+
+    def discard(self) -> None:
+        """Removes what was staged."""
+        if self.work is not None:
+            self.work.discard()
+
+
+class _Deadline:
+    """Progress that says to stop after some time."""
+
+    def __init__(self, seconds: float) -> None:
+        self._began = time.monotonic()
+        self._seconds = seconds
+        self._fraction = 0.0
+
+    def __call__(self, fraction: float) -> bool:
+        self._fraction = fraction
+        return time.monotonic() - self._began < self._seconds
+
+    def expected_seconds(self) -> float:
+        """Returns how long all of the work would take, as far as that can be told."""
+        passed = time.monotonic() - self._began
+        return max(passed / max(self._fraction, 0.1), 2.0 * self._seconds)
+
+
+def _redraw(context: bpy.types.Context, region_type: str | None = None) -> None:
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if region_type is None:
+                area.tag_redraw()
+                continue
+            for region in area.regions:
+                if region.type == region_type:
+                    region.tag_redraw()
+
+
+def _spoken(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"

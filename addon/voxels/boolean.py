@@ -17,7 +17,7 @@ from .choices import BooleanSettings
 from .grid import Box, check_memory, choose_grid
 from .place import Place, naming, still_there
 from .solid_meshes import SolidMesh, join, solid_mesh
-from .steps import VOXELIZED, Result, contoured, tell_defects, told, voxelized
+from .steps import VOXELIZED, Load, Result, contoured, tell_defects, told, voxelized
 
 
 class Boolean:
@@ -26,6 +26,7 @@ class Boolean:
     def __init__(self, place: Place, read: list[solids.Solid], settings: BooleanSettings) -> None:
         """Keeps copies of what was read; use `Boolean.read`."""
         self.warnings: list[str] = []
+        self.loads: list[Load] = []
         self._notes: list[str] = []
         self._place = place
         self._read = read
@@ -79,7 +80,9 @@ class Boolean:
         for solid, mesh in zip(self._read, meshes, strict=True):
             tell_defects(solid.name, mesh, self.warnings, self._notes)
         with naming(self._place.name):
-            grid = choose_grid(self._box([mesh.box for mesh in meshes]), self._settings)
+            box = self._box([mesh.box for mesh in meshes])
+            self.loads = [Load.of(box, meshes)]
+            grid = choose_grid(box, self._settings)
             check_memory(grid, sum(mesh.area for mesh in meshes))
         trees = []
         steps = parts(share(progress, 0.0, VOXELIZED), len(meshes))

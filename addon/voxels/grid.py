@@ -81,6 +81,11 @@ def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
     return Grid(np.floor(((low + high) / 2 - side / 2) / size + 0.5) * size, side, depth)
 
 
+def cells_crossed(grid: Grid, area: float) -> float:
+    """Returns about how many cells a surface of some area runs through."""
+    return min(_CELLS_PER_AREA * area / grid.spacing**2, float(grid.cells) ** 3)
+
+
 def check_memory(grid: Grid, area: float) -> None:
     """Raises MemoryError where the surface in so many cells does not fit into memory.
 
@@ -88,7 +93,7 @@ def check_memory(grid: Grid, area: float) -> None:
         grid: The cells.
         area: The area of the surface.
     """
-    crossed = min(_CELLS_PER_AREA * area / grid.spacing**2, float(grid.cells) ** 3)
+    crossed = cells_crossed(grid, area)
     needed, free = _BYTES_PER_CELL * crossed, available_memory()
     if needed > free or 6 * crossed > _MOST_CORNERS:
         raise MemoryError(

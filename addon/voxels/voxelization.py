@@ -19,7 +19,7 @@ from .choices import VoxelizeSettings
 from .grid import check_dense_memory, check_memory, choose_grid
 from .place import Place, naming, still_there
 from .solid_meshes import solid_mesh
-from .steps import VOXELIZED, Result, contoured, tell_defects, told, voxelized
+from .steps import VOXELIZED, Load, Result, contoured, tell_defects, told, voxelized
 
 
 class Voxelization:
@@ -37,6 +37,7 @@ class Voxelization:
     ) -> None:
         """Keeps copies of what was read; use `Voxelization.read`."""
         self.warnings: list[str] = []
+        self.loads: list[Load] = []
         self._notes: list[str] = []
         self._read = read
         self._settings = settings
@@ -133,6 +134,7 @@ class Voxelization:
     ) -> Result:
         mesh = solid_mesh(solid)
         tell_defects(place.name, mesh, self.warnings, self._notes)
+        self.loads.append(Load.of(mesh.box, [mesh]))
         grid = choose_grid(mesh.box, self._settings)
         check_memory(grid, mesh.area)
         if self._targets:

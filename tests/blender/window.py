@@ -19,6 +19,76 @@ def until(condition: Callable[[], bool]) -> Iterator[None]:
     raise TimeoutError(f"waited {MAX_WAITS} times for {condition}")
 
 
+def moved(window: bpy.types.Window, x: int, y: int) -> Iterator[None]:
+    """Moves the mouse."""
+    window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=x, y=y)
+    yield
+
+
+def clicked(window: bpy.types.Window, x: int, y: int) -> Iterator[None]:
+    """Clicks."""
+    yield from moved(window, x, y)
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="LEFTMOUSE", value=value, x=x, y=y)
+        yield
+
+
+def stepped(window: bpy.types.Window, x: int, y: int, *, up: bool) -> Iterator[None]:
+    """Turns the wheel with Ctrl, which steps through the values of a setting."""
+    yield from moved(window, x, y)
+    kind = "WHEELUPMOUSE" if up else "WHEELDOWNMOUSE"
+    window.event_simulate(type=kind, value="PRESS", ctrl=True, x=x, y=y)
+    yield
+    yield
+
+
+def region(area: bpy.types.Area, kind: str) -> bpy.types.Region:
+    """Returns the region of a kind."""
+    return next(found for found in area.regions if found.type == kind)
+
+
+class RedoPanel:
+    """Adjust Last Operation, used with the mouse."""
+
+    def __init__(self, window: bpy.types.Window, area: bpy.types.Area) -> None:
+        """Takes the panel of an area, which an operator has opened there."""
+        self._window = window
+        self._region = region(area, "HUD")
+
+    @property
+    def operator(self) -> bpy.types.Operator:
+        """The last operator."""
+        return bpy.context.window_manager.operators[-1]
+
+    def unfolded(self) -> Iterator[None]:
+        """Opens the panel, of which Blender shows the title only."""
+        folded = self._region.height
+        yield from clicked(self._window, self._region.x + 40, self._region.y + 12)
+        yield from until(lambda: self._region.height > folded)
+
+    def step(self, name: str, *, up: bool = True) -> Iterator[None]:
+        """Steps a setting, wherever in the panel it is; settings on the way step back and forth."""
+        for below_top in range(30, self._region.height - 6, 8):
+            before = getattr(self.operator.properties, name)
+            x = self._region.x + self._region.width * 3 // 4
+            y = self._region.y + self._region.height - below_top
+            settings = self._settings()
+            yield from stepped(self._window, x, y, up=up)
+            if getattr(self.operator.properties, name) != before:
+                return
+            if self._settings() != settings:
+                yield from stepped(self._window, x, y, up=not up)
+        raise AssertionError(f"no setting {name} in the redo panel")
+
+    def apply(self) -> Iterator[None]:
+        """Presses the button at the bottom."""
+        x = self._region.x + self._region.width * 2 // 3
+        yield from clicked(self._window, x, self._region.y + 18)
+
+    def _settings(self) -> dict[str, object]:
+        return {key: str(value) for key, value in self.operator.properties.items()}
+
+
 def play(session: Iterator[None]) -> None:
     """Runs a session, which yields whenever Blender should draw and handle events, then ends."""
 

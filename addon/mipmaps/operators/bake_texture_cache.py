@@ -3,11 +3,11 @@
 import bpy
 
 from ...bridge.files import tx
-from ...core.operator import BackgroundOperator, Work
+from ...core.operator import WorkOperator
 from .. import texture_cache
 
 
-class PREFILTER_OT_bake_texture_cache(BackgroundOperator, bpy.types.Operator):
+class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     """Bakes PAM into Cycles' texture cache."""
 
     bl_idname = "prefilter.bake_texture_cache"
@@ -33,17 +33,6 @@ class PREFILTER_OT_bake_texture_cache(BackgroundOperator, bpy.types.Operator):
             return False
         return True
 
-    def read(self, context: bpy.types.Context) -> Work:
+    def read_work(self, context: bpy.types.Context) -> texture_cache.CacheBake:
         """Copies the surfaces of the scene."""
-        depsgraph = context.evaluated_depsgraph_get()
-        self._bake = texture_cache.CacheBake.read(context.scene, depsgraph)
-        return self._bake.compute
-
-    def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Puts the files into place."""
-        del context, result
-        return self.tell(self._bake.write())
-
-    def discard(self) -> None:
-        """Removes what was staged."""
-        self._bake.discard()
+        return texture_cache.CacheBake.read(context.scene, context.evaluated_depsgraph_get())

@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, StringProperty
 from ...bridge import derived, images
 from ...bridge.images import FloatArray
 from ...core.jobs import Progress
-from ...core.operator import Work
+from ...core.operator import Compute
 from ..bake import Bake
 from .source import ImageOperator, read_source, show_in_editor
 
@@ -38,7 +38,7 @@ class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
         default=False,
     )
 
-    def read(self, context: bpy.types.Context) -> Work:
+    def read(self, context: bpy.types.Context) -> Compute:
         """Copies the image and its surfaces."""
         self._source = read_source(context, self.image, context.scene.prefilter_bake.to_settings())
         self.warn(self._source.warnings)

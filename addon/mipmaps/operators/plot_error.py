@@ -4,7 +4,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ...bridge import derived
-from ...core.operator import Work
+from ...core.operator import Compute
 from ...core.properties import single_property
 from .. import choices
 from ..view import errors, figure
@@ -31,7 +31,7 @@ class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
     )
     filters: single_property(choices.PlotSettings, "filters")
 
-    def read(self, context: bpy.types.Context) -> Work:
+    def read(self, context: bpy.types.Context) -> Compute:
         """Copies the image and its surfaces."""
         self._source = read_source(context, self.image, context.scene.prefilter_bake.to_settings())
         self.warn(self._source.warnings)

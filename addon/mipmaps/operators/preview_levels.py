@@ -4,7 +4,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ...bridge import images
-from ...core.operator import Work
+from ...core.operator import Compute
 from ...core.properties import single_property
 from .. import choices
 from ..view import preview
@@ -39,7 +39,7 @@ class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
         }
         return not choices.TEXTURE_SPACE_FILTERS.issuperset(filters)
 
-    def read(self, context: bpy.types.Context) -> Work:
+    def read(self, context: bpy.types.Context) -> Compute:
         """Copies the image and its surfaces."""
         settings = context.scene.prefilter_bake.to_settings()
         needs_surface = self.compare not in choices.TEXTURE_SPACE_FILTERS

@@ -8,7 +8,7 @@ from bpy.props import StringProperty
 
 from ...bridge import derived
 from ...core.jobs import Progress
-from ...core.operator import Work
+from ...core.operator import Compute
 from ..bake import Bake
 from ..view import weights
 from .source import ImageOperator, read_source, show_in_editor
@@ -31,7 +31,7 @@ class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
         options={"SKIP_SAVE"},
     )
 
-    def read(self, context: bpy.types.Context) -> Work:
+    def read(self, context: bpy.types.Context) -> Compute:
         """Copies the surfaces."""
         self._source = read_source(context, self.image, context.scene.prefilter_bake.to_settings())
         self.warn(self._source.warnings)

@@ -26,6 +26,8 @@ class ImageOperator(BackgroundOperator):
         """Tells whether there is an image, and whether the operator does not run already."""
         if not super().poll(context):
             return False
+        if cls.may_be_redone(context):
+            return True
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
             image = shown_image(context)
             if image is None:

@@ -26,6 +26,8 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
         """Tells whether there are an active object to change and others."""
         if not super().poll(context):
             return False
+        if cls.may_be_redone(context):
+            return True
         active = context.active_object
         chosen = chosen_solids(context)
         if active not in chosen:

@@ -1,60 +1,31 @@
 """What the operators share that work on voxels."""
 
-import time
-from functools import partial
-from typing import Any, ClassVar
-
 import bpy
-from bpy.props import BoolProperty
 
 from ...bridge.new_meshes import is_solid
-from ...core.operator import BackgroundOperator, Work
+from ...core.operator import WorkOperator
 from ..boolean import Boolean
+from ..steps import Load
 from ..voxelization import Voxelization
 
-_QUICK_SECONDS = 1.0
-"""Work up to this long may be redone while a user drags a slider."""
 
+class VoxelOperator(WorkOperator):
+    """A mixin: voxels from the selected objects."""
 
-class VoxelOperator(BackgroundOperator):
-    """A mixin: voxels from the selected objects, with a redo panel where that is quick."""
+    work: Voxelization | Boolean | None = None
 
-    work: Voxelization | Boolean
-    label: ClassVar[str]
+    def load(self) -> list[Load]:
+        """Returns how much there was to do."""
+        return self.work.loads
 
-    # Kept between calls of one operation: what a redo costs is known from the first time.
-    is_slow: BoolProperty(default=False, options={"HIDDEN", "SKIP_SAVE"})
+    def effort(self, load: list[Load]) -> float:
+        """Returns about how many seconds voxels take with the present settings."""
+        return sum(one.seconds(self.to_settings()) for one in load)
 
-    def read_work(self, context: bpy.types.Context) -> Voxelization | Boolean:
-        """Reads from Blender."""
-        raise NotImplementedError
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the settings in the redo panel, unless each change would take long."""
+    def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+        """Draws the settings."""
         del context
-        if self.is_slow:
-            column = self.layout.column()
-            column.label(text="This takes too long to adjust here", icon="INFO")
-            column.label(text="Undo, change the settings, run again", icon="BLANK1")
-        else:
-            self.draw_in(self.layout)
-
-    def read(self, context: bpy.types.Context) -> Work:
-        """Copies the objects."""
-        self._began = time.monotonic()
-        self.work = self.read_work(context)
-        return partial(_compute, self.work)
-
-    def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Puts the results into place."""
-        del context, result
-        outcome = self.work.write()
-        self.is_slow = time.monotonic() - self._began > _QUICK_SECONDS
-        return self.tell(outcome)
-
-    def discard(self) -> None:
-        """Removes what was staged."""
-        self.work.discard()
+        self.draw_in(layout)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -70,11 +41,3 @@ class VoxelOperator(BackgroundOperator):
 def chosen_solids(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Returns the selected objects that may show something with an inside."""
     return [obj for obj in context.selected_objects if is_solid(obj)]
-
-
-def _compute(work: Voxelization | Boolean, progress: Any) -> None:
-    try:
-        work.compute(progress)
-    except BaseException:
-        work.discard()
-        raise

@@ -25,6 +25,8 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
         """Tells whether an object is selected that can be voxelized."""
         if not super().poll(context):
             return False
+        if cls.may_be_redone(context):
+            return True
         chosen = chosen_solids(context)
         if not chosen:
             cls.poll_message_set("Select an object that has a surface")

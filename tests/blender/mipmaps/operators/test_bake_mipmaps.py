@@ -1,8 +1,5 @@
 """The operator, as scripts call it."""
 
-from functools import partial
-from types import SimpleNamespace
-
 import bpy
 import pytest
 import scenes
@@ -74,59 +71,6 @@ def test_poll_without_images():
     assert not bpy.ops.prefilter.bake_mipmaps.poll()
     with pytest.raises(RuntimeError, match="no image in this file"):
         bake(image="Paint")
-
-
-@pytest.fixture
-def quitting():
-    """Returns a context as Blender has it when it quits, and the names of what was called on it."""
-    calls = []
-    manager = SimpleNamespace(
-        event_timer_remove=lambda timer: calls.append("timer"),
-        progress_end=lambda: calls.append("progress"),
-    )
-    return SimpleNamespace(window_manager=manager, workspace=None), calls
-
-
-@pytest.mark.parametrize("is_reading", [False, True])
-def test_quitting_leaves_nothing(addon, quitting, is_reading):
-    operator_class = addon("mipmaps.operators.bake_mipmaps").PREFILTER_OT_bake_mipmaps
-    background = addon("core.operator").BackgroundOperator
-    context, calls = quitting
-    operator = SimpleNamespace(
-        _timer=None,
-        _job=None if is_reading else addon("core.jobs").Job(lambda progress: None),
-        _reading=SimpleNamespace(close=lambda: calls.append("close")),
-        _key=lambda: "prefilter.bake_mipmaps",
-    )
-    if not is_reading:
-        operator._bake = SimpleNamespace(discard=lambda: calls.append("discard"))
-    operator.discard = partial(operator_class.discard, operator)
-    operator._leave = partial(background._leave, operator)
-    background.cancel(operator, context)
-    assert calls == ["close", *(["discard"] if not is_reading else []), "timer", "progress"]
-
-
-def test_thread_that_does_not_start_leaves_nothing(addon, monkeypatch):
-    module, background = addon("mipmaps.operators.bake_mipmaps"), addon("core.operator")
-
-    def no_job(work):
-        raise RuntimeError("no thread")
-
-    monkeypatch.setattr(background, "Job", no_job)
-    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
-    operator_class = module.PREFILTER_OT_bake_mipmaps
-    operator = SimpleNamespace(_what_to_read=lambda context: ())
-    operator._start = partial(operator_class._start, operator)
-    operator._go_on_reading = partial(operator_class._go_on_reading, operator)
-
-    def reading():
-        yield 0.5
-        return SimpleNamespace(compute=None, image_name="Paint")
-
-    monkeypatch.setattr(module.reading, "reading", reading)
-    with pytest.raises(RuntimeError, match="no thread"):
-        operator_class.invoke(operator, SimpleNamespace(window_manager=None), None)
-    assert not operator_class._running
 
 
 def test_frames_and_instances():

@@ -1,0 +1,205 @@
+"""Runs in a Blender with a window: uses the redo panel with the mouse.
+
+Usage: blender --factory-startup --enable-event-simulate --python redo_session.py -- RESULT.json
+"""
+
+import importlib
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import addon_utils
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import bodies
+import scenes
+import window as windows
+from window import RedoPanel, clicked, play, region, until
+
+PACKAGE = "bl_ext.user_default.prefilter"
+RESULT = Path(sys.argv[sys.argv.index("--") + 1])
+windows.SECONDS_PER_STEP = 0.05
+
+found: dict[str, object] = {}
+
+
+def session() -> Iterator[None]:
+    """Yields whenever Blender should draw and handle events before going on."""
+    assert addon_utils.enable(PACKAGE, default_set=True) is not None
+    core = importlib.import_module(f"{PACKAGE}.core.operator")
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    for operands in ("hide", "delete"):
+        yield from boolean(window, area, operands)
+    yield from volume(window, area)
+    quick, core.QUICK_SECONDS = core.QUICK_SECONDS, -1.0
+    yield from voxelize(window, area)
+    area.type = "IMAGE_EDITOR"
+    yield
+    yield from bake(window, area)
+    core.QUICK_SECONDS = quick
+    yield from click_after_esc(window, area)
+    RESULT.write_text(json.dumps(found))
+
+
+def started(
+    window: bpy.types.Window, area: bpy.types.Area, name: str, **options: object
+) -> Iterator[None]:
+    """Runs an operator as a menu does, and opens its redo panel."""
+    bpy.ops.ed.undo_push(message="before")
+    with bpy.context.temp_override(window=window, area=area, region=region(area, "WINDOW")):
+        operator = getattr(bpy.ops.prefilter, name)
+        assert operator("INVOKE_DEFAULT", True, **options) == {"RUNNING_MODAL"}
+    yield from until(lambda: not running(window))
+    yield
+    if region(area, "HUD").height < 40:
+        yield from RedoPanel(window, area).unfolded()
+
+
+def boolean(window: bpy.types.Window, area: bpy.types.Area, operands: str) -> Iterator[None]:
+    """Changes the operation, and how large cells are."""
+    yield from cleared()
+    bodies.cube("Other", location=(1, 0, 0))
+    bodies.cube("First")
+    yield from started(window, area, "boolean", depth=5, operands=operands)
+    told = {"volume": volume_of("First"), "cells": vertices("First")}
+    panel = RedoPanel(window, area)
+    yield from panel.step("operation", up=False)
+    told["operation"] = panel.operator.properties.operation
+    told["volume_after"] = volume_of("First")
+    yield from panel.step("depth")
+    told["cells_after"] = vertices("First")
+    bpy.ops.ed.undo()
+    yield
+    told["undone"] = {obj.name: vertices(obj.name) for obj in bpy.data.objects}
+    found[operands] = told
+
+
+def volume(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
+    """Changes the depth of a volume, which is selected in the place of its mesh."""
+    yield from cleared()
+    bodies.cube("Fog")
+    path = str(RESULT.with_name("fog.vdb"))
+    yield from started(window, area, "voxelize", depth=5, output="volume", filepath=path)
+    panel = RedoPanel(window, area)
+    found["volume"] = [panel.operator.properties.depth]
+    size = Path(path).stat().st_size
+    yield from panel.step("depth")
+    assert Path(path).stat().st_size > 2 * size
+    found["volume"].append(panel.operator.properties.depth)
+
+
+def voxelize(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
+    """Changes the depth where all work counts as slow, applies that, and cancels a larger one."""
+    yield from cleared()
+    bodies.sphere("Ball", subdivisions=4)
+    yield from started(window, area, "voxelize", depth=5)
+    panel = RedoPanel(window, area)
+    told = {"before": vertices("Ball")}
+    yield from panel.step("depth")
+    told["waits"] = vertices("Ball")
+    yield from panel.apply()
+    told["running"] = running(window)
+    told["while_running"] = vertices("Ball")
+    yield from until(lambda: not running(window))
+    yield
+    told["after"] = vertices("Ball")
+    told["depth"] = panel.operator.properties.depth
+    found["apply"] = told
+
+    yield from panel.step("depth")
+    yield from panel.apply()
+    window.event_simulate(type="ESC", value="PRESS")
+    yield from until(lambda: not running(window))
+    yield
+    found["esc"] = {
+        "before": told["after"],
+        "after": vertices("Ball"),
+        "depth": panel.operator.properties.depth,
+        "operators": [one.bl_idname for one in bpy.context.window_manager.operators],
+        "staged": [str(path) for path in RESULT.parent.glob(".prefilter*")],
+    }
+    bpy.ops.ed.undo()
+    yield
+    told["undone"] = vertices("Ball")
+
+
+def bake(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
+    """Asks for one level more; frames are read in steps, after Blender has brought its own back."""
+    yield from cleared()
+    image = scenes.image("Paint", scenes.noise(64, 64))
+    scenes.textured_quad(image)
+    area.spaces.active.image = image
+    yield
+    yield from started(window, area, "bake_mipmaps", levels=4, use_frames=True, frame_end=3)
+    told = {"before": levels()}
+    panel = RedoPanel(window, area)
+    yield from panel.step("levels")
+    told["waits"] = levels()
+    yield from panel.apply()
+    yield from until(lambda: not running(window))
+    yield
+    told["after"] = levels()
+    told["frame"] = bpy.context.scene.frame_current
+    found["bake"] = told
+
+
+def click_after_esc(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
+    """Cancels a bake, and clicks on the button of its panel at once."""
+    image = scenes.image("Large", scenes.noise(2048, 2048))
+    scenes.textured_quad(image, "Large")
+    area.spaces.active.image = image
+    area.spaces.active.show_region_ui = True
+    yield
+    yield
+    sidebar = region(area, "UI")
+    sidebar.active_panel_category = "Prefilter"
+    yield
+    yield
+    x, ys = sidebar.x + sidebar.width // 2, range(sidebar.y + 10, sidebar.y + sidebar.height, 12)
+    for y in ys:
+        yield from clicked(window, x, y)
+        if running(window):
+            break
+    window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
+    yield from until(lambda: not running(window))
+    for value in ("PRESS", "RELEASE"):
+        window.event_simulate(type="LEFTMOUSE", value=value, x=x, y=y)
+        yield
+    found["click_after_esc"] = running(window)
+    window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
+    yield from until(lambda: not running(window))
+
+
+def cleared() -> Iterator[None]:
+    """Removes all objects, and the redo panel of the last operator."""
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    bpy.ops.ed.undo_push(message="cleared")
+    yield
+
+
+def running(window: bpy.types.Window) -> list[str]:
+    """Returns the names of the operators that work."""
+    return [operator.bl_idname for operator in window.modal_operators]
+
+
+def vertices(name: str) -> int:
+    """Returns how many vertices an object's mesh has."""
+    return len(bpy.data.objects[name].data.vertices)
+
+
+def volume_of(name: str) -> float:
+    """Returns the volume of an object."""
+    return bodies.volume(bpy.data.objects[name])
+
+
+def levels() -> list[str]:
+    """Returns the names of the level images."""
+    return sorted(image.name for image in bpy.data.images if ".mip" in image.name)
+
+
+play(session())

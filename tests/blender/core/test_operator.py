@@ -1,0 +1,205 @@
+"""Operators in the background: nothing is left behind, whatever fails, and Esc is heard soon."""
+
+import threading
+import time
+from types import SimpleNamespace
+
+import prefilter
+import pytest
+
+TIMER = SimpleNamespace(type="TIMER", value="NOTHING")
+ESC = SimpleNamespace(type="ESC", value="PRESS")
+STEPS = ("read", "compute", "finish")
+
+
+@pytest.fixture
+def context():
+    """Returns a context as Blender has it when it quits, which counts what is taken back."""
+    calls = []
+    manager = SimpleNamespace(
+        progress_begin=lambda low, high: None,
+        progress_update=lambda value: None,
+        progress_end=lambda: calls.append("progress"),
+        event_timer_add=lambda seconds, window: "timer",
+        event_timer_remove=calls.append,
+        modal_handler_add=lambda operator: None,
+        windows=[],
+    )
+    workspace = SimpleNamespace(status_text_set=lambda text: None)
+    return SimpleNamespace(window_manager=manager, window=None, workspace=workspace, calls=calls)
+
+
+@pytest.fixture
+def probe(addon, monkeypatch):
+    """Returns a class of operators that work as told, and know how often they let go."""
+    module = addon("core.operator")
+    app = SimpleNamespace(background=False)
+    monkeypatch.setattr(module, "bpy", SimpleNamespace(app=app))
+
+    class Probe(module.BackgroundOperator):
+        bl_idname = "prefilter.probe"
+        doing = "Probing"
+        options = SimpleNamespace(is_repeat=False, is_repeat_last=False)
+        fails_in = ""
+        error = ValueError("no good")
+        discarded = 0
+        use_apply = False
+
+        def __init__(self):
+            self.reports = []
+
+        def report(self, kind, text):
+            self.reports.append(text)
+
+        def read(self, context):
+            self._may_fail("read")
+            return self.compute
+
+        def compute(self, progress):
+            self._may_fail("compute")
+
+        def finish(self, context, result):
+            self._may_fail("finish")
+            return "done"
+
+        def discard(self):
+            self.discarded += 1
+
+        def _may_fail(self, step):
+            if self.fails_in == step:
+                raise self.error
+
+    yield Probe
+    assert not module.BackgroundOperator._running
+
+
+def played(operator, context):
+    """Has an operator run to its end, and returns what it ends with."""
+    status = operator.invoke(context, None)
+    while status <= {"RUNNING_MODAL", "PASS_THROUGH"}:
+        time.sleep(0.001)
+        status = operator.modal(context, TIMER)
+    return status
+
+
+def test_runs_to_its_end(probe, context):
+    operator = probe()
+    assert played(operator, context) == {"FINISHED"}
+    assert (operator.reports, operator.discarded) == (["done"], 0)
+    assert context.calls == ["timer", "progress"]
+
+
+@pytest.mark.parametrize("in_background", [False, True])
+@pytest.mark.parametrize("step", STEPS)
+def test_lets_go_whatever_fails(probe, context, step, in_background):
+    operator = probe()
+    operator.fails_in = step
+    ended = played(operator, context) if in_background else operator.execute(context)
+    assert ended == {"CANCELLED"}
+    assert operator.discarded == 1
+    assert operator.reports == ["no good"]
+    assert context.calls in ([], ["timer", "progress"])
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_lets_go_where_a_bug_shows(probe, context, step):
+    operator = probe()
+    operator.fails_in, operator.error = step, KeyError("a bug")
+    with pytest.raises(KeyError, match="a bug"):
+        played(operator, context)
+    assert operator.discarded == 1
+
+
+def test_quitting_leaves_nothing(probe, context):
+    for is_reading in (False, True):
+        operator, closed = probe(), []
+
+        def reading(context, closed=closed):
+            try:
+                while True:
+                    yield 0.5
+            finally:
+                closed.append(True)
+
+        if is_reading:
+            operator.reading = reading
+        operator.invoke(context, None)
+        context.workspace = None
+        operator.cancel(context)
+        assert operator.discarded == 1
+        assert closed == [True] * is_reading
+        assert context.calls == ["timer", "progress"]
+        context.calls.clear()
+
+
+def test_thread_that_does_not_start_leaves_nothing(addon, probe, context, monkeypatch):
+    def no_job(work):
+        raise RuntimeError("no thread")
+
+    monkeypatch.setattr(addon("core.operator"), "Job", no_job)
+    operator = probe()
+    with pytest.raises(RuntimeError, match="no thread"):
+        operator.invoke(context, None)
+    assert operator.discarded == 1
+
+
+def test_second_run_waits_for_the_first(probe, context):
+    first, second, may_end = probe(), probe(), threading.Event()
+    first.compute = lambda progress: may_end.wait(10)
+    assert first.invoke(context, None) == {"RUNNING_MODAL"}
+    assert second.invoke(context, None) == {"CANCELLED"}
+    assert "press Esc" in second.reports[0]
+    may_end.set()
+    first.cancel(context)
+
+
+def test_esc_ends_within_a_tick_of_the_work(addon, probe, context):
+    operator, ended = probe(), []
+
+    def compute(progress):
+        while progress(0.5):
+            time.sleep(0.001)
+        ended.append(time.monotonic())
+        raise prefilter.Cancelled("cancelled")
+
+    operator.compute = compute
+    operator.invoke(context, None)
+    assert operator.modal(context, ESC) == {"RUNNING_MODAL"}
+    began = time.monotonic()
+    while operator.modal(context, TIMER) != {"CANCELLED"}:
+        time.sleep(0.001)
+    assert ended[0] - began < 0.1
+    assert addon("core.operator").TICK_SECONDS <= 0.05
+    assert operator.reports == ["Probing cancelled"]
+    assert operator.discarded == 1
+
+
+def test_redo_that_is_slow_waits(probe, context):
+    assert played(probe(), context) == {"FINISHED"}
+    operator = probe()
+    operator.options = SimpleNamespace(is_repeat=True, is_repeat_last=False)
+    operator.effort = lambda load: 1e9
+    operator.read = None
+    assert operator.execute(context) == {"CANCELLED"}
+    assert operator._waits > 1.0
+
+
+def test_redo_that_turns_out_slow_is_cut_short_and_waits(addon, probe, context, monkeypatch):
+    monkeypatch.setattr(addon("core.operator"), "QUICK_SECONDS", 0.05)
+    assert played(probe(), context) == {"FINISHED"}
+    operator = probe()
+    operator.options = SimpleNamespace(is_repeat=True, is_repeat_last=False)
+
+    def compute(progress):
+        began = time.monotonic()
+        while progress(min(1.0, (time.monotonic() - began) / 10.0)):
+            assert time.monotonic() - began < 5.0
+        raise prefilter.Cancelled("cancelled")
+
+    operator.compute = compute
+    assert operator.execute(context) == {"CANCELLED"}
+    assert operator.discarded == 1
+    # The next change of a setting does not even try.
+    operator.read = None
+    assert operator.execute(context) == {"CANCELLED"}
+    assert operator._waits > 0.05
