@@ -3,6 +3,7 @@
 from importlib import import_module
 
 from .commands import Commands
+from .core import menus
 from .core.registration import registration
 
 SUBJECTS = (
@@ -12,4 +13,4 @@ SUBJECTS = (
 """The folders of the subjects, in the order in which they are registered."""
 
 _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
-register, unregister = registration(*_packages, Commands(SUBJECTS))
+register, unregister = registration(menus, *_packages, Commands(SUBJECTS))

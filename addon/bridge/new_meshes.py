@@ -105,12 +105,10 @@ def show_contour(obj: bpy.types.Object, contour: Contour) -> bpy.types.Object:
 def new_object_beside(obj: bpy.types.Object, data: bpy.types.ID, suffix: str) -> bpy.types.Object:
     """Adds an object where another one is, in its collections, selected in its stead."""
     made = bpy.data.objects.new(f"{obj.name}{suffix}", data)
-    scene_collections = {
-        bpy.context.scene.collection,
-        *bpy.context.scene.collection.children_recursive,
-    }
+    root = bpy.context.scene.collection
     for collection in obj.users_collection:
-        if collection in scene_collections and collection.library is None:
+        is_in_scene = collection == root or collection in root.children_recursive
+        if is_in_scene and collection.library is None:
             collection.objects.link(made)
     if not made.users_collection:
         root.objects.link(made)

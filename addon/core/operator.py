@@ -147,9 +147,12 @@ class BackgroundOperator:
         elif self._problem:
             for i, line in enumerate(textwrap.wrap(self._problem, _LINE_LENGTH)):
                 layout.label(text=line, icon="BLANK1" if i else "ERROR")
-        elif self._waits:
-            layout.label(text=f"Not applied: takes about {_spoken(self._waits)}", icon="INFO")
-            layout.prop(self, "use_apply", toggle=True, icon="CHECKMARK")
+        else:
+            # Always there: the panel grows upwards, and a setting would move from under the mouse.
+            row = layout.row()
+            row.enabled = bool(self._waits)
+            text = f"Apply (about {_spoken(self._waits)})" if self._waits else "Applied"
+            row.prop(self, "use_apply", text=text, toggle=True, icon="CHECKMARK")
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Works and waits; a redo that would take long does not."""
@@ -467,4 +470,4 @@ def _redraw(context: bpy.types.Context, region_type: str | None = None) -> None:
 
 
 def _spoken(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+    return f"{max(seconds, 1.0):.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"

@@ -1,25 +1,37 @@
-"""Voxelizing and booleans under Remesh in the mesh properties, and in the Object menus."""
+"""Voxelizing and booleans: a tab in the 3D view's sidebar, under Remesh, in the Object menu."""
 
 import bpy
 
+from ..bridge.new_meshes import is_solid
+from ..core.menus import PREFILTER_MT_object
 from ..core.properties import copy
 from .choices import BooleanSettings, VoxelizeSettings
 from .operators.boolean import PREFILTER_OT_boolean
 from .operators.voxelize import PREFILTER_OT_voxelize
 
-_PARENT = "DATA_PT_remesh"
 
-
-class _VoxelPanel:
+class _RemeshPanel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "data"
-    bl_parent_id = _PARENT
+    bl_parent_id = "DATA_PT_remesh"
     bl_options = frozenset({"DEFAULT_CLOSED"})
 
 
-class PREFILTER_PT_voxelize(_VoxelPanel, bpy.types.Panel):
-    """Settings and button of voxelizing."""
+class _SidebarPanel:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Prefilter"
+    bl_context = "objectmode"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the active object may have an inside."""
+        return context.active_object is not None and is_solid(context.active_object)
+
+
+class PREFILTER_PT_voxelize(_RemeshPanel, bpy.types.Panel):
+    """Settings and button of voxelizing, of meshes."""
 
     bl_label = "Prefilter Voxelize"
 
@@ -29,8 +41,8 @@ class PREFILTER_PT_voxelize(_VoxelPanel, bpy.types.Panel):
         _draw_voxelize(self.layout, context)
 
 
-class PREFILTER_PT_boolean(_VoxelPanel, bpy.types.Panel):
-    """Settings and button of booleans."""
+class PREFILTER_PT_boolean(_RemeshPanel, bpy.types.Panel):
+    """Settings and button of booleans, of meshes."""
 
     bl_label = "Prefilter Boolean"
 
@@ -40,34 +52,79 @@ class PREFILTER_PT_boolean(_VoxelPanel, bpy.types.Panel):
         _draw_boolean(self.layout, context)
 
 
+class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, bpy.types.Panel):
+    """What is set most often, and the button of voxelizing."""
+
+    bl_label = "Voxelize"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_voxelize.draw_most_used(self.layout)
+        _draw_voxelize(self.layout, context)
+
+
+class PREFILTER_PT_voxelize_options(_SidebarPanel, bpy.types.Panel):
+    """The other settings of voxelizing."""
+
+    bl_label = "Options"
+    bl_parent_id = PREFILTER_PT_voxelize_sidebar.__name__
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_voxelize.draw_others(self.layout)
+
+
+class PREFILTER_PT_boolean_sidebar(_SidebarPanel, bpy.types.Panel):
+    """What is set most often, and the button of booleans."""
+
+    bl_label = "Voxel Boolean"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_boolean.draw_most_used(self.layout)
+        _draw_boolean(self.layout, context)
+
+
+class PREFILTER_PT_boolean_options(_SidebarPanel, bpy.types.Panel):
+    """The other settings of booleans."""
+
+    bl_label = "Options"
+    bl_parent_id = PREFILTER_PT_boolean_sidebar.__name__
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_boolean.draw_others(self.layout)
+
+
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (PREFILTER_PT_voxelize, PREFILTER_PT_boolean)
+    (
+        PREFILTER_PT_voxelize,
+        PREFILTER_PT_boolean,
+        PREFILTER_PT_voxelize_sidebar,
+        PREFILTER_PT_voxelize_options,
+        PREFILTER_PT_boolean_sidebar,
+        PREFILTER_PT_boolean_options,
+    )
 )
 
 
 def register() -> None:
     """Registers the panels and the menu entries."""
     _register_classes()
-    bpy.types.VIEW3D_MT_object.append(_draw_object_menu)
-    bpy.types.VIEW3D_MT_object_convert.append(_draw_convert_menu)
+    PREFILTER_MT_object.append(_draw_menu)
 
 
 def unregister() -> None:
     """Removes them."""
-    bpy.types.VIEW3D_MT_object_convert.remove(_draw_convert_menu)
-    bpy.types.VIEW3D_MT_object.remove(_draw_object_menu)
+    PREFILTER_MT_object.remove(_draw_menu)
     _unregister_classes()
 
 
-def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    menu.layout.separator()
+def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     _draw_voxelize(menu.layout, context)
     _draw_boolean(menu.layout, context)
-
-
-def _draw_convert_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    menu.layout.separator()
-    _draw_voxelize(menu.layout, context)
 
 
 def _draw_voxelize(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -13,11 +13,21 @@ class VoxelProperties:
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
+        self.draw_most_used(layout)
+        self.draw_others(layout)
+
+    def draw_most_used(self, layout: bpy.types.UILayout) -> None:
+        """Draws what is set most often."""
         layout.use_property_split = True
         layout.use_property_decorate = False
         self._draw_first(layout)
         layout.prop(self, "resolution")
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
+
+    def draw_others(self, layout: bpy.types.UILayout) -> None:
+        """Draws the other settings."""
+        layout.use_property_split = True
+        layout.use_property_decorate = False
         layout.prop(self, "use_close_holes")
         if self._makes_mesh():
             layout.prop(self, "interpolant")

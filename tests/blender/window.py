@@ -68,22 +68,24 @@ class RedoPanel:
 
     def step(self, name: str, *, up: bool = True) -> Iterator[None]:
         """Steps a setting, wherever in the panel it is; settings on the way step back and forth."""
-        for below_top in range(30, self._region.height - 6, 8):
+        for below_top in range(36, self._region.height - 6, 12):
             before = getattr(self.operator.properties, name)
-            x = self._region.x + self._region.width * 3 // 4
-            y = self._region.y + self._region.height - below_top
             settings = self._settings()
-            yield from stepped(self._window, x, y, up=up)
+            yield from self._stepped(below_top, up=up)
             if getattr(self.operator.properties, name) != before:
                 return
             if self._settings() != settings:
-                yield from stepped(self._window, x, y, up=not up)
+                yield from self._stepped(below_top, up=not up)
         raise AssertionError(f"no setting {name} in the redo panel")
 
     def apply(self) -> Iterator[None]:
         """Presses the button at the bottom."""
         x = self._region.x + self._region.width * 2 // 3
         yield from clicked(self._window, x, self._region.y + 18)
+
+    def _stepped(self, below_top: int, *, up: bool) -> Iterator[None]:
+        x = self._region.x + self._region.width * 3 // 4
+        yield from stepped(self._window, x, self._region.y + self._region.height - below_top, up=up)
 
     def _settings(self) -> dict[str, object]:
         return {key: str(value) for key, value in self.operator.properties.items()}

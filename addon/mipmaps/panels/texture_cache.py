@@ -1,4 +1,4 @@
-"""The button in Cycles' render properties, under Performance, Texture Cache; and the Image menu."""
+"""The button in Cycles' render properties, under Performance, Texture Cache."""
 
 import bpy
 
@@ -34,19 +34,12 @@ class PREFILTER_PT_texture_cache(bpy.types.Panel):
 
 
 def register() -> None:
-    """Registers the panel, in a Blender that has the one around it, and the menu entry."""
-    bpy.types.IMAGE_MT_image.append(_draw_image_menu)
+    """Registers the panel, in a Blender that has the one around it."""
     if hasattr(bpy.types, _PARENT):
         bpy.utils.register_class(PREFILTER_PT_texture_cache)
 
 
 def unregister() -> None:
-    """Removes the panel and the menu entry."""
+    """Removes the panel."""
     if PREFILTER_PT_texture_cache.is_registered:
         bpy.utils.unregister_class(PREFILTER_PT_texture_cache)
-    bpy.types.IMAGE_MT_image.remove(_draw_image_menu)
-
-
-def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    del context
-    menu.layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)

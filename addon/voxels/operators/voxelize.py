@@ -2,7 +2,6 @@
 
 import bpy
 
-from ...bridge.new_meshes import is_editable
 from ..properties import VoxelizeProperties
 from ..voxelization import Voxelization
 from .voxel_operator import VoxelOperator, chosen_solids
@@ -27,12 +26,8 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
             return False
         if cls.may_be_redone(context):
             return True
-        chosen = chosen_solids(context)
-        if not chosen:
+        if not chosen_solids(context):
             cls.poll_message_set("Select an object that has a surface")
-            return False
-        if not any(map(is_editable, chosen)):
-            cls.poll_message_set("The selected objects are linked: make them local first")
             return False
         return True
 

@@ -6,7 +6,10 @@ Usage: blender --factory-startup --enable-event-simulate --python redo_session.p
 import importlib
 import json
 import sys
-from collections.abc import Iterator
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import addon_utils
@@ -60,18 +63,16 @@ def started(
 
 
 def boolean(window: bpy.types.Window, area: bpy.types.Area, operands: str) -> Iterator[None]:
-    """Changes the operation, and how large cells are."""
+    """Changes the operation."""
     yield from cleared()
     bodies.cube("Other", location=(1, 0, 0))
     bodies.cube("First")
-    yield from started(window, area, "boolean", depth=5, operands=operands)
-    told = {"volume": volume_of("First"), "cells": vertices("First")}
+    yield from started(window, area, "boolean", depth=5, operation="difference", operands=operands)
+    told = {"volume": volume_of("First")}
     panel = RedoPanel(window, area)
     yield from panel.step("operation", up=False)
     told["operation"] = panel.operator.properties.operation
     told["volume_after"] = volume_of("First")
-    yield from panel.step("depth")
-    told["cells_after"] = vertices("First")
     bpy.ops.ed.undo()
     yield
     told["undone"] = {obj.name: vertices(obj.name) for obj in bpy.data.objects}
@@ -96,14 +97,15 @@ def voxelize(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
     """Changes the depth where all work counts as slow, applies that, and cancels a larger one."""
     yield from cleared()
     bodies.sphere("Ball", subdivisions=4)
-    yield from started(window, area, "voxelize", depth=5)
+    yield from started(window, area, "voxelize", depth=5, output="mesh")
     panel = RedoPanel(window, area)
     told = {"before": vertices("Ball")}
     yield from panel.step("depth")
     told["waits"] = vertices("Ball")
-    yield from panel.apply()
-    told["running"] = running(window)
-    told["while_running"] = vertices("Ball")
+    with working_on("voxels.voxelization", "Voxelization", until_cancelled=False):
+        yield from panel.apply()
+        told["running"] = running(window)
+        told["while_running"] = vertices("Ball")
     yield from until(lambda: not running(window))
     yield
     told["after"] = vertices("Ball")
@@ -111,9 +113,10 @@ def voxelize(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
     found["apply"] = told
 
     yield from panel.step("depth")
-    yield from panel.apply()
-    window.event_simulate(type="ESC", value="PRESS")
-    yield from until(lambda: not running(window))
+    with working_on("voxels.voxelization", "Voxelization"):
+        yield from panel.apply()
+        window.event_simulate(type="ESC", value="PRESS")
+        yield from until(lambda: not running(window))
     yield
     found["esc"] = {
         "before": told["after"],
@@ -128,50 +131,83 @@ def voxelize(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
 
 
 def bake(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
-    """Asks for one level more; frames are read in steps, after Blender has brought its own back."""
+    """Changes the filter; frames are read in steps, after Blender has brought back its own."""
     yield from cleared()
     image = scenes.image("Paint", scenes.noise(64, 64))
     scenes.textured_quad(image)
     area.spaces.active.image = image
     yield
     yield from started(window, area, "bake_mipmaps", levels=4, use_frames=True, frame_end=3)
-    told = {"before": levels()}
+    told = {"before": level()}
     panel = RedoPanel(window, area)
-    yield from panel.step("levels")
-    told["waits"] = levels()
+    yield from panel.step("filter", up=False)
+    told["filter"] = panel.operator.properties.filter
+    told["waits"] = level()
     yield from panel.apply()
     yield from until(lambda: not running(window))
     yield
-    told["after"] = levels()
+    told["after"] = level()
     told["frame"] = bpy.context.scene.frame_current
     found["bake"] = told
 
 
 def click_after_esc(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
     """Cancels a bake, and clicks on the button of its panel at once."""
-    image = scenes.image("Large", scenes.noise(2048, 2048))
-    scenes.textured_quad(image, "Large")
-    area.spaces.active.image = image
     area.spaces.active.show_region_ui = True
-    yield
-    yield
+    bpy.utils.register_class(ButtonPanel)
     sidebar = region(area, "UI")
-    sidebar.active_panel_category = "Prefilter"
+    yield from until(lambda: sidebar.active_panel_category != "UNSUPPORTED")
+    sidebar.active_panel_category = ButtonPanel.bl_category
+    area.tag_redraw()
     yield
     yield
-    x, ys = sidebar.x + sidebar.width // 2, range(sidebar.y + 10, sidebar.y + sidebar.height, 12)
-    for y in ys:
+    x, y = sidebar.x + sidebar.width // 3, sidebar.y + sidebar.height - 80
+    with working_on("mipmaps.bake", "Bake"):
         yield from clicked(window, x, y)
-        if running(window):
-            break
-    window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
-    yield from until(lambda: not running(window))
-    for value in ("PRESS", "RELEASE"):
-        window.event_simulate(type="LEFTMOUSE", value=value, x=x, y=y)
+        yield from until(lambda: running(window))
+        window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
+        yield from until(lambda: not running(window))
+    with working_on("mipmaps.bake", "Bake"):
         yield
-    found["click_after_esc"] = running(window)
-    window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
-    yield from until(lambda: not running(window))
+        yield from clicked(window, x + 1, y)
+        found["click_after_esc"] = running(window)
+        window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
+        yield from until(lambda: not running(window))
+
+
+class ButtonPanel(bpy.types.Panel):
+    """One large button."""
+
+    bl_idname = "TEST_PT_button"
+    bl_label = "Button"
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Button"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws it."""
+        del context
+        self.layout.scale_y = 5.0
+        self.layout.operator("prefilter.bake_mipmaps")
+
+
+@contextmanager
+def working_on(module: str, name: str, *, until_cancelled: bool = True) -> Iterator[None]:
+    """Has work take until the end of the block, or until it is cancelled."""
+    work = getattr(importlib.import_module(f"{PACKAGE}.{module}"), name)
+    compute, is_over = work.compute, threading.Event()
+
+    def wait(self: object, progress: Callable[[float], bool]) -> None:
+        while progress(0.5) and (until_cancelled or not is_over.wait(0.01)):
+            time.sleep(0.001)
+        compute(self, progress)
+
+    work.compute = wait
+    try:
+        yield
+    finally:
+        is_over.set()
+        work.compute = compute
 
 
 def cleared() -> Iterator[None]:
@@ -197,9 +233,11 @@ def volume_of(name: str) -> float:
     return bodies.volume(bpy.data.objects[name])
 
 
-def levels() -> list[str]:
-    """Returns the names of the level images."""
-    return sorted(image.name for image in bpy.data.images if ".mip" in image.name)
+def level() -> float:
+    """Returns how much the texels of a level image differ."""
+    return float(
+        scenes.pixels("Paint.mip01" if "Paint.mip01" in bpy.data.images else "Paint.mip1").std()
+    )
 
 
 play(session())

@@ -22,7 +22,6 @@ def test_operation_of_a_boolean_changes(found, operands):
     assert told["operation"] in {"union", "intersection"}
     expected = {"union": 12.0, "intersection": 4.0}[told["operation"]]
     assert told["volume_after"] == pytest.approx(expected, rel=0.1)
-    assert told["cells"] != told["cells_after"]
     assert told["undone"] == {"First": 8, "Other": 8}
 
 
@@ -50,8 +49,9 @@ def test_esc_leaves_result_and_settings(found):
 
 def test_bake_waits_for_apply(found):
     told = found["bake"]
-    assert told["waits"] == told["before"] == ["Paint.mip1", "Paint.mip2", "Paint.mip3"]
-    assert told["after"] == ["Paint.mip1", "Paint.mip2", "Paint.mip3", "Paint.mip4"]
+    assert told["filter"] != "pam-bilinear"
+    assert told["waits"] == told["before"]
+    assert told["after"] != pytest.approx(told["before"], rel=0.01)
     assert told["frame"] == 1
 
 

@@ -269,6 +269,40 @@ def read_density(path):
     return grid, cells
 
 
+def test_volume_of_an_object_of_a_linked_collection(tmp_path, addon):
+    if not addon("bridge.files.volumes").is_available():
+        pytest.skip("there is no Python module for OpenVDB")
+    box = bodies.cube()
+    collection = bpy.data.collections.new("Linked")
+    collection.objects.link(box)
+    path = tmp_path / "library.blend"
+    bpy.data.libraries.write(str(path), {collection})
+    bpy.data.objects.remove(box)
+    bpy.data.collections.remove(collection)
+    with bpy.data.libraries.load(str(path), link=True) as (there, here):
+        here.collections = there.collections
+    bpy.context.scene.collection.children.link(here.collections[0])
+    bpy.data.objects["Cube"].select_set(True)
+    assert voxelize(output="volume", filepath=str(tmp_path / "cube.vdb")) == {"FINISHED"}
+    made = bpy.data.objects["Cube.volume"]
+    assert list(made.users_collection) == [bpy.context.scene.collection]
+    assert made.select_get()
+
+
+def test_volume_that_cannot_be_shown_leaves_no_file(tmp_path, addon, monkeypatch):
+    if not addon("bridge.files.volumes").is_available():
+        pytest.skip("there is no Python module for OpenVDB")
+
+    def gone(name):
+        raise ValueError(f"object '{name}' is gone")
+
+    bodies.cube()
+    monkeypatch.setattr(addon("voxels.voxelization"), "still_there", gone)
+    with pytest.raises(RuntimeError, match="object 'Cube' is gone"):
+        voxelize(output="volume", filepath=str(tmp_path / "cube.vdb"))
+    assert not list(tmp_path.iterdir())
+
+
 def linked(tmp_path):
     box = bodies.cube()
     path = tmp_path / "library.blend"
@@ -285,8 +319,7 @@ def linked(tmp_path):
 
 def test_linked_object_is_refused(tmp_path):
     obj = linked(tmp_path)
-    assert not bpy.ops.prefilter.voxelize.poll()
-    with pytest.raises(RuntimeError, match="linked: make them local"):
+    with pytest.raises(RuntimeError, match=r"object 'Cube' is linked from .*make it local"):
         voxelize()
     bodies.cube("Mine")
     obj.select_set(True)

@@ -1,0 +1,60 @@
+"""The menus that subjects put their operators in: Object > Prefilter and Image > Prefilter.
+
+A search (F3) finds what is in a menu of the editor's header, once for each time that it is there.
+"""
+
+import bpy
+
+
+class PREFILTER_MT_object(bpy.types.Menu):
+    """What works on objects."""
+
+    bl_label = "Prefilter"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws nothing; subjects append to it."""
+
+
+class PREFILTER_MT_image(bpy.types.Menu):
+    """What works on images."""
+
+    bl_label = "Prefilter"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws nothing; subjects append to it."""
+
+
+def _draw_object(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    del context
+    menu.layout.separator()
+    menu.layout.menu(PREFILTER_MT_object.__name__)
+
+
+def _draw_image(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    del context
+    menu.layout.separator()
+    menu.layout.menu(PREFILTER_MT_image.__name__)
+
+
+_PLACES = {
+    "VIEW3D_MT_object": _draw_object,
+    "VIEW3D_MT_object_context_menu": _draw_object,
+    "IMAGE_MT_image": _draw_image,
+}
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (PREFILTER_MT_object, PREFILTER_MT_image)
+)
+
+
+def register() -> None:
+    """Registers the menus, and puts them into Blender's."""
+    _register_classes()
+    for name, draw in _PLACES.items():
+        getattr(bpy.types, name).append(draw)
+
+
+def unregister() -> None:
+    """Takes them out again."""
+    for name, draw in _PLACES.items():
+        getattr(bpy.types, name).remove(draw)
+    _unregister_classes()

@@ -1,0 +1,52 @@
+"""What works on images, in the menus Image > Prefilter and Object > Prefilter."""
+
+import bpy
+
+from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
+from ..core.properties import copy
+from .choices import Settings
+from .operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
+from .operators.bake_texture_cache import PREFILTER_OT_bake_texture_cache
+from .operators.fill_unused import PREFILTER_OT_fill_unused
+from .operators.plot_error import PREFILTER_OT_plot_error
+from .operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
+from .operators.show_weights import PREFILTER_OT_show_source, PREFILTER_OT_show_weights
+
+
+def register() -> None:
+    """Adds the entries."""
+    PREFILTER_MT_image.append(_draw_image_menu)
+    PREFILTER_MT_object.append(_draw_object_menu)
+
+
+def unregister() -> None:
+    """Removes them."""
+    PREFILTER_MT_object.remove(_draw_object_menu)
+    PREFILTER_MT_image.remove(_draw_image_menu)
+
+
+def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draws the button of the bake, with the settings of the scene."""
+    operator = layout.operator(PREFILTER_OT_bake_mipmaps.bl_idname, icon="TEXTURE")
+    copy(context.scene.prefilter_bake, operator, Settings)
+
+
+def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    layout, view = menu.layout, context.window_manager.prefilter_view
+    draw_bake(layout, context)
+    layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon="TEXTURE")
+    layout.separator()
+    preview = layout.operator(PREFILTER_OT_preview_levels.bl_idname, icon="FILE_REFRESH")
+    preview.compare = view.compare
+    layout.operator(PREFILTER_OT_end_preview.bl_idname, icon="X")
+    layout.operator(PREFILTER_OT_plot_error.bl_idname, icon="FCURVE").filters = view.plot_filters
+    layout.operator(PREFILTER_OT_show_weights.bl_idname, icon="TEXTURE")
+    layout.operator(PREFILTER_OT_show_source.bl_idname, icon="LOOP_BACK")
+    layout.separator()
+    layout.operator(PREFILTER_OT_fill_unused.bl_idname, icon="SNAP_FACE")
+
+
+def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    draw_bake(menu.layout, context)
+    menu.layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon="TEXTURE")
