@@ -11,6 +11,7 @@ def test_panels_and_modal_operators(in_window, tmp_path):
     in_window(SESSION, result)
     found = json.loads(result.read_text())
     vertices = 642
+    assert found["tab_of_a_text"] == "Prefilter"
     assert found["started"] == ["RUNNING_MODAL"]
     assert not found["polls_alone"]
     assert not found["polls_while_running"]

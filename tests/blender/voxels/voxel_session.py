@@ -34,20 +34,33 @@ def session() -> Iterator[None]:
     properties.spaces.active.context = "DATA"
     override = {"window": window, "area": area, "region": region}
     yield
+    bpy.data.curves.new("Text", "FONT").body = "Text"
+    text = bpy.data.objects.new("Text", bpy.data.curves["Text"])
+    bpy.context.scene.collection.objects.link(text)
+    bpy.context.view_layer.objects.active = text
+    area.spaces.active.show_region_ui = True
+    sidebar = next(region for region in area.regions if region.type == "UI")
+    yield from until(lambda: sidebar.active_panel_category != "UNSUPPORTED")
+    sidebar.active_panel_category = "Prefilter"
+    area.tag_redraw()
+    yield
+    yield
+    found = {"tab_of_a_text": sidebar.active_panel_category}
+    bpy.data.objects.remove(text)
+    bpy.context.view_layer.objects.active = bpy.data.objects["Ball"]
     for name in ("PREFILTER_PT_voxelize", "PREFILTER_PT_boolean"):
         with bpy.context.temp_override(**override):
             bpy.ops.wm.call_panel(name=name, keep_open=True)
         yield
         window.event_simulate(type="ESC", value="PRESS")
         yield
-    for name in ("VIEW3D_MT_object", "VIEW3D_MT_object_convert"):
+    for name in ("VIEW3D_MT_object", "PREFILTER_MT_object"):
         with bpy.context.temp_override(**override):
             bpy.ops.wm.call_menu(name=name)
         yield
         window.event_simulate(type="ESC", value="PRESS")
         yield
 
-    found = {}
     bpy.ops.ed.undo_push(message="before")
     with bpy.context.temp_override(**override):
         found["polls_alone"] = bpy.ops.prefilter.boolean.poll()

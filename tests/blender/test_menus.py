@@ -1,0 +1,65 @@
+"""Every operator is in a menu of an editor's header, where a search (F3) finds it."""
+
+from collections import Counter
+from types import SimpleNamespace
+
+import bpy
+import pytest
+
+
+class Layout:
+    """Takes what a menu draws."""
+
+    def __init__(self):
+        self.operators = []
+        self.menus = []
+
+    def operator(self, name, **_):
+        self.operators.append(name)
+        return SimpleNamespace()
+
+    def menu(self, name, **_):
+        self.menus.append(name)
+
+    def separator(self, **_):
+        pass
+
+
+def drawn(menu):
+    """Returns what the add-on draws in a menu of Blender's, and in its own in there."""
+    layout = Layout()
+    for draw in getattr(bpy.types, menu).draw._draw_funcs:
+        if "prefilter" in draw.__module__:
+            draw(SimpleNamespace(layout=layout), bpy.context)
+    for inner in layout.menus:
+        layout.operators += drawn(inner)
+    return layout.operators
+
+
+def label(name):
+    return getattr(bpy.ops.prefilter, name.partition(".")[2]).get_rna_type().name
+
+
+@pytest.mark.parametrize(
+    "menu", ["VIEW3D_MT_object", "VIEW3D_MT_object_context_menu", "IMAGE_MT_image"]
+)
+def test_each_operator_once(menu):
+    assert set(Counter(drawn(menu)).values()) == {1}
+
+
+def test_every_operator_is_found():
+    found = {*drawn("VIEW3D_MT_object"), *drawn("IMAGE_MT_image")}
+    assert found == {f"prefilter.{name}" for name in dir(bpy.ops.prefilter)}
+
+
+@pytest.mark.parametrize(
+    ("menu", "words"),
+    [
+        ("VIEW3D_MT_object", ["mip", "voxel", "boolean", "texture cache"]),
+        ("IMAGE_MT_image", ["mip", "texel", "preview", "plot", "weights", "fill", "texture cache"]),
+    ],
+)
+def test_words_that_users_search_for(menu, words):
+    labels = [label(name).lower() for name in drawn(menu)]
+    for word in words:
+        assert any(word in found for found in labels), word
