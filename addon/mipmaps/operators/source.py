@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import bpy
 
-from ...bridge import derived, images
+from ...bridge import derived, images, materials
 from ...core.operator import BackgroundOperator
 from .. import users
 from ..bake import Bake
@@ -51,16 +51,19 @@ def shown_image(context: bpy.types.Context) -> bpy.types.Image | None:
 
 
 def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
-    """Returns the image of a name, or that of the editor if the name is empty.
+    """Returns the image of a name; if that is empty, of the editor or of the active object.
 
     Raises:
         ValueError: There is no such image.
     """
     if name:
         return images.find(name)
-    image = shown_image(context)
+    image = shown_image(context) or _image_of(context.active_object)
     if image is None:
-        raise ValueError("image: no name is given, and the editor shows no image")
+        raise ValueError(
+            "image: no name is given, the editor shows no image, and the active material has not "
+            "one base color"
+        )
     return image
 
 
@@ -99,3 +102,13 @@ def show_in_editor(context: bpy.types.Context, image: bpy.types.Image) -> None:
     """Shows an image in the editor that the operator was called from."""
     if context.area is not None and context.area.type == "IMAGE_EDITOR":
         context.space_data.image = image
+
+
+def _image_of(obj: bpy.types.Object | None) -> bpy.types.Image | None:
+    """Returns the base color of an object's active material, or its only image."""
+    material = obj.active_material if obj is not None else None
+    if material is None:
+        return None
+    found = materials.images_of(material)
+    colors = [image for image in found if materials.has_base_color_of(material, image)]
+    return next(iter(colors or found)) if len(colors or found) == 1 else None

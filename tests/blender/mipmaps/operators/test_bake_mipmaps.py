@@ -18,6 +18,16 @@ def test_bakes_by_name():
     assert bpy.data.images["Paint.mip01"].packed_file is not None
 
 
+def test_without_an_editor_the_active_material_says_which():
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    quad = scenes.textured_quad(image)
+    assert bake(levels=2) == {"FINISHED"}
+    assert "Paint.mip01" in bpy.data.images
+    scenes.image_node(quad.active_material.node_tree, scenes.image("Other", scenes.noise(8, 8)))
+    with pytest.raises(RuntimeError, match="active material has not one base color"):
+        bake(levels=2)
+
+
 def test_invoke_in_the_background_executes():
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.textured_quad(image)
