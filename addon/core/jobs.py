@@ -61,6 +61,9 @@ class Job(Generic[T]):
         self._result: T | None = None
         self._error: BaseException | None = None
         self._seconds = 0.0
+        self._lock = threading.Lock()
+        self._has_ended = False
+        self._release: Callable[[], None] | None = None
         self._thread = threading.Thread(target=self._run, name="prefilter job")
         self._thread.start()
 
@@ -83,6 +86,19 @@ class Job(Generic[T]):
         """Asks the callable to stop; it does so at its next progress call."""
         self._cancelled.set()
 
+    def abandon(self, release: Callable[[], None]) -> None:
+        """Asks the callable to stop, and waits for nothing.
+
+        Args:
+            release: What to call once it has, from its thread or from here.
+        """
+        self.cancel()
+        with self._lock:
+            if not self._has_ended:
+                self._release = release
+                return
+        release()
+
     def result(self) -> T:
         """Waits for the callable, and returns what it returned or raises what it raised."""
         self._thread.join()
@@ -97,6 +113,10 @@ class Job(Generic[T]):
         except BaseException as error:  # Handed on by result().
             self._error = error
         self._seconds = time.monotonic() - began
+        with self._lock:
+            self._has_ended = True
+        if self._release is not None:
+            self._release()
 
     def _advance(self, fraction: float) -> bool:
         self._progress = fraction

@@ -1,5 +1,6 @@
 """An operator that works for a while: in another thread, with progress and Esc; and its redo."""
 
+import math
 import textwrap
 import time
 from collections.abc import Callable, Generator, Iterable, Iterator
@@ -21,9 +22,15 @@ QUICK_SECONDS = 1.0
 """Work up to this long is redone at once when a user changes a setting; longer work waits for
 Apply, as it would freeze Blender."""
 
+_PATIENCE_SECONDS = 0.1
+"""How long an operator waits for a thread that was cancelled. Steps of other libraries, such as
+compressing a file, end when they end; the thread then cleans up by itself."""
 _LINE_LENGTH = 44
 """What fits into a redo panel."""
 _RUNNING = "It is running; press Esc to cancel it"
+# Said when it is called: a button that poll has disabled under the mouse stays so until the mouse
+# has left it, and takes no click. A redo panel whose poll fails is gone for good.
+
 # While settings are applied, the view may be turned, but nothing may change.
 _HARMLESS_EVENTS = frozenset(
     {
@@ -67,6 +74,7 @@ class BackgroundOperator:
     _runs: ClassVar[dict[str, _Run]] = {}
     _job: Job[Any] | None = None
     _timer: bpy.types.Timer | None = None
+    _cancelled_at: float = math.inf
     _steps: Generator[float, None, Compute] | None = None
     _replaced: int = 0
     """The operator whose result this one is to replace; 0 for none."""
@@ -95,6 +103,10 @@ class BackgroundOperator:
         """Lets go of what was read and made, however little that is, when `finish` fails or is
         not to come."""
 
+    def releaser(self) -> Callable[[], None]:
+        """Returns what does `discard` in another thread, when the operator is gone already."""
+        return lambda: None
+
     def load(self) -> Any:
         """Returns what `effort` needs to know about what was read and computed."""
 
@@ -114,16 +126,6 @@ class BackgroundOperator:
         layout.use_property_decorate = False
         for name in self._setting_names():
             layout.prop(self, name)
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the operator does not run already."""
-        del context
-        # A redo panel whose operator's poll fails is gone for good.
-        if cls._is_running() and cls._key() not in BackgroundOperator._applying:
-            cls.poll_message_set(_RUNNING)
-            return False
-        return True
 
     @classmethod
     def may_be_redone(cls, context: bpy.types.Context) -> bool:
@@ -194,6 +196,7 @@ class BackgroundOperator:
                 self._let_go()
                 return self._end_cancelled(context)
             self._job.cancel()
+            self._cancelled_at = time.monotonic()
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return self._handed_on(event)
@@ -243,6 +246,9 @@ class BackgroundOperator:
             self._show(context, "Reading", self._fraction_read)
             return {"RUNNING_MODAL"}
         if not self._job.is_done:
+            if time.monotonic() - self._cancelled_at > _PATIENCE_SECONDS:
+                self._job.abandon(self.releaser())
+                return self._end_cancelled(context)
             self._show(context, self.doing, self._job.progress)
             return {"PASS_THROUGH"}
         result = self._job.result()
@@ -436,8 +442,11 @@ class WorkOperator(BackgroundOperator):
 
     def discard(self) -> None:
         """Removes what was staged."""
-        if self.work is not None:
-            self.work.discard()
+        self.releaser()()
+
+    def releaser(self) -> Callable[[], None]:
+        """Returns what removes what was staged."""
+        return self.work.discard if self.work is not None else super().releaser()
 
 
 class _Deadline:

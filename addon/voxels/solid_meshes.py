@@ -1,6 +1,7 @@
 """Arithmetic on what solids are made of: one mesh, right side out, and what is wrong with it."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,13 +36,13 @@ class SolidMesh:
     open_edges: int = 0
     flipped: int = 0
 
-    @property
+    @cached_property
     def box(self) -> tuple[FloatArray, FloatArray]:
         """The corners of the box around the triangles."""
         used = self.positions[np.unique(self.triangles)]
         return used.min(axis=0), used.max(axis=0)
 
-    @property
+    @cached_property
     def area(self) -> float:
         """The area of the triangles."""
         return float(np.linalg.norm(_area_vectors(self.positions, self.triangles), axis=1).sum())

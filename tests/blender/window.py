@@ -19,6 +19,24 @@ def until(condition: Callable[[], bool]) -> Iterator[None]:
     raise TimeoutError(f"waited {MAX_WAITS} times for {condition}")
 
 
+def idle() -> bool:
+    """Returns whether no operator of the add-on works."""
+    return not any(
+        operator.bl_idname.startswith("PREFILTER_OT")
+        for window in bpy.context.window_manager.windows
+        for operator in window.modal_operators
+    )
+
+
+def refused(operator: Callable[..., object]) -> str:
+    """Returns what an operator says that is called although it works; empty if it does not mind."""
+    try:
+        operator("INVOKE_DEFAULT")
+    except RuntimeError as error:
+        return str(error)
+    return ""
+
+
 def moved(window: bpy.types.Window, x: int, y: int) -> Iterator[None]:
     """Moves the mouse."""
     window.event_simulate(type="MOUSEMOVE", value="NOTHING", x=x, y=y)

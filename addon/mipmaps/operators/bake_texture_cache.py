@@ -23,8 +23,6 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether this Blender has a texture cache, and there is an image to bake."""
-        if not super().poll(context):
-            return False
         if not tx.is_available():
             cls.poll_message_set(texture_cache.NEEDED)
             return False

@@ -23,9 +23,7 @@ class ImageOperator(BackgroundOperator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image, and whether the operator does not run already."""
-        if not super().poll(context):
-            return False
+        """Tells whether there is an image."""
         if cls.may_be_redone(context):
             return True
         if context.area is not None and context.area.type == "IMAGE_EDITOR":

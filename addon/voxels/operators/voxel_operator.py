@@ -30,8 +30,6 @@ class VoxelOperator(WorkOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether the operator may run now, whatever is selected."""
-        if not super().poll(context):
-            return False
         if context.mode != "OBJECT":
             cls.poll_message_set("Switch to Object Mode first")
             return False

@@ -168,7 +168,6 @@ def click_after_esc(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[
         window.event_simulate(type="ESC", value="PRESS", x=x, y=y)
         yield from until(lambda: not running(window))
     with working_on("mipmaps.bake", "Bake"):
-        yield
         yield from clicked(window, x + 1, y)
         found["click_after_esc"] = running(window)
         window.event_simulate(type="ESC", value="PRESS", x=x, y=y)

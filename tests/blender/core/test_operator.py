@@ -174,6 +174,28 @@ def test_esc_ends_within_a_tick_of_the_work(addon, probe, context):
     assert operator.discarded == 1
 
 
+def test_esc_does_not_wait_for_a_step_that_cannot_stop(probe, context):
+    waited = []
+    for _ in range(3):
+        operator, may_end, released = probe(), threading.Event(), threading.Event()
+        operator.compute = lambda progress, may_end=may_end: may_end.wait(10)
+        operator.releaser = lambda released=released: released.set
+        operator.invoke(context, None)
+        job = operator._job
+        began = time.monotonic()
+        operator.modal(context, ESC)
+        while operator.modal(context, TIMER) != {"CANCELLED"}:
+            time.sleep(0.05)
+        waited.append(time.monotonic() - began)
+        assert not released.is_set()
+        may_end.set()
+        job.result()
+        assert released.is_set()
+        assert operator.discarded == 0
+    # The machine may be busy with something else, but not each time.
+    assert min(waited) < 0.2
+
+
 def test_redo_that_is_slow_waits(probe, context):
     assert played(probe(), context) == {"FINISHED"}
     operator = probe()

@@ -17,7 +17,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import bodies
-from window import play, until
+from window import idle, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -65,8 +65,8 @@ def session() -> Iterator[None]:
     with bpy.context.temp_override(**override):
         found["polls_alone"] = bpy.ops.prefilter.boolean.poll()
         found["started"] = list(bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=6))
-        found["polls_while_running"] = bpy.ops.prefilter.voxelize.poll()
-    yield from until(bpy.ops.prefilter.voxelize.poll)
+        found["refused_while_running"] = refused(bpy.ops.prefilter.voxelize)
+    yield from until(idle)
     ball = bpy.data.objects["Ball"]
     found["closed"] = bodies.is_closed(ball)
     found["after"] = len(ball.data.vertices)
@@ -77,14 +77,14 @@ def session() -> Iterator[None]:
     with bpy.context.temp_override(**override):
         bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=9)
     window.event_simulate(type="ESC", value="PRESS")
-    yield from until(bpy.ops.prefilter.voxelize.poll)
+    yield from until(idle)
     found["cancelled"] = len(bpy.data.objects["Ball"].data.vertices)
 
     bodies.cube("Goes", location=(0, 0, 5))
     with bpy.context.temp_override(**override):
         bpy.ops.prefilter.boolean("INVOKE_DEFAULT", operation="union", depth=5)
     bpy.data.objects.remove(bpy.data.objects["Goes"])
-    yield from until(lambda: not running())
+    yield from until(idle)
     found["without_operand"] = len(bpy.data.objects["Ball"].data.vertices)
 
     bpy.data.objects["Ball"].select_set(True)
@@ -97,12 +97,6 @@ def session() -> Iterator[None]:
     found["polls_in_next_file"] = bpy.ops.prefilter.voxelize.poll()
     found["in_next_file"] = {obj.name: len(obj.data.vertices) for obj in bpy.data.objects}
     RESULT.write_text(json.dumps(found))
-
-
-def running() -> bool:
-    """Returns whether an operator works."""
-    operators = bpy.context.window_manager.windows[0].modal_operators
-    return any(operator.bl_idname.startswith("PREFILTER_OT") for operator in operators)
 
 
 def clear() -> None:

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import cycles_scenes as cycles
 import scenes
-from window import play, until
+from window import idle, play, refused, until
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -54,8 +54,8 @@ def session() -> Iterator[None]:
         bpy.ops.render.generate_texture_cache()
         box = contents()
         started = bpy.ops.prefilter.bake_texture_cache("INVOKE_DEFAULT")
-        polls_while_running = bpy.ops.prefilter.bake_texture_cache.poll()
-    yield from until(bpy.ops.prefilter.bake_texture_cache.poll)
+        refused_while_running = refused(bpy.ops.prefilter.bake_texture_cache)
+    yield from until(idle)
     baked = contents()
     cache_after_bake = scene.render.use_texture_cache
 
@@ -67,7 +67,7 @@ def session() -> Iterator[None]:
         bpy.ops.prefilter.bake_texture_cache("INVOKE_DEFAULT")
     yield
     window.event_simulate(type="ESC", value="PRESS")
-    yield from until(bpy.ops.prefilter.bake_texture_cache.poll)
+    yield from until(idle)
     after_cancel = contents()
     cache_after_cancel = scene.render.use_texture_cache
 
@@ -81,7 +81,7 @@ def session() -> Iterator[None]:
         json.dumps(
             {
                 "started": list(started),
-                "polls_while_running": polls_while_running,
+                "refused_while_running": refused_while_running,
                 "same_files": sorted(baked) == sorted(box),
                 "replaced": [name for name in box if baked[name] != box[name]],
                 "cache_after_bake": cache_after_bake,

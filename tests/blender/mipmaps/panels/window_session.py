@@ -17,7 +17,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import play, until
+from window import idle, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -53,14 +53,14 @@ def session() -> Iterator[None]:
     with bpy.context.temp_override(**override):
         polls_with_image = bpy.ops.prefilter.bake_mipmaps.poll()
         started = bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", levels=4)
-        polls_while_running = bpy.ops.prefilter.bake_mipmaps.poll()
-    yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
+        refused_while_running = refused(bpy.ops.prefilter.bake_mipmaps)
+    yield from until(idle)
     after_bake = image_names()
 
     with bpy.context.temp_override(**override):
         bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
     window.event_simulate(type="ESC", value="PRESS")
-    yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
+    yield from until(idle)
     after_cancel = image_names()
 
     scene = bpy.context.scene
@@ -71,13 +71,13 @@ def session() -> Iterator[None]:
     yield
     frame_while_reading = scene.frame_current
     window.event_simulate(type="ESC", value="PRESS")
-    yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
+    yield from until(idle)
     frame_after_cancel = scene.frame_current
     with bpy.context.temp_override(**override):
         bpy.ops.prefilter.bake_mipmaps(
             "INVOKE_DEFAULT", image="Big", levels=2, use_frames=True, frame_end=3
         )
-    yield from until(bpy.ops.prefilter.bake_mipmaps.poll)
+    yield from until(idle)
     after_frames = image_names()
 
     with bpy.context.temp_override(**override):
@@ -106,7 +106,7 @@ def session() -> Iterator[None]:
                 "polls_with_image": polls_with_image,
                 "started": list(started),
                 "tab": tab,
-                "polls_while_running": polls_while_running,
+                "refused_while_running": refused_while_running,
                 "after_bake": after_bake,
                 "after_cancel": after_cancel,
                 "frame_while_reading": frame_while_reading,

@@ -63,6 +63,15 @@ def test_far_from_the_origin():
     assert_close_to(ball, before)
 
 
+@pytest.mark.parametrize("placed", [{"radius": 1e5}, {"location": (1e5, 1e5, 0)}])
+def test_triangles_of_large_and_far_objects_have_areas(placed):
+    ball = bodies.sphere(**placed)
+    assert voxelize(depth=6, use_cleanup=False) == {"FINISHED"}
+    areas = np.empty(len(ball.data.polygons), np.float32)
+    ball.data.polygons.foreach_get("area", areas)
+    assert areas.min() > 0
+
+
 def test_modifiers_are_applied():
     box = bodies.cube()
     array = box.modifiers.new("Array", "ARRAY")
