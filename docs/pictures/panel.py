@@ -129,7 +129,7 @@ def open_panel(panel: type) -> None:
 
 
 def show_voxels() -> None:
-    """Inside Blender: a leaky monkey beside its voxelized copy, with the panels under Remesh."""
+    """Inside Blender: a leaky monkey beside its voxelized copy, with the tab in the sidebar."""
     import bmesh
     import bpy
     from mathutils import Euler
@@ -156,41 +156,25 @@ def show_voxels() -> None:
     bpy.context.view_layer.objects.active = bpy.context.selected_objects[0]
     window = bpy.context.window_manager.windows[0]
     area = max(window.screen.areas, key=lambda area: area.width * area.height)
-    for panel in [
-        kind
-        for kind in bpy.types.Panel.__subclasses__()
-        if kind.bl_rna.identifier.startswith("DATA_PT_") and kind.is_registered
-    ]:
-        if "remesh" not in panel.bl_rna.identifier:
-            bpy.utils.unregister_class(panel)
-    names = ("DATA_PT_remesh", "PREFILTER_PT_voxelize", "PREFILTER_PT_boolean")
-    panels = [getattr(bpy.types, name) for name in names]
-    for panel in reversed(panels):
-        bpy.utils.unregister_class(panel)
-    for panel in panels:
-        panel.bl_options = set()
-        bpy.utils.register_class(panel)
+    space = area.spaces.active
+    space.overlay.show_overlays = space.show_gizmo = False
+    space.shading.light = "MATCAP"
+    space.show_region_ui = True
+    view = space.region_3d
+    view.view_rotation = Euler((1.0, 0.0, 0.0)).to_quaternion()
+    view.view_location, view.view_distance = (0.6, 0.0, 0.0), 6.5
+    view.view_perspective = "ORTHO"
 
-    def arrange() -> None:
-        with bpy.context.temp_override(window=window, area=area):
-            bpy.ops.screen.area_split(direction="VERTICAL", factor=0.62)
-        parts = [part for part in window.screen.areas if part.type == "VIEW_3D"]
-        left, right = sorted(parts, key=lambda part: part.x)
-        right.type = "PROPERTIES"
-        left.spaces.active.overlay.show_overlays = False
-        left.spaces.active.shading.light = "MATCAP"
-        view = left.spaces.active.region_3d
-        view.view_rotation = Euler((1.0, 0.0, 0.0)).to_quaternion()
-        view.view_location, view.view_distance = (0.0, 0.0, 0.0), 5.5
-        view.view_perspective = "ORTHO"
+    def open_tab() -> float | None:
+        sidebar = next(region for region in area.regions if region.type == "UI")
+        if sidebar.active_panel_category == "UNSUPPORTED":  # Until it is drawn for the first time.
+            return 0.5
+        sidebar.active_panel_category = "Prefilter"
+        area.tag_redraw()
+        bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
+        return None
 
-        def show_data() -> None:  # Once the editor is drawn, and knows what it can show.
-            right.spaces.active.context = "DATA"
-            bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
-
-        bpy.app.timers.register(show_data, first_interval=2.0)
-
-    bpy.app.timers.register(arrange, first_interval=2.0)
+    bpy.app.timers.register(open_tab, first_interval=2.0)
 
 
 if "bpy" in sys.modules:
