@@ -301,7 +301,12 @@ class BackgroundOperator:
 
     def _expected_seconds(self) -> float:
         run = BackgroundOperator._runs.get(self._key())
-        return run.seconds * self.effort(run.load) / run.effort if run is not None else 0.0
+        if run is None:
+            return 0.0
+        try:
+            return run.seconds * self.effort(run.load) / run.effort
+        except ValueError:  # Settings that are refused: the work says why, at once.
+            return 0.0
 
     def _note_run(self, seconds: float, earlier: _Run | None = None) -> None:
         load = self.load() if earlier is None else earlier.load
