@@ -205,13 +205,11 @@ def files_of(image: bpy.types.Image) -> dict[int | None, Path]:
     Raises:
         ValueError: The image is rendered from something else, or a file is missing.
     """
-    kind = _KIND_OF_TYPE.get(image.type)
-    if kind is None and image.source not in {"FILE", "TILED"}:
-        kind = _KIND_OF_SOURCE.get(image.source, "a generated image, which has no file")
-    if kind is None and image.packed_files:
-        kind = "an image that is packed into the .blend file"
+    kind = kind_that_is_no_still(image)
     if kind is not None:
         raise ValueError(f"image '{image.name}': found {kind}; a picture file is needed")
+    if image.packed_files:
+        raise ValueError(f"image '{image.name}' is packed: unpack it, as Cycles caches files only")
     if image.is_dirty:
         raise ValueError(f"image '{image.name}': has changes that are not in its file; save it")
     numbers = tile_numbers(image)
@@ -222,6 +220,14 @@ def files_of(image: bpy.types.Image) -> dict[int | None, Path]:
         if not path.is_file():
             raise ValueError(f"image '{image.name}': there is no file '{path}'")
     return paths
+
+
+def kind_that_is_no_still(image: bpy.types.Image) -> str | None:
+    """Returns what an image is that has no file of a still, packed or not; None for others."""
+    kind = _KIND_OF_TYPE.get(image.type)
+    if kind is None and image.source not in {"FILE", "TILED"}:
+        kind = _KIND_OF_SOURCE.get(image.source, "a generated image, which has no file")
+    return kind
 
 
 @contextmanager

@@ -1,6 +1,6 @@
 """Mipmaps that know the mesh: bakes, levels in view, Cycles' texture cache."""
 
 from ..core.registration import registration
-from . import menus, operators, panels, properties, users, view
+from . import menus, operators, panels, properties, remembered, view
 
-register, unregister = registration(properties, users, view, operators, panels, menus)
+register, unregister = registration(properties, remembered, view, operators, panels, menus)

@@ -116,6 +116,12 @@ def _add_bake_cache(commands: Any) -> None:
     parser.add_argument(
         "--scene", metavar="NAME", help="the scene that is rendered (default: the active one)"
     )
+    parser.add_argument(
+        "--unpack",
+        action="store_true",
+        help="write packed images to the folder textures beside FILE first, and bake these; FILE "
+        "uses them if it is saved",
+    )
     add_flags(parser, Settings, "threads")
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
@@ -135,7 +141,9 @@ def _bake_cache(options: argparse.Namespace) -> None:
         raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {known}")
     bpy.context.window.scene = scene
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    work = texture_cache.CacheBake.read(scene, depsgraph, **given(options, Settings))
+    work = texture_cache.CacheBake.read(
+        scene, depsgraph, unpack=options.unpack, **given(options, Settings)
+    )
     outcome = command.done(work)
     if options.save:
         scenes.save_open(path)

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 import prefilter
 
-from ..bridge import images, materials, meshes, openimageio, rendered
+from ..bridge import materials, meshes, openimageio, packed, rendered
 from ..bridge.files import tx
 from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray
@@ -20,6 +20,7 @@ from ..core.alpha import associated, at_most_opaque, unassociated
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
+from . import cache_states
 from .contents import automatic_bounds
 
 NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
@@ -74,6 +75,7 @@ class CacheBake:
     def __init__(self, scene: str, worn: list[_Worn], warnings: list[str], threads: int) -> None:
         """Keeps copies of what was read; use `CacheBake.read`."""
         self.warnings = warnings
+        self.notes: list[str] = []
         self._scene = scene
         self._worn = worn
         self._threads = threads
@@ -82,32 +84,43 @@ class CacheBake:
 
     @classmethod
     def read(
-        cls, scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph, *, threads: int = 0
+        cls,
+        scene: bpy.types.Scene,
+        depsgraph: bpy.types.Depsgraph,
+        *,
+        unpack: bool = False,
+        threads: int = 0,
     ) -> "CacheBake":
         """Copies everything that the bake needs out of Blender.
 
         Args:
             scene: The scene that is rendered.
             depsgraph: The evaluated dependency graph.
+            unpack: Whether to unpack packed images first, beside the .blend file.
             threads: How many threads to use; 0 for all.
 
         Raises:
-            ValueError: No image can be baked; the message says why.
+            ValueError: No image can be baked; the message says why, in a line an image.
             OSError: This Blender has no texture cache.
         """
         if not tx.is_available():
             raise OSError(NEEDED)
-        cache_folder = bpy.context.preferences.filepaths.texture_cache_directory
         worn: list[_Worn] = []
         warnings: list[str] = []
+        notes: list[str] = []
         for image, seen in rendered.viewers(scene, depsgraph).items():
             try:
-                worn.extend(_read_image(image, seen, depsgraph, cache_folder, warnings))
-            except ValueError as error:
+                if unpack and image.packed_files:
+                    names = listed(path.name for path in packed.unpack(image))
+                    notes.append(f"image '{image.name}': unpacked into {names}")
+                worn.extend(_read_image(image, seen, depsgraph, warnings))
+            except (ValueError, OSError) as error:
                 warnings.append(str(error))
         if not worn:
             raise ValueError(_nothing(scene, warnings))
-        return cls(scene.name, worn, list(dict.fromkeys(warnings)), threads)
+        made = cls(scene.name, worn, list(dict.fromkeys(warnings)), threads)
+        made.notes = notes
+        return made
 
     def compute(self, progress: Progress) -> None:
         """Lets Blender make the cache files, and stages those with other levels.
@@ -129,9 +142,8 @@ class CacheBake:
                 except ValueError as error:
                     self.warnings.append(f"{error}; its levels are Blender's")
             if not self._staged and not self._constant:
-                raise ValueError(
-                    f"scene '{self._scene}': no image could be baked; {'; '.join(self.warnings)}"
-                )
+                reasons = "\n".join(self.warnings)
+                raise ValueError(f"scene '{self._scene}': no image could be baked\n{reasons}")
             go_on(progress, 1.0)
         except BaseException:
             self.discard()
@@ -152,7 +164,8 @@ class CacheBake:
         scene = bpy.data.scenes.get(self._scene)
         if scene is not None:
             scene.render.use_texture_cache = True
-        return Outcome(self._summary(), files=written, warnings=self.warnings)
+        cache_states.look_again()
+        return Outcome(self._summary(), files=written, warnings=self.warnings, notes=self.notes)
 
     def discard(self) -> None:
         """Removes what was staged, if it was not put into place."""
@@ -204,22 +217,20 @@ def _read_image(
     image: bpy.types.Image,
     seen: rendered.Viewers,
     depsgraph: bpy.types.Depsgraph,
-    cache_folder: str,
     warnings: list[str],
 ) -> list[_Worn]:
     """Returns the files of an image with their surfaces; an image with an obstacle has none."""
-    paths = images.files_of(image)
-    space = image.colorspace_settings
+    files = cache_states.sources(image)
     obstacle = "; ".join(seen.others)
     found = meshes.ImageSurfaces()
     if not obstacle:
         found = meshes.image_surfaces(seen.objects, image, depsgraph)
         warnings.extend(f"image '{image.name}': {problem}" for problem in found.problems)
     worn = []
-    for number, path in paths.items():
+    for number, source in files.items():
         one = _Worn(
             [image.name if number is None else f"{image.name}, tile {number}"],
-            tx.Source(path, space.name, space.is_data, image.alpha_mode, cache_folder),
+            source,
             extensions=list(found.extensions),
             obstacle=obstacle,
             alpha_covers=seen.alpha_covers,
@@ -306,7 +317,7 @@ def _is_inside(surfaces: Iterable[prefilter.Surface]) -> bool:
 def _nothing(scene: bpy.types.Scene, warnings: Sequence[str]) -> str:
     start = f"scene '{scene.name}': found no image texture to bake"
     if warnings:
-        return f"{start}; {'; '.join(warnings)}"
+        return "\n".join([start, *dict.fromkeys(warnings)])
     names = listed(obj.name for obj in scene.objects if obj.type == "MESH")
     if not names:
         return f"{start}; it has no mesh"

@@ -1,21 +1,23 @@
 """The objects that a bake looks at: for the bake, and cheaply for panels."""
 
-import time
 from collections.abc import Sequence
 
 import bpy
-from bpy.app.handlers import persistent
 
 from ..bridge import users
 from ..core.wording import counted, listed
 from .choices import TEXTURE_SPACE_FILTERS
+from .remembered import Remembered
 
-_SHARE_OF_TIME = 0.05  # What drawing may spend on looking for users while a scene changes.
 
-_Found = dict[int, list[str]]
-_found: dict[tuple[str, str], _Found] = {}
-_is_stale = True
-_look_again_at = 0.0
+def _names_of_users(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> dict[int, list[str]]:
+    del scene
+    shown = users.shown_images(depsgraph)
+    return {image.session_uid: [obj.name for obj in objects] for image, objects in shown.items()}
+
+
+_users = Remembered(_names_of_users)
+"""The names of the users of all images, by session_uid."""
 
 
 def objects_to_read(
@@ -75,7 +77,7 @@ def what_is_read(
 
 def _names(context: bpy.types.Context, image: bpy.types.Image, choice: str) -> list[str] | None:
     """Returns the names of the objects to read; None before a view layer is evaluated."""
-    found = _looked_up(context)
+    found = _users.get(context)
     if found is None:
         return None
     names = found.get(image.session_uid, [])
@@ -85,58 +87,3 @@ def _names(context: bpy.types.Context, image: bpy.types.Image, choice: str) -> l
     return [
         obj.name for obj in objects if obj is not None and (obj.select_get() or obj.mode == "EDIT")
     ]
-
-
-def _looked_up(context: bpy.types.Context) -> _Found | None:
-    """Returns the users of all images, by session_uid, as of the last change or shortly before."""
-    global _is_stale, _look_again_at
-    layer = context.view_layer
-    key = (context.scene.name_full, layer.name)
-    now = time.monotonic()
-    if key in _found and (not _is_stale or now < _look_again_at):
-        return _found[key]
-    if layer.depsgraph is None:
-        return None
-    if _is_stale:
-        _found.clear()
-    shown = users.shown_images(layer.depsgraph)
-    _found[key] = {
-        image.session_uid: [obj.name for obj in objects] for image, objects in shown.items()
-    }
-    _is_stale = False
-    end = time.monotonic()
-    _look_again_at = end + (end - now) / _SHARE_OF_TIME
-    return _found[key]
-
-
-@persistent
-def _mark_stale(*_: object) -> None:
-    global _is_stale
-    _is_stale = True
-
-
-@persistent
-def _forget(*_: object) -> None:
-    _found.clear()
-
-
-_HANDLERS = (
-    ("depsgraph_update_post", _mark_stale),
-    ("undo_post", _forget),
-    ("redo_post", _forget),
-    ("load_pre", _forget),
-    ("load_post", _forget),
-)
-
-
-def register() -> None:
-    """Adds the handlers."""
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).append(handler)
-
-
-def unregister() -> None:
-    """Removes the handlers."""
-    for name, handler in _HANDLERS:
-        getattr(bpy.app.handlers, name).remove(handler)
-    _forget()

@@ -9,11 +9,13 @@ colour is one tile.
 Cycles uses a file while its time of modification is that of the image file, in whole seconds.
 """
 
+import glob
 import os
 import re
 import secrets
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +36,7 @@ _ALPHA_TYPES = {
 _DEFAULT_FOLDER = "blender_tx"
 _ENCODED_SPACE = "scene_linear_srgb"
 _SOURCE_SPACE = re.compile(r"\(colorspace: ([^,]*), ")
+_START_OF_FILE = 1 << 14  # Bytes; the description of level 0 is in them.
 _LARGEST_HALF = 65504.0
 # What OpenImageIO reads from the description of a TIFF, and does not write back.
 _DESCRIBED = ("oiio:ConstantColor", "oiio:AverageColor")
@@ -92,6 +95,36 @@ def is_available() -> bool:
     """Returns whether this Blender's Cycles makes texture caches."""
     settings = bpy.types.RenderSettings.bl_rna.properties
     return "use_texture_cache" in settings and _maker() is not None
+
+
+def state(source: Source) -> str:
+    """Returns "baked", "stale" or "missing": what is known of our levels without opening files.
+
+    Where datablocks read an image file in several ways, the cache files of all of them count.
+    """
+    try:
+        time = int(source.path.stat().st_mtime)
+        found = list(source.folder.glob(f"{glob.escape(source.path.name)}.*.tx"))
+        ours = [path.stat() for path in found if _is_baked(path)]
+    except OSError:
+        return "missing"
+    if any(int(status.st_mtime) == time for status in ours):
+        return "baked"
+    return "stale" if ours else "missing"
+
+
+def _is_baked(path: Path) -> bool:
+    """Tells whether a bake has replaced the levels of a file, or it has one color only."""
+    status = path.stat()
+    return _reads_as_baked(path, status.st_mtime_ns, status.st_size, status.st_ino)
+
+
+@lru_cache(maxsize=4096)
+def _reads_as_baked(path: Path, *_: int) -> bool:
+    with path.open("rb") as file:
+        start = file.read(_START_OF_FILE)
+    # See `_first_spec`: Blender's files have a hash of the image, and those written here have not.
+    return b"oiio:SHA-1" not in start or b"oiio:ConstantColor" in start
 
 
 def make(source: Source) -> Path:

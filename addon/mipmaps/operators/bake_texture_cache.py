@@ -1,6 +1,7 @@
 """`prefilter.bake_texture_cache`: PAM levels for Cycles, for every image of the scene."""
 
 import bpy
+from bpy.props import BoolProperty
 
 from ...bridge.files import tx
 from ...core.operator import WorkOperator
@@ -18,6 +19,14 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
         "Blender makes its cache file anew, and it has to be baked again"
     )
     bl_options = {"REGISTER", "UNDO"}
+    use_unpack: BoolProperty(
+        name="Unpack Images",
+        description="Write packed images to the folder textures beside the .blend file first, and "
+        "use these files: Cycles caches files only",
+        default=False,
+        options={"SKIP_SAVE"},
+    )
+
     doing = "Baking PAM into the texture cache"
 
     @classmethod
@@ -33,4 +42,5 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
 
     def read_work(self, context: bpy.types.Context) -> texture_cache.CacheBake:
         """Copies the surfaces of the scene."""
-        return texture_cache.CacheBake.read(context.scene, context.evaluated_depsgraph_get())
+        depsgraph = context.evaluated_depsgraph_get()
+        return texture_cache.CacheBake.read(context.scene, depsgraph, unpack=self.use_unpack)

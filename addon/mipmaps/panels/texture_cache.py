@@ -2,9 +2,12 @@
 
 import bpy
 
+from .. import cache_states
 from ..operators.bake_texture_cache import PREFILTER_OT_bake_texture_cache
 
 _ICON = "TEXTURE"
+_ICONS = {"stale": "FILE_REFRESH", "missing": "X", "packed": "PACKAGE", "unfit": "ERROR"}
+_MOST_IMAGES = 8
 _PARENT = "CYCLES_RENDER_PT_performance_texture_cache"
 
 
@@ -26,9 +29,23 @@ class PREFILTER_PT_texture_cache(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        del context
         column = self.layout.column()
         column.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)
+        found = cache_states.states(context)
+        if any(one.state == "packed" for one in found):
+            operator = column.operator(
+                PREFILTER_OT_bake_texture_cache.bl_idname, text="Unpack and Bake", icon="PACKAGE"
+            )
+            operator.use_unpack = True
+        if found:
+            column.label(text=f"Images: {cache_states.summary(found)}")
+        others = [one for one in found if one.state != "baked"]
+        for one in others[:_MOST_IMAGES]:
+            column.label(
+                text=f"{one.name}: {cache_states.WORDS[one.state]}", icon=_ICONS[one.state]
+            )
+        if len(others) > _MOST_IMAGES:
+            column.label(text=f"and {len(others) - _MOST_IMAGES} more", icon="BLANK1")
         column.label(text="Overwrites the cache files", icon="INFO")
         column.label(text="Bake again when images change", icon="BLANK1")
 
