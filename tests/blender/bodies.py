@@ -119,3 +119,17 @@ def _built(name: str, build) -> bpy.types.Mesh:
     bm.to_mesh(mesh)
     bm.free()
     return mesh
+
+
+def face_angles(obj: bpy.types.Object) -> np.ndarray:
+    """Returns the angles between the two faces of each edge of a closed mesh, in degrees."""
+    bm = bmesh.new()
+    bm.from_mesh(obj.data)
+    angles = [edge.link_faces[0].normal.angle(edge.link_faces[1].normal) for edge in bm.edges]
+    bm.free()
+    return np.degrees(angles)
+
+
+def sharp_edges(obj: bpy.types.Object) -> np.ndarray:
+    """Returns for each edge whether it is marked sharp."""
+    return np.array([edge.use_edge_sharp for edge in obj.data.edges])

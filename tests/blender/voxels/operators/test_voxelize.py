@@ -192,10 +192,10 @@ def test_materials_of_the_nearest_faces():
         face.material_index = int(face.center.x > 0.5)
     assert voxelize() == {"FINISHED"}
     assert [material.name for material in box.data.materials] == ["Red", "Blue"]
-    for face in box.data.polygons:
-        middle = np.abs(face.center)
-        if middle[1:].max() < 0.7:
-            assert face.material_index == int(face.center.x > 0)
+    ends = [face for face in box.data.polygons if max(map(abs, face.center[1:])) < 0.7]
+    assert len(ends) > 900
+    for face in ends:
+        assert face.material_index == int(face.center.x > 0)
 
 
 def test_material_of_an_object_slot():
@@ -231,12 +231,23 @@ def test_without_transfer():
     assert len(box.data.color_attributes) == 0
 
 
-@pytest.mark.parametrize("smooth", [False, True])
-def test_shading(smooth):
+def test_flat_shading():
     box = bodies.cube()
-    voxelize(use_smooth=smooth, smooth_angle=math.radians(30))
-    values = [not face.use_smooth for face in box.data.polygons]
-    assert not any(values) if smooth else all(values)
+    voxelize(use_smooth=False)
+    assert not any(face.use_smooth for face in box.data.polygons)
+
+
+@pytest.mark.parametrize("degrees", [20, 50, 120])
+def test_edges_are_sharp_above_the_angle(degrees):
+    """By the angles of the result's own faces; none is as sharp as 120 degrees."""
+    box = bodies.cube(rotation_euler=(0.2, 0.3, 0.1))
+    voxelize(use_smooth=True, smooth_angle=math.radians(degrees))
+    assert all(face.use_smooth for face in box.data.polygons)
+    angles, is_sharp = bodies.face_angles(box), bodies.sharp_edges(box)
+    clear = np.abs(angles - degrees) > 0.5
+    assert clear.mean() > 0.95
+    np.testing.assert_array_equal(is_sharp[clear], angles[clear] > degrees)
+    assert is_sharp.any() == (degrees < 90)
 
 
 def test_volume_object(tmp_path, addon):
