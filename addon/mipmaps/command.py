@@ -15,6 +15,7 @@ from ..bridge import images, meshes, new_images
 from ..bridge.files import engines, scenes, staging, textures
 from ..core import command
 from ..core.flags import add_flags, given, tables
+from ..core.outcome import FAILURES
 from ..core.wording import either, listed
 from . import reading, texture_cache, udim, unnamed, users
 from .choices import PlotSettings, Settings
@@ -232,19 +233,28 @@ def _bake(options: argparse.Namespace) -> None:
         for file in udim.paths(target, images.tile_numbers(image)):
             textures.check_target(file)
     settings = replace(settings, roughness=_roughness_name(settings.roughness))
+    failed: list[str] = []
     for image, target in zip(chosen, targets, strict=True):
         users_of_it, warnings = _users(image, objects, options.object)
         command.warn(warnings)
-        work = reading.read(
-            image,
-            users_of_it,
-            replace(settings, filepath=target),
-            bpy.context.evaluated_depsgraph_get(),
-            all_faces=is_picture,
-        )
-        command.tell(command.done(work))
-    if options.save:
+        try:
+            work = reading.read(
+                image,
+                users_of_it,
+                replace(settings, filepath=target),
+                bpy.context.evaluated_depsgraph_get(),
+                all_faces=is_picture,
+            )
+            command.tell(command.done(work))
+        except FAILURES as error:
+            if len(chosen) == 1:
+                raise
+            command.warn([str(error)])
+            failed.append(image.name)
+    if options.save and len(failed) < len(chosen):
         scenes.save_open(path)
+    if failed:
+        raise ValueError(f"not baked: {listed(failed)}")
 
 
 def _settings(options: argparse.Namespace) -> Settings:

@@ -286,6 +286,11 @@ def test_a_file_a_base_color(tmp_path):
         "--image: needed, as the meshes use 'Albedo 0', 'Albedo 1'",
     )
     assert not list(tmp_path.glob("o.*"))
+    (tmp_path / "Albedo 0.png").unlink()
+    result = run("bake", path.name, "--output", "o.exr", "--filter", "box", cwd=tmp_path)
+    assert_fails(result, "not baked: 'Albedo 0'")
+    assert "warning: image 'Albedo 0': found no pixels" in result.stderr
+    assert [path.name for path in tmp_path.glob("o.*")] == ["o.Albedo_1.exr"]
 
 
 @pytest.fixture
