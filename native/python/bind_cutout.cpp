@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "convert.h"
-#include "prefilter/mipmap/covered_share.h"
+#include "instances.h"
+#include "prefilter/mipmap/keep_coverage.h"
 
 namespace py = pybind11;
 
@@ -12,19 +13,26 @@ namespace prefilter::python {
 
 void bind_cutout(py::module_& m) {
   m.def(
-      "covered_share",
-      [](const Array<float>& alpha, const Array<float>& weights, int samples, float threshold,
-         const std::pair<std::string, std::string>& wrap, const py::object& progress, int threads) {
-        const ImageView alpha_view = view_of(alpha);
-        const ImageView weights_view = view_of(weights);
-        const WrapModes modes = {wrap_mode(wrap.first), wrap_mode(wrap.second)};
-        const Progress reporter = to_progress(progress);
-        const py::gil_scoped_release unlocked;
-        return covered_share(alpha_view, weights_view, samples, threshold, modes, reporter,
-                             threads);
+      "keep_coverage",
+      [](const std::vector<Array<float>>& levels, const std::vector<const Surface*>& surfaces,
+         double threshold, const std::pair<std::string, std::string>& wrap, bool premultiplied,
+         const py::object& progress, int threads) {
+        CoverageOptions options;
+        options.threshold = threshold;
+        options.wrap = {wrap_mode(wrap.first), wrap_mode(wrap.second)};
+        options.premultiplied = premultiplied;
+        options.threads = threads;
+        options.progress = to_progress(progress);
+        const std::vector<ImageView> views = views_of(levels);
+        std::vector<Image> kept;
+        {
+          const py::gil_scoped_release unlocked;
+          kept = keep_coverage(views, surfaces, options);
+        }
+        return to_arrays(std::move(kept));
       },
-      py::arg("alpha"), py::arg("weights"), py::arg("samples"), py::arg("threshold"),
-      py::arg("wrap"), py::arg("progress"), py::arg("threads"));
+      py::arg("levels"), py::arg("surfaces"), py::arg("threshold"), py::arg("wrap"),
+      py::arg("premultiplied"), py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -57,9 +57,7 @@ std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
     const py::gil_scoped_release unlocked;
     images = coarser_levels(image, surfaces, options);
   }
-  std::vector<Array<float>> arrays;
-  for (Image& level : images) arrays.push_back(to_array(std::move(level)));
-  return arrays;
+  return to_arrays(std::move(images));
 }
 
 template <typename... Options>
@@ -97,8 +95,7 @@ std::vector<double> bound_mipmap_error(const std::vector<Array<float>>& levels,
                                        const std::vector<double>& mip_values, const WrapNames& wrap,
                                        const std::string& reader, const py::object& progress,
                                        int threads) {
-  std::vector<ImageView> views;
-  for (const Array<float>& level : levels) views.push_back(view_of(level));
+  const std::vector<ImageView> views = views_of(levels);
   const ImageView image = view_of(array);
   const WrapModes modes = wrap_modes(wrap);
   const Reader reads = reader_of(reader);
@@ -110,8 +107,7 @@ std::vector<double> bound_mipmap_error(const std::vector<Array<float>>& levels,
 std::vector<double> bound_seam_contrast(const std::vector<Array<float>>& levels,
                                         const std::vector<const Surface*>& surfaces,
                                         const WrapNames& wrap, const py::object& progress) {
-  std::vector<ImageView> views;
-  for (const Array<float>& level : levels) views.push_back(view_of(level));
+  const std::vector<ImageView> views = views_of(levels);
   const WrapModes modes = wrap_modes(wrap);
   const Progress reporter = to_progress(progress);
   const py::gil_scoped_release unlocked;

@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "convert.h"
-#include "prefilter/mipmap/lookup_means.h"
+#include "instances.h"
+#include "prefilter/mipmap/normal_mipmaps.h"
 
 namespace py = pybind11;
 
@@ -12,24 +13,31 @@ namespace prefilter::python {
 
 void bind_normals(py::module_& m) {
   m.def(
-      "lookup_means",
-      [](const Array<float>& normals, const Array<float>& roughness,
-         const std::pair<std::string, std::string>& wrap, float least_length,
+      "normal_mipmaps",
+      [](const Array<float>& normals, const std::optional<Array<float>>& roughness,
+         const std::vector<const Surface*>& surfaces, const std::string& filter,
+         const std::pair<std::string, std::string>& wrap, bool encoded, int levels,
          const py::object& progress, int threads) {
+        NormalMipmapOptions options;
+        options.filter = mipmap_filter(filter);
+        options.wrap = {wrap_mode(wrap.first), wrap_mode(wrap.second)};
+        options.encoded = encoded;
+        options.levels = levels;
+        options.threads = threads;
+        options.progress = to_progress(progress);
         const ImageView normals_view = view_of(normals);
-        const ImageView roughness_view = view_of(roughness);
-        const WrapModes modes = {wrap_mode(wrap.first), wrap_mode(wrap.second)};
-        const Progress reporter = to_progress(progress);
-        Image means;
+        const ImageView roughness_view = roughness ? view_of(*roughness) : ImageView();
+        NormalMipmaps made;
         {
           const py::gil_scoped_release unlocked;
-          means =
-              lookup_means(normals_view, roughness_view, modes, least_length, reporter, threads);
+          made = normal_mipmaps(normals_view, roughness ? &roughness_view : nullptr, surfaces,
+                                options);
         }
-        return to_array(std::move(means));
+        return std::pair(to_arrays(std::move(made.normals)), to_arrays(std::move(made.roughness)));
       },
-      py::arg("normals"), py::arg("roughness"), py::arg("wrap"), py::arg("least_length"),
-      py::arg("progress"), py::arg("threads"));
+      py::arg("normals"), py::arg("roughness"), py::arg("surfaces"), py::arg("filter"),
+      py::arg("wrap"), py::arg("encoded"), py::arg("levels"), py::arg("progress"),
+      py::arg("threads"));
 }
 
 }  // namespace prefilter::python

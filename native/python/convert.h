@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 
 #include <string>
+#include <vector>
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
@@ -19,8 +20,11 @@ using Array = pybind11::array_t<T, pybind11::array::c_style>;
 /// A view of an array of shape (height, width, channels).
 ImageView view_of(const Array<float>& array);
 
+std::vector<ImageView> views_of(const std::vector<Array<float>>& arrays);
+
 /// An array of shape (height, width, channels) that owns the image.
 Array<float> to_array(Image image);
+std::vector<Array<float>> to_arrays(std::vector<Image> images);
 
 /// The wrap mode of a public name.
 Wrap wrap_mode(const std::string& name);

@@ -24,12 +24,24 @@ ImageView view_of(const Array<float>& array) {
           static_cast<int>(array.shape(2))};
 }
 
+std::vector<ImageView> views_of(const std::vector<Array<float>>& arrays) {
+  std::vector<ImageView> views;
+  for (const Array<float>& array : arrays) views.push_back(view_of(array));
+  return views;
+}
+
 Array<float> to_array(Image image) {
   auto owner = std::make_unique<Image>(std::move(image));
   const Image& held = *owner;
   const py::capsule capsule(owner.release(),
                             [](void* pointer) { delete static_cast<Image*>(pointer); });
   return Array<float>({held.height, held.width, held.channels}, held.data.data(), capsule);
+}
+
+std::vector<Array<float>> to_arrays(std::vector<Image> images) {
+  std::vector<Array<float>> arrays;
+  for (Image& image : images) arrays.push_back(to_array(std::move(image)));
+  return arrays;
 }
 
 Wrap wrap_mode(const std::string& name) {

@@ -395,9 +395,10 @@ ROWS = [
             {"threshold": threshold},
             [f"threshold: {threshold!r}", "a number above 0 and at most 1 is needed"],
         )
-        for threshold in (0, 1.5, NAN, "a")
+        for threshold in (0, 1.5, NAN)
     ),
-    ("keep_coverage", {"levels": []}, ["levels: an empty list", "level 0 first, is needed"]),
+    ("keep_coverage", {"threshold": "a"}, ["threshold: 'a'", "a number is needed"]),
+    ("keep_coverage", {"levels": []}, ["levels: none were given", "at least level 0 is needed"]),
     (
         "keep_coverage",
         {"levels": [IMAGE]},

@@ -255,7 +255,7 @@ LEVEL = np.ones((4, 4, 4), np.float32)
         ({"threshold": np.nan}, "threshold: nan"),
         ({"threshold": "half"}, "threshold: 'half'"),
         ({"threshold": True}, "threshold: True"),
-        ({"levels": []}, "levels: an empty list"),
+        ({"levels": []}, "levels: none were given"),
         ({"levels": None}, "levels: a NoneType"),
         ({"levels": [LEVEL[..., :3]]}, "levels: level 0 has 3 channels; all need 4"),
         ({"levels": [LEVEL, LEVEL[:2, :2, :1]]}, "levels: level 1 has 1 channels"),

@@ -30,16 +30,20 @@ std::vector<Lookup> lookups(int cells, int samples, int texels) {
 }
 
 // Alpha with one more texel around it, as the wrap modes say, so that lookups need not ask.
-Image framed(const ImageView& alpha, WrapModes wrap) {
+Image framed(const ImageView& alpha, WrapModes wrap, const Progress& progress, int threads) {
   Image result(alpha.width + 2, alpha.height + 2, 1);
-  for (int y = 0; y < result.height; ++y) {
-    const int from_y = wrap_index(y - 1, alpha.height, wrap.v);
-    for (int x = 0; x < result.width; ++x) {
-      const int from_x = wrap_index(x - 1, alpha.width, wrap.u);
-      const float value = from_x < 0 || from_y < 0 ? 0.0F : *alpha.texel(from_x, from_y);
-      *result.texel(x, y) = std::isfinite(value) ? value : 0.0F;
-    }
-  }
+  parallel_for(result.height, threads, progress, [&](std::int64_t row) {
+    const int from_y = wrap_index(static_cast<int>(row) - 1, alpha.height, wrap.v);
+    if (from_y < 0) return;
+    const float* from = alpha.texel(0, from_y);
+    float* to = result.texel(0, static_cast<int>(row));
+    const auto copy = [&](int from_x, int x) {
+      if (from_x >= 0 && std::isfinite(from[from_x])) to[x] = from[from_x];
+    };
+    copy(wrap_index(-1, alpha.width, wrap.u), 0);
+    for (int x = 0; x < alpha.width; ++x) copy(x, x + 1);
+    copy(wrap_index(alpha.width, alpha.width, wrap.u), alpha.width + 1);
+  });
   return result;
 }
 
@@ -58,14 +62,14 @@ void check(const ImageView& alpha, const ImageView& weights, int samples) {
 double covered_share(const ImageView& alpha, const ImageView& weights, int samples, float threshold,
                      WrapModes wrap, const Progress& progress, int threads) {
   check(alpha, weights, samples);
-  const Image texels = framed(alpha, wrap);
+  const Image texels = framed(alpha, wrap, progress.part(0.0, 0.1), threads);
   const std::vector<Lookup> columns = lookups(weights.width, samples, alpha.width);
   const std::vector<Lookup> rows = lookups(weights.height, samples, alpha.height);
   const auto per_row = static_cast<std::size_t>(weights.height);
   std::vector<double> kept(per_row);
   std::vector<double> all(per_row);
 
-  parallel_for(weights.height, threads, progress, [&](std::int64_t index) {
+  parallel_for(weights.height, threads, progress.part(0.1, 1.0), [&](std::int64_t index) {
     const int cell_y = static_cast<int>(index);
     const Lookup* const y_from = rows.data() + index * samples;
     const Lookup* const y_to = y_from + samples;

@@ -68,9 +68,10 @@ void FilteredImage::check(const FindRead& find_read, const Options& options) {
       if (is_filterable(texel[c])) continue;
       if (read[i] != 0) {
         const auto width = static_cast<std::size_t>(floats_.width);
-        throw_invalid("image: the texel in row " + std::to_string(i / width) + ", column " +
-                      std::to_string(i % width) + " holds " + to_text(texel[c]) + " in channel " +
-                      std::to_string(c) + "; texels that count must be finite, and at most 1e30");
+        throw_invalid(std::string(options.name) + ": the texel in row " +
+                      std::to_string(i / width) + ", column " + std::to_string(i % width) +
+                      " holds " + to_text(texel[c]) + " in channel " + std::to_string(c) +
+                      "; texels that count must be finite, and at most 1e30");
       }
       texel[c] = 0.0F;
     }

@@ -23,6 +23,7 @@ class FilteredImage {
     bool straight_alpha = false;
     // Whether bytes have to be floats, also where alpha plays no part.
     bool needs_floats = true;
+    const char* name = "image";  // what errors call it
     int threads = 0;
     Progress progress;
   };

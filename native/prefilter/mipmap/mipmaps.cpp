@@ -54,6 +54,7 @@ class Builder {
         image_(source, [this] { return read_texels(); },
                {.straight_alpha = !options.premultiplied,
                 .needs_floats = needs_floats(),
+                .name = options.image_name,
                 .threads = options.threads,
                 .progress = options.progress.part(0.1, 0.16)}) {}
 
@@ -364,7 +365,7 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
 std::vector<Image> coarser_levels(const TexelSource& image,
                                   const std::vector<const Surface*>& surfaces,
                                   const MipmapOptions& options) {
-  check_channels({nullptr, image.width, image.height, image.channels});
+  check_channels({nullptr, image.width, image.height, image.channels}, options.image_name);
   check_options(image, surfaces, options);
   return Builder(image, surfaces, options).run();
 }

@@ -37,6 +37,7 @@ struct MipmapOptions {
   double seam_weight = 0.0;
   int threads = 0;  // 0 = all processors
   Progress progress;
+  const char* image_name = "image";  // what errors call it
 };
 
 /// Levels of an image: 0 is the image itself, each other half as wide and high, rounded down, and

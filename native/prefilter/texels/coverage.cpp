@@ -4,6 +4,7 @@
 #include <numeric>
 #include <utility>
 
+#include "prefilter/base/parallel.h"
 #include "prefilter/moments/axis_parts.h"
 #include "prefilter/texels/tiles.h"
 
@@ -121,26 +122,30 @@ std::vector<unsigned char> touched_texels(const std::vector<const Surface*>& sur
 std::vector<unsigned char> looked_up_texels(const std::vector<const Surface*>& surfaces, int width,
                                             int height, WrapModes wrap, const Progress& progress,
                                             int threads) {
-  // A half-texel cell is read through the two texels beside it along each axis.
   const std::vector<float> halves =
       texel_masses(map_to_texels(surfaces, 2 * width, 2 * height, wrap, MassOf::kArea,
                                  progress.part(0.0, 0.3), threads),
-                   progress.part(0.3, 1.0), threads);
+                   progress.part(0.3, 0.9), threads);
+  // A half-texel cell is read through the two texels beside it along each axis. So texel i is read
+  // in the cells from 2 i - 1 to 2 i + 2.
   std::vector<unsigned char> read(static_cast<std::size_t>(width) * height);
-  for (int hy = 0; hy < 2 * height; ++hy) {
-    for (int hx = 0; hx < 2 * width; ++hx) {
-      if (!(halves[static_cast<std::size_t>(hy) * 2 * width + hx] > 0.0F)) continue;
-      const int first_x = (hx + 1) / 2 - 1;
-      const int first_y = (hy + 1) / 2 - 1;
-      for (int dy = 0; dy < 2; ++dy) {
-        for (int dx = 0; dx < 2; ++dx) {
-          const int x = wrap_index(first_x + dx, width, wrap.u);
-          const int y = wrap_index(first_y + dy, height, wrap.v);
-          if (x >= 0 && y >= 0) read[static_cast<std::size_t>(y) * width + x] = 1;
-        }
+  parallel_for(height, threads, progress.part(0.9, 1.0), [&](std::int64_t y) {
+    std::vector<unsigned char> column_read(2 * static_cast<std::size_t>(width));
+    for (int k = -1; k < 3; ++k) {
+      const int row = wrap_index(2 * static_cast<int>(y) + k, 2 * height, wrap.v);
+      if (row < 0) continue;
+      const float* masses = halves.data() + static_cast<std::size_t>(row) * column_read.size();
+      for (std::size_t i = 0; i < column_read.size(); ++i) {
+        column_read[i] |= masses[i] > 0.0F ? 1 : 0;
       }
     }
-  }
+    for (int x = 0; x < width; ++x) {
+      for (int k = -1; k < 3; ++k) {
+        const int column = wrap_index(2 * x + k, 2 * width, wrap.u);
+        if (column >= 0) read[y * width + x] |= column_read[column];
+      }
+    }
+  });
   return read;
 }
 

@@ -73,15 +73,15 @@ def compress_blocks(
     threads: int,
 ) -> bytes: ...
 def to_bytes(image: npt.NDArray[np.float32], srgb: bool, threads: int) -> npt.NDArray[np.uint8]: ...
-def covered_share(
-    alpha: npt.NDArray[np.float32],
-    weights: npt.NDArray[np.float32],
-    samples: int,
+def keep_coverage(
+    levels: Sequence[npt.NDArray[np.float32]],
+    surfaces: Sequence[Surface],
     threshold: float,
     wrap: tuple[str, str],
+    premultiplied: bool,
     progress: ProgressCallback | None,
     threads: int,
-) -> float: ...
+) -> list[npt.NDArray[np.float32]]: ...
 def mipmap_filters() -> list[tuple[str, bool, bool]]: ...
 def coarser_levels(
     image: npt.NDArray[np.float32],
@@ -143,14 +143,17 @@ def fill_unused(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float32]: ...
-def lookup_means(
+def normal_mipmaps(
     normals: npt.NDArray[np.float32],
-    roughness: npt.NDArray[np.float32],
+    roughness: npt.NDArray[np.float32] | None,
+    surfaces: Sequence[Surface],
+    filter: str,
     wrap: tuple[str, str],
-    least_length: float,
+    encoded: bool,
+    levels: int,
     progress: ProgressCallback | None,
     threads: int,
-) -> npt.NDArray[np.float32]: ...
+) -> tuple[list[npt.NDArray[np.float32]], list[npt.NDArray[np.float32]]]: ...
 
 MAX_DEPTH: Final[int]
 

@@ -1,32 +1,22 @@
 """Mipmaps of normal maps, and the roughness that takes what averaging normals loses."""
 
-import re
-from collections.abc import Iterator, Sequence
-from typing import cast, overload
+from collections.abc import Sequence
+from typing import overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
+from ._border.arguments import (
+    ProgressCallback,
+    Wrap,
+    as_level_count,
+    as_name,
+    as_progress,
+    as_wrap,
+)
 from ._border.arrays import FloatArray, as_image, as_threads, check_shape
-from .mipmap import mipmaps
 from .surface import Surface, as_surfaces
-from .texture_use import fill_unused, texel_weights
-
-# A texel of neutral grey decodes to a vector of this length at most, for 8 bits a channel.
-_NO_DIRECTION = 0.02
-
-_TEXELS_A_BAND = 1 << 17
-
-_MEANS = {
-    "pam-bilinear": "pam-box",
-    "pam-trilinear": "pam-box",
-    "pam-box": "pam-box",
-    "box-covered": "box-covered",
-    "tent-covered": "box-covered",
-    "lanczos3-covered": "box-covered",
-}
 
 
 @overload
@@ -106,76 +96,19 @@ def normal_mipmaps(
     image = as_image("normals", normals)
     check_shape("normals", image, ("height", "width", 3))
     rough = None if roughness is None else _as_roughness(roughness, image.shape[:2])
-    report = as_progress(progress)
-    share = 1.0 if rough is None else 0.5
-    vectors = _decoded(image, encoded, _part(report, 0.0, 0.2 * share))
-    try:
-        directions = cast(
-            "list[FloatArray]",
-            mipmaps(
-                vectors,
-                surface,
-                filter=filter,
-                wrap=wrap,
-                bounds=None,
-                levels=levels,
-                progress=_part(report, 0.2 * share, share),
-                threads=threads,
-            ),
-        )
-    except ValueError as error:
-        raise ValueError(re.sub("^image:", "normals:", str(error))) from error
-    made = [image.copy()]
-    for level in directions[1:]:
-        above = _above(level, vectors, surface, wrap, _held(report, share), threads)
-        unit = np.empty_like(level)
-        for band in _bands(level.shape, _held(report, share)):
-            unit[band] = _unit(above[band])
-        made.append((unit + 1) / 2 if encoded else unit)
-    del directions
-    if rough is None:
-        return made
-
-    filled, mean = rough, _MEANS.get(filter, "box")
-    if mean != "box":
-        vectors, filled = (
-            fill_unused(image, as_surfaces(surface), wrap=wrap, progress=part, threads=threads)
-            for image, part in (
-                (vectors, _part(report, 0.5, 0.58)),
-                (rough, _part(report, 0.58, 0.65)),
-            )
-        )
-    _check_finite("roughness", filled)
-    shown = _native.lookup_means(
-        vectors,
-        np.clip(filled, 0, 1),
+    made, rougher = _native.normal_mipmaps(
+        image,
+        rough,
+        as_surfaces(surface),
+        as_name("filter", filter),
         as_wrap(wrap),
-        _NO_DIRECTION,
-        _part(report, 0.65, 0.8),
+        bool(encoded),
+        as_level_count(levels),
+        as_progress(progress),
         as_threads(threads),
     )
-    means = cast(
-        "list[FloatArray]",
-        mipmaps(
-            shown,
-            surface,
-            filter=mean,
-            wrap=wrap,
-            bounds=None,
-            levels=levels,
-            premultiplied=True,
-            progress=_part(report, 0.8, 0.95),
-            threads=threads,
-        ),
-    )
-    rougher = [rough.copy()]
-    for level in means[1:]:
-        rougher.append(np.empty((*level.shape[:2], 1), np.float32))
-        for band in _bands(level.shape, _held(report, 0.95)):
-            rougher[-1][band] = _roughness_of(level[band])
-    if report is not None and report(1.0) is False:
-        raise _native.Cancelled("cancelled")
-    return made, rougher
+    directions = [image.copy(), *made]
+    return directions if rough is None else (directions, [rough.copy(), *rougher])
 
 
 def _as_roughness(roughness: npt.ArrayLike, size: tuple[int, int]) -> FloatArray:
@@ -187,83 +120,3 @@ def _as_roughness(roughness: npt.ArrayLike, size: tuple[int, int]) -> FloatArray
     image = as_image("roughness", roughness)
     check_shape("roughness", image, (*size, 1))
     return image
-
-
-def _unit(vectors: np.ndarray) -> FloatArray:
-    """The vectors with length 1; those that are not finite become NaN."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        lengths = np.linalg.norm(vectors.astype(np.float64), axis=2, keepdims=True)
-        unit = vectors / np.maximum(lengths, _NO_DIRECTION)
-    unit[lengths[..., 0] < _NO_DIRECTION] = (0, 0, 1)
-    return np.asarray(unit, np.float32)
-
-
-def _decoded(image: FloatArray, encoded: bool, progress: ProgressCallback | None) -> FloatArray:
-    vectors = np.empty_like(image)
-    for band in _bands(image.shape, progress):
-        vectors[band] = _unit(2 * image[band] - 1 if encoded else image[band])
-    return vectors
-
-
-def _roughness_of(means: FloatArray) -> FloatArray:
-    """Roughness from the mean difference of unit normals to (0, 0, 1), and the mean alpha^2.
-
-    A unit vector n differs from (0, 0, 1) by d with |d|^2 = -2 d_z. So the variance of the normals,
-    1 - L^2, is -2 E[d_z] - |E[d]|^2.
-    """
-    values = means.astype(np.float64)
-    variance = -2 * values[..., 2:3] - (values[..., :3] ** 2).sum(axis=2, keepdims=True)
-    variance = np.clip(variance, 0, 1)
-    lost = variance / (1 + np.sqrt(1 - variance))  # 1 - L, without cancellation.
-    return np.asarray(np.clip(values[..., 3:] + 2 * lost, 0, 1) ** 0.25, np.float32)
-
-
-def _above(
-    level: FloatArray,
-    vectors: FloatArray,
-    surface: Surface | Sequence[Surface] | None,
-    wrap: Wrap,
-    progress: ProgressCallback | None,
-    threads: int,
-) -> FloatArray:
-    """The level without what least squares overshoot: z below 0 where the map has none."""
-    if level[..., 2].min() >= 0:
-        return level
-    below = vectors[..., 2] < 0
-    if below.any() and surface is not None:
-        height, width = below.shape
-        weights = texel_weights(
-            surface, width, height, wrap=wrap, progress=progress, threads=threads
-        )
-        below &= weights > 0
-    lowest = np.array((-np.inf, -np.inf, 0), np.float32)
-    return level if below.any() else np.maximum(level, lowest)
-
-
-def _held(progress: ProgressCallback | None, fraction: float) -> ProgressCallback | None:
-    return None if progress is None else lambda _: progress(fraction)
-
-
-def _check_finite(name: str, image: FloatArray) -> None:
-    bad = np.argwhere(~np.isfinite(image))
-    if len(bad):
-        row, column, _ = bad[0]
-        raise ValueError(
-            f"{name}: the texel in row {row}, column {column} holds {image[row, column, 0]}; "
-            f"texels that count must be finite"
-        )
-
-
-def _bands(shape: tuple[int, ...], progress: ProgressCallback | None) -> Iterator[slice]:
-    """Rows that are quick to work on, with the progress told between them."""
-    rows = max(1, _TEXELS_A_BAND // shape[1])
-    for start in range(0, shape[0], rows):
-        if progress is not None and progress(start / shape[0]) is False:
-            raise _native.Cancelled("cancelled")
-        yield slice(start, min(start + rows, shape[0]))
-
-
-def _part(progress: ProgressCallback | None, start: float, end: float) -> ProgressCallback | None:
-    if progress is None:
-        return None
-    return lambda fraction: progress(start + (end - start) * fraction)
