@@ -27,7 +27,7 @@ _COVERED = "-covered"
 def _kernel_choice(name: str) -> Choice:
     """Returns how a filter of the library is presented whose kernel weighs texels alike."""
     kernel = name.removesuffix(_COVERED)
-    label = re.sub(r"(?<=[a-z])(?=\d)", " ", kernel).replace("-", " ").title()
+    label = re.sub(r"(?<=[a-z])(?=\d)", " ", kernel).replace("bspline", "B-spline").title()
     if name == kernel:
         return Choice(label, f"{label} over all texels, whether a face uses them or not")
     return Choice(f"{label}, Covered Texels", f"{label} over the texels that a face touches")
