@@ -6,6 +6,8 @@
 namespace prefilter {
 namespace {
 
+constexpr std::ptrdiff_t kTexelsPerReport = 1 << 16;
+
 // Integrals over one axis of a dual cell (between two texel centres) of the products of the two
 // tents there, low x low, low x high and high x high, from the moments.
 void tent_products(const double* moments, int stride, double* products) {
@@ -63,7 +65,7 @@ void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double wei
 }
 
 template <int C>
-void BilinearSystem<C>::prepare(float image_share) {
+void BilinearSystem<C>::prepare(float image_share, const Progress& progress) {
   double sum = 0.0;
   std::int64_t used = 0;
   const auto size = static_cast<std::ptrdiff_t>(system_.size());
@@ -75,6 +77,7 @@ void BilinearSystem<C>::prepare(float image_share) {
   const double pull = used > 0 ? kPull * sum / static_cast<double>(used) : 0.0;
   system_.make_texels();
   for (std::ptrdiff_t j = 0; j < size; ++j) {
+    if (j % kTexelsPerReport == 0) progress.report(0.0);
     if (!(system_.diagonal(j) > 0.0F) || !(weights_[j] > 0.0F)) {
       system_.diagonal(j) = 0.0F;
       continue;
@@ -88,13 +91,14 @@ void BilinearSystem<C>::prepare(float image_share) {
     }
   }
   std::vector<float>().swap(weights_);
-  system_.add_links(std::move(links_));
+  system_.add_links(std::move(links_), progress);
+  progress.report(0.0);
   system_.invert_diagonal();
 }
 
 template <int C>
 auto BilinearSystem<C>::solve(const SolveOptions& options, const Progress& progress) -> Solution {
-  prepare(1.0F);
+  prepare(1.0F, progress);
   const int sweeps = system_.solve(options, progress);
   Solution solution = take_solution();
   solution.sweeps = sweeps;

@@ -45,7 +45,7 @@ class BilinearSystem {
 
   /// The steps of `solve`, for those who go on from there. `prepare` makes the system ready, with
   /// texels at their means p_j; in its right side that of the image counts `image_share` times.
-  void prepare(float image_share);
+  void prepare(float image_share, const Progress& progress);
   NinePointSystem<float>& system() { return system_; }
   Solution take_solution();
 

@@ -98,7 +98,8 @@ auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> Sums {
 }
 
 template <int C>
-auto EncodedFit<C>::assemble(int threads) -> std::array<double, kColours> {
+auto EncodedFit<C>::assemble(int threads, const Progress& progress)
+    -> std::array<double, kColours> {
   system_.clear();
   std::vector<Sums> sums(cells_.size());
   // Rows of tiles that are not beside each other share no texels.
@@ -107,7 +108,9 @@ auto EncodedFit<C>::assemble(int threads) -> std::array<double, kColours> {
     for (int row = 0; row < tile_rows_; ++row) {
       if (tile_colour(row, tile_rows_, image_height_) == colour) rows.push_back(row);
     }
-    parallel_for(static_cast<std::int64_t>(rows.size()), threads, Progress(), [&](std::int64_t i) {
+    const Progress part = progress.part(static_cast<double>(colour) / kTileColours,
+                                        static_cast<double>(colour + 1) / kTileColours);
+    parallel_for(static_cast<std::int64_t>(rows.size()), threads, part, [&](std::int64_t i) {
       const std::size_t first = static_cast<std::size_t>(rows[i]) * tile_columns_;
       for (std::size_t tile = first; tile < first + tile_columns_; ++tile) {
         sums[tile] = assemble(cells_[tile]);
@@ -173,8 +176,8 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
   for (int round = 0; round < kMostRounds; ++round) {
     const Progress part = progress.part(static_cast<double>(round) / kMostRounds,
                                         static_cast<double>(round + 1) / kMostRounds);
-    std::array<double, kColours> sums = assemble(options.threads);
-    part.report(0.5);
+    const Progress assembling = part.part(0.0, 0.4);
+    std::array<double, kColours> sums = assemble(options.threads, assembling);
     if (round == 0) {
       first = least = sums;
     } else {
@@ -193,7 +196,7 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
           LaneValues& texel = system_.texel(static_cast<std::ptrdiff_t>(i));
           texel.v += keep * (before[i].v - texel.v);
         }
-        sums = assemble(options.threads);
+        sums = assemble(options.threads, assembling);
       }
       bool settled = true;
       for (int c = 0; c < kColours; ++c) {
@@ -209,6 +212,7 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
       mean += system_.diagonal(at).v;
       count += 1.0F;
     });
+    part.report(0.42);
     const Lanes pull = static_cast<float>(kPull) / std::max(count, 1.0F) * mean;
     for_each_texel([&](std::ptrdiff_t at, const float* texel) {
       Lanes target{};
@@ -216,8 +220,9 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
       system_.diagonal(at).v += pull;
       system_.right_side(at).v += pull * target;
     });
-    system_.add_links(links_);
+    system_.add_links(links_, part.part(0.45, 0.48));
     system_.invert_diagonal();
+    part.report(0.48);
     for (std::size_t i = 0; i < before.size(); ++i) {
       before[i] = system_.texel(static_cast<std::ptrdiff_t>(i));
     }

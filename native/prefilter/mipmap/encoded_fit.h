@@ -49,7 +49,7 @@ class EncodedFit {
 
   // Puts the Gauss-Newton system at the texels together; returns the sum of squares of each
   // channel, less what does not depend on the texels.
-  std::array<double, kColours> assemble(int threads);
+  std::array<double, kColours> assemble(int threads, const Progress& progress);
 
   struct Sums {
     std::array<double, kColours> squares{};

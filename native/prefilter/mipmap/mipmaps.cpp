@@ -180,6 +180,7 @@ class Builder {
                      options_.progress.part(0.2, 0.5),
                      [&](const MomentBlock<C>& block) { system.add(block); });
     for_each_level_of_seams(image_.floats(), full_level_count(width_, height_) - 2,
+                            options_.progress.part(0.5, 0.5),
                             [&](int level, const std::vector<SeamLink>& links, double weight) {
                               system.add_links(level, links, weight);
                             });
@@ -194,16 +195,17 @@ class Builder {
 
   // Calls use(level, links, weight) for every level; nothing where seams do not count.
   template <typename Use>
-  void for_each_level_of_seams(const ImageView& image, int last_level, const Use& use) const {
+  void for_each_level_of_seams(const ImageView& image, int last_level, const Progress& progress,
+                               const Use& use) const {
     if (options_.seam_weight == 0.0) return;
-    std::vector<SeamEdge> seams = find_seams(surfaces_);
-    weigh_seams(image, surfaces_, options_.wrap, &seams);
+    std::vector<SeamEdge> seams = find_seams(surfaces_, progress);
+    weigh_seams(image, surfaces_, options_.wrap, progress, &seams);
     double area = 0.0;
     for (const Surface* surface : surfaces_) area += surface->total_area();
     // The fits count area in texels of the image.
     const double texels_by_area = static_cast<double>(width_) * height_ / area;
     for (int level = 1; level <= last_level; ++level) {
-      use(level, link_seams(seams, width(level), height(level), options_.wrap),
+      use(level, link_seams(seams, width(level), height(level), options_.wrap, progress),
           options_.seam_weight * texels_by_area);
     }
   }
@@ -249,19 +251,20 @@ class Builder {
                        if (encoded) fits[block.level - 1]->add(block);
                      });
 
-    for_each_level_of_seams(image_.floats(), level_count_ - 1,
+    double from = encoded ? 0.3 : 0.5;
+    const Progress linking = options_.progress.part(from, from);
+    for_each_level_of_seams(image_.floats(), level_count_ - 1, linking,
                             [&](int level, const std::vector<SeamLink>& links, double weight) {
                               systems[level - 1]->add_links(links, weight);
                             });
     if (encoded) {
-      for_each_level_of_seams(encoded_image.view(), level_count_ - 1,
+      for_each_level_of_seams(encoded_image.view(), level_count_ - 1, linking,
                               [&](int level, const std::vector<SeamLink>& links, double weight) {
                                 fits[level - 1]->add_links(links, weight);
                               });
     }
     const SolveOptions solve = solve_options();
     std::vector<Image> levels;
-    double from = encoded ? 0.3 : 0.5;
     for (int level = 1; level < level_count_; ++level) {
       // A level has a quarter of the texels of the one before.
       const double to = from + 0.75 * (0.97 - from);

@@ -6,6 +6,8 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "prefilter/base/pulse.h"
+
 namespace prefilter {
 namespace {
 
@@ -29,11 +31,12 @@ struct PositionHash {
 };
 
 // The first vertex at each vertex's position.
-std::vector<std::int32_t> weld(const std::vector<std::array<double, 3>>& positions) {
+std::vector<std::int32_t> weld(const std::vector<std::array<double, 3>>& positions, Pulse* pulse) {
   std::unordered_map<std::array<double, 3>, std::int32_t, PositionHash> first;
   first.reserve(positions.size());
   std::vector<std::int32_t> welded(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
+    pulse->step();
     std::array<double, 3> position = positions[i];
     for (double& value : position) value += 0.0;  // -0 is 0
     welded[i] = first.try_emplace(position, static_cast<std::int32_t>(i)).first->second;
@@ -150,7 +153,7 @@ void for_each_part(const std::array<TextureCoordinate, 3>& triangle, int n, cons
 // The variance of the image over the surfaces, by points that stand for about the same area each,
 // at least one a triangle.
 double variance_on(const std::vector<const Surface*>& surfaces, const ImageView& image,
-                   WrapModes wrap) {
+                   WrapModes wrap, Pulse* pulse) {
   constexpr double kPoints = 1 << 14;
   double area = 0.0;
   for (const Surface* surface : surfaces) area += surface->total_area();
@@ -159,6 +162,7 @@ double variance_on(const std::vector<const Surface*>& surfaces, const ImageView&
   std::array<double, kMaxChannels> mean{};
   for (const Surface* surface : surfaces) {
     for (std::size_t k = 0; k < surface->triangle_count(); ++k) {
+      pulse->step();
       if (!(surface->areas[k] > 0.0)) continue;
       const int n = static_cast<int>(std::ceil(std::sqrt(kPoints * surface->areas[k] / area)));
       const double part = surface->areas[k] / (static_cast<double>(n) * n);
@@ -203,11 +207,13 @@ double gauss_point(double begin, double end, int k) {
 
 }  // namespace
 
-std::vector<SeamEdge> find_seams(const Surface& surface) {
-  const std::vector<std::int32_t> welded = weld(surface.positions);
+std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progress) {
+  Pulse pulse(progress);
+  const std::vector<std::int32_t> welded = weld(surface.positions, &pulse);
   std::vector<Edge> edges;
   edges.reserve(3 * surface.triangles.size());
   for (std::size_t k = 0; k < surface.triangles.size(); ++k) {
+    pulse.step();
     for (int corner = 0; corner < 3; ++corner) {
       const int next = (corner + 1) % 3;
       Edge edge{welded[surface.triangles[k][corner]], welded[surface.triangles[k][next]],
@@ -220,7 +226,8 @@ std::vector<SeamEdge> find_seams(const Surface& surface) {
       edges.push_back(edge);
     }
   }
-  std::stable_sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+  std::stable_sort(edges.begin(), edges.end(), [&](const Edge& a, const Edge& b) {
+    pulse.step();
     return std::tie(a.low, a.high) < std::tie(b.low, b.high);
   });
   const auto same_line = [](const Edge& a, const Edge& b) {
@@ -231,6 +238,7 @@ std::vector<SeamEdge> find_seams(const Surface& surface) {
   std::vector<SeamEdge> seams;
   std::size_t end = 0;
   for (std::size_t begin = 0; begin < edges.size(); begin = end) {
+    pulse.step();
     end = begin + 1;
     while (end < edges.size() && same_line(edges[begin], edges[end])) ++end;
     if (end - begin != 2) continue;
@@ -246,10 +254,11 @@ std::vector<SeamEdge> find_seams(const Surface& surface) {
   return seams;
 }
 
-std::vector<SeamEdge> find_seams(const std::vector<const Surface*>& surfaces) {
+std::vector<SeamEdge> find_seams(const std::vector<const Surface*>& surfaces,
+                                 const Progress& progress) {
   std::vector<SeamEdge> seams;
   for (const Surface* surface : surfaces) {
-    const std::vector<SeamEdge> own = find_seams(*surface);
+    const std::vector<SeamEdge> own = find_seams(*surface, progress);
     seams.insert(seams.end(), own.begin(), own.end());
   }
   return seams;
@@ -270,9 +279,11 @@ double mean_square_across(const SeamEdge& seam, const ImageView& image, WrapMode
 }
 
 void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surfaces,
-                 WrapModes wrap, std::vector<SeamEdge>* seams) {
-  const double variance = variance_on(surfaces, image, wrap);
+                 WrapModes wrap, const Progress& progress, std::vector<SeamEdge>* seams) {
+  Pulse pulse(progress);
+  const double variance = variance_on(surfaces, image, wrap, &pulse);
   for (SeamEdge& seam : *seams) {
+    pulse.step();
     const double difference = mean_square_across(seam, image, wrap);
     if (!(difference > 0.0)) continue;
     const double off = variance > 0.0 ? difference / (kSharpSeam * variance) : HUGE_VAL;
@@ -281,11 +292,13 @@ void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surf
 }
 
 std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, int height,
-                                 WrapModes wrap) {
+                                 WrapModes wrap, const Progress& progress) {
+  Pulse pulse(progress);
   std::vector<SeamLink> links;
   double length = 0.0;
   double texels = 0.0;
   for (const SeamEdge& seam : seams) {
+    pulse.step();
     const double left = texel_length(seam.left, width, height);
     const double right = texel_length(seam.right, width, height);
     if (!(left + right > 0.0) || left + right > kLongestSeam) continue;

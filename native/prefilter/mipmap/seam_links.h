@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
+#include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/solve/nine_point_system.h"
 #include "prefilter/surface/surface.h"
@@ -24,9 +25,11 @@ struct SeamEdge {
 
 /// The seams of a surface. Vertices at the same position are one; edges of no length, or whose two
 /// triangles agree, are none, and neither are those that more than two triangles share: nobody
-/// knows which of them belong together.
-std::vector<SeamEdge> find_seams(const Surface& surface);
-std::vector<SeamEdge> find_seams(const std::vector<const Surface*>& surfaces);
+/// knows which of them belong together. This and the functions below tell `progress` that they are
+/// at its beginning, now and then; they throw Error(kCancelled).
+std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progress);
+std::vector<SeamEdge> find_seams(const std::vector<const Surface*>& surfaces,
+                                 const Progress& progress);
 
 /// The mean along a seam, summed over the channels, of the square of the difference between the
 /// bilinear lookups on its two sides.
@@ -48,13 +51,13 @@ struct SeamLink {
 /// divided by (1 + d / (v / 20))^2, d the mean square of the difference along the seam and v the
 /// variance of the image over the surfaces, from some thousand points.
 void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surfaces,
-                 WrapModes wrap, std::vector<SeamEdge>* seams);
+                 WrapModes wrap, const Progress& progress, std::vector<SeamEdge>* seams);
 
 /// Links along all of the seams for a level of width x height texels. Sums over them of
 /// squares of differences, times length, are exact: Gauss's rule of three points between the places
 /// where either side passes a texel's centre, along which the lookups are quadratic.
 std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, int height,
-                                 WrapModes wrap);
+                                 WrapModes wrap, const Progress& progress);
 
 /// The links between the texels of a level's system, each with its strip's area times `weight`, the
 /// same for all channels.

@@ -25,7 +25,7 @@ std::vector<double> seam_contrast(const std::vector<ImageView>& levels,
   for (std::size_t k = 0; k < levels.size(); ++k) {
     check_view(levels[k], "levels: level " + std::to_string(k));
   }
-  const std::vector<SeamEdge> seams = find_seams(surfaces);
+  const std::vector<SeamEdge> seams = find_seams(surfaces, progress.part(0.0, 0.0));
   std::vector<double> contrasts;
   for (std::size_t k = 0; k < levels.size(); ++k) {
     const Progress part =

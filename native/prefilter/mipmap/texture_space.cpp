@@ -1,5 +1,6 @@
 #include "prefilter/mipmap/texture_space.h"
 
+#include "prefilter/base/parallel.h"
 #include "prefilter/filters/downsample.h"
 #include "prefilter/filters/push_pull.h"
 #include "prefilter/texels/levels.h"
@@ -22,20 +23,23 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
                            const Progress& progress, int threads) {
   Image masked(image.width, image.height, image.channels);
   Image mask(image.width, image.height, 1);
-  for (std::size_t i = 0; i < covered.size(); ++i) {
-    if (covered[i] == 0) continue;
-    mask.data[i] = 1.0F;
-    for (int c = 0; c < image.channels; ++c) {
-      const std::size_t at = i * static_cast<std::size_t>(image.channels) + c;
-      masked.data[at] = image.data[at];
+  parallel_for(image.height, threads, progress.part(0.0, 0.1), [&](std::int64_t row) {
+    const std::size_t begin = static_cast<std::size_t>(row) * image.width;
+    for (std::size_t i = begin; i < begin + image.width; ++i) {
+      if (covered[i] == 0) continue;
+      mask.data[i] = 1.0F;
+      for (int c = 0; c < image.channels; ++c) {
+        const std::size_t at = i * static_cast<std::size_t>(image.channels) + c;
+        masked.data[at] = image.data[at];
+      }
     }
-  }
+  });
   const int width = level_size(image.width, level);
   const int height = level_size(image.height, level);
   const auto reduce = [&](const Image& source, const Kernel& with, double from, double to) {
     return downsample(source.view(), width, height, with, wrap, progress.part(from, to), threads);
   };
-  Image sums = reduce(masked, kernel, 0.0, 0.4);
+  Image sums = reduce(masked, kernel, 0.1, 0.4);
   Image weights = reduce(mask, kernel, 0.4, 0.5);
   const Image box_sums = reduce(masked, box_kernel(), 0.5, 0.8);
   const Image box_weights = reduce(mask, box_kernel(), 0.8, 0.9);

@@ -59,7 +59,7 @@ auto TrilinearSystem<C>::solve(const SolveOptions& options, const Progress& prog
     BilinearSystem<C>& system = *systems_[level - 1];
     // The equations of a level are divided by 2/3. Of level 1, 1/6 A_1,0 times the image is known:
     // it is 1/6 of its right side.
-    system.prepare(level == 1 ? 1.5F * 5.0F / 6.0F : 1.5F);
+    system.prepare(level == 1 ? 1.5F * 5.0F / 6.0F : 1.5F, progress);
     system.system().swap_right_side(&fixed.emplace_back());
   }
   NinePointSystem<float>& last = systems_.back()->system();
@@ -80,7 +80,9 @@ auto TrilinearSystem<C>::solve(const SolveOptions& options, const Progress& prog
   };
   for (int round = 0; round < kMostRounds && !settled(); ++round) {
     for (int level = 1; level < last_level_; ++level) {
-      progress.report((round + 1.0 - std::ldexp(1.0, 1 - level)) / kMostRounds);
+      const Progress part = progress.part((round + 1.0 - std::ldexp(1.0, 1 - level)) / kMostRounds,
+                                          (round + 1.0 - std::ldexp(1.0, -level)) / kMostRounds);
+      part.report(0.0);
       if (!moves[level - 1] && !moves[level] && !moves[level + 1]) continue;
       NinePointSystem<float>& system = systems_[level - 1]->system();
       right = fixed[level - 1];
@@ -91,7 +93,7 @@ auto TrilinearSystem<C>::solve(const SolveOptions& options, const Progress& prog
                                             options.threads, &right);
       }
       system.swap_right_side(&right);
-      moves[level] = system.solve(few, Progress()) > 1;
+      moves[level] = system.solve(few, part) > 1;
       system.swap_right_side(&right);
     }
   }

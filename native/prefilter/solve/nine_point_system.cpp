@@ -4,17 +4,22 @@
 #include "prefilter/solve/nine_point_system.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <exception>
+#include <functional>
 #include <limits>
 
 #include "prefilter/base/parallel.h"
+#include "prefilter/base/pulse.h"
 
 namespace prefilter {
 namespace {
 
 // Levels of fewer texels are not worth a second thread.
 constexpr std::int64_t kTexelsWorthThreads = 64 * 64;
+constexpr std::int64_t kRowsPerReport = 64;
+constexpr std::size_t kLinksPerReport = 1 << 12;
 
 float of(float entry) { return entry; }
 Lanes of(const LaneValues& entry) { return entry.v; }
@@ -219,8 +224,10 @@ bool NinePointSystem<Entry>::relax_row(int y, const SolveOptions& options, Lanes
 
 template <typename Entry>
 void NinePointSystem<Entry>::relax_linked(const SolveOptions& options, Lanes typical,
-                                          std::vector<unsigned char>* moves) {
+                                          std::vector<unsigned char>* moves,
+                                          const std::function<bool()>& goes_on) {
   for (std::size_t i = 0; i < links_.size(); ++i) {
+    if (i % kLinksPerReport == 0 && !goes_on()) return;
     Lanes sum{};
     for (int k = 0; k < links_[i].count; ++k) {
       sum += links_[i].shares[k] * texels_[links_[i].texels[k]].v;
@@ -228,6 +235,7 @@ void NinePointSystem<Entry>::relax_linked(const SolveOptions& options, Lanes typ
     link_sums_[i].v = sum;
   }
   for (std::size_t k = 0; k + 1 < linked_.size();) {
+    if (!goes_on()) return;
     const int y = static_cast<int>(linked_[k].at / stride_);
     Row row(this, y, options, typical);
     for (; linked_[k].at < at(width_, y); ++k) {
@@ -291,26 +299,38 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
   int sweeps = 0;
   bool done = false;
   std::exception_ptr cancelled;
+  std::atomic<bool> stop{false};
+  const auto report = [&](double sweeps_done) {
+    try {
+      if (!cancelled) progress.report(sweeps_done / options.max_sweeps);
+    } catch (...) {
+      cancelled = std::current_exception();
+      stop = true;
+    }
+  };
   const bool small = static_cast<std::int64_t>(width_) * height_ < kTexelsWorthThreads;
   parallel_team(small ? 1 : resolve_threads(options.threads), [&](Team& team) {
     while (!done) {
       for (int colour = 0; colour < 2; ++colour) {
         const std::int64_t end = team.share_end(rows_of_colour[colour]);
         for (std::int64_t i = team.share_begin(rows_of_colour[colour]); i < end; ++i) {
+          if (stop.load(std::memory_order_relaxed)) break;
           relax(static_cast<int>(2 * i) + colour);
+          if (team.rank() == 0 && i % kRowsPerReport == 0) {
+            report(sweeps + 0.5 * (colour + static_cast<double>(i) / static_cast<double>(end)));
+          }
         }
         team.wait_for_all();
       }
       if (team.rank() == 0) {
         if (odd_ring) relax(height_ - 1);
-        relax_linked(options, typical, &moves);
+        relax_linked(options, typical, &moves, [&] {
+          report(sweeps + 1.0);
+          return !stop.load(std::memory_order_relaxed);
+        });
         ++sweeps;
         const bool settled = std::find(moves.begin(), moves.end(), 1) == moves.end();
-        try {
-          progress.report(static_cast<double>(sweeps) / options.max_sweeps);
-        } catch (...) {
-          cancelled = std::current_exception();
-        }
+        report(sweeps);
         done = settled || sweeps >= options.max_sweeps || cancelled;
       }
       team.wait_for_all();
@@ -321,7 +341,8 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
 }
 
 template <typename Entry>
-void NinePointSystem<Entry>::add_links(std::vector<TexelLink> links) {
+void NinePointSystem<Entry>::add_links(std::vector<TexelLink> links, const Progress& progress) {
+  Pulse pulse(progress);
   const auto outside = [this](const TexelLink& link) {
     return std::any_of(link.texels.begin(), link.texels.begin() + link.count,
                        [this](std::ptrdiff_t at) { return !is_part(at); });
@@ -335,14 +356,17 @@ void NinePointSystem<Entry>::add_links(std::vector<TexelLink> links) {
   };
   std::vector<Use> uses;
   for (std::size_t i = 0; i < links_.size(); ++i) {
+    pulse.step();
     for (int k = 0; k < links_[i].count; ++k) {
       const float share = links_[i].shares[k];
       uses.push_back({links_[i].texels[k], {static_cast<std::uint32_t>(i), share}});
       add_square(&stencils_[links_[i].texels[k]].centre, links_[i].weight, share);
     }
   }
-  std::stable_sort(uses.begin(), uses.end(),
-                   [](const Use& a, const Use& b) { return a.at < b.at; });
+  std::stable_sort(uses.begin(), uses.end(), [&pulse](const Use& a, const Use& b) {
+    pulse.step();
+    return a.at < b.at;
+  });
   linked_.clear();
   uses_.clear();
   for (const Use& use : uses) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "prefilter/base/image.h"
@@ -67,7 +68,7 @@ class NinePointSystem {
 
   /// Adds the squares of links, less those that read a texel with a diagonal of 0. To be called
   /// once all cells are there.
-  void add_links(std::vector<TexelLink> links);
+  void add_links(std::vector<TexelLink> links, const Progress& progress);
 
   /// Makes the system ready for `solve`: from here on `diagonal` holds the inverse, or 0 for texels
   /// that are not part of it (a diagonal of 0), which stay as they are.
@@ -108,7 +109,8 @@ class NinePointSystem {
   bool relax_row(int y, const SolveOptions& options, Lanes typical);
   // One step of every texel that links meet, in order: they can be anywhere, so they move by
   // themselves. Marks the rows of those that moved.
-  void relax_linked(const SolveOptions& options, Lanes typical, std::vector<unsigned char>* moves);
+  void relax_linked(const SolveOptions& options, Lanes typical, std::vector<unsigned char>* moves,
+                    const std::function<bool()>& goes_on);
   // A typical value of each channel: the median over rows of the mean magnitude of the texels in
   // use.
   Lanes typical_values() const;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/pulse.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
@@ -325,6 +326,21 @@ void check_creases(const PolygonArrays& mesh, const ControlMesh& control,
   }
 }
 
+// An array that OpenSubdiv fills, entry by entry, and that lets a cancel through meanwhile.
+template <typename Values>
+class Filled {
+ public:
+  Filled(Values* values, Pulse* pulse) : values_(*values), pulse_(*pulse) {}
+  auto& operator[](int i) {
+    pulse_.step();
+    return values_[i];
+  }
+
+ private:
+  Values& values_;
+  Pulse& pulse_;
+};
+
 // The arrays of the surface at the last level.
 struct Refined {
   Points points;
@@ -344,11 +360,16 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
     Refined next;
     next.points.resize(topology.GetNumVertices());
     next.uvs.resize(topology.GetNumFVarValues());
-    primvars.Interpolate(l, now.points, next.points);
-    primvars.InterpolateFaceVarying(l, now.uvs, next.uvs);
+    const Progress part = progress.part(static_cast<double>(l - 1) / level, 1.0);
+    Pulse pulse(part);
+    Filled points(&next.points, &pulse);
+    Filled uvs(&next.uvs, &pulse);
+    primvars.Interpolate(l, now.points, points);
+    primvars.InterpolateFaceVarying(l, now.uvs, uvs);
     if (!now.weights.empty()) {
       next.weights.resize(topology.GetNumVertices());
-      primvars.InterpolateVarying(l, now.weights, next.weights);
+      Filled weights(&next.weights, &pulse);
+      primvars.InterpolateVarying(l, now.weights, weights);
     }
     next.base_faces.resize(topology.GetNumFaces());
     for (int face = 0; face < topology.GetNumFaces(); ++face) {
@@ -357,17 +378,21 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
     now = std::move(next);
     progress.report(static_cast<double>(l) / level);
   }
+  const Progress limits = progress.part(1.0, 1.0);
+  Pulse pulse(limits);
   Points points(now.points.size());
-  primvars.Limit(now.points, points);
+  Filled limit_points(&points, &pulse);
+  primvars.Limit(now.points, limit_points);
   now.points = std::move(points);
   Uvs uvs(now.uvs.size());
-  primvars.LimitFaceVarying(now.uvs, uvs);
+  Filled limit_uvs(&uvs, &pulse);
+  primvars.LimitFaceVarying(now.uvs, limit_uvs);
   now.uvs = std::move(uvs);
   return now;
 }
 
 Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
-                     const Far::TopologyLevel& topology) {
+                     const Far::TopologyLevel& topology, const Progress& progress) {
   std::vector<std::int64_t> vertex_map(refined.points.size(), -1);
   std::vector<double> positions;
   std::vector<double> weights;
@@ -384,7 +409,9 @@ Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
     triangles.push_back(place);
     uvs.insert(uvs.end(), refined.uvs[uv].v.begin(), refined.uvs[uv].v.end());
   };
+  Pulse pulse(progress);
   for (int face = 0; face < topology.GetNumFaces(); ++face) {
+    pulse.step();
     const int base = refined.base_faces[face];
     if (mesh.kept != nullptr && !mesh.kept[base]) continue;
     const Far::ConstIndexArray vertices = topology.GetFaceVertices(face);
@@ -394,6 +421,7 @@ Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
       if (mesh.weights_of == WeightsOf::kTriangles) weights.push_back(mesh.weights[base]);
     }
   }
+  progress.report(0.5);
   MeshArrays arrays;
   arrays.positions = positions.data();
   arrays.vertex_count = positions.size() / 3;
@@ -443,7 +471,8 @@ Surface subdivide(const PolygonArrays& mesh, const SubdivisionOptions& options) 
   how.fullTopologyInLastLevel = true;  // The limit masks look at it.
   refiner->RefineUniform(how);
   const Refined refined = refine(control, *refiner, options.level, options.progress.part(0.4, 0.8));
-  const Surface surface = triangulated(mesh, refined, refiner->GetLevel(options.level));
+  const Surface surface = triangulated(mesh, refined, refiner->GetLevel(options.level),
+                                       options.progress.part(0.8, 1.0));
   options.progress.report(1.0);
   return surface;
 }

@@ -1,0 +1,175 @@
+"""A cancel is heard within 0.2 s, at any time.
+
+Between two calls of a progress callback nobody can cancel, so the longest time between them counts,
+and the time from a False to the exception. Both may grow with the input, and these inputs are
+small: half of the time is allowed. It is processor time of the one thread that works, the least of
+some tries: other processes do not count.
+"""
+
+import time
+
+import numpy as np
+import prefilter
+import pytest
+from scenes import random_image, random_soup
+from solids import sphere
+
+LONGEST = 0.1
+TRIES = 4
+FILTERS = ["box", "lanczos3-covered", "pam-box", "pam-bilinear", "pam-trilinear"]
+IMAGE = random_image(0, 512, 512, 3)
+RGBA = random_image(1, 512, 512, 4)
+
+
+def sheet(size):
+    """A square of size^2 cells in charts of a few triangles each; and its quadrilaterals."""
+    x, y = (c.ravel() / size for c in np.meshgrid(*2 * [np.arange(size + 1)], indexing="ij"))
+    corner = np.arange((size + 1) ** 2).reshape(size + 1, size + 1)[:-1, :-1].reshape(-1, 1)
+    quads = corner + np.array([0, size + 1, size + 2, 1])
+    triangles = quads[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    positions = np.stack([x, y, 0.1 * np.sin(7 * x) * np.cos(5 * y)], axis=1)
+    shifts = np.random.default_rng(0).uniform(0, 0.05, (len(triangles) // 50 + 1, 1, 2))
+    uvs = 0.9 * positions[triangles][..., :2] + np.repeat(shifts, 50, axis=0)[: len(triangles)]
+    return positions, triangles, uvs, quads
+
+
+POSITIONS, TRIANGLES, UVS, QUADS = sheet(120)
+SURFACE = prefilter.Surface(POSITIONS, TRIANGLES, UVS)
+LARGE = random_soup(0, 50).surface
+BALL = sphere(0.45, 6, (0.5, 0.5, 0.5))
+OPEN = BALL.without(range(0, len(BALL.triangles), 37))
+BOUNDS = ((0.0,) * 3, (1.0,) * 3)
+POINTS = np.random.default_rng(1).random((10_000, 3))
+
+
+def octree(offset=0.0):
+    mesh = BALL.positions + offset
+    return prefilter.voxelize(mesh, BALL.triangles, depth=8, bounds=BOUNDS)
+
+
+@pytest.fixture(scope="module")
+def octrees():
+    return octree(), octree(0.02)
+
+
+@pytest.fixture(scope="module")
+def levels():
+    return prefilter.mipmaps(RGBA, filter="box")
+
+
+def ball_grid(size):
+    x = (np.arange(size) - size / 2) ** 2
+    return np.clip(0.4 * size - np.sqrt(x[:, None, None] + x[:, None] + x), 0, 1)
+
+
+GRID = ball_grid(128)
+
+WORK = {
+    **{
+        f"mipmaps, {filter}": lambda filter=filter, **options: prefilter.mipmaps(
+            IMAGE, SURFACE, filter=filter, threads=1, **options
+        )
+        for filter in FILTERS
+    },
+    "mipmaps, triangles as large as the image": lambda **options: prefilter.mipmaps(
+        IMAGE, LARGE, wrap="repeat", threads=1, **options
+    ),
+    "mipmaps, encoded": lambda **options: prefilter.mipmaps(
+        IMAGE, SURFACE, reader="srgb-after", threads=1, **options
+    ),
+    "mipmaps, seams": lambda **options: prefilter.mipmaps(
+        IMAGE, SURFACE, seam_weight=1.0, threads=1, **options
+    ),
+    "seam_contrast": lambda **options: prefilter.seam_contrast([IMAGE], SURFACE, **options),
+    "normal_mipmaps": lambda **options: prefilter.normal_mipmaps(
+        IMAGE, SURFACE, roughness=0.3, threads=1, **options
+    ),
+    "keep_coverage": lambda levels, **options: prefilter.keep_coverage(
+        levels, SURFACE, threads=1, **options
+    ),
+    "mipmap_error": lambda levels, **options: prefilter.mipmap_error(
+        levels, RGBA, SURFACE, [1.5], threads=1, **options
+    ),
+    "texel_weights": lambda **options: prefilter.texel_weights(
+        SURFACE, 1024, 1024, threads=1, **options
+    ),
+    "fill_unused": lambda **options: prefilter.fill_unused(IMAGE, SURFACE, threads=1, **options),
+    "subdivision": lambda **options: prefilter.Surface.from_subdivision(
+        POSITIONS,
+        np.full(len(QUADS), 4),
+        QUADS.ravel(),
+        POSITIONS[QUADS.ravel(), :2].copy(),
+        level=2,
+        **options,
+    ),
+    "voxelize": lambda **options: prefilter.voxelize(
+        BALL.positions, BALL.triangles, depth=8, threads=1, **options
+    ),
+    "close_holes": lambda **options: prefilter.close_holes(
+        OPEN.positions, OPEN.triangles, **options
+    ),
+    "nearest_points": lambda **options: prefilter.nearest_points(
+        POINTS, BALL.positions, BALL.triangles, threads=1, **options
+    ),
+    "contour": lambda **options: prefilter.contour(GRID, threads=1, **options),
+    "contour, 2D": lambda **options: prefilter.contour(IMAGE[..., 0], **options),
+    **{
+        f"octree.contour, {interpolant}": lambda octrees, interpolant=interpolant, **options: (
+            octrees[0].contour(interpolant=interpolant, threads=1, **options)
+        )
+        for interpolant in ("occupancy", "plane")
+    },
+    **{
+        f"octree.{name}": lambda octrees, name=name, **options: getattr(octrees[0], name)(
+            octrees[1], threads=1, **options
+        )
+        for name in ("union", "difference")
+    },
+    "octree.dense": lambda octrees, **options: octrees[0].dense(7, threads=1, **options),
+}
+
+
+@pytest.fixture(params=WORK)
+def work(request):
+    arguments = WORK[request.param].__code__.co_varnames
+    fixtures = [name for name in ("octrees", "levels") if name in arguments]
+    given = {name: request.getfixturevalue(name) for name in fixtures}
+    return lambda progress: WORK[request.param](**given, progress=progress)
+
+
+def least(measure):
+    """The least of some measurements, no more of them than it takes."""
+    found = np.inf
+    for _ in range(TRIES):
+        found = min(found, measure())
+        if found < LONGEST:
+            break
+    return found
+
+
+def test_a_cancel_can_come_at_any_time(work):
+    def longest_gap():
+        times = [time.thread_time()]
+        work(lambda fraction: times.append(time.thread_time()))
+        return np.diff([*times, time.thread_time()]).max()
+
+    assert least(longest_gap) < LONGEST
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5])
+def test_a_cancel_ends_the_work(work, share):
+    def time_to_return():
+        stopped = []
+
+        def stop(fraction):
+            if fraction >= share:
+                stopped.append(time.thread_time())
+                return False
+            return None
+
+        with pytest.raises(prefilter.Cancelled):
+            work(stop)
+        assert len(stopped) == 1
+        return time.thread_time() - stopped[0]
+
+    assert least(time_to_return) < LONGEST
