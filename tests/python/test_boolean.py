@@ -71,9 +71,10 @@ def check(a: Solid, b: Solid, depth: int = 8) -> None:
         prefilter.voxelize(s.positions, s.triangles, depth=depth, bounds=(low, high))
         for s in (a, b)
     ]
-    points = RandomPoints([a, b], low, high)
-    for operation in OPERATIONS:
-        estimate = points.estimate(operation.inside, error=ERROR_BAR)
+    estimates = RandomPoints([a, b], low, high).estimates(
+        [operation.inside for operation in OPERATIONS], error=ERROR_BAR
+    )
+    for operation, estimate in zip(OPERATIONS, estimates, strict=True):
         assert estimate.error < ERROR_BAR * estimate.volume
         octree = operation(*octrees)
         print(f"{operation.name}: +- {estimate.error / estimate.volume:.3%}")

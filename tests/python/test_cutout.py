@@ -43,7 +43,7 @@ def two_charts():
 @pytest.mark.parametrize("threshold", [0.2, 0.5, 0.9])
 @pytest.mark.parametrize("count", [12, 200])
 def test_levels_keep_the_share_of_the_surface(threshold, count):
-    """400 000 random points: the standard deviation of a share is about 0.001."""
+    """200 000 random points: the standard deviation of a share is about 0.001."""
     mesh = two_charts()
     image = leaves(128, count, 9)
     levels = prefilter.mipmaps(image, mesh.surface)
