@@ -102,10 +102,10 @@ def _earlier_levels(picture: Picture) -> dict[int, list[bpy.types.Image]]:
         numbers[suffixed(picture.name, f"mip{number}")] = number
     found: dict[int, list[bpy.types.Image]] = {}
     for image in bpy.data.images:
-        number = numbers.get(_unnumbered(image.name))
+        name = _unnumbered(image.name)
         is_ours = image.library is None and image.get(_SOURCE_KEY) == picture.full_name
-        if is_ours and number is not None:
-            found.setdefault(number, []).append(image)
+        if is_ours and name in numbers:
+            found.setdefault(numbers[name], []).append(image)
     return found
 
 

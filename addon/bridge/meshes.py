@@ -376,11 +376,11 @@ def _plain_surface(
     corners = corners[chosen[faces]]
     importance = None
     if weights is not None:
-        importance = {
-            "POINT": lambda: weights.values,
-            "FACE": lambda: weights.values[faces[chosen[faces]]][:, None],
-            "CORNER": lambda: weights.values[corners],
-        }[weights.domain]()
+        importance = weights.values
+        if weights.domain == "FACE":
+            importance = importance[faces[chosen[faces]]][:, None]
+        elif weights.domain == "CORNER":
+            importance = importance[corners]
     return prefilter.Surface(
         attributes.positions(mesh),
         attributes.corner_vertices(mesh)[corners],

@@ -1,5 +1,6 @@
 """Images that are packed into the .blend file, as files beside it."""
 
+from functools import partial
 from pathlib import Path
 
 import bpy
@@ -64,8 +65,8 @@ def unpack(image: bpy.types.Image) -> list[Path]:
     try:
         for tile, path in new.items():
             staging.check_writable(path)
-            data = tiles[tile]
-            staged.append(staging.stage_with(path, lambda part, data=data: part.write_bytes(data)))
+            write = partial(Path.write_bytes, data=tiles[tile])
+            staged.append(staging.stage_with(path, write))
         staging.commit_all(staged)
     finally:
         for file in staged:

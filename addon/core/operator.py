@@ -58,7 +58,7 @@ class BackgroundOperator:
     it is expected to be slow, the panel has the button Apply, which works in the background too.
     """
 
-    doing: ClassVar[str]
+    doing: str
     """What the status bar says that goes on."""
 
     use_apply: BoolProperty(
@@ -314,6 +314,7 @@ class BackgroundOperator:
 
     def _go_on_reading(self) -> None:
         """Reads for a tick's time; starts the thread once everything is read."""
+        assert self._steps is not None
         end = time.monotonic() + TICK_SECONDS
         with self._clock():
             try:
@@ -443,6 +444,7 @@ class WorkOperator(BackgroundOperator):
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Writes the result, and returns what to report."""
         del context, result
+        assert self.work is not None
         return self.tell(self.work.write())
 
     def discard(self) -> None:

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import prefilter
 
@@ -187,7 +188,7 @@ class Bake:
         """Returns all levels, scene-linear, of the image and of its roughness."""
         settings = self._settings
         to_file = self._target is not None or self._roughness_target is not None
-        options = {
+        options: dict[str, Any] = {
             "filter": settings.filter,
             "wrap": self._wrap,
             "levels": None if to_file else settings.levels or None,
@@ -234,7 +235,7 @@ class Bake:
                 (levels, share(progress, 0.9, 1.0)),
             )
         )
-        note = seams.note(self.image_name, without, weighed)
+        note = seams.note(self.image_name, without.tolist(), weighed.tolist())
         if note:
             self._notes.append(note)
 
@@ -310,8 +311,10 @@ class Bake:
 
     def discard(self) -> None:
         """Removes what was staged, if it was not put into place."""
-        for staged in (*self._staged, *self._staged_levels):
-            staged.discard()
+        for file in self._staged:
+            file.discard()
+        for levels in self._staged_levels:
+            levels.discard()
         self._staged.clear()
         self._staged_levels.clear()
 

@@ -18,6 +18,7 @@ from ..core.flags import add_flags, given, tables
 from ..core.outcome import FAILURES
 from ..core.wording import either, listed
 from . import reading, texture_cache, udim, unnamed, users
+from .bake import Bake
 from .choices import PlotSettings, Settings
 from .view import errors, figure
 
@@ -187,6 +188,7 @@ def _plot(options: argparse.Namespace) -> None:
         all_faces=is_picture,
         needs_surface=True,
     )
+    assert isinstance(source, Bake)
     progress = command.ProgressLine()
     try:
         curves = errors.measure(source, list(dict.fromkeys(filters)), progress)
@@ -196,10 +198,11 @@ def _plot(options: argparse.Namespace) -> None:
     try:
         for target in targets:
             if target.suffix.lower() == ".png":
-                write = partial(new_images.save_png, pixels=figure.draw(curves))
+                draw = partial(new_images.save_png, pixels=figure.draw(curves))
+                staged.append(staging.stage_with(target, draw))
             else:
                 write = partial(Path.write_text, data=curves.table())
-            staged.append(staging.stage_with(target, write))
+                staged.append(staging.stage_with(target, write))
         staging.commit_all(staged)
     finally:
         for file in staged:

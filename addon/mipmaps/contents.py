@@ -186,7 +186,9 @@ def normal_levels(
             progress=share(progress, 3 / steps, 1.0),
             **options,
         )
-        made = [np.concatenate(pair, axis=2) for pair in zip(made, fourth, strict=True)]
+        made = [
+            np.concatenate([level, last], axis=2) for level, last in zip(made, fourth, strict=True)
+        ]
     return made, rough
 
 

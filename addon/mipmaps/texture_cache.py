@@ -7,6 +7,7 @@ what cannot be weighed by a surface keeps the levels that Blender made, and a wa
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from pathlib import Path
 
 import bpy
 import numpy as np
@@ -172,9 +173,9 @@ class CacheBake:
         for _, staged in self._staged:
             staged.discard()
 
-    def _make(self, progress: Progress) -> dict[tx.Path, _Worn]:
+    def _make(self, progress: Progress) -> dict[Path, _Worn]:
         """Makes the cache files; images that share one are joined."""
-        shared: dict[tx.Path, _Worn] = {}
+        shared: dict[Path, _Worn] = {}
         steps = parts(share(progress, 0.0, _MADE), len(self._worn))
         for worn, advance in zip(self._worn, steps, strict=True):
             go_on(advance, 0.0)

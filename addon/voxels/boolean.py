@@ -117,6 +117,8 @@ class Boolean:
             ValueError: An object is gone.
         """
         result = self._result
+        assert result is not None
+        assert result.contour is not None
         active = still_there(result.place.name)
         others = [still_there(name) for name in self._names]
         made = new_meshes.show_contour(active, result.contour)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import bpy
 import numpy as np
@@ -90,7 +91,8 @@ def voxelized(
     mesh: SolidMesh, grid: Grid, settings: VoxelSettings, progress: Progress
 ) -> "prefilter.Octree":
     """Returns the occupancy of a mesh, its holes closed if that is asked for."""
-    positions, triangles = mesh.positions, mesh.triangles
+    positions = mesh.positions
+    triangles: NDArray[np.integer[Any]] = mesh.triangles
     if settings.use_close_holes and mesh.open_edges:
         closed = prefilter.close_holes(positions, triangles, progress=share(progress, 0.0, 0.3))
         positions, triangles = closed.positions, closed.triangles

@@ -155,6 +155,7 @@ class Voxelization:
     def _show(self, obj: bpy.types.Object, result: Result) -> bpy.types.Object:
         if result.contour is not None:
             return new_meshes.show_contour(obj, result.contour)
+        assert result.staged is not None
         result.staged.commit()
         volume = volumes.new_volume(obj.name, result.staged.target)
         made = new_meshes.new_object_beside(obj, volume, ".volume")

@@ -92,6 +92,7 @@ def read_source(
         context.evaluated_depsgraph_get(),
         needs_surface=needs_surface,
     )
+    assert isinstance(source, Bake)
     source.warnings.extend(warnings)
     return source
 

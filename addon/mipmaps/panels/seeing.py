@@ -1,5 +1,7 @@
 """The panels that show levels, errors and weights, in the Prefilter tab of the Image editors."""
 
+from typing import Any
+
 import bpy
 import bpy.utils.previews
 import numpy as np
@@ -13,7 +15,7 @@ from ..view import preview, weights
 
 _SWATCH_SIDE = 16
 _swatches: list[tuple[str, str]] = []
-_icons: bpy.utils.previews.ImagePreviewCollection | None = None
+_icons: Any = None
 
 
 class _Panel:

@@ -16,11 +16,12 @@ class VoxelOperator(WorkOperator):
 
     def load(self) -> list[Load]:
         """Returns how much there was to do."""
+        assert self.work is not None
         return self.work.loads
 
     def effort(self, load: list[Load]) -> float:
         """Returns about how many seconds voxels take with the present settings."""
-        return sum(one.seconds(self.to_settings()) for one in load)
+        return sum((one.seconds(self.to_settings()) for one in load), 0.0)
 
     def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""

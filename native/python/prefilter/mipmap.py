@@ -1,7 +1,7 @@
 """Mipmaps of a texture on a surface (chapter 7)."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -41,6 +41,38 @@ MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters(
 """All filters: each kernel, each with "-covered" behind, and those over the surface."""
 
 
+@overload
+def mipmaps(
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = ...,
+    *,
+    filter: str = ...,
+    wrap: Wrap = ...,
+    bounds: Bounds | None = ...,
+    levels: int | None = ...,
+    premultiplied: bool = ...,
+    reader: str = ...,
+    encoding: Literal["linear"] = ...,
+    seam_weight: float = ...,
+    progress: ProgressCallback | None = ...,
+    threads: int = ...,
+) -> list[npt.NDArray[np.float32]]: ...
+@overload
+def mipmaps(
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = ...,
+    *,
+    filter: str = ...,
+    wrap: Wrap = ...,
+    bounds: Bounds | None = ...,
+    levels: int | None = ...,
+    premultiplied: bool = ...,
+    reader: str = ...,
+    encoding: str = ...,
+    seam_weight: float = ...,
+    progress: ProgressCallback | None = ...,
+    threads: int = ...,
+) -> list[npt.NDArray[np.float32]] | list[npt.NDArray[np.uint8]]: ...
 def mipmaps(
     image: npt.ArrayLike,
     surface: Surface | Sequence[Surface] | None = None,
