@@ -375,7 +375,7 @@ class BackgroundOperator:
 
     def _end_cancelled(self, context: bpy.types.Context) -> set[str]:
         self._leave(context)
-        self.report({"INFO"}, f"{self.doing} cancelled")
+        self.report({"INFO"}, f"{self.doing} canceled")
         return {"CANCELLED"}
 
     def _fail(self, error: object) -> set[str]:

@@ -33,7 +33,7 @@ class BakeProperties:
         layout.prop(self, "filter")
         layout.prop(self, "reader")
         if self.reader != "linear" and self.filter == "pam-trilinear":
-            layout.label(text="PAM Trilinear goes with Linear Light", icon="ERROR")
+            layout.label(text="PAM Trilinear requires Linear Light", icon="ERROR")
         column = layout.column(align=True)
         column.prop(self, "wrap")
         column.prop(self, "wrap_v", text="V")

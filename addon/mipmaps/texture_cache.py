@@ -210,7 +210,7 @@ class CacheBake:
             f"({counted(self._staged, 'file')}), over {counted(objects, 'object')}"
         )
         if self._constant:
-            text += f"; {self._constant} of one colour stay as they are"
+            text += f"; {self._constant} of one color stay as they are"
         return text
 
 

@@ -21,7 +21,7 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, WorkOperator, ImageOperator, bpy
     bl_idname = "prefilter.bake_mipmaps"
     bl_label = "Bake Mipmaps"
     bl_description = (
-        "Make the mipmap levels of the image, weighted by the surface of the meshes that use it"
+        "Make the mipmap levels of the image, weighted by the surface of the objects that use it"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking mipmaps"

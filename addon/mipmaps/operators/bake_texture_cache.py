@@ -14,15 +14,16 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     bl_idname = "prefilter.bake_texture_cache"
     bl_label = "Bake PAM into Texture Cache"
     bl_description = (
-        "Make the texture cache of the scene's images, and replace its levels with ones that are "
-        "right for the meshes that wear them. Overwrites cache files; when an image file changes, "
-        "Blender makes its cache file anew, and it has to be baked again"
+        "Generate the texture cache of the scene's images, and replace its levels with "
+        "parameterization-aware mipmaps (PAM), fitted to the meshes that use the images. "
+        "Overwrites cache files. When an image file changes, Blender generates its cache again, "
+        "and you need to bake again"
     )
     bl_options = {"REGISTER", "UNDO"}
     use_unpack: BoolProperty(
         name="Unpack Images",
         description="Write packed images to the folder textures beside the .blend file first, and "
-        "use these files: Cycles caches files only",
+        "use these files: Cycles caches only files",
         default=False,
         options={"SKIP_SAVE"},
     )

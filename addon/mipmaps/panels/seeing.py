@@ -84,7 +84,7 @@ class PREFILTER_PT_error(_Panel, bpy.types.Panel):
         self.layout.column(align=True).prop(settings, "plot_filters")
         reader = context.scene.prefilter_bake.reader
         if reader != "linear" and "pam-trilinear" in settings.plot_filters:
-            self.layout.label(text="PAM Trilinear goes with Linear Light", icon="ERROR")
+            self.layout.label(text="PAM Trilinear requires Linear Light", icon="ERROR")
         operator = self.layout.operator(PREFILTER_OT_plot_error.bl_idname, icon="FCURVE")
         operator.filters = settings.plot_filters
         _draw_back(self.layout, context)
@@ -128,10 +128,10 @@ def _load_swatches() -> None:
     global _icons
     _icons = bpy.utils.previews.new()
     for octave in range(weights.OCTAVES, -weights.OCTAVES - 1, -2):
-        factor = f"{2**octave} x" if octave >= 0 else f"1/{2**-octave} of"
-        text = f"{factor} an even use" if octave else "Even use of all texels"
+        factor = f"{2**octave}x" if octave >= 0 else f"1/{2**-octave} of"
+        text = f"{factor} average" if octave else "Average use"
         _add_swatch(text, weights.colors(2.0**octave))
-    _add_swatch("Nothing of the surface (hatched)", weights.unused_color())
+    _add_swatch("Unused (hatched)", weights.unused_color())
 
 
 def _free_swatches() -> None:

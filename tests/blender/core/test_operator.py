@@ -170,7 +170,7 @@ def test_esc_ends_within_a_tick_of_the_work(addon, probe, context):
         time.sleep(0.001)
     assert ended[0] - began < 0.1
     assert addon("core.operator").TICK_SECONDS <= 0.05
-    assert operator.reports == ["Probing cancelled"]
+    assert operator.reports == ["Probing canceled"]
     assert operator.discarded == 1
 
 

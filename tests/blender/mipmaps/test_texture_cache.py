@@ -442,7 +442,7 @@ def test_an_image_of_one_colour_stays(scene, tmp_path, capfd):
     before = contents(tmp_path)
     assert bake() == {"FINISHED"}
     assert contents(tmp_path) == before
-    assert "1 of one colour stay" in capfd.readouterr().out
+    assert "1 of one color stay" in capfd.readouterr().out
 
 
 @needs_cache
