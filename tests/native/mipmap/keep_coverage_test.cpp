@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "prefilter/base/error.h"
 
@@ -30,17 +31,15 @@ double edge(const Image& level, double threshold) {
 }
 
 TEST(KeepCoverage, MovesTheEdgeOfARampBack) {
-  for (const double power : {0.3, 3.0}) {
-    for (const double threshold : {0.25, 0.5, 0.8}) {
-      const Image image = ramp(64, 1.0);
-      const Image level = ramp(32, power);
-      CoverageOptions options;
-      options.threshold = threshold;
-      const std::vector<Image> kept = keep_coverage({image.view(), level.view()}, {}, options);
-      ASSERT_EQ(kept.size(), 1U);
-      EXPECT_GT(std::abs(edge(level, threshold) - threshold), 0.03);
-      EXPECT_NEAR(edge(kept[0], threshold), threshold, 3e-3) << power;
-    }
+  for (const auto& [power, threshold] : {std::pair{0.3, 0.8}, std::pair{3.0, 0.25}}) {
+    const Image image = ramp(64, 1.0);
+    const Image level = ramp(32, power);
+    CoverageOptions options;
+    options.threshold = threshold;
+    const std::vector<Image> kept = keep_coverage({image.view(), level.view()}, {}, options);
+    ASSERT_EQ(kept.size(), 1U);
+    EXPECT_GT(std::abs(edge(level, threshold) - threshold), 0.03);
+    EXPECT_NEAR(edge(kept[0], threshold), threshold, 3e-3) << power;
   }
 }
 
