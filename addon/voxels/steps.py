@@ -151,7 +151,7 @@ def contoured(
 
 def _transferred(
     mesh: SolidMesh,
-    positions: NDArray[np.float32],
+    positions: NDArray[np.float64],
     triangles: NDArray[np.int32],
     settings: VoxelSettings,
     progress: Progress,

@@ -6,6 +6,7 @@
 #include <tiffio.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <exception>
@@ -23,7 +24,6 @@
 namespace {
 
 using prefilter::Image;
-using prefilter::MeshArrays;
 using prefilter::MipmapOptions;
 using prefilter::Surface;
 using prefilter::TexelSource;
@@ -60,17 +60,11 @@ Surface read_mesh(const char* path) {
   std::ifstream file(path, std::ios::binary);
   const std::vector<std::int64_t> counts = read_values<std::int64_t>(file, 2);
   if (!file) throw std::runtime_error(std::string("cannot read '") + path + "'");
-  const auto positions = read_values<double>(file, 3 * counts[0]);
-  const auto triangles = read_values<std::int64_t>(file, 3 * counts[1]);
+  const auto positions = read_values<prefilter::Vector3>(file, counts[0]);
+  const auto triangles = read_values<std::array<std::int64_t, 3>>(file, counts[1]);
   const auto uvs = read_values<double>(file, 6 * counts[1]);
   if (!file) throw std::runtime_error(std::string("'") + path + "' ends too early");
-  MeshArrays mesh;
-  mesh.positions = positions.data();
-  mesh.vertex_count = static_cast<std::size_t>(counts[0]);
-  mesh.triangles = triangles.data();
-  mesh.uvs = uvs.data();
-  mesh.triangle_count = static_cast<std::size_t>(counts[1]);
-  return prefilter::make_surface(mesh);
+  return prefilter::make_surface({{positions, triangles}, uvs.data()});
 }
 
 class TiffFile {

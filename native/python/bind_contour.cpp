@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -12,6 +10,7 @@
 #include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/contour/grid_contour.h"
+#include "prefilter/contour/outlines.h"
 #include "prefilter/contour/tree_contour.h"
 #include "prefilter/voxel/octree.h"
 
@@ -38,22 +37,13 @@ ContourOptions contour_options(const std::string& interpolant, float isovalue, b
   return options;
 }
 
-// An array of the rows, which it owns.
-template <typename T>
-Array<T> to_rows(std::vector<std::array<T, 3>> rows) {
-  auto owner = std::make_unique<std::vector<std::array<T, 3>>>(std::move(rows));
-  const auto& held = *owner;
-  const py::capsule capsule(owner.release(), [](void* pointer) {
-    delete static_cast<std::vector<std::array<T, 3>>*>(pointer);
-  });
-  const auto count = static_cast<py::ssize_t>(held.size());
-  return Array<T>({count, py::ssize_t{3}}, reinterpret_cast<const T*>(held.data()), capsule);
-}
-
-using MeshArrays = std::pair<Array<float>, Array<std::int32_t>>;
+using MeshArrays = std::pair<Array<double>, Array<std::int32_t>>;
 
 MeshArrays to_arrays(TriangleMesh mesh) {
-  return {to_rows(std::move(mesh.positions)), to_rows(std::move(mesh.triangles))};
+  const auto vertices = static_cast<py::ssize_t>(mesh.positions.size());
+  const auto triangles = static_cast<py::ssize_t>(mesh.triangles.size());
+  return {to_array<double>(std::move(mesh.positions), {vertices, 3}),
+          to_array<std::int32_t>(std::move(mesh.triangles), {triangles, 3})};
 }
 
 MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpolant,
@@ -61,34 +51,31 @@ MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpo
                                 int threads) {
   const ContourOptions options =
       contour_options(interpolant, isovalue, clean_up, progress, threads);
-  const Box& box = octree.bounds;
-  const RootFrame frame{box.low, {box.size(0), box.size(1), box.size(2)}};
   TriangleMesh mesh;
   {
     const py::gil_scoped_release unlocked;
-    mesh = contour_tree(octree.cells, frame, options);
+    mesh = contour_tree(octree.cells, octree.bounds, options);
   }
   return to_arrays(std::move(mesh));
 }
 
-GridView grid_view(const Array<float>& grid) {
-  GridView view;
-  view.values = grid.data();
-  for (int a = 0; a < 3; ++a) {
-    view.size[a] =
-        a < grid.ndim() ? static_cast<int>(std::min<py::ssize_t>(grid.shape(a), 1 << 30)) : 1;
+// The numbers of samples along the axes of a grid.
+template <std::size_t N>
+std::array<int, N> sides_of(const Array<float>& grid) {
+  std::array<int, N> sides;
+  for (std::size_t a = 0; a < N; ++a) {
+    sides[a] =
+        static_cast<int>(std::min<py::ssize_t>(grid.shape(static_cast<py::ssize_t>(a)), 1 << 30));
   }
-  return view;
+  return sides;
 }
 
-using Triple = std::array<double, 3>;
-
 MeshArrays bound_contour_grid(const Array<float>& grid, const std::string& interpolant,
-                              float isovalue, const Triple& spacing, const Triple& origin,
+                              float isovalue, const Vector3& spacing, const Vector3& origin,
                               bool clean_up, const py::object& progress, int threads) {
   const ContourOptions options =
       contour_options(interpolant, isovalue, clean_up, progress, threads);
-  const GridView view = grid_view(grid);
+  const GridView view{grid.data(), sides_of<3>(grid)};
   TriangleMesh mesh;
   {
     const py::gil_scoped_release unlocked;
@@ -97,22 +84,23 @@ MeshArrays bound_contour_grid(const Array<float>& grid, const std::string& inter
   return to_arrays(std::move(mesh));
 }
 
-std::vector<Array<float>> bound_contour_image(const Array<float>& image,
-                                              const std::string& interpolant, float isovalue,
-                                              const Triple& spacing, const Triple& origin,
-                                              const py::object& progress) {
+using Pair = std::array<double, 2>;
+
+std::vector<Array<double>> bound_contour_outlines(const Array<float>& grid,
+                                                  const std::string& interpolant, float isovalue,
+                                                  const Pair& spacing, const Pair& origin,
+                                                  const py::object& progress) {
   const ContourOptions options = contour_options(interpolant, isovalue, false, progress, 1);
-  const GridView view = grid_view(image);
-  std::vector<Polyline> lines;
+  const PlaneView view{grid.data(), sides_of<2>(grid)};
+  std::vector<Outline> outlines;
   {
     const py::gil_scoped_release unlocked;
-    lines = contour_image(view, {origin, spacing}, options);
+    outlines = contour_outlines(view, {origin, spacing}, options);
   }
-  std::vector<Array<float>> arrays;
-  for (const Polyline& line : lines) {
-    Array<float> array({static_cast<py::ssize_t>(line.size()), py::ssize_t{2}});
-    std::memcpy(array.mutable_data(), line.data(), line.size() * sizeof(line[0]));
-    arrays.push_back(std::move(array));
+  std::vector<Array<double>> arrays;
+  for (Outline& outline : outlines) {
+    const auto points = static_cast<py::ssize_t>(outline.size());
+    arrays.push_back(to_array<double>(std::move(outline), {points, 2}));
   }
   return arrays;
 }
@@ -123,7 +111,7 @@ void bind_contour(py::module_& m) {
   m.def("contour_grid", &bound_contour_grid, py::arg("grid"), py::arg("interpolant"),
         py::arg("isovalue"), py::arg("spacing"), py::arg("origin"), py::arg("clean_up"),
         py::arg("progress"), py::arg("threads"));
-  m.def("contour_image", &bound_contour_image, py::arg("image"), py::arg("interpolant"),
+  m.def("contour_outlines", &bound_contour_outlines, py::arg("grid"), py::arg("interpolant"),
         py::arg("isovalue"), py::arg("spacing"), py::arg("origin"), py::arg("progress"));
   m.def("contour_octree", &bound_contour_octree, py::arg("octree"), py::arg("interpolant"),
         py::arg("isovalue"), py::arg("clean_up"), py::arg("progress"), py::arg("threads"));

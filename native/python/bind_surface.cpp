@@ -3,14 +3,10 @@
 #include <cstring>
 #include <memory>
 #include <optional>
-#include <span>
-#include <tuple>
 #include <utility>
 
 #include "convert.h"
 #include "instances.h"
-#include "prefilter/base/error.h"
-#include "prefilter/spatial/nearest.h"
 #include "prefilter/surface/subdivision.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/surface/udim_tile.h"
@@ -43,12 +39,9 @@ Array<T> rows(const std::vector<Row>& from, std::vector<py::ssize_t> row_shape) 
 Surface bound_surface(const Array<double>& positions, const Array<std::int64_t>& triangles,
                       const Array<double>& uvs, const std::optional<Array<double>>& weights,
                       const std::string& weights_of) {
-  MeshArrays mesh;
-  mesh.positions = positions.data();
-  mesh.vertex_count = length(positions);
-  mesh.triangles = triangles.data();
+  TexturedMesh mesh;
+  mesh.mesh = mesh_of(positions, triangles);
   mesh.uvs = uvs.data();
-  mesh.triangle_count = length(triangles);
   if (weights) {
     mesh.weights = weights->data();
     mesh.weights_of = weights_kind(weights_of);
@@ -116,35 +109,6 @@ Surface bound_subdivide(const Array<double>& positions, const Array<std::int64_t
   return subdivide(mesh, options);
 }
 
-template <typename T>
-std::span<const std::array<T, 3>> triples(const Array<T>& array) {
-  return {reinterpret_cast<const std::array<T, 3>*>(array.data()), length(array)};
-}
-
-std::tuple<Array<std::int64_t>, Array<double>, Array<double>> bound_nearest(
-    const Array<double>& points, const Array<double>& positions,
-    const Array<std::int64_t>& triangles, const py::object& callback, int threads) {
-  const Progress progress = to_progress(callback);
-  std::vector<SurfacePoint> found;
-  {
-    const py::gil_scoped_release unlocked;
-    found =
-        nearest_points(triples(points), triples(positions), triples(triangles), progress, threads);
-  }
-  const auto count = static_cast<py::ssize_t>(found.size());
-  Array<std::int64_t> faces(count);
-  Array<double> weights({count, py::ssize_t{3}});
-  Array<double> distances(count);
-  for (py::ssize_t i = 0; i < count; ++i) {
-    const SurfacePoint& point = found[static_cast<std::size_t>(i)];
-    faces.mutable_at(i) = point.triangle;
-    for (int c = 0; c < 3; ++c)
-      weights.mutable_at(i, c) = point.weights[static_cast<std::size_t>(c)];
-    distances.mutable_at(i) = point.distance;
-  }
-  return {std::move(faces), std::move(weights), std::move(distances)};
-}
-
 }  // namespace
 
 void bind_surface(py::module_& m) {
@@ -166,8 +130,6 @@ void bind_surface(py::module_& m) {
                                return rows<double>(s.uvs, {3, 2});
                              })
       .def_property_readonly("areas", [](const Surface& s) { return rows<double>(s.areas, {}); });
-  m.def("nearest_points", &bound_nearest, py::arg("points"), py::arg("positions"),
-        py::arg("triangles"), py::arg("progress"), py::arg("threads"));
   m.def("subdivide", &bound_subdivide, py::arg("positions"), py::arg("face_sizes"),
         py::arg("face_vertices"), py::arg("face_uvs"), py::arg("crease_edges"),
         py::arg("crease_sharpness"), py::arg("corner_vertices"), py::arg("corner_sharpness"),

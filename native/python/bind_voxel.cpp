@@ -25,25 +25,9 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-using Corners = std::pair<std::array<double, 3>, std::array<double, 3>>;
+using Corners = std::pair<Vector3, Vector3>;
 
 Box to_box(const Corners& corners) { return {corners.first, corners.second}; }
-
-// An array of shape (rows, 3), seen as rows.
-template <typename T>
-std::span<const std::array<T, 3>> rows_of(const Array<T>& array) {
-  return {reinterpret_cast<const std::array<T, 3>*>(array.data()),
-          static_cast<std::size_t>(array.shape(0))};
-}
-
-template <typename T>
-Array<T> to_flat_array(std::vector<T> values, std::vector<py::ssize_t> shape) {
-  auto owner = std::make_unique<std::vector<T>>(std::move(values));
-  const std::vector<T>& held = *owner;
-  const py::capsule capsule(owner.release(),
-                            [](void* pointer) { delete static_cast<std::vector<T>*>(pointer); });
-  return Array<T>(std::move(shape), held.data(), capsule);
-}
 
 SetOperation set_operation(const std::string& name) {
   if (name == "union") return SetOperation::kUnion;
@@ -60,7 +44,7 @@ Octree bound_voxelize(const Array<double>& positions, const Array<std::int64_t>&
   if (bounds) options.bounds = to_box(*bounds);
   options.threads = threads;
   options.progress = to_progress(progress);
-  const SolidMesh mesh{rows_of(positions), rows_of(triangles)};
+  const InputMesh mesh = mesh_of(positions, triangles);
   const py::gil_scoped_release unlocked;
   return voxelize(mesh, options);
 }
@@ -73,7 +57,7 @@ std::tuple<Array<double>, Array<std::int64_t>, std::size_t, std::size_t> bound_c
   Caps caps;
   {
     const py::gil_scoped_release unlocked;
-    caps = close_holes({rows_of(positions), rows_of(triangles)}, progress);
+    caps = close_holes(mesh_of(positions, triangles), progress, 0);
   }
   const auto joined = [](const auto& own, const auto& added) {
     auto result = std::decay_t<decltype(own)>(
@@ -102,7 +86,7 @@ Array<float> bound_dense(const Octree& octree, int depth, const py::object& call
     values = dense_values(octree, depth, progress, threads);
   }
   const py::ssize_t n = py::ssize_t{1} << depth;
-  return to_flat_array(std::move(values), {n, n, n});
+  return to_array<float>(std::move(values), {n, n, n});
 }
 
 Array<float> bound_values(const Octree& octree, const Array<double>& points, int threads) {
@@ -111,7 +95,7 @@ Array<float> bound_values(const Octree& octree, const Array<double>& points, int
     const py::gil_scoped_release unlocked;
     values = values_at(octree, rows_of(points), threads);
   }
-  return to_flat_array(std::move(values), {points.shape(0)});
+  return to_array<float>(std::move(values), {points.shape(0)});
 }
 
 Array<std::int8_t> bound_classify(const Octree& octree, const Array<double>& points,
@@ -121,7 +105,7 @@ Array<std::int8_t> bound_classify(const Octree& octree, const Array<double>& poi
     const py::gil_scoped_release unlocked;
     sides = classify(octree, rows_of(points), tolerance, threads);
   }
-  return to_flat_array(std::move(sides), {points.shape(0)});
+  return to_array<std::int8_t>(std::move(sides), {points.shape(0)});
 }
 
 // Level by level, the blocks' values and their bits of split octants.

@@ -4,9 +4,14 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <array>
+#include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
@@ -25,6 +30,28 @@ std::vector<ImageView> views_of(const std::vector<Array<float>>& arrays);
 /// An array of shape (height, width, channels) that owns the image.
 Array<float> to_array(Image image);
 std::vector<Array<float>> to_arrays(std::vector<Image> images);
+
+/// The rows of an array of shape (rows, 3).
+template <typename T>
+std::span<const std::array<T, 3>> rows_of(const Array<T>& array) {
+  return {reinterpret_cast<const std::array<T, 3>*>(array.data()),
+          static_cast<std::size_t>(array.shape(0))};
+}
+
+/// A mesh of arrays of shape (vertices, 3) and (triangles, 3).
+inline InputMesh mesh_of(const Array<double>& positions, const Array<std::int64_t>& triangles) {
+  return {rows_of(positions), rows_of(triangles)};
+}
+
+/// An array of this shape that owns the values, rows of T or T themselves.
+template <typename T, typename Value>
+Array<T> to_array(std::vector<Value> values, std::vector<pybind11::ssize_t> shape) {
+  auto owner = std::make_unique<std::vector<Value>>(std::move(values));
+  const std::vector<Value>& held = *owner;
+  const pybind11::capsule capsule(
+      owner.release(), [](void* pointer) { delete static_cast<std::vector<Value>*>(pointer); });
+  return Array<T>(std::move(shape), reinterpret_cast<const T*>(held.data()), capsule);
+}
 
 /// The wrap mode of a public name.
 Wrap wrap_mode(const std::string& name);

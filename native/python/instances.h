@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "prefilter/spatial/nearest.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/voxel/octree.h"
 
@@ -33,6 +34,10 @@ class InstanceCaster : public pybind11::detail::type_caster_base<T> {
 };
 
 }  // namespace prefilter::python
+
+template <>
+class pybind11::detail::type_caster<prefilter::NearestPoints>
+    : public prefilter::python::InstanceCaster<prefilter::NearestPoints> {};
 
 template <>
 class pybind11::detail::type_caster<prefilter::Octree>

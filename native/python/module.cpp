@@ -16,6 +16,7 @@ void bind_contour(py::module_& m);
 void bind_cutout(py::module_& m);
 void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
+void bind_spatial(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_voxel(py::module_& m);
 
@@ -97,6 +98,7 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_color(m);
   prefilter::python::bind_cutout(m);
   prefilter::python::bind_normals(m);
+  prefilter::python::bind_spatial(m);
   prefilter::python::bind_surface(m);
   prefilter::python::bind_mipmap(m);
   prefilter::python::bind_voxel(m);

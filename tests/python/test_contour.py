@@ -113,6 +113,41 @@ def test_spacing_and_origin_place_the_cells():
     np.testing.assert_allclose(placed, plain * (0.5, 2, 3) + (1, -2, 4), rtol=1e-5, atol=1e-5)
 
 
+@pytest.mark.parametrize("center", [0.0, 1e5, -3e6])
+@pytest.mark.parametrize("scale", [1.0, 1e39])
+def test_shapes_have_a_surface_wherever_they_are(center, scale):
+    sphere = solids.sphere(1.0, 4, (0.0, 0.0, 0.0))
+    octree = prefilter.voxelize(scale * (sphere.positions + center), sphere.triangles, depth=6)
+    positions, triangles = octree.contour()
+    assert positions.dtype == np.float64
+    local = positions / scale - center
+    corners = local[triangles]
+    areas = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    assert areas.min() > 0
+    assert is_closed(triangles)
+    assert enclosed(local, triangles) == pytest.approx(4 / 3 * np.pi, rel=0.01)
+    rounded = local.astype(np.float32)
+    assert len(np.unique(rounded, axis=0)) == len(rounded)
+
+
+def test_outlines_have_points_wherever_they_are():
+    grid = np.zeros((4, 4))
+    grid[1:3, 1:3] = 1
+    (near,) = prefilter.contour(grid, spacing=1e-3)
+    (far,) = prefilter.contour(grid, spacing=1e-3, origin=(1e7, -1e7))
+    assert near.dtype == np.float64
+    np.testing.assert_allclose(far - (1e7, -1e7), near, atol=1e-8)
+
+
+@pytest.mark.parametrize("grid", [np.ones((2, 2)), np.ones((2, 2, 2))])
+def test_cells_without_a_size_are_refused(grid):
+    for place in ({"origin": 1e20}, {"spacing": 1e308}):
+        with pytest.raises(ValueError, match=r"spacing: the grid: from .* along x"):
+            prefilter.contour(grid, **place)
+
+
 def test_threads_and_types_do_not_matter():
     grid = np.random.default_rng(2).random((33, 20, 40)).astype(np.float32)
     first = prefilter.contour(grid, interpolant="plane", threads=1)

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/base/sort.h"
+
 namespace prefilter {
 namespace {
 
@@ -18,15 +20,11 @@ constexpr int kMostRounds = 8;
 constexpr double kShort = 0.3;
 constexpr double kLeastCosine = 0.7071067811865476;
 constexpr std::size_t kProgressStep = 1U << 14;
+// Of a round's time, about: finding the triangles around vertices; finding and sorting short edges.
+constexpr double kLinking = 0.2;
+constexpr double kSorting = 0.5;
 
-using Point = std::array<double, 3>;
 using Triangle = std::array<std::int32_t, 3>;
-
-Point operator-(const Point& a, const Point& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-double dot(const Point& a, const Point& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Point cross(const Point& a, const Point& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 struct Edge {
   double squared_length;
@@ -41,18 +39,17 @@ struct Edge {
 
 class Collapser {
  public:
-  explicit Collapser(TriangleMesh* mesh) : mesh_(*mesh) {}
+  Collapser(TriangleMesh* mesh, int threads) : mesh_(*mesh), threads_(threads) {}
 
   // Returns whether any edge was collapsed.
   bool round(const Progress& progress) {
-    link();
-    const std::vector<Edge> edges = short_edges();
+    link(progress.part(0.0, kLinking));
+    const std::vector<Edge> edges = short_edges(progress.part(kLinking, kSorting));
+    const Progress collapsing = progress.part(kSorting, 1.0);
     is_touched_.assign(mesh_.positions.size(), 0);
     std::size_t count = 0;
     for (std::size_t i = 0; i < edges.size(); ++i) {
-      if (i % kProgressStep == 0) {
-        progress.report(static_cast<double>(i) / static_cast<double>(edges.size()));
-      }
+      report(collapsing, i, edges.size());
       count += try_collapse(edges[i].from, edges[i].to) ? 1U : 0U;
     }
     drop_collapsed();
@@ -78,21 +75,33 @@ class Collapser {
   }
 
  private:
-  Point point(std::int32_t vertex) const {
-    const auto& p = mesh_.positions[static_cast<std::size_t>(vertex)];
-    return {static_cast<double>(p[0]), static_cast<double>(p[1]), static_cast<double>(p[2])};
+  const Vector3& point(std::int32_t vertex) const {
+    return mesh_.positions[static_cast<std::size_t>(vertex)];
+  }
+
+  static void report(const Progress& progress, std::size_t done, std::size_t all) {
+    if (done % kProgressStep == 0) {
+      progress.report(static_cast<double>(done) / static_cast<double>(all));
+    }
   }
 
   // The triangles of each vertex.
-  void link() {
+  void link(const Progress& progress) {
+    const Progress counting = progress.part(0.0, 0.4);
+    const Progress placing = progress.part(0.4, 1.0);
+    const std::size_t count = mesh_.triangles.size();
     firsts_.assign(mesh_.positions.size() + 1, 0);
-    for (const Triangle& triangle : mesh_.triangles) {
-      for (const std::int32_t vertex : triangle) ++firsts_[static_cast<std::size_t>(vertex) + 1];
+    for (std::size_t t = 0; t < count; ++t) {
+      report(counting, t, count);
+      for (const std::int32_t vertex : mesh_.triangles[t]) {
+        ++firsts_[static_cast<std::size_t>(vertex) + 1];
+      }
     }
     for (std::size_t v = 1; v < firsts_.size(); ++v) firsts_[v] += firsts_[v - 1];
-    around_.resize(3 * mesh_.triangles.size());
+    around_.resize(3 * count);
     std::vector<std::size_t> next(firsts_.begin(), firsts_.end() - 1);
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    for (std::size_t t = 0; t < count; ++t) {
+      report(placing, t, count);
       for (const std::int32_t vertex : mesh_.triangles[t]) {
         around_[next[static_cast<std::size_t>(vertex)]++] = static_cast<std::uint32_t>(t);
       }
@@ -104,12 +113,15 @@ class Collapser {
     return std::span(around_).subspan(firsts_[v], firsts_[v + 1] - firsts_[v]);
   }
 
-  std::vector<Edge> short_edges() const {
+  std::vector<Edge> short_edges(const Progress& progress) const {
+    const Progress finding = progress.part(0.0, 0.5);
     std::vector<Edge> edges;
-    for (const Triangle& triangle : mesh_.triangles) {
-      std::array<double, 3> squares;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      report(finding, t, mesh_.triangles.size());
+      const Triangle& triangle = mesh_.triangles[t];
+      Vector3 squares;
       for (std::size_t i = 0; i < 3; ++i) {
-        const Point side = point(triangle[(i + 1) % 3]) - point(triangle[i]);
+        const Vector3 side = point(triangle[(i + 1) % 3]) - point(triangle[i]);
         squares[i] = dot(side, side);
       }
       const double longest = *std::max_element(squares.begin(), squares.end());
@@ -119,7 +131,7 @@ class Collapser {
         edges.push_back({squares[i], low, high});
       }
     }
-    std::sort(edges.begin(), edges.end());
+    sort_in_parallel(&edges, progress.part(0.5, 1.0), threads_);
     return edges;
   }
 
@@ -147,14 +159,14 @@ class Collapser {
     for (const std::uint32_t t : triangles_of(gone)) {
       const Triangle& triangle = mesh_.triangles[t];
       if (std::find(triangle.begin(), triangle.end(), kept) != triangle.end()) continue;
-      std::array<Point, 3> before;
-      std::array<Point, 3> after;
+      std::array<Vector3, 3> before;
+      std::array<Vector3, 3> after;
       for (std::size_t i = 0; i < 3; ++i) {
         before[i] = point(triangle[i]);
         after[i] = triangle[i] == gone ? point(kept) : before[i];
       }
-      const Point old_normal = cross(before[1] - before[0], before[2] - before[0]);
-      const Point normal = cross(after[1] - after[0], after[2] - after[0]);
+      const Vector3 old_normal = cross(before[1] - before[0], before[2] - before[0]);
+      const Vector3 normal = cross(after[1] - after[0], after[2] - after[0]);
       const double lengths = std::sqrt(dot(old_normal, old_normal) * dot(normal, normal));
       // A sliver's own normal says little; it may turn.
       const double sides = dot(before[1] - before[0], before[1] - before[0]) +
@@ -211,6 +223,7 @@ class Collapser {
   }
 
   TriangleMesh& mesh_;
+  int threads_;
   std::vector<std::size_t> firsts_;
   std::vector<std::uint32_t> around_;
   std::vector<std::uint8_t> is_touched_;
@@ -220,8 +233,8 @@ class Collapser {
 };
 }  // namespace
 
-TriangleMesh clean_up(TriangleMesh mesh, const Progress& progress) {
-  Collapser collapser(&mesh);
+TriangleMesh clean_up(TriangleMesh mesh, const Progress& progress, int threads) {
+  Collapser collapser(&mesh, threads);
   for (int i = 0; i < kMostRounds; ++i) {
     const double begin = static_cast<double>(i) / kMostRounds;
     if (!collapser.round(progress.part(begin, begin + 1.0 / kMostRounds))) break;

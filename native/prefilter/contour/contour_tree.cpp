@@ -11,14 +11,18 @@ std::uint8_t union_of(std::uint16_t of_block) {
 }
 }  // namespace
 
-ContourTree::ContourTree(const CellTree& cells, float isovalue, int threads)
+ContourTree::ContourTree(const CellTree& cells, float isovalue, const Progress& progress,
+                         int threads)
     : cells_(cells), isovalue_(isovalue), blocks_(cells.levels.size()) {
   const auto side_of = [&](float value) { return value >= isovalue ? kInside : kOutside; };
   root_sides_ = side_of(cells.root);
+  const auto steps = static_cast<double>(cells.levels.size() + 1);
   for (std::size_t k = 0; k < cells.levels.size(); ++k) {
     const TreeLevel& level = cells.levels[k];
     blocks_[k].resize(level.size());
-    for_blocks(level, threads, Progress(), [&](std::size_t begin, std::size_t end) {
+    const auto step = static_cast<double>(k);
+    const Progress part = progress.part(step / steps, (step + 1.0) / steps);
+    for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         unsigned sides = 0;
         for (int o = 0; o < 8; ++o) {
@@ -29,14 +33,17 @@ ContourTree::ContourTree(const CellTree& cells, float isovalue, int threads)
       }
     });
   }
-  update_sides(threads);
+  update_sides(progress.part((steps - 1.0) / steps, 1.0), threads);
 }
 
-void ContourTree::update_sides(int threads) {
+void ContourTree::update_sides(const Progress& progress, int threads) {
   if (blocks_.empty()) return;
-  for (std::size_t k = blocks_.size() - 1; k-- > 0;) {
+  const auto steps = static_cast<double>(blocks_.size() - 1);
+  double done = 0.0;
+  for (std::size_t k = blocks_.size() - 1; k-- > 0; ++done) {
     const TreeLevel& level = cells_.levels[k];
-    for_blocks(level, threads, Progress(), [&](std::size_t begin, std::size_t end) {
+    const Progress part = progress.part(done / steps, (done + 1.0) / steps);
+    for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         std::size_t child = level.first[b];
         for (unsigned bits = level.split[b]; bits != 0U; bits &= bits - 1U) {

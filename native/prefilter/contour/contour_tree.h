@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "prefilter/base/progress.h"
 #include "prefilter/contour/edge_crossing.h"
 #include "prefilter/wavelet/cell_tree.h"
 
@@ -33,7 +34,8 @@ inline constexpr CellNode kSurroundings = {0, 0, -1, 0, false, kOutside};
 /// A tree with an iso-value. Leaves of at least that are inside.
 class ContourTree {
  public:
-  ContourTree(const CellTree& cells, float isovalue, int threads);
+  /// Throws Error(kCancelled), as update_sides does.
+  ContourTree(const CellTree& cells, float isovalue, const Progress& progress, int threads);
 
   const CellTree& cells() const { return cells_; }
   float isovalue() const { return isovalue_; }
@@ -46,7 +48,7 @@ class ContourTree {
     const int shift = 2 * octant;
     sides = static_cast<std::uint16_t>((sides & ~(kBothSides << shift)) | (side << shift));
   }
-  void update_sides(int threads);
+  void update_sides(const Progress& progress, int threads);
 
   /// The octant of a cell that is split; a leaf is its own octants.
   CellNode octant(const CellNode& node, int o) const {

@@ -6,12 +6,6 @@
 
 namespace prefilter {
 
-enum class Interpolant {
-  kOccupancy,  // a line that leaves each of two cells its share: chapter 5
-  kPlane,      // the surface that preserves neighbouring cells
-  kLinear,     // samples of a smooth function: marching cubes
-};
-
 /// The sample that stands for what is empty: 0, or where that would be inside, the largest that is
 /// not.
 inline float empty_sample(float isovalue) {

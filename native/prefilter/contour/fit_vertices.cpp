@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kBrickDepth = 4;
 constexpr int kMargin = kHeightReach;
-constexpr std::size_t kBricksPerTask = 64;
+constexpr std::int64_t kBricksPerTask = 64;
 
 using CellCoordinates = std::array<std::int32_t, 3>;
 
@@ -139,13 +139,13 @@ void for_bricks(const ContourTree& tree, const Progress& progress, int threads,
                 const Visit& visit) {
   std::vector<Brick> bricks;
   find_bricks(tree, tree.root(), {0, 0, 0}, &bricks);
-  const std::size_t tasks = (bricks.size() + kBricksPerTask - 1) / kBricksPerTask;
-  parallel_for(static_cast<std::int64_t>(tasks), threads, progress, [&](std::int64_t task) {
-    BrickWindow window(tree);
-    const std::size_t begin = static_cast<std::size_t>(task) * kBricksPerTask;
-    const std::size_t end = std::min(bricks.size(), begin + kBricksPerTask);
-    for (std::size_t i = begin; i < end; ++i) visit(bricks[i], &window);
-  });
+  parallel_ranges(static_cast<std::int64_t>(bricks.size()), kBricksPerTask, threads, progress,
+                  [&](std::int64_t begin, std::int64_t end) {
+                    BrickWindow window(tree);
+                    for (std::int64_t i = begin; i < end; ++i) {
+                      visit(bricks[static_cast<std::size_t>(i)], &window);
+                    }
+                  });
 }
 }  // namespace
 
@@ -161,18 +161,20 @@ void settle_sides(const Progress& progress, int threads, ContourTree* tree) {
     }
     return false;
   };
-  for_bricks(*tree, progress, threads, [&](const Brick& brick, BrickWindow* window) {
-    const auto level = static_cast<std::size_t>(brick.depth - 1);
-    window->for_blocks_of(brick, has_doubtful, [&](const LeafBlock& block) {
-      for (int o = 0; o < 8; ++o) {
-        if (!is_doubtful(level, block.block, o)) continue;
-        const std::optional<float> height =
-            height_over_centre(window->cell(octant_at(block.at, o)), window->strides());
-        if (height) tree->set_side(level, block.block, o, *height >= 0.0F ? kInside : kOutside);
-      }
-    });
-  });
-  tree->update_sides(threads);
+  for_bricks(*tree, progress.part(0.0, 0.95), threads,
+             [&](const Brick& brick, BrickWindow* window) {
+               const auto level = static_cast<std::size_t>(brick.depth - 1);
+               window->for_blocks_of(brick, has_doubtful, [&](const LeafBlock& block) {
+                 for (int o = 0; o < 8; ++o) {
+                   if (!is_doubtful(level, block.block, o)) continue;
+                   const std::optional<float> height =
+                       height_over_centre(window->cell(octant_at(block.at, o)), window->strides());
+                   if (height)
+                     tree->set_side(level, block.block, o, *height >= 0.0F ? kInside : kOutside);
+                 }
+               });
+             });
+  tree->update_sides(progress.part(0.95, 1.0), threads);
 }
 
 void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Progress& progress,
@@ -190,7 +192,7 @@ void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Progres
         const CellCoordinates at = octant_at(block.at, bit / 6);
         const std::optional<float> t = height_crossing(window->cell(at), window->strides(), face);
         if (t) {
-          std::array<float, 3> position = vertices->positions()[vertex];
+          Vector3 position = vertices->positions()[vertex];
           position[face / 2] =
               frame.crossing(face, at[face / 2] + 0.5, static_cast<double>(*t), 1.0, brick.depth);
           vertices->move(vertex, position);

@@ -2,7 +2,7 @@
 // neighbouring cells.
 #pragma once
 
-#include "prefilter/contour/contour_options.h"
+#include "prefilter/base/progress.h"
 #include "prefilter/contour/surface_vertices.h"
 
 namespace prefilter {

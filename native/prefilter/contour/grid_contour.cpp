@@ -3,44 +3,21 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <string>
 #include <utility>
 
-#include "prefilter/base/error.h"
-#include "prefilter/base/memory.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/text.h"
 #include "prefilter/contour/contour_tree.h"
 #include "prefilter/contour/fit_vertices.h"
+#include "prefilter/contour/samples.h"
 #include "prefilter/contour/tree_contour.h"
 
 namespace prefilter {
 namespace {
 
-constexpr int kLargestSide = 1 << kMaxTreeDepth;
 constexpr int kTaskDepth = 3;
 
 using CellCoordinates = std::array<int, 3>;
 using Levels = std::vector<TreeLevel>;
-
-void check_size(const GridView& grid) {
-  for (int a = 0; a < 3; ++a) {
-    if (grid.size[a] < 1 || grid.size[a] > kLargestSide) {
-      throw_invalid("grid: " + std::to_string(grid.size[a]) + " cells along " +
-                    std::string(1, "xyz"[a]) + "; 1 to " + std::to_string(kLargestSide) +
-                    " are needed");
-    }
-  }
-}
-
-void check_samples(const float* begin, std::size_t count) {
-  for (const float* at = begin; at != begin + count; ++at) {
-    if (!std::isfinite(*at)) {
-      throw_invalid("grid: holds " + to_text(static_cast<double>(*at)) +
-                    "; all samples must be finite");
-    }
-  }
-}
 
 // On which sides of the iso-value the samples of each block of 2 x 2 x 2 are; what is outside of
 // the grid is empty.
@@ -62,7 +39,7 @@ class BlockSides {
       for (int i = low; i < std::min(low + 2, grid.size[0]); ++i) {
         for (int j = 0; j < grid.size[1]; ++j) {
           const float* row = &grid.values[grid.index(i, j, 0)];
-          check_samples(row, static_cast<std::size_t>(grid.size[2]));
+          check_samples({row, static_cast<std::size_t>(grid.size[2])});
           std::uint8_t* of_row = of_slice + static_cast<std::size_t>(j / 2) * size_[2];
           for (int k = 0; k < grid.size[2]; ++k) of_row[k / 2] |= side_of(row[k]);
         }
@@ -226,117 +203,23 @@ CellTree tree_of(const GridView& grid, int depth, const ContourOptions& options,
   return tree;
 }
 
-// Outlines of an image, cut through the squares between four samples each. A point lies between two
-// samples: along x (0) or y (1) from the lower one.
-class Outliner {
- public:
-  Outliner(const GridView& image, const GridFrame& frame, const ContourOptions& options)
-      : image_(image), frame_(frame), options_(options) {
-    nexts_.assign(static_cast<std::size_t>(2) * static_cast<std::size_t>(image.size[0] + 1) *
-                      static_cast<std::size_t>(image.size[1] + 1),
-                  -1);
-  }
-
-  void cut_rows(const Progress& progress) {
-    for (int x = -1; x < image_.size[0]; ++x) {
-      for (int y = -1; y < image_.size[1]; ++y) cut_square(x, y);
-      progress.report((x + 1.0) / image_.size[0]);
-    }
-  }
-
-  std::vector<Polyline> take() {
-    std::vector<Polyline> lines;
-    for (std::size_t start = 0; start < nexts_.size(); ++start) {
-      Polyline line;
-      for (std::int64_t at = static_cast<std::int64_t>(start); nexts_[at] >= 0;) {
-        line.push_back(point(at));
-        at = std::exchange(nexts_[static_cast<std::size_t>(at)], -1);
-      }
-      if (!line.empty()) lines.push_back(std::move(line));
-    }
-    return lines;
-  }
-
- private:
-  float value(int x, int y) const {
-    const bool is_within = x >= 0 && y >= 0 && x < image_.size[0] && y < image_.size[1];
-    return is_within ? image_.at(x, y, 0) : empty_sample(options_.isovalue);
-  }
-  bool is_inside(int x, int y) const {
-    const bool is_within = x >= 0 && y >= 0 && x < image_.size[0] && y < image_.size[1];
-    return is_within && image_.at(x, y, 0) >= options_.isovalue;
-  }
-  std::int64_t point_between(int x, int y, int axis) const {
-    return 2 * (static_cast<std::int64_t>(x + 1) * (image_.size[1] + 1) + (y + 1)) + axis;
-  }
-
-  // Corners around the square, counter-clockwise; runs of inside corners are cut off one by one,
-  // the inside to the left.
-  void cut_square(int x, int y) {
-    const std::array<std::array<int, 2>, 4> corners = {
-        {{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}};
-    const std::array<std::int64_t, 4> sides = {point_between(x, y, 0), point_between(x + 1, y, 1),
-                                               point_between(x, y + 1, 0), point_between(x, y, 1)};
-    std::array<bool, 4> inside;
-    for (std::size_t i = 0; i < 4; ++i) inside[i] = is_inside(corners[i][0], corners[i][1]);
-    for (std::size_t i = 0; i < 4; ++i) {
-      if (!inside[i] || inside[(i + 3) % 4]) continue;
-      std::size_t last = i;
-      while (inside[(last + 1) % 4]) last = (last + 1) % 4;
-      nexts_[static_cast<std::size_t>(sides[last])] = sides[(i + 3) % 4];
-    }
-  }
-
-  std::array<float, 2> point(std::int64_t index) const {
-    const int axis = static_cast<int>(index % 2);
-    const int y = static_cast<int>(index / 2 % (image_.size[1] + 1)) - 1;
-    const int x = static_cast<int>(index / 2 / (image_.size[1] + 1)) - 1;
-    const float a = value(x, y);
-    const float b = axis == 0 ? value(x + 1, y) : value(x, y + 1);
-    const bool are_occupancies = a >= 0.0F && a <= 1.0F && b >= 0.0F && b <= 1.0F &&
-                                 options_.isovalue == 0.5F &&
-                                 options_.interpolant != Interpolant::kLinear;
-    const float t =
-        are_occupancies ? occupancy_crossing(a, b) : linear_crossing(a, b, options_.isovalue);
-    const double px = x + 0.5 + (axis == 0 ? static_cast<double>(t) : 0.0);
-    const double py = y + 0.5 + (axis == 1 ? static_cast<double>(t) : 0.0);
-    return {static_cast<float>(frame_.origin[0] + px * frame_.spacing[0]),
-            static_cast<float>(frame_.origin[1] + py * frame_.spacing[1])};
-  }
-
-  const GridView& image_;
-  const GridFrame& frame_;
-  const ContourOptions& options_;
-  // After a point the next one of its outline; -1: no outline passes.
-  std::vector<std::int64_t> nexts_;
-};
 }  // namespace
 
 TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
                           const ContourOptions& options) {
-  check_size(grid);
+  check_sides(grid.size);
   const int longest = std::max({grid.size[0], grid.size[1], grid.size[2]});
   const int depth =
       std::max(1, static_cast<int>(std::bit_width(static_cast<unsigned>(longest - 1))));
-  const CellTree tree = tree_of(grid, depth, options, options.progress.part(0.0, 0.3));
-  RootFrame root;
+  Box root{frame.origin, {}};
   for (int a = 0; a < 3; ++a) {
-    root.origin[a] = frame.origin[a];
-    root.size[a] = std::ldexp(frame.spacing[a], depth);
+    root.high[a] = frame.origin[a] + std::ldexp(frame.spacing[a], depth);
   }
+  check_box(root, "spacing: the grid");
+  const CellTree tree = tree_of(grid, depth, options, options.progress.part(0.0, 0.3));
   ContourOptions rest = options;
   rest.progress = options.progress.part(0.3, 1.0);
   return contour_tree(tree, root, rest);
-}
-
-std::vector<Polyline> contour_image(const GridView& image, const GridFrame& frame,
-                                    const ContourOptions& options) {
-  check_size(image);
-  check_samples(image.values,
-                static_cast<std::size_t>(image.size[0]) * static_cast<std::size_t>(image.size[1]));
-  Outliner outliner(image, frame, options);
-  outliner.cut_rows(options.progress);
-  return outliner.take();
 }
 
 }  // namespace prefilter

@@ -1,11 +1,10 @@
-// Grids of samples to closed outlines and meshes (chapter 5).
+// Grids of samples in space to closed meshes (chapter 5).
 #pragma once
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
-#include "prefilter/base/triangle_mesh.h"
+#include "prefilter/base/geometry.h"
 #include "prefilter/contour/contour_options.h"
 
 namespace prefilter {
@@ -27,22 +26,15 @@ struct GridView {
 
 /// Where cells are: cell (i, j, k) begins at origin + spacing * (i, j, k).
 struct GridFrame {
-  std::array<double, 3> origin{};
-  std::array<double, 3> spacing{1.0, 1.0, 1.0};
+  Vector3 origin{};
+  Vector3 spacing{1.0, 1.0, 1.0};
 };
 
 /// Marching cubes on the samples. As contour_tree does: the octree is made of the grid, with blocks
 /// of equal samples away from the surface as leaves. What is outside of the grid is empty. Throws
-/// Error where a side is out of range or a sample is not a number, and what contour_tree throws.
+/// Error where a side is out of range, a sample is not a number, or the frame's cells have no
+/// volume, and what contour_tree throws.
 TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
                           const ContourOptions& options);
-
-using Polyline = std::vector<std::array<float, 2>>;
-
-/// The outlines of a grid that is one cell thick along z: closed polylines, the last point joined
-/// to the first, with the inside to their left. "occupancy" and "plane" are the same here: exact
-/// for straight edges (section 5.2). Throws as contour_grid does.
-std::vector<Polyline> contour_image(const GridView& image, const GridFrame& frame,
-                                    const ContourOptions& options);
 
 }  // namespace prefilter

@@ -72,7 +72,7 @@ Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode&
 
 // What a task makes of its blocks: vertices in order, and the blocks of each level that it saw.
 struct TaskVertices {
-  std::vector<std::array<float, 3>> positions;
+  std::vector<Vector3> positions;
   struct Range {
     std::size_t begin = std::numeric_limits<std::size_t>::max();
     std::size_t end = 0;
@@ -122,10 +122,10 @@ class VertexMaker {
   }
 
  private:
-  std::array<float, 3> position(const Visit& visit, int o, int face, const CellNode& leaf,
-                                const CellNode& neighbour) const {
+  Vector3 position(const Visit& visit, int o, int face, const CellNode& leaf,
+                   const CellNode& neighbour) const {
     const Crossing found = crossing(tree_, leaf, neighbour, interpolant_);
-    std::array<float, 3> result;
+    Vector3 result;
     for (int a = 0; a < 3; ++a) {
       const double centre = 2.0 * visit.at[a] + ((o >> a) & 1) + 0.5;
       result[a] = a == face / 2 ? frame_.crossing(face, centre, static_cast<double>(found.t),
@@ -167,7 +167,8 @@ SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame
   surroundings.fill(kSurroundings);
   above(above, {tree.root(), surroundings, {0, 0, 0}});
   tasks.resize(roots.size() + 1);
-  parallel_for(static_cast<std::int64_t>(roots.size()), threads, progress, [&](std::int64_t i) {
+  const Progress making = progress.part(0.0, 0.9);
+  parallel_for(static_cast<std::int64_t>(roots.size()), threads, making, [&](std::int64_t i) {
     TaskVertices& task = tasks[static_cast<std::size_t>(i) + 1];
     task.ranges.resize(levels.size());
     maker.visit_all(roots[static_cast<std::size_t>(i)], &task);
@@ -179,6 +180,7 @@ SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame
     throw Error(ErrorCode::kOutOfMemory, "the contour has more than 2^31 vertices");
   }
   positions_.reserve(count);
+  const Progress joining = progress.part(0.9, 1.0);
   for (TaskVertices& task : tasks) {
     const auto offset = static_cast<std::uint32_t>(positions_.size());
     for (std::size_t k = 0; k < levels.size(); ++k) {
@@ -189,6 +191,7 @@ SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame
     }
     positions_.insert(positions_.end(), task.positions.begin(), task.positions.end());
     task = TaskVertices();
+    joining.report(static_cast<double>(positions_.size()) / static_cast<double>(count));
   }
 }
 

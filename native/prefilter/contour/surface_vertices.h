@@ -6,14 +6,16 @@
 #include <cstdint>
 #include <vector>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/contour/contour_options.h"
 #include "prefilter/contour/contour_tree.h"
+#include "prefilter/contour/root_frame.h"
 
 namespace prefilter {
 
 /// A pair belongs to the finer of its leaves; of two of the same size, to the one at the low side.
 /// Its vertex lies on the line through that leaf's centre across the face that they share, where
-/// the other leaf, if it is coarser, has a cell of the same size.
+/// the other leaf, if it is coarser, has a cell of the same size. Positions are the frame's.
 class SurfaceVertices {
  public:
   SurfaceVertices(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
@@ -33,20 +35,18 @@ class SurfaceVertices {
     return low.depth >= high.depth ? index(low, 2 * axis + 1) : index(high, 2 * axis);
   }
 
-  const std::vector<std::array<float, 3>>& positions() const { return positions_; }
-  std::vector<std::array<float, 3>> take_positions() { return std::move(positions_); }
+  const std::vector<Vector3>& positions() const { return positions_; }
+  std::vector<Vector3> take_positions() { return std::move(positions_); }
 
   /// The faces with a vertex, of all octants of a block: bit 6 o + f.
   std::uint64_t cuts(std::size_t level, std::size_t block) const { return cuts_[level][block]; }
   std::uint32_t first(std::size_t level, std::size_t block) const { return firsts_[level][block]; }
-  void move(std::size_t vertex, const std::array<float, 3>& position) {
-    positions_[vertex] = position;
-  }
+  void move(std::size_t vertex, const Vector3& position) { positions_[vertex] = position; }
 
  private:
   std::vector<std::vector<std::uint64_t>> cuts_;
   std::vector<std::vector<std::uint32_t>> firsts_;  // the vertex of a block's lowest bit
-  std::vector<std::array<float, 3>> positions_;
+  std::vector<Vector3> positions_;
 };
 
 }  // namespace prefilter

@@ -11,12 +11,13 @@
 #include "prefilter/contour/dual_cells.h"
 #include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/marching_table.h"
+#include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/surface_vertices.h"
 
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kPartsPerTask = 8;
+constexpr std::int64_t kPartsPerTask = 8;
 
 using Triangle = std::array<std::int32_t, 3>;
 
@@ -24,7 +25,7 @@ using Triangle = std::array<std::int32_t, 3>;
 // -1 downwards.
 struct TaskTriangles {
   std::vector<Triangle> triangles;
-  std::vector<std::array<float, 3>> middles;
+  std::vector<Vector3> middles;
 };
 
 constexpr std::array<unsigned, 12> kFacesOfEdges = [] {
@@ -36,24 +37,12 @@ constexpr std::array<unsigned, 12> kFacesOfEdges = [] {
 // In proportion to the volume between a triangle and a large sphere through its corners: the area
 // times the sum of the squared sides. Of the triangulations of points of one plane Delaunay's has
 // the least sum (Rajan 1994), and facets whose normals are the nearest to the sphere's.
-double sphere_gap(const std::array<float, 3>& a, const std::array<float, 3>& b,
-                  const std::array<float, 3>& c) {
-  std::array<double, 3> u;
-  std::array<double, 3> v;
-  double squares = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    u[i] = double{b[i]} - a[i];
-    v[i] = double{c[i]} - a[i];
-    squares += u[i] * u[i] + v[i] * v[i] + (v[i] - u[i]) * (v[i] - u[i]);
-  }
-  double doubled = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    const std::size_t k = (i + 2) % 3;
-    const double n = u[j] * v[k] - u[k] * v[j];
-    doubled += n * n;
-  }
-  return std::sqrt(doubled) * squares;
+double sphere_gap(const Vector3& a, const Vector3& b, const Vector3& c) {
+  const Vector3 u = b - a;
+  const Vector3 v = c - a;
+  const Vector3 w = v - u;
+  const Vector3 normal = cross(u, v);
+  return std::sqrt(dot(normal, normal)) * (dot(u, u) + dot(v, v) + dot(w, w));
 }
 
 class TriangleMaker {
@@ -166,11 +155,9 @@ class TriangleMaker {
     });
     if (is_done) return;
     // No diagonal is free: a fan around the middle needs none.
-    std::array<float, 3> middle{};
-    for (int i = 0; i < count; ++i) {
-      const auto& p = position(corners[i]);
-      for (int a = 0; a < 3; ++a) middle[a] += p[a] / static_cast<float>(count);
-    }
+    Vector3 middle{};
+    for (int i = 0; i < count; ++i) middle = middle + position(corners[i]);
+    for (double& x : middle) x /= count;
     task->middles.push_back(middle);
     const auto centre = -static_cast<std::int32_t>(task->middles.size());
     for (int i = 0; i < count; ++i) {
@@ -178,7 +165,7 @@ class TriangleMaker {
     }
   }
 
-  const std::array<float, 3>& position(std::int32_t vertex) const {
+  const Vector3& position(std::int32_t vertex) const {
     return vertices_.positions()[static_cast<std::size_t>(vertex)];
   }
 
@@ -186,7 +173,8 @@ class TriangleMaker {
   const std::array<MarchingCase, 256>& cases_;
 };
 
-TriangleMesh join(SurfaceVertices* vertices, std::vector<TaskTriangles>* tasks) {
+TriangleMesh join(const Progress& progress, SurfaceVertices* vertices,
+                  std::vector<TaskTriangles>* tasks) {
   TriangleMesh mesh;
   mesh.positions = vertices->take_positions();
   std::size_t count = 0;
@@ -204,48 +192,57 @@ TriangleMesh join(SurfaceVertices* vertices, std::vector<TaskTriangles>* tasks) 
     }
     mesh.triangles.insert(mesh.triangles.end(), task.triangles.begin(), task.triangles.end());
     task = TaskTriangles();
+    progress.report(static_cast<double>(mesh.triangles.size()) / static_cast<double>(count));
   }
+  return mesh;
+}
+
+// The contour of a tree whose root is split.
+TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options) {
+  constexpr double kPlacing = 0.98;
+  const double cleaning = options.clean_up ? 0.3 : kPlacing;
+  const Progress cutting = options.progress.part(0.0, cleaning);
+  ContourTree tree(cells, options.isovalue, cutting.part(0.0, 0.1), options.threads);
+  const bool fits = options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F;
+  if (fits) settle_sides(cutting.part(0.1, 0.3), options.threads, &tree);
+  const RootFrame frame(root);
+  SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.3, 0.5),
+                           options.threads);
+  if (fits) {
+    fit_vertices(tree, frame, cutting.part(0.5, 0.6), options.threads, &vertices);
+  }
+  const DualCells dual(tree);
+  const TriangleMaker maker(vertices);
+  const auto parts = static_cast<std::int64_t>(dual.part_count());
+  std::vector<TaskTriangles> tasks(static_cast<std::size_t>(range_count(parts, kPartsPerTask)));
+  const auto make_some = [&](std::int64_t begin, std::int64_t end) {
+    TaskTriangles& task = tasks[static_cast<std::size_t>(begin / kPartsPerTask)];
+    for (std::int64_t part = begin; part < end; ++part) {
+      dual.for_part(static_cast<std::size_t>(part),
+                    [&](const Meeting& leaves) { maker.add(leaves, &task); });
+    }
+  };
+  parallel_ranges(parts, kPartsPerTask, options.threads, cutting.part(0.6, 0.95), make_some);
+  TriangleMesh mesh = join(cutting.part(0.95, 1.0), &vertices, &tasks);
+  if (options.clean_up) {
+    mesh = clean_up(std::move(mesh), options.progress.part(cleaning, kPlacing), options.threads);
+  }
+  frame.place(options.progress.part(kPlacing, 1.0), options.threads, &mesh.positions);
   return mesh;
 }
 }  // namespace
 
-TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
-                          const ContourOptions& options) {
-  if (cells.levels.empty()) {
-    CellTree split;
-    split.root = cells.root;
-    split.levels.resize(1);
-    split.levels[0].blocks.emplace_back();
-    split.levels[0].blocks[0].fill(cells.root);
-    split.levels[0].split.push_back(0);
-    link_blocks(split.levels.data());
-    return contour_tree(split, frame, options);
-  }
-  const Progress cutting = options.clean_up ? options.progress.part(0.0, 0.3) : options.progress;
-  const Progress cleaning = options.progress.part(0.3, 1.0);
-  ContourTree tree(cells, options.isovalue, options.threads);
-  const bool fits = options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F;
-  if (fits) settle_sides(cutting.part(0.0, 0.2), options.threads, &tree);
-  SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.2, 0.4),
-                           options.threads);
-  if (fits) {
-    fit_vertices(tree, frame, cutting.part(0.4, 0.6), options.threads, &vertices);
-  }
-  const DualCells dual(tree);
-  const TriangleMaker maker(vertices);
-  std::vector<TaskTriangles> tasks((dual.part_count() + kPartsPerTask - 1) / kPartsPerTask);
-  parallel_for(static_cast<std::int64_t>(tasks.size()), options.threads, cutting.part(0.6, 1.0),
-               [&](std::int64_t i) {
-                 TaskTriangles& task = tasks[static_cast<std::size_t>(i)];
-                 const std::size_t begin = static_cast<std::size_t>(i) * kPartsPerTask;
-                 const std::size_t end = std::min(dual.part_count(), begin + kPartsPerTask);
-                 for (std::size_t part = begin; part < end; ++part) {
-                   dual.for_part(part, [&](const Meeting& leaves) { maker.add(leaves, &task); });
-                 }
-               });
-  TriangleMesh mesh = join(&vertices, &tasks);
-  if (options.clean_up) mesh = clean_up(std::move(mesh), cleaning);
-  return mesh;
+TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourOptions& options) {
+  check_box(root, "bounds");
+  if (!cells.levels.empty()) return contour_split(cells, root, options);
+  CellTree split;
+  split.root = cells.root;
+  split.levels.resize(1);
+  split.levels[0].blocks.emplace_back();
+  split.levels[0].blocks[0].fill(cells.root);
+  split.levels[0].split.push_back(0);
+  link_blocks(split.levels.data());
+  return contour_split(split, root, options);
 }
 
 }  // namespace prefilter

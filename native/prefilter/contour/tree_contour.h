@@ -1,7 +1,7 @@
 // Occupancy octrees to closed meshes (chapter 5).
 #pragma once
 
-#include "prefilter/base/triangle_mesh.h"
+#include "prefilter/base/geometry.h"
 #include "prefilter/contour/contour_options.h"
 #include "prefilter/wavelet/cell_tree.h"
 
@@ -16,8 +16,8 @@ namespace prefilter {
 /// for any number of threads. Where interpolants are not defined (values outside of [0, 1], or an
 /// iso-value other than 1/2) crossings are linear.
 ///
-/// Throws Error(kCancelled), and Error(kOutOfMemory) for more than 2^31 vertices.
-TriangleMesh contour_tree(const CellTree& cells, const RootFrame& frame,
-                          const ContourOptions& options);
+/// Throws Error for a root without volume, Error(kCancelled), and Error(kOutOfMemory) for more than
+/// 2^31 vertices.
+TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourOptions& options);
 
 }  // namespace prefilter

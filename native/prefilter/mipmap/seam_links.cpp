@@ -19,7 +19,7 @@ constexpr double kSameUv = 1e-6;
 constexpr double kLongestSeam = 1 << 16;
 
 struct PositionHash {
-  std::size_t operator()(const std::array<double, 3>& position) const {
+  std::size_t operator()(const Vector3& position) const {
     std::uint64_t hash = 0x9E3779B97F4A7C15U;
     for (const double value : position) {
       hash ^= std::bit_cast<std::uint64_t>(value);
@@ -31,13 +31,13 @@ struct PositionHash {
 };
 
 // The first vertex at each vertex's position.
-std::vector<std::int32_t> weld(const std::vector<std::array<double, 3>>& positions, Pulse* pulse) {
-  std::unordered_map<std::array<double, 3>, std::int32_t, PositionHash> first;
+std::vector<std::int32_t> weld(const std::vector<Vector3>& positions, Pulse* pulse) {
+  std::unordered_map<Vector3, std::int32_t, PositionHash> first;
   first.reserve(positions.size());
   std::vector<std::int32_t> welded(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     pulse->step();
-    std::array<double, 3> position = positions[i];
+    Vector3 position = positions[i];
     for (double& value : position) value += 0.0;  // -0 is 0
     welded[i] = first.try_emplace(position, static_cast<std::int32_t>(i)).first->second;
   }
@@ -52,13 +52,9 @@ struct Edge {
 double area_of_mesh(const Surface& surface) {
   double sum = 0.0;
   for (const std::array<std::int32_t, 3>& triangle : surface.triangles) {
-    const std::array<double, 3>& p = surface.positions[triangle[0]];
-    const std::array<double, 3>& q = surface.positions[triangle[1]];
-    const std::array<double, 3>& r = surface.positions[triangle[2]];
-    const double a[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
-    const double b[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
-    sum += 0.5 * std::hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                            a[0] * b[1] - a[1] * b[0]);
+    const Vector3& p = surface.positions[triangle[0]];
+    sum +=
+        0.5 * length(cross(surface.positions[triangle[1]] - p, surface.positions[triangle[2]] - p));
   }
   return sum;
 }
@@ -245,11 +241,9 @@ std::vector<SeamEdge> find_seams(const Surface& surface, const Progress& progres
     const Edge& a = edges[begin];
     const Edge& b = edges[begin + 1];
     if (same(a.at_low, b.at_low) && same(a.at_high, b.at_high)) continue;
-    const std::array<double, 3>& p = surface.positions[a.low];
-    const std::array<double, 3>& q = surface.positions[a.high];
-    const double length = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-    if (!(length > 0.0)) continue;
-    seams.push_back({{a.at_low, a.at_high}, {b.at_low, b.at_high}, length, area_scale});
+    const double size = length(surface.positions[a.high] - surface.positions[a.low]);
+    if (!(size > 0.0)) continue;
+    seams.push_back({{a.at_low, a.at_high}, {b.at_low, b.at_high}, size, area_scale});
   }
   return seams;
 }

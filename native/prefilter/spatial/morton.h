@@ -7,36 +7,42 @@
 
 namespace prefilter {
 
-/// The bits of a number below 1024, with two zeros between them.
-constexpr std::uint32_t spread_bits(std::uint32_t n) {
-  n = (n | (n << 16U)) & 0x030000FFU;
-  n = (n | (n << 8U)) & 0x0300F00FU;
-  n = (n | (n << 4U)) & 0x030C30C3U;
-  n = (n | (n << 2U)) & 0x09249249U;
-  return n;
-}
+/// Cells along an axis that a place on the curve can tell apart: 2^21.
+inline constexpr int kMortonBits = 21;
 
-/// Where a cell is along the curve; x has the lowest bits. Coordinates from 0 to 1023.
-inline std::uint32_t morton_index(const std::array<int, 3>& cell) {
-  assert(cell[0] >= 0 && cell[1] >= 0 && cell[2] >= 0);
-  assert(cell[0] < 1024 && cell[1] < 1024 && cell[2] < 1024);
-  return spread_bits(static_cast<std::uint32_t>(cell[0])) |
-         (spread_bits(static_cast<std::uint32_t>(cell[1])) << 1U) |
-         (spread_bits(static_cast<std::uint32_t>(cell[2])) << 2U);
+/// The bits of a number below 2^21, with two zeros between them.
+constexpr std::uint64_t spread_bits(std::uint64_t n) {
+  n = (n | (n << 32U)) & 0x001F00000000FFFFU;
+  n = (n | (n << 16U)) & 0x001F0000FF0000FFU;
+  n = (n | (n << 8U)) & 0x100F00F00F00F00FU;
+  n = (n | (n << 4U)) & 0x10C30C30C30C30C3U;
+  n = (n | (n << 2U)) & 0x1249249249249249U;
+  return n;
 }
 
 /// Every third bit of a number, close together: the inverse of spread_bits.
-constexpr std::uint32_t gather_bits(std::uint32_t n) {
-  n &= 0x09249249U;
-  n = (n | (n >> 2U)) & 0x030C30C3U;
-  n = (n | (n >> 4U)) & 0x0300F00FU;
-  n = (n | (n >> 8U)) & 0x030000FFU;
-  n = (n | (n >> 16U)) & 0x000003FFU;
+constexpr std::uint64_t gather_bits(std::uint64_t n) {
+  n &= 0x1249249249249249U;
+  n = (n | (n >> 2U)) & 0x10C30C30C30C30C3U;
+  n = (n | (n >> 4U)) & 0x100F00F00F00F00FU;
+  n = (n | (n >> 8U)) & 0x001F0000FF0000FFU;
+  n = (n | (n >> 16U)) & 0x001F00000000FFFFU;
+  n = (n | (n >> 32U)) & 0x00000000001FFFFFU;
   return n;
 }
 
+/// Where a cell is along the curve; x has the lowest bits. Coordinates from 0 to 2^21 - 1.
+inline std::uint64_t morton_index(const std::array<int, 3>& cell) {
+  std::uint64_t index = 0;
+  for (int a = 0; a < 3; ++a) {
+    assert(cell[a] >= 0 && cell[a] < 1 << kMortonBits);
+    index |= spread_bits(static_cast<std::uint64_t>(cell[a])) << a;
+  }
+  return index;
+}
+
 /// The cell at a place along the curve.
-inline std::array<int, 3> morton_cell(std::uint32_t index) {
+inline std::array<int, 3> morton_cell(std::uint64_t index) {
   return {static_cast<int>(gather_bits(index)), static_cast<int>(gather_bits(index >> 1U)),
           static_cast<int>(gather_bits(index >> 2U))};
 }

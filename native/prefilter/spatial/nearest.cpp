@@ -1,34 +1,26 @@
-// A binary tree of boxes over the triangles in the order of the Morton curve through their centres.
-// Node i has the children 2 i + 1 and 2 i + 2, and shares its range of triangles out in halves, so
-// that the tree is an array of boxes. Closest points of triangles: Ericson, Real-Time Collision
-// Detection (2005), section 5.1.5.
+// A binary tree of boxes over the triangles in the order of the Morton curve through their middles.
+// Closest points of triangles: Ericson, Real-Time Collision Detection (2005), section 5.1.5.
+//
+// Identical triangles are one, with the lowest of their indices: as their boxes may be nearer than
+// they are, no box could leave them out, and each search would look at all of them.
 #include "prefilter/spatial/nearest.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <string>
-#include <utility>
 
-#include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/text.h"
+#include "prefilter/base/sort.h"
+#include "prefilter/spatial/morton.h"
 
 namespace prefilter {
 namespace {
 
-using Vector = std::array<double, 3>;
-
 constexpr std::size_t kLeafTriangles = 4;
-constexpr std::size_t kPointsPerTask = 1U << 12;
+// So few that a task ends soon even where a search looks at very many triangles.
+constexpr std::int64_t kPointsPerTask = 64;
+constexpr std::int64_t kRowsPerTask = 1 << 15;
 constexpr double kLargest = 1e150;
-
-Vector operator-(const Vector& a, const Vector& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
-double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // Where a point's foot on the segment from the origin along `edge` is, in [0, 1]; `along` is the
 // point's product with the edge.
@@ -37,18 +29,18 @@ double on_segment(double along, double squared_length) {
 }
 
 // The weights of the triangle's corners at its point nearest to p.
-Vector nearest_weights(const Vector& p, const Vector& a, const Vector& b, const Vector& c) {
-  const Vector ab = b - a;
-  const Vector ac = c - a;
-  const Vector ap = p - a;
+Vector3 nearest_weights(const Vector3& p, const Vector3& a, const Vector3& b, const Vector3& c) {
+  const Vector3 ab = b - a;
+  const Vector3 ac = c - a;
+  const Vector3 ap = p - a;
   const double d1 = dot(ab, ap);
   const double d2 = dot(ac, ap);
   if (d1 <= 0.0 && d2 <= 0.0) return {1.0, 0.0, 0.0};
-  const Vector bp = p - b;
+  const Vector3 bp = p - b;
   const double d3 = dot(ab, bp);
   const double d4 = dot(ac, bp);
   if (d3 >= 0.0 && d4 <= d3) return {0.0, 1.0, 0.0};
-  const Vector cp = p - c;
+  const Vector3 cp = p - c;
   const double d5 = dot(ab, cp);
   const double d6 = dot(ac, cp);
   if (d6 >= 0.0 && d5 <= d6) return {0.0, 0.0, 1.0};
@@ -74,207 +66,247 @@ Vector nearest_weights(const Vector& p, const Vector& a, const Vector& b, const 
   return {std::max(0.0, 1.0 - v - w), v, w};
 }
 
-struct Bounds {
-  Vector low;
-  Vector high;
+// A point's place along the Morton curve.
+struct Place {
+  std::uint64_t key;
+  std::uint32_t index;
 
-  double squared_distance(const Vector& p) const {
-    double sum = 0.0;
-    for (int a = 0; a < 3; ++a) {
-      const double outside = std::max({low[a] - p[a], p[a] - high[a], 0.0});
-      sum += outside * outside;
-    }
-    return sum;
+  bool operator<(const Place& other) const {
+    return key != other.key ? key < other.key : index < other.index;
   }
 };
 
-constexpr Bounds kEmpty = {
-    {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
-     std::numeric_limits<double>::infinity()},
-    {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
-     -std::numeric_limits<double>::infinity()}};
-
-void include(const Bounds& other, Bounds* bounds) {
-  for (int a = 0; a < 3; ++a) {
-    bounds->low[a] = std::min(bounds->low[a], other.low[a]);
-    bounds->high[a] = std::max(bounds->high[a], other.high[a]);
-  }
-}
-
-// 21 bits an axis, with two zeros between them.
-std::uint64_t spread_bits(std::uint64_t n) {
-  n = (n | (n << 32U)) & 0x1F00000000FFFFULL;
-  n = (n | (n << 16U)) & 0x1F0000FF0000FFULL;
-  n = (n | (n << 8U)) & 0x100F00F00F00F00FULL;
-  n = (n | (n << 4U)) & 0x10C30C30C30C30C3ULL;
-  n = (n | (n << 2U)) & 0x1249249249249249ULL;
-  return n;
-}
-
-// The indices of points along the Morton curve through their box.
-std::vector<std::size_t> morton_order(std::span<const Vector> points) {
-  Bounds all = kEmpty;
-  for (const Vector& point : points) include({point, point}, &all);
-  std::vector<std::pair<std::uint64_t, std::size_t>> keys(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    std::uint64_t key = 0;
-    for (int a = 0; a < 3; ++a) {
-      const double size = all.high[a] - all.low[a];
-      const double place = size > 0.0 ? (points[i][a] - all.low[a]) / size : 0.0;
-      key |= spread_bits(static_cast<std::uint64_t>(place * 0x1FFFFF)) << a;
-    }
-    keys[i] = {key, i};
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<std::size_t> order(points.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].second;
-  return order;
-}
-
-class TriangleTree {
- public:
-  TriangleTree(std::span<const Vector> positions,
-               std::span<const std::array<std::int64_t, 3>> triangles)
-      : positions_(positions), triangles_(triangles) {
-    sort_triangles();
-    while ((order_.size() >> depth_) > kLeafTriangles) ++depth_;
-    nodes_.assign((std::size_t{2} << depth_) - 1, kEmpty);
-    build(0, 0, order_.size(), 0);
-  }
-
-  SurfacePoint nearest(const Vector& point, const SurfacePoint& guess) const {
-    SurfacePoint best;
-    double best_squared = std::numeric_limits<double>::infinity();
-    try_triangle(static_cast<std::size_t>(guess.triangle), point, &best, &best_squared);
-    visit(0, 0, order_.size(), 0, nodes_[0].squared_distance(point), point, &best, &best_squared);
-    best.distance = std::sqrt(best_squared);
-    return best;
-  }
-
- private:
-  Bounds bounds_of(std::size_t triangle) const {
-    Bounds bounds = kEmpty;
-    for (const std::int64_t vertex : triangles_[triangle]) {
-      const Vector& p = positions_[static_cast<std::size_t>(vertex)];
-      include({p, p}, &bounds);
-    }
-    return bounds;
-  }
-
-  void sort_triangles() {
-    std::vector<Vector> centres(triangles_.size());
-    for (std::size_t t = 0; t < centres.size(); ++t) {
-      const Bounds bounds = bounds_of(t);
+// Points in the order of the Morton curve through their box. `point_of(i)` is one of `count`.
+template <typename PointOf>
+std::vector<Place> along_curve(std::size_t count, const PointOf& point_of, const Progress& progress,
+                               int threads) {
+  const auto rows = static_cast<std::int64_t>(count);
+  std::vector<Box> boxes(static_cast<std::size_t>(range_count(rows, kRowsPerTask)), kEmptyBox);
+  const auto measure = [&](std::int64_t begin, std::int64_t end) {
+    Box& box = boxes[static_cast<std::size_t>(begin / kRowsPerTask)];
+    for (std::int64_t i = begin; i < end; ++i) box.include(point_of(static_cast<std::size_t>(i)));
+  };
+  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.0, 0.1), measure);
+  Box all = kEmptyBox;
+  for (const Box& box : boxes) all.include(box);
+  std::vector<Place> places(count);
+  const auto place = [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      const Vector3 point = point_of(static_cast<std::size_t>(i));
+      std::array<int, 3> cell;
       for (int a = 0; a < 3; ++a) {
-        centres[t][a] = bounds.low[a] + (bounds.high[a] - bounds.low[a]) / 2.0;
+        const double size = all.size(a);
+        const double along = size > 0.0 ? (point[a] - all.low[a]) / size : 0.0;
+        cell[a] = static_cast<int>(along * ((1 << kMortonBits) - 1));
       }
+      places[static_cast<std::size_t>(i)] = {morton_index(cell), static_cast<std::uint32_t>(i)};
     }
-    order_ = morton_order(centres);
-  }
+  };
+  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.1, 0.2), place);
+  sort_in_parallel(&places, progress.part(0.2, 1.0), threads);
+  return places;
+}
 
-  void build(std::size_t node, std::size_t begin, std::size_t end, int level) {
-    if (level == depth_) {
-      for (std::size_t i = begin; i < end; ++i) include(bounds_of(order_[i]), &nodes_[node]);
-      return;
-    }
-    const std::size_t middle = begin + (end - begin) / 2;
-    build(2 * node + 1, begin, middle, level + 1);
-    build(2 * node + 2, middle, end, level + 1);
-    nodes_[node] = nodes_[2 * node + 1];
-    include(nodes_[2 * node + 2], &nodes_[node]);
-  }
+// The corners of a triangle in an order that does not depend on the one that they are named in.
+std::array<Vector3, 3> sorted_corners(const InputMesh& mesh, std::size_t triangle) {
+  std::array<Vector3, 3> corners = mesh.corners(triangle);
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
 
-  void try_triangle(std::size_t triangle, const Vector& point, SurfacePoint* best,
-                    double* best_squared) const {
-    const auto& [i, j, k] = triangles_[triangle];
-    const Vector& a = positions_[static_cast<std::size_t>(i)];
-    const Vector& b = positions_[static_cast<std::size_t>(j)];
-    const Vector& c = positions_[static_cast<std::size_t>(k)];
-    const Vector weights = nearest_weights(point, a, b, c);
-    Vector offset;
-    for (int x = 0; x < 3; ++x) {
-      offset[x] = weights[0] * a[x] + weights[1] * b[x] + weights[2] * c[x] - point[x];
-    }
-    const double squared = dot(offset, offset);
-    const auto index = static_cast<std::int64_t>(triangle);
-    if (squared < *best_squared || (squared == *best_squared && index < best->triangle)) {
-      *best_squared = squared;
-      *best = {index, weights, 0.0};
-    }
-  }
+// A triangle among others with the same middle.
+struct Copy {
+  std::array<Vector3, 3> corners;
+  std::uint32_t index;
 
-  // Triangles at the same distance are all looked at, so that the guess does not matter.
-  void visit(std::size_t node, std::size_t begin, std::size_t end, int level, double squared,
-             const Vector& point, SurfacePoint* best, double* best_squared) const {
-    if (squared > *best_squared) return;
-    if (level == depth_) {
-      for (std::size_t i = begin; i < end; ++i) {
-        try_triangle(order_[i], point, best, best_squared);
-      }
-      return;
-    }
-    const std::size_t middle = begin + (end - begin) / 2;
-    const double low = nodes_[2 * node + 1].squared_distance(point);
-    const double high = nodes_[2 * node + 2].squared_distance(point);
-    if (low <= high) {
-      visit(2 * node + 1, begin, middle, level + 1, low, point, best, best_squared);
-      visit(2 * node + 2, middle, end, level + 1, high, point, best, best_squared);
-    } else {
-      visit(2 * node + 2, middle, end, level + 1, high, point, best, best_squared);
-      visit(2 * node + 1, begin, middle, level + 1, low, point, best, best_squared);
-    }
+  bool operator<(const Copy& other) const {
+    return corners != other.corners ? corners < other.corners : index < other.index;
   }
-
-  std::span<const Vector> positions_;
-  std::span<const std::array<std::int64_t, 3>> triangles_;
-  std::vector<std::size_t> order_;
-  int depth_ = 0;
-  std::vector<Bounds> nodes_;
 };
 
-void check_values(std::span<const Vector> rows, const char* argument) {
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (const double x : rows[i]) {
-      if (std::abs(x) <= kLargest) continue;
-      throw_invalid(std::string(argument) + ": row " + std::to_string(i) + " holds " + to_text(x) +
-                    "; all values must be finite, and at most 1e150");
+// Leaves of identical triangles, which have the same key, the one with the lowest index.
+void drop_copies(const InputMesh& mesh, const Progress& progress, int threads,
+                 std::vector<Place>* places) {
+  constexpr std::size_t kMany = 1U << 15;
+  std::vector<Copy> copies;
+  std::size_t kept = 0;
+  for (std::size_t begin = 0, end = 0; begin < places->size(); begin = end) {
+    const std::uint64_t key = (*places)[begin].key;
+    while (end < places->size() && (*places)[end].key == key) ++end;
+    if (end == begin + 1) {
+      (*places)[kept++] = (*places)[begin];
+      continue;
+    }
+    copies.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint32_t index = (*places)[i].index;
+      copies.push_back({sorted_corners(mesh, index), index});
+    }
+    if (copies.size() < kMany) {
+      std::sort(copies.begin(), copies.end());
+    } else {
+      sort_in_parallel(&copies, progress, threads);
+    }
+    for (std::size_t i = 0; i < copies.size(); ++i) {
+      if (i > 0 && copies[i].corners == copies[i - 1].corners) continue;
+      (*places)[kept++] = {key, copies[i].index};
     }
   }
+  places->resize(kept);
 }
 }  // namespace
 
-std::vector<SurfacePoint> nearest_points(std::span<const Vector> points,
-                                         std::span<const Vector> positions,
-                                         std::span<const std::array<std::int64_t, 3>> triangles,
-                                         const Progress& progress, int threads) {
-  if (triangles.empty()) throw_invalid("triangles: none; at least one is needed");
-  check_values(positions, "positions");
-  check_values(points, "points");
-  const auto count = static_cast<std::int64_t>(positions.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (const std::int64_t vertex : triangles[t]) {
-      if (vertex >= 0 && vertex < count) continue;
-      throw_invalid("triangles: triangle " + std::to_string(t) + " names vertex " +
-                    std::to_string(vertex) + "; there are " + std::to_string(count) +
-                    ", from 0 on");
+struct NearestPoints::Best {
+  double squared = std::numeric_limits<double>::infinity();
+  std::size_t place = 0;
+  std::uint32_t index = 0;
+  Vector3 weights{};
+
+  /// Whether what is no nearer than this, with no lower index, may be the best.
+  bool may_be(double at_least, std::uint32_t lowest) const {
+    return at_least < squared || (at_least == squared && lowest < index);
+  }
+};
+
+NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, int threads) {
+  check_mesh(mesh, kLargest);
+  sort_triangles(mesh, progress.part(0.0, 0.8), threads);
+  build(progress.part(0.8, 1.0), threads);
+}
+
+void NearestPoints::sort_triangles(const InputMesh& mesh, const Progress& progress, int threads) {
+  positions_.assign(mesh.positions.begin(), mesh.positions.end());
+  const auto middle = [&](std::size_t triangle) {
+    Box box = kEmptyBox;
+    for (const Vector3& corner : mesh.corners(triangle)) box.include(corner);
+    Vector3 result;
+    for (int a = 0; a < 3; ++a) result[a] = box.low[a] + box.size(a) / 2.0;
+    return result;
+  };
+  std::vector<Place> places =
+      along_curve(mesh.triangles.size(), middle, progress.part(0.0, 0.8), threads);
+  drop_copies(mesh, progress.part(0.8, 0.9), threads, &places);
+  triangles_.resize(places.size());
+  indices_.resize(places.size());
+  const auto copy = [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      indices_[i] = places[i].index;
+      const auto& triangle = mesh.triangles[places[i].index];
+      for (int c = 0; c < 3; ++c) triangles_[i][c] = static_cast<std::int32_t>(triangle[c]);
+    }
+  };
+  parallel_ranges(static_cast<std::int64_t>(places.size()), kRowsPerTask, threads,
+                  progress.part(0.9, 1.0), copy);
+}
+
+void NearestPoints::build(const Progress& progress, int threads) {
+  while ((triangles_.size() >> depth_) > kLeafTriangles) ++depth_;
+  const std::size_t leaves = std::size_t{1} << depth_;
+  boxes_.assign(2 * leaves - 1, kEmptyBox);
+  lowest_indices_.assign(2 * leaves - 1, std::numeric_limits<std::uint32_t>::max());
+  const auto fill = [&](std::int64_t begin, std::int64_t end) {
+    for (auto leaf = static_cast<std::size_t>(begin); leaf < static_cast<std::size_t>(end);
+         ++leaf) {
+      const std::size_t node = leaves - 1 + leaf;
+      for (std::size_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
+        boxes_[node].include(box_of(i));
+        lowest_indices_[node] = std::min(lowest_indices_[node], indices_[i]);
+      }
+    }
+  };
+  parallel_ranges(static_cast<std::int64_t>(leaves), kRowsPerTask, threads, progress, fill);
+  for (std::size_t node = leaves - 1; node-- > 0;) {
+    boxes_[node] = boxes_[2 * node + 1];
+    boxes_[node].include(boxes_[2 * node + 2]);
+    lowest_indices_[node] = std::min(lowest_indices_[2 * node + 1], lowest_indices_[2 * node + 2]);
+  }
+}
+
+Box NearestPoints::box_of(std::size_t place) const {
+  Box box = kEmptyBox;
+  for (const std::int32_t vertex : triangles_[place]) {
+    box.include(positions_[static_cast<std::size_t>(vertex)]);
+  }
+  return box;
+}
+
+void NearestPoints::try_triangle(std::size_t place, const Vector3& point, Best* best) const {
+  const auto& [i, j, k] = triangles_[place];
+  const Vector3& a = positions_[static_cast<std::size_t>(i)];
+  const Vector3& b = positions_[static_cast<std::size_t>(j)];
+  const Vector3& c = positions_[static_cast<std::size_t>(k)];
+  const Vector3 weights = nearest_weights(point, a, b, c);
+  Vector3 offset;
+  for (int x = 0; x < 3; ++x) {
+    // Rounding must not take it out of its box: boxes farther than the best are left out, and which
+    // these are depends on where a search begins.
+    const double at = weights[0] * a[x] + weights[1] * b[x] + weights[2] * c[x];
+    const double low = std::min({a[x], b[x], c[x]});
+    const double high = std::max({a[x], b[x], c[x]});
+    offset[x] = std::clamp(at, low, high) - point[x];
+  }
+  const double squared = dot(offset, offset);
+  if (best->may_be(squared, indices_[place])) *best = {squared, place, indices_[place], weights};
+}
+
+void NearestPoints::search(const Vector3& point, Best* best) const {
+  struct Waiting {
+    std::size_t node;
+    double squared;
+  };
+  constexpr std::size_t kDeepest = 32;
+  std::array<Waiting, kDeepest> waiting;
+  std::size_t count = 0;
+  waiting[count++] = {0, boxes_[0].squared_distance(point)};
+  const std::size_t first_leaf = (std::size_t{1} << depth_) - 1;
+  while (count > 0) {
+    auto [node, squared] = waiting[--count];
+    while (best->may_be(squared, lowest_indices_[node])) {
+      if (node >= first_leaf) {
+        const std::size_t leaf = node - first_leaf;
+        for (std::size_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
+          try_triangle(i, point, best);
+        }
+        break;
+      }
+      Waiting near = {2 * node + 1, boxes_[2 * node + 1].squared_distance(point)};
+      Waiting far = {2 * node + 2, boxes_[2 * node + 2].squared_distance(point)};
+      if (far.squared < near.squared) std::swap(near, far);
+      waiting[count++] = far;
+      node = near.node;
+      squared = near.squared;
     }
   }
-  const TriangleTree tree(positions, triangles);
-  // Along the curve a point's neighbours come before it: theirs is a good first guess, and what was
-  // read for them is at hand.
-  const std::vector<std::size_t> order = morton_order(points);
+}
+
+std::vector<SurfacePoint> NearestPoints::find(std::span<const Vector3> points,
+                                              const Progress& progress, int threads) const {
+  check_points(points, "points: row", kLargest);
+  // Along the curve a point's neighbours come before it: the triangle nearest to them is a good
+  // first guess, and what was read for them is at hand.
+  const std::vector<Place> order = along_curve(
+      points.size(), [&](std::size_t i) { return points[i]; }, progress.part(0.0, 0.1), threads);
   std::vector<SurfacePoint> found(points.size());
-  const std::size_t tasks = (points.size() + kPointsPerTask - 1) / kPointsPerTask;
-  parallel_for(static_cast<std::int64_t>(tasks), threads, progress, [&](std::int64_t task) {
-    const std::size_t begin = static_cast<std::size_t>(task) * kPointsPerTask;
-    const std::size_t end = std::min(points.size(), begin + kPointsPerTask);
-    SurfacePoint guess;
-    for (std::size_t i = begin; i < end; ++i) {
-      guess = tree.nearest(points[order[i]], guess);
-      found[order[i]] = guess;
+  const auto find_some = [&](std::int64_t begin, std::int64_t end) {
+    std::size_t guess = 0;
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const Vector3& point = points[order[i].index];
+      Best best;
+      try_triangle(guess, point, &best);
+      search(point, &best);
+      guess = best.place;
+      found[order[i].index] = {best.index, best.weights, std::sqrt(best.squared)};
     }
-  });
+  };
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads,
+                  progress.part(0.1, 1.0), find_some);
   return found;
+}
+
+std::vector<SurfacePoint> nearest_points(std::span<const Vector3> points, const InputMesh& mesh,
+                                         const Progress& progress, int threads) {
+  const NearestPoints tree(mesh, progress.part(0.0, 0.3), threads);
+  return tree.find(points, progress.part(0.3, 1.0), threads);
 }
 
 }  // namespace prefilter

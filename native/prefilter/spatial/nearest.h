@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
 
 namespace prefilter {
@@ -13,17 +14,48 @@ namespace prefilter {
 /// A point of a triangle: the sum of its corners times these.
 struct SurfacePoint {
   std::int64_t triangle = 0;
-  std::array<double, 3> weights{};  // 0 and up; their sum is 1
-  double distance = 0.0;            // to what was asked for
+  Vector3 weights{};      // 0 and up; their sum is 1
+  double distance = 0.0;  // to what was asked for
 };
 
-/// The nearest points of the triangles; of several, any, but always the same. Triangles of zero
-/// area are segments or points. Throws Error for a mesh without triangles, an index that names no
-/// vertex, values that are not finite or above 1e150, whose squares would overflow;
-/// Error(kCancelled).
-std::vector<SurfacePoint> nearest_points(std::span<const std::array<double, 3>> points,
-                                         std::span<const std::array<double, 3>> positions,
-                                         std::span<const std::array<std::int64_t, 3>> triangles,
+/// A mesh made ready for searches: a tree of boxes over a copy of it.
+class NearestPoints {
+ public:
+  /// Triangles of zero area are segments or points. Throws Error for a mesh without triangles, an
+  /// index that names no vertex, positions that are not finite or above 1e150, whose squares would
+  /// overflow; Error(kCancelled).
+  NearestPoints(const InputMesh& mesh, const Progress& progress, int threads);
+
+  /// The points of the triangles nearest to these; of several triangles at the same distance, the
+  /// one with the lowest index. A search takes longer the more triangles there are whose boxes are
+  /// nearer than that: all of them for triangles in a stack, or around one vertex. The same for any
+  /// number of threads. Throws Error for points as for positions above; Error(kCancelled).
+  std::vector<SurfacePoint> find(std::span<const Vector3> points, const Progress& progress,
+                                 int threads) const;
+
+ private:
+  struct Best;
+  void sort_triangles(const InputMesh& mesh, const Progress& progress, int threads);
+  void build(const Progress& progress, int threads);
+  Box box_of(std::size_t place) const;
+  // Where the triangles of a leaf begin, and those before it end.
+  std::size_t leaf_begin(std::size_t leaf) const { return (triangles_.size() * leaf) >> depth_; }
+  void try_triangle(std::size_t place, const Vector3& point, Best* best) const;
+  void search(const Vector3& point, Best* best) const;
+
+  std::vector<Vector3> positions_;
+  // Along the Morton curve through their middles, each once; and their indices in the mesh.
+  std::vector<std::array<std::int32_t, 3>> triangles_;
+  std::vector<std::uint32_t> indices_;
+  // Node i has the children 2 i + 1 and 2 i + 2; the 2^depth leaves come last, and have about equal
+  // numbers of triangles.
+  int depth_ = 0;
+  std::vector<Box> boxes_;
+  std::vector<std::uint32_t> lowest_indices_;
+};
+
+/// The same in one step, for a mesh that is asked once.
+std::vector<SurfacePoint> nearest_points(std::span<const Vector3> points, const InputMesh& mesh,
                                          const Progress& progress, int threads);
 
 }  // namespace prefilter

@@ -59,16 +59,10 @@ T named(const char* argument, const std::string& name,
   throw_invalid(std::string(argument) + ": '" + name + "' is not one of " + all);
 }
 
-std::string of_vertices(std::size_t count) {
-  return std::to_string(count) + " vertices (0 to " +
-         std::to_string(static_cast<std::int64_t>(count) - 1) + ")";
-}
-
-void check_vertex(std::int64_t vertex, const PolygonArrays& mesh, const std::string& who) {
-  if (vertex < 0 || vertex >= static_cast<std::int64_t>(mesh.vertex_count)) {
-    throw_invalid(who + " names vertex " + std::to_string(vertex) + ", but there are " +
-                  of_vertices(mesh.vertex_count));
-  }
+void check_vertex(std::int64_t vertex, const PolygonArrays& mesh, const char* rows,
+                  std::size_t row) {
+  if (vertex >= 0 && vertex < static_cast<std::int64_t>(mesh.vertex_count)) return;
+  throw_no_vertex(std::string(rows) + " " + std::to_string(row), vertex, mesh.vertex_count);
 }
 
 void check_values(const double* values, std::size_t rows, std::size_t columns, const char* argument,
@@ -118,7 +112,7 @@ void check_faces(const PolygonArrays& mesh, SubdivisionScheme scheme) {
     sorted.assign(corner, corner + mesh.face_sizes[face]);
     corner += mesh.face_sizes[face];
     for (const std::int64_t vertex : sorted) {
-      check_vertex(vertex, mesh, "face_vertices: face " + std::to_string(face));
+      check_vertex(vertex, mesh, "face_vertices: face", face);
     }
     std::sort(sorted.begin(), sorted.end());
     const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
@@ -164,10 +158,10 @@ void check_polygons(const PolygonArrays& mesh, const SubdivisionOptions& options
   check_sharpness(mesh.crease_sharpness, mesh.crease_count, "creases", "crease");
   check_sharpness(mesh.corner_sharpness, mesh.sharp_corner_count, "corners", "corner");
   for (std::size_t i = 0; i < 2 * mesh.crease_count; ++i) {
-    check_vertex(mesh.crease_edges[i], mesh, "creases: crease " + std::to_string(i / 2));
+    check_vertex(mesh.crease_edges[i], mesh, "creases: crease", i / 2);
   }
   for (std::size_t i = 0; i < mesh.sharp_corner_count; ++i) {
-    check_vertex(mesh.corner_vertices[i], mesh, "corners: corner " + std::to_string(i));
+    check_vertex(mesh.corner_vertices[i], mesh, "corners: corner", i);
   }
   const bool of_each_vertex = mesh.weights_of == WeightsOf::kVertices;
   const std::size_t weights = mesh.weights_of == WeightsOf::kNothing ? 0
@@ -394,20 +388,19 @@ Refined refine(const ControlMesh& control, const Far::TopologyRefiner& refiner, 
 Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
                      const Far::TopologyLevel& topology, const Progress& progress) {
   std::vector<std::int64_t> vertex_map(refined.points.size(), -1);
-  std::vector<double> positions;
+  std::vector<Vector3> positions;
   std::vector<double> weights;
-  std::vector<std::int64_t> triangles;
+  std::vector<std::array<std::int64_t, 3>> triangles;
   std::vector<double> uvs;
-  const auto add_corner = [&](int vertex, int uv) {
+  const auto corner = [&](int vertex, int uv) {
     std::int64_t& place = vertex_map[vertex];
     if (place < 0) {
-      place = static_cast<std::int64_t>(positions.size() / 3);
-      positions.insert(positions.end(), refined.points[vertex].v.begin(),
-                       refined.points[vertex].v.end());
+      place = static_cast<std::int64_t>(positions.size());
+      positions.push_back(refined.points[vertex].v);
       if (!refined.weights.empty()) weights.push_back(std::max(0.0, refined.weights[vertex].v[0]));
     }
-    triangles.push_back(place);
     uvs.insert(uvs.end(), refined.uvs[uv].v.begin(), refined.uvs[uv].v.end());
+    return place;
   };
   Pulse pulse(progress);
   for (int face = 0; face < topology.GetNumFaces(); ++face) {
@@ -417,20 +410,18 @@ Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
     const Far::ConstIndexArray vertices = topology.GetFaceVertices(face);
     const Far::ConstIndexArray values = topology.GetFaceFVarValues(face);
     for (int i = 2; i < vertices.size(); ++i) {
-      for (const int corner : {0, i - 1, i}) add_corner(vertices[corner], values[corner]);
+      triangles.push_back({corner(vertices[0], values[0]), corner(vertices[i - 1], values[i - 1]),
+                           corner(vertices[i], values[i])});
       if (mesh.weights_of == WeightsOf::kTriangles) weights.push_back(mesh.weights[base]);
     }
   }
   progress.report(0.5);
-  MeshArrays arrays;
-  arrays.positions = positions.data();
-  arrays.vertex_count = positions.size() / 3;
-  arrays.triangles = triangles.data();
-  arrays.uvs = uvs.data();
-  arrays.triangle_count = triangles.size() / 3;
-  arrays.weights = weights.data();
-  arrays.weights_of = mesh.weights_of;
-  return make_surface(arrays);
+  TexturedMesh textured;
+  textured.mesh = {positions, triangles};
+  textured.uvs = uvs.data();
+  textured.weights = weights.data();
+  textured.weights_of = mesh.weights_of;
+  return make_surface(textured, progress);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/pulse.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
@@ -24,24 +25,12 @@ void check_finite(const double* values, std::size_t rows, std::size_t columns,
   }
 }
 
-using Vector3 = std::array<double, 3>;
-
-Vector3 cross(const Vector3& a, const Vector3& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-Vector3 difference(const Vector3& a, const Vector3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-
 // A normal, as long as twice the triangle's area.
 Vector3 triangle_normal(const Surface& surface, std::size_t k) {
   const auto& [a, b, c] = surface.triangles[k];
   const std::vector<Vector3>& points = surface.positions;
-  return cross(difference(points[b], points[a]), difference(points[c], points[a]));
+  return cross(points[b] - points[a], points[c] - points[a]);
 }
-
-double length(const Vector3& a) { return std::hypot(a[0], a[1], a[2]); }
 
 void check_area(double area, const char* argument, std::size_t triangle) {
   if (!std::isfinite(area)) {
@@ -50,11 +39,11 @@ void check_area(double area, const char* argument, std::size_t triangle) {
   }
 }
 
-void check_weights(const MeshArrays& mesh) {
+void check_weights(const TexturedMesh& mesh) {
   const bool of_vertices = mesh.weights_of == WeightsOf::kVertices;
   const bool of_corners = mesh.weights_of == WeightsOf::kCorners;
   const std::size_t columns = of_corners ? 3 : 1;
-  const std::size_t rows = of_vertices ? mesh.vertex_count : mesh.triangle_count;
+  const std::size_t rows = of_vertices ? mesh.mesh.positions.size() : mesh.mesh.triangles.size();
   for (std::size_t i = 0; i < rows * columns; ++i) {
     const double weight = mesh.weights[i];
     if (!std::isfinite(weight) || weight < 0.0) {
@@ -65,9 +54,9 @@ void check_weights(const MeshArrays& mesh) {
   }
 }
 
-double weight_of(const MeshArrays& mesh, std::size_t triangle) {
+double weight_of(const TexturedMesh& mesh, std::size_t triangle) {
   const auto mean = [](double a, double b, double c) { return a / 3.0 + b / 3.0 + c / 3.0; };
-  const std::int64_t* vertices = mesh.triangles + 3 * triangle;
+  const auto& vertices = mesh.mesh.triangles[triangle];
   const double* weights = mesh.weights;
   switch (mesh.weights_of) {
     case WeightsOf::kNothing:
@@ -89,54 +78,36 @@ std::array<Vector3, 3> cofactors(const AffineMap& map) {
 }
 
 Vector3 apply(const std::array<Vector3, 3>& rows, const Vector3& v) {
-  Vector3 result;
-  for (int i = 0; i < 3; ++i) {
-    result[i] = rows[i][0] * v[0] + rows[i][1] * v[1] + rows[i][2] * v[2];
-  }
-  return result;
+  return {dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)};
 }
 
 }  // namespace
 
 double Surface::total_area() const { return std::accumulate(areas.begin(), areas.end(), 0.0); }
 
-Surface make_surface(const MeshArrays& mesh) {
-  if (mesh.triangle_count == 0) {
-    throw_invalid("triangles: the mesh has no faces; at least one triangle is needed");
-  }
-  check_finite(mesh.positions, mesh.vertex_count, 3, "positions", "vertex");
-  check_finite(mesh.uvs, mesh.triangle_count, 6, "uvs", "triangle");
-  if (mesh.weights_of != WeightsOf::kNothing) check_weights(mesh);
-  if (mesh.vertex_count > std::numeric_limits<std::int32_t>::max()) {
-    throw_invalid("positions: " + std::to_string(mesh.vertex_count) +
-                  " vertices; at most 2^31 - 1 are allowed");
-  }
+Surface make_surface(const TexturedMesh& textured, const Progress& progress) {
+  const InputMesh& mesh = textured.mesh;
+  const std::size_t count = mesh.triangles.size();
+  check_mesh(mesh, std::numeric_limits<double>::max());
+  check_finite(textured.uvs, count, 6, "uvs", "triangle");
+  if (textured.weights_of != WeightsOf::kNothing) check_weights(textured);
 
   Surface surface;
-  surface.uvs.resize(mesh.triangle_count);
-  surface.areas.resize(mesh.triangle_count);
-  surface.triangles.resize(mesh.triangle_count);
-  surface.positions.resize(mesh.vertex_count);
-  for (std::size_t i = 0; i < mesh.vertex_count; ++i) {
-    std::copy_n(mesh.positions + 3 * i, 3, surface.positions[i].data());
-  }
-  for (std::size_t k = 0; k < mesh.triangle_count; ++k) {
-    const std::int64_t* vertices = mesh.triangles + 3 * k;
+  surface.uvs.resize(count);
+  surface.areas.resize(count);
+  surface.triangles.resize(count);
+  Pulse pulse(progress);
+  surface.positions.assign(mesh.positions.begin(), mesh.positions.end());
+  for (std::size_t k = 0; k < count; ++k) {
+    pulse.step();
     for (int corner = 0; corner < 3; ++corner) {
-      const std::int64_t vertex = vertices[corner];
-      if (vertex < 0 || vertex >= static_cast<std::int64_t>(mesh.vertex_count)) {
-        throw_invalid("triangles: triangle " + std::to_string(k) + " names vertex " +
-                      std::to_string(vertex) + ", but there are " +
-                      std::to_string(mesh.vertex_count) + " vertices (0 to " +
-                      std::to_string(static_cast<std::int64_t>(mesh.vertex_count) - 1) + ")");
-      }
-      surface.triangles[k][corner] = static_cast<std::int32_t>(vertex);
-      const double* uv = mesh.uvs + 6 * k + 2 * corner;
+      surface.triangles[k][corner] = static_cast<std::int32_t>(mesh.triangles[k][corner]);
+      const double* uv = textured.uvs + 6 * k + 2 * corner;
       surface.uvs[k][corner] = {uv[0], uv[1]};
     }
     const double area = 0.5 * length(triangle_normal(surface, k));
     check_area(area, "positions", k);
-    surface.areas[k] = area * weight_of(mesh, k);
+    surface.areas[k] = area * weight_of(textured, k);
     check_area(surface.areas[k], "weights", k);
   }
   return surface;

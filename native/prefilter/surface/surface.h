@@ -7,6 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
+
 namespace prefilter {
 
 struct TextureCoordinate {
@@ -20,7 +23,7 @@ struct Surface {
   std::vector<std::array<TextureCoordinate, 3>> uvs;   // per triangle and corner; any tile
   std::vector<double> areas;                           // per triangle, in squared units of space,
                                                        // times the weight that it was given
-  std::vector<std::array<double, 3>> positions;        // per vertex
+  std::vector<Vector3> positions;                      // per vertex
   std::vector<std::array<std::int32_t, 3>> triangles;  // per triangle, its vertices
 
   std::size_t triangle_count() const { return areas.size(); }
@@ -30,13 +33,10 @@ struct Surface {
 /// What the weights of a mesh belong to.
 enum class WeightsOf { kNothing, kVertices, kTriangles, kCorners };
 
-/// Raw arrays of a mesh, as a caller has them.
-struct MeshArrays {
-  const double* positions = nullptr;  // vertex_count x 3
-  std::size_t vertex_count = 0;
-  const std::int64_t* triangles = nullptr;  // triangle_count x 3 indices of vertices
-  const double* uvs = nullptr;              // triangle_count x 3 corners x 2
-  std::size_t triangle_count = 0;
+/// A mesh with texture coordinates, as a caller has it.
+struct TexturedMesh {
+  InputMesh mesh;
+  const double* uvs = nullptr;      // triangles x 3 corners x 2
   const double* weights = nullptr;  // one for each of weights_of; 0 and up
   WeightsOf weights_of = WeightsOf::kNothing;
 };
@@ -45,8 +45,9 @@ struct MeshArrays {
 /// that overlap, are mirrored, or leave the unit square. A triangle's area counts times its weight,
 /// or the mean of its three corners' weights. Throws Error for a mesh without triangles, an index
 /// that names no vertex, positions or texture coordinates that are not finite, weights that are
-/// negative or not finite, and positions or weights so large that an area overflows.
-Surface make_surface(const MeshArrays& mesh);
+/// negative or not finite, and positions or weights so large that an area overflows;
+/// Error(kCancelled).
+Surface make_surface(const TexturedMesh& textured, const Progress& progress = Progress());
 
 /// The rows of a 3 x 4 matrix that takes (x, y, z, 1) to a point.
 using AffineMap = std::array<std::array<double, 4>, 3>;

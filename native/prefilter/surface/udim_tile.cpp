@@ -188,7 +188,7 @@ class Clipper {
   }
 
   std::int32_t new_vertex(const Corner& corner) {
-    std::array<double, 3> position{};
+    Vector3 position{};
     for (int i = 0; i < 3; ++i) {
       const auto& from = surface_.positions[surface_.triangles[triangle_][i]];
       for (int axis = 0; axis < 3; ++axis) position[axis] += corner.weights[i] * from[axis];

@@ -5,10 +5,10 @@
 #include <numeric>
 #include <utility>
 
+#include "prefilter/base/sort.h"
+
 namespace prefilter {
 namespace {
-
-using Point = std::array<double, 3>;
 
 // A run from one vertex to another.
 struct Run {
@@ -21,10 +21,11 @@ struct Run {
 };
 
 // For each vertex, the first of those at its place.
-std::vector<std::uint32_t> weld(std::span<const Point> positions) {
+std::vector<std::uint32_t> weld(std::span<const Vector3> positions, const Progress& progress,
+                                int threads) {
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+  sort_in_parallel(&order, progress, threads, [&](std::uint32_t a, std::uint32_t b) {
     return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
   });
   std::vector<std::uint32_t> welded(positions.size());
@@ -36,8 +37,8 @@ std::vector<std::uint32_t> weld(std::span<const Point> positions) {
 }
 
 // The runs that the mesh lacks: for each edge as many as there are more in the other direction.
-std::vector<Run> missing_runs(const SolidMesh& mesh, const std::vector<std::uint32_t>& welded,
-                              std::size_t* open_edges) {
+std::vector<Run> missing_runs(const InputMesh& mesh, const std::vector<std::uint32_t>& welded,
+                              const Progress& progress, int threads, std::size_t* open_edges) {
   // Edge and direction in one number: the direction in the lowest bit.
   std::vector<std::uint64_t> edges;
   edges.reserve(3 * mesh.triangles.size());
@@ -50,7 +51,7 @@ std::vector<Run> missing_runs(const SolidMesh& mesh, const std::vector<std::uint
                       (from < to ? 0U : 1U));
     }
   }
-  std::sort(edges.begin(), edges.end());
+  sort_in_parallel(&edges, progress.part(0.0, 0.7), threads);
   std::vector<Run> runs;
   *open_edges = 0;
   for (std::size_t i = 0; i < edges.size();) {
@@ -65,33 +66,29 @@ std::vector<Run> missing_runs(const SolidMesh& mesh, const std::vector<std::uint
     for (; excess > 0; --excess) runs.push_back({high, low});
     for (; excess < 0; ++excess) runs.push_back({low, high});
   }
-  std::sort(runs.begin(), runs.end());
+  sort_in_parallel(&runs, progress.part(0.7, 1.0), threads);
   return runs;
 }
 
-double distance(const Point& a, const Point& b) {
-  return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
-
-void add_fan(std::span<const Point> positions, std::span<const std::uint32_t> loop, Caps* caps) {
+void add_fan(std::span<const Vector3> positions, std::span<const std::uint32_t> loop, Caps* caps) {
   ++caps->holes;
   if (loop.size() == 3) {
     caps->triangles.push_back({loop[0], loop[1], loop[2]});
     return;
   }
   // The middle of the line, not of its vertices, which may crowd together.
-  Point middle{};
-  double length = 0.0;
+  Vector3 middle{};
+  double around = 0.0;
   for (std::size_t i = 0; i < loop.size(); ++i) {
-    const Point& a = positions[loop[i]];
-    const Point& b = positions[loop[(i + 1) % loop.size()]];
-    const double weight = distance(a, b);
+    const Vector3& a = positions[loop[i]];
+    const Vector3& b = positions[loop[(i + 1) % loop.size()]];
+    const double weight = length(b - a);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       middle[axis] += weight * (a[axis] / 2.0 + b[axis] / 2.0);
     }
-    length += weight;
+    around += weight;
   }
-  for (double& x : middle) x /= length;
+  for (double& x : middle) x /= around;
   const auto centre = static_cast<std::int64_t>(positions.size() + caps->positions.size());
   caps->positions.push_back(middle);
   for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -101,7 +98,7 @@ void add_fan(std::span<const Point> positions, std::span<const std::uint32_t> lo
 
 // Walks along the runs, each once. As many lead to a vertex as away from it, so a walk ends where
 // it began; where it comes to a vertex again, it has closed a loop.
-void add_fans(std::span<const Point> positions, const std::vector<Run>& runs,
+void add_fans(std::span<const Vector3> positions, const std::vector<Run>& runs,
               const Progress& progress, Caps* caps) {
   constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
   std::vector<std::size_t> next(positions.size(), kNowhere);  // the first run not yet walked
@@ -137,14 +134,14 @@ void add_fans(std::span<const Point> positions, const std::vector<Run>& runs,
 }
 }  // namespace
 
-Caps close_holes(const SolidMesh& mesh, const Progress& progress) {
-  check_mesh(mesh);
+Caps close_holes(const InputMesh& mesh, const Progress& progress, int threads) {
+  check_mesh(mesh, kLargestCoordinate);
   Caps caps;
-  const std::vector<std::uint32_t> welded = weld(mesh.positions);
-  progress.report(0.4);
-  const std::vector<Run> runs = missing_runs(mesh, welded, &caps.open_edges);
-  progress.report(0.8);
+  const std::vector<std::uint32_t> welded = weld(mesh.positions, progress.part(0.0, 0.4), threads);
+  const std::vector<Run> runs =
+      missing_runs(mesh, welded, progress.part(0.4, 0.8), threads, &caps.open_edges);
   add_fans(mesh.positions, runs, progress.part(0.8, 1.0), &caps);
+  progress.report(1.0);
   return caps;
 }
 

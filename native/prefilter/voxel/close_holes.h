@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/voxel/voxelize.h"
 
 namespace prefilter {
 
 /// Triangles that close a mesh, and the vertices that they need.
 struct Caps {
-  std::vector<std::array<double, 3>> positions;  // numbered on from the mesh's own
+  std::vector<Vector3> positions;  // numbered on from the mesh's own
   std::vector<std::array<std::int64_t, 3>> triangles;
   std::size_t open_edges = 0;  // unbalanced: traversed more often in one direction
   std::size_t holes = 0;       // loops of such edges
@@ -24,6 +24,6 @@ struct Caps {
 /// twice, and two fans set the winding right but for what lies between them and the faces.
 ///
 /// Throws as voxelize does for a mesh that is no mesh; Error(kCancelled).
-Caps close_holes(const SolidMesh& mesh, const Progress& progress);
+Caps close_holes(const InputMesh& mesh, const Progress& progress, int threads);
 
 }  // namespace prefilter

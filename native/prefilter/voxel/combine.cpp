@@ -171,17 +171,20 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
   const Cell root_b = Cell::root_of(b);
   find(find, root_a, root_b, 0);
 
-  parallel_for(static_cast<std::int64_t>(tasks.size()), threads, progress, [&](std::int64_t i) {
+  const Progress merging = progress.part(0.0, 0.8);
+  parallel_for(static_cast<std::int64_t>(tasks.size()), threads, merging, [&](std::int64_t i) {
     Task& task = tasks[static_cast<std::size_t>(i)];
     task.levels.resize(depth);
     task.merged = merger.merge(task.a, task.b, kTaskDepth, &task.levels);
   });
 
+  const Progress gathering = progress.part(0.8, 0.9);
   std::size_t next_task = 0;
   const auto gather = [&](const auto& self, const Cell& of_a, const Cell& of_b, int at) -> Merged {
     if (at == kTaskDepth) {
       Task& task = tasks[next_task++];
       append(&levels, &task.levels);
+      gathering.report(static_cast<double>(next_task) / static_cast<double>(tasks.size()));
       return task.merged;
     }
     return merger.merge_with(of_a, of_b, at, &levels, [&](const Cell& x, const Cell& y, int next) {
@@ -193,7 +196,7 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
   while (!levels.empty() && levels.back().size() == 0) levels.pop_back();
   tree.levels = std::move(levels);
   for (TreeLevel& level : tree.levels) link_blocks(&level);
-  update_means(&tree, threads);
+  update_means(&tree, progress.part(0.9, 1.0), threads);
   // All empty, or all full.
   if (!is_fraction(tree.root)) tree.levels.clear();
   return tree;
@@ -231,13 +234,14 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
     progress.report(1.0);
     return result;
   }
-  Octree first = a;
+  std::optional<Octree> larger;
   if (operation == SetOperation::kUnion) {
     const std::optional<Box> occupied = occupied_box(b);
-    if (occupied) first = grown(std::move(first), *occupied);
+    if (occupied && !holds(a.bounds, *occupied)) larger = grown(a, *occupied);
   }
+  const Octree& first = larger ? *larger : a;
   const int depth = matching_depth(first.bounds, b);
-  const Octree second = regridded(b, first.bounds, depth, progress.part(0.0, 0.7));
+  const Octree second = regridded(b, first.bounds, depth, progress.part(0.0, 0.7), threads);
   result.bounds = first.bounds;
   result.depth = std::max(first.depth, depth);
   result.cells =

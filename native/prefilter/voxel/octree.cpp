@@ -69,21 +69,8 @@ Octree make_octree(std::vector<TreeLevel> levels, float root, const Box& bounds,
   check_levels(levels, root, depth);
   Octree octree{{root, std::move(levels)}, bounds, depth};
   for (TreeLevel& level : octree.cells.levels) link_blocks(&level);
-  update_means(&octree.cells, 1);
+  update_means(&octree.cells, Progress(), 1);
   return octree;
-}
-
-void check_box(const Box& box, const char* argument) {
-  for (int a = 0; a < 3; ++a) {
-    const double size = box.size(a);
-    if (std::isfinite(size) && std::isfinite(box.low[a]) &&
-        box.low[a] + size / 4096.0 > box.low[a]) {
-      continue;
-    }
-    throw_invalid(std::string(argument) + ": from " + to_text(box.low[a]) + " to " +
-                  to_text(box.high[a]) + " along " + std::string(1, "xyz"[a]) +
-                  "; finite corners are needed, the high one above the low one");
-  }
 }
 
 void check_depth(int depth, int low, const char* argument) {

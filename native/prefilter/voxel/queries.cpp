@@ -10,13 +10,13 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kPointsPerTask = 1U << 14;
+constexpr std::int64_t kPointsPerTask = 1 << 14;
 
 // A box in coordinates in which the root is the unit cube.
 using UnitBox = std::array<std::array<double, 2>, 3>;
 
 // Overlap of the box with the cell of this low corner and side, by volume.
-double overlap(const UnitBox& box, const std::array<double, 3>& low, double side) {
+double overlap(const UnitBox& box, const Vector3& low, double side) {
   double volume = 1.0;
   for (int a = 0; a < 3; ++a) {
     const double length = std::min(box[a][1], low[a] + side) - std::max(box[a][0], low[a]);
@@ -26,22 +26,22 @@ double overlap(const UnitBox& box, const std::array<double, 3>& low, double side
   return volume;
 }
 
-bool holds(const UnitBox& box, const std::array<double, 3>& low, double side) {
+bool holds(const UnitBox& box, const Vector3& low, double side) {
   for (int a = 0; a < 3; ++a) {
     if (low[a] < box[a][0] || low[a] + side > box[a][1]) return false;
   }
   return true;
 }
 
-double integral(const CellTree& tree, std::size_t level, std::size_t block,
-                const std::array<double, 3>& low, double side, const UnitBox& box) {
+double integral(const CellTree& tree, std::size_t level, std::size_t block, const Vector3& low,
+                double side, const UnitBox& box) {
   const TreeLevel& cells = tree.levels[level];
   const double half = side / 2.0;
   double sum = 0.0;
   for (int o = 0; o < 8; ++o) {
-    const std::array<double, 3> corner = {low[0] + ((o & 1) != 0 ? half : 0.0),
-                                          low[1] + ((o & 2) != 0 ? half : 0.0),
-                                          low[2] + ((o & 4) != 0 ? half : 0.0)};
+    const Vector3 corner = {low[0] + ((o & 1) != 0 ? half : 0.0),
+                            low[1] + ((o & 2) != 0 ? half : 0.0),
+                            low[2] + ((o & 4) != 0 ? half : 0.0)};
     const double common = overlap(box, corner, half);
     if (common <= 0.0) continue;
     if (cells.is_split(block, o) && !holds(box, corner, half)) {
@@ -54,7 +54,7 @@ double integral(const CellTree& tree, std::size_t level, std::size_t block,
 }
 
 // The value of the leaf that holds a point.
-float value_at(const Octree& octree, const std::array<double, 3>& point) {
+float value_at(const Octree& octree, const Vector3& point) {
   constexpr int kCells = 1 << kMaxTreeDepth;
   std::array<int, 3> cell{};
   for (int a = 0; a < 3; ++a) {
@@ -76,15 +76,13 @@ float value_at(const Octree& octree, const std::array<double, 3>& point) {
 }
 
 template <typename T, typename ValueOf>
-std::vector<T> for_points(std::span<const std::array<double, 3>> points, int threads,
-                          const ValueOf& value_of) {
+std::vector<T> for_points(std::span<const Vector3> points, int threads, const ValueOf& value_of) {
   std::vector<T> values(points.size());
-  const std::size_t tasks = (points.size() + kPointsPerTask - 1) / kPointsPerTask;
-  parallel_for(static_cast<std::int64_t>(tasks), threads, Progress(), [&](std::int64_t task) {
-    const std::size_t begin = static_cast<std::size_t>(task) * kPointsPerTask;
-    const std::size_t end = std::min(points.size(), begin + kPointsPerTask);
-    for (std::size_t i = begin; i < end; ++i) values[i] = value_of(points[i]);
-  });
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads, Progress(),
+                  [&](std::int64_t begin, std::int64_t end) {
+                    std::transform(points.begin() + begin, points.begin() + end,
+                                   values.begin() + begin, value_of);
+                  });
   return values;
 }
 
@@ -164,22 +162,20 @@ double box_occupancy(const Octree& octree, const Box& box) {
     whole *= unit[a][1] - unit[a][0];
   }
   const CellTree& tree = octree.cells;
-  const std::array<double, 3> origin{};
+  const Vector3 origin{};
   const double inside = tree.levels.empty()
                             ? overlap(unit, origin, 1.0) * static_cast<double>(tree.root)
                             : integral(tree, 0, 0, origin, 1.0, unit);
   return std::clamp(inside / whole, 0.0, 1.0);
 }
 
-std::vector<float> values_at(const Octree& octree, std::span<const std::array<double, 3>> points,
-                             int threads) {
+std::vector<float> values_at(const Octree& octree, std::span<const Vector3> points, int threads) {
   return for_points<float>(points, threads,
                            [&](const auto& point) { return value_at(octree, point); });
 }
 
-std::vector<std::int8_t> classify(const Octree& octree,
-                                  std::span<const std::array<double, 3>> points, double tolerance,
-                                  int threads) {
+std::vector<std::int8_t> classify(const Octree& octree, std::span<const Vector3> points,
+                                  double tolerance, int threads) {
   return for_points<std::int8_t>(points, threads, [&](const auto& point) {
     const auto value = static_cast<double>(value_at(octree, point));
     if (value <= tolerance) return std::int8_t{-1};

@@ -1,7 +1,6 @@
 // What an occupancy octree knows of points, boxes and the whole.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -19,14 +18,12 @@ double volume(const Octree& octree);
 double box_occupancy(const Octree& octree, const Box& box);
 
 /// The occupancies of the leaves that hold the points; 0 outside of the bounds.
-std::vector<float> values_at(const Octree& octree, std::span<const std::array<double, 3>> points,
-                             int threads);
+std::vector<float> values_at(const Octree& octree, std::span<const Vector3> points, int threads);
 
 /// Inside (1), outside (-1) or near the surface (0), as the occupancy of the leaf that holds a
 /// point is within `tolerance` of 1, of 0, or of neither.
-std::vector<std::int8_t> classify(const Octree& octree,
-                                  std::span<const std::array<double, 3>> points, double tolerance,
-                                  int threads);
+std::vector<std::int8_t> classify(const Octree& octree, std::span<const Vector3> points,
+                                  double tolerance, int threads);
 
 /// The occupancies of all n^3 cells of a depth, n = 2^depth, at [(x * n + y) * n + z]: means where
 /// the tree is finer, and the leaf's where it is coarser. Throws Error(kOutOfMemory).

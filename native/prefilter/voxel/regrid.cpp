@@ -144,23 +144,21 @@ void add_occupied(const CellTree& tree, std::size_t level, std::size_t block, co
   const TreeLevel& cells = tree.levels[level];
   for (int o = 0; o < 8; ++o) {
     const Box octant = octant_of(cell, o);
+    if (*box && is_within(octant, **box)) continue;
     if (cells.is_split(block, o)) {
       add_occupied(tree, level + 1, cells.child(block, o), octant, box);
     } else if (cells.blocks[block][o] > 0.0F) {
       if (!*box) *box = octant;
-      for (int a = 0; a < 3; ++a) {
-        (*box)->low[a] = std::min((*box)->low[a], octant.low[a]);
-        (*box)->high[a] = std::max((*box)->high[a], octant.high[a]);
-      }
+      (*box)->include(octant);
     }
   }
 }
 }  // namespace
 
-Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress) {
-  check_box(bounds, "bounds");
-  check_depth(depth, 0, "depth");
-  Regridder regridder(octree, depth, progress);
+Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress,
+                 int threads) {
+  const Progress finding = progress.part(0.0, 0.95);
+  Regridder regridder(octree, depth, finding);
   Octree result;
   result.bounds = bounds;
   result.depth = depth;
@@ -168,12 +166,14 @@ Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progr
   result.cells.root = regridder.value_of(bounds, 0, 1.0, &is_split);
   result.cells.levels = regridder.take_levels();
   for (TreeLevel& level : result.cells.levels) link_blocks(&level);
-  update_means(&result.cells, 1);
+  update_means(&result.cells, progress.part(0.95, 1.0), threads);
   return result;
 }
 
+bool holds(const Box& bounds, const Box& box) { return is_within(box, bounds); }
+
 Octree grown(Octree octree, const Box& box) {
-  while (!is_within(box, octree.bounds)) {
+  while (!holds(octree.bounds, box)) {
     if (octree.depth == kMaxTreeDepth) {
       throw_invalid(
           "other: what it holds, and cells of this octree's size, ask for a depth of more "

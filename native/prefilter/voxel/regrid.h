@@ -9,9 +9,13 @@
 namespace prefilter {
 
 /// The same shape on the cells of another box, down to `depth`: exact where its cells lie within
-/// leaves or are made up of them, and otherwise the mean of what they cover. Throws
-/// Error(kCancelled).
-Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress);
+/// leaves or are made up of them, and otherwise the mean of what they cover. Preconditions: bounds
+/// that check_box accepts, and a depth from 0 to kMaxTreeDepth. Throws Error(kCancelled).
+Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress,
+                 int threads);
+
+/// Whether a box lies within bounds, but for rounding.
+bool holds(const Box& bounds, const Box& box);
 
 /// An octree of a larger root, twice as wide each time, that has the same cells and holds `box` as
 /// well. Throws Error where its finest cells would be deeper than kMaxTreeDepth.

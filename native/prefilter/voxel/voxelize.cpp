@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -22,54 +21,24 @@ namespace {
 
 constexpr double kMarginCells = 2.0;
 constexpr double kMarginShare = 1.0 / 8.0;  // of the cells along an axis, at the most
-constexpr std::size_t kRowsPerTask = 1U << 14;
+constexpr std::int64_t kRowsPerTask = 1 << 14;
 // Of a cell that the surface passes through: blocks while they are moved together, and the bricks'
 // triangles. Measured on scans: 20 to 25.
 constexpr double kBytesPerCell = 30.0;
 
-std::size_t task_count(std::size_t rows) { return (rows + kRowsPerTask - 1) / kRowsPerTask; }
-
-void for_rows(std::size_t rows, int threads,
-              const std::function<void(std::size_t, std::size_t)>& body) {
-  parallel_for(static_cast<std::int64_t>(task_count(rows)), threads, Progress(),
-               [&](std::int64_t task) {
-                 const std::size_t begin = static_cast<std::size_t>(task) * kRowsPerTask;
-                 body(begin, std::min(rows, begin + kRowsPerTask));
-               });
-}
-
-Box box_of(const SolidMesh& mesh) {
-  Box box;
-  box.low.fill(std::numeric_limits<double>::infinity());
-  box.high.fill(-std::numeric_limits<double>::infinity());
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::int64_t vertex : triangle) {
-      const auto& p = mesh.positions[static_cast<std::size_t>(vertex)];
-      for (int a = 0; a < 3; ++a) {
-        box.low[a] = std::min(box.low[a], p[a]);
-        box.high[a] = std::max(box.high[a], p[a]);
-      }
-    }
+Box box_of(const InputMesh& mesh) {
+  Box box = kEmptyBox;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const Vector3& corner : mesh.corners(t)) box.include(corner);
   }
   return box;
 }
 
 // The area vector's absolute components, summed: the number of unit cells that a large plane figure
 // passes through.
-double cells_met(const std::array<Point3, 3>& corners) {
-  Point3 u;
-  Point3 v;
-  for (int a = 0; a < 3; ++a) {
-    u[a] = corners[1][a] - corners[0][a];
-    v[a] = corners[2][a] - corners[0][a];
-  }
-  double sum = 0.0;
-  for (int a = 0; a < 3; ++a) {
-    const int b = (a + 1) % 3;
-    const int c = (a + 2) % 3;
-    sum += std::abs(u[b] * v[c] - u[c] * v[b]) / 2.0;
-  }
-  return sum;
+double cells_met(const std::array<Vector3, 3>& corners) {
+  const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  return (std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2])) / 2.0;
 }
 
 // Of some triangles: the cells of a tree that they meet, with the root for a unit, and whether any
@@ -79,14 +48,11 @@ struct SurfaceExtent {
   bool has_area = false;
 };
 
-SurfaceExtent extent_of(const RootTriangles& mesh, std::size_t begin, std::size_t end) {
+SurfaceExtent extent_of(const RootTriangles& mesh, std::int64_t begin, std::int64_t end) {
   SurfaceExtent extent;
-  for (std::size_t t = begin; t < end; ++t) {
-    std::array<Point3, 3> corners;
+  for (std::int64_t t = begin; t < end; ++t) {
+    const std::array<Vector3, 3> corners = mesh.corners(static_cast<std::size_t>(t));
     bool meets_root = true;
-    for (int i = 0; i < 3; ++i) {
-      corners[i] = mesh.positions[static_cast<std::size_t>(mesh.triangles[t][i])];
-    }
     for (int a = 0; a < 3; ++a) {
       meets_root = meets_root && std::min({corners[0][a], corners[1][a], corners[2][a]}) <= 1.0 &&
                    std::max({corners[0][a], corners[1][a], corners[2][a]}) >= 0.0;
@@ -100,11 +66,13 @@ SurfaceExtent extent_of(const RootTriangles& mesh, std::size_t begin, std::size_
 }
 
 // Throws where all triangles have zero area, or the tree would not fit.
-void check_surface(const RootTriangles& mesh, int depth, int threads) {
-  std::vector<SurfaceExtent> parts(task_count(mesh.triangles.size()));
-  for_rows(mesh.triangles.size(), threads, [&](std::size_t begin, std::size_t end) {
-    parts[begin / kRowsPerTask] = extent_of(mesh, begin, end);
-  });
+void check_surface(const RootTriangles& mesh, int depth, const Progress& progress, int threads) {
+  const auto count = static_cast<std::int64_t>(mesh.triangles.size());
+  std::vector<SurfaceExtent> parts(static_cast<std::size_t>(range_count(count, kRowsPerTask)));
+  parallel_ranges(
+      count, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
+        parts[static_cast<std::size_t>(begin / kRowsPerTask)] = extent_of(mesh, begin, end);
+      });
   SurfaceExtent all;
   for (const SurfaceExtent& part : parts) {
     all.cells += part.cells;
@@ -134,35 +102,10 @@ Box cube_around(const Box& box, int depth) {
   return cube;
 }
 
-void check_mesh(const SolidMesh& mesh) {
-  if (mesh.triangles.empty()) throw_invalid("triangles: none; at least one is needed");
-  if (mesh.triangles.size() > std::numeric_limits<std::uint32_t>::max() ||
-      mesh.positions.size() > static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max())) {
-    throw_invalid("triangles: too many; 2^32 triangles and 2^31 positions are the most");
-  }
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    for (const double x : mesh.positions[i]) {
-      // The difference of any two has to be finite as well.
-      if (std::abs(x) <= 1e300) continue;
-      throw_invalid("positions: row " + std::to_string(i) + " holds " + to_text(x) +
-                    "; all values must be finite, and at most 1e300");
-    }
-  }
-  const auto count = static_cast<std::int64_t>(mesh.positions.size());
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::int64_t vertex : mesh.triangles[t]) {
-      if (vertex >= 0 && vertex < count) continue;
-      throw_invalid("triangles: triangle " + std::to_string(t) + " names vertex " +
-                    std::to_string(vertex) + "; there are " + std::to_string(count) +
-                    ", from 0 on");
-    }
-  }
-}
-
-Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options) {
+Octree voxelize(const InputMesh& mesh, const VoxelizeOptions& options) {
   check_depth(options.depth, 1, "depth");
   if (options.bounds) check_box(*options.bounds, "bounds");
-  check_mesh(mesh);
+  check_mesh(mesh, kLargestCoordinate);
   Octree octree;
   octree.depth = options.depth;
   if (options.bounds) {
@@ -178,27 +121,31 @@ Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options) {
 
   const Box& bounds = octree.bounds;
   // Not set to zero first, so that the threads that write touch the memory.
-  const auto position_memory = std::make_unique_for_overwrite<Point3[]>(mesh.positions.size());
+  const auto position_memory = std::make_unique_for_overwrite<Vector3[]>(mesh.positions.size());
   const std::span positions(position_memory.get(), mesh.positions.size());
-  for_rows(positions.size(), options.threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
+  const auto carry = [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       for (int a = 0; a < 3; ++a) {
         positions[i][a] = (mesh.positions[i][a] - bounds.low[a]) / bounds.size(a);
       }
     }
-  });
+  };
+  parallel_ranges(static_cast<std::int64_t>(positions.size()), kRowsPerTask, options.threads,
+                  options.progress.part(0.0, 0.02), carry);
   const auto triangle_memory =
       std::make_unique_for_overwrite<std::array<std::int32_t, 3>[]>(mesh.triangles.size());
   const std::span triangles(triangle_memory.get(), mesh.triangles.size());
-  for_rows(triangles.size(), options.threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
+  const auto narrow = [&](std::int64_t begin, std::int64_t end) {
+    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       for (int i = 0; i < 3; ++i) triangles[t][i] = static_cast<std::int32_t>(mesh.triangles[t][i]);
     }
-  });
+  };
+  parallel_ranges(static_cast<std::int64_t>(triangles.size()), kRowsPerTask, options.threads,
+                  options.progress.part(0.02, 0.04), narrow);
   const RootTriangles in_root{positions, triangles};
-  check_surface(in_root, options.depth, options.threads);
+  check_surface(in_root, options.depth, options.progress.part(0.04, 0.06), options.threads);
   HaarTree coefficients =
-      analyse_triangles(in_root, options.depth, options.progress.part(0.0, 0.9), options.threads);
+      analyse_triangles(in_root, options.depth, options.progress.part(0.06, 0.9), options.threads);
   octree.cells =
       synthesise(std::move(coefficients), -1, options.progress.part(0.9, 1.0), options.threads);
   return octree;

@@ -1,21 +1,13 @@
 // Meshes to occupancy octrees (chapter 3).
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <optional>
-#include <span>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/voxel/octree.h"
 
 namespace prefilter {
-
-/// Triangles, counter-clockwise seen from outside.
-struct SolidMesh {
-  std::span<const std::array<double, 3>> positions;
-  std::span<const std::array<std::int64_t, 3>> triangles;
-};
 
 struct VoxelizeOptions {
   int depth = 8;              // 1 to kMaxTreeDepth: 2^depth cells along an axis
@@ -33,15 +25,11 @@ struct VoxelizeOptions {
 /// Throws Error for a depth out of range, a mesh without triangles or where all have zero area, an
 /// index that names no vertex, a position that is not finite, and bounds of no volume;
 /// Error(kOutOfMemory) for a tree that would not fit into memory; Error(kCancelled).
-Octree voxelize(const SolidMesh& mesh, const VoxelizeOptions& options);
+Octree voxelize(const InputMesh& mesh, const VoxelizeOptions& options);
 
 /// The cube around a box that leaves a margin of two of the 2^depth cells along an axis on all
 /// sides of the longest one, or an eighth of them where they are fewer than 16. Throws Error for a
 /// depth out of range.
 Box cube_around(const Box& box, int depth);
-
-/// Throws Error for a mesh without triangles, an index that names no vertex, or a position that is
-/// not finite.
-void check_mesh(const SolidMesh& mesh);
 
 }  // namespace prefilter

@@ -22,8 +22,8 @@ namespace prefilter {
 
 /// Integrals over the boundary within a cell, in coordinates that make it the unit cube.
 struct BoundaryFlux {
-  std::array<double, 3> area{};    // of the normal n, outward
-  std::array<double, 3> moment{};  // of p_x n_x, p_y n_y, p_z n_z
+  Vector3 area{};    // of the normal n, outward
+  Vector3 moment{};  // of p_x n_x, p_y n_y, p_z n_z
 
   void add(const BoundaryFlux& other) {
     for (int a = 0; a < 3; ++a) {
@@ -34,18 +34,18 @@ struct BoundaryFlux {
 };
 
 /// The flux of a piece of boundary, in the coordinates of the unit cell with this low corner.
-inline BoundaryFlux polygon_flux(const CellPolygon& polygon, const Point3& cell) {
-  const Point3& origin = polygon.corners[0];
-  Point3 previous;
+inline BoundaryFlux polygon_flux(const CellPolygon& polygon, const Vector3& cell) {
+  const Vector3& origin = polygon.corners[0];
+  Vector3 previous;
   for (int a = 0; a < 3; ++a) previous[a] = polygon.corners[1][a] - origin[a];
-  Point3 area{};
-  Point3 moment{};
+  Vector3 area{};
+  Vector3 moment{};
   for (int i = 2; i < polygon.count; ++i) {
-    Point3 next;
+    Vector3 next;
     for (int a = 0; a < 3; ++a) next[a] = polygon.corners[i][a] - origin[a];
-    const Point3 normal = {previous[1] * next[2] - previous[2] * next[1],
-                           previous[2] * next[0] - previous[0] * next[2],
-                           previous[0] * next[1] - previous[1] * next[0]};
+    const Vector3 normal = {previous[1] * next[2] - previous[2] * next[1],
+                            previous[2] * next[0] - previous[0] * next[2],
+                            previous[0] * next[1] - previous[1] * next[0]};
     for (int a = 0; a < 3; ++a) {
       area[a] += normal[a];
       moment[a] += normal[a] * (previous[a] + next[a]);

@@ -6,19 +6,19 @@
 #include <cassert>
 #include <cmath>
 
-namespace prefilter {
+#include "prefilter/base/geometry.h"
 
-using Point3 = std::array<double, 3>;
+namespace prefilter {
 
 /// What is left of a triangle between planes across the axes. Corners in order; they lie in one
 /// plane but for rounding.
 struct CellPolygon {
   // A triangle cut by the six sides of a box has at most nine.
   static constexpr int kMaxCorners = 10;
-  std::array<Point3, kMaxCorners> corners;
+  std::array<Vector3, kMaxCorners> corners;
   int count = 0;
 
-  void add(const Point3& corner) {
+  void add(const Vector3& corner) {
     assert(count < kMaxCorners);
     corners[count++] = corner;
   }
@@ -39,14 +39,14 @@ inline void split_polygon(const CellPolygon& polygon, int axis, double value, Ce
                           CellPolygon* high) {
   low->count = 0;
   high->count = 0;
-  const Point3* previous = &polygon.corners[polygon.count - 1];
+  const Vector3* previous = &polygon.corners[polygon.count - 1];
   double previous_side = (*previous)[axis] - value;
   for (int i = 0; i < polygon.count; ++i) {
-    const Point3& corner = polygon.corners[i];
+    const Vector3& corner = polygon.corners[i];
     const double side = corner[axis] - value;
     if ((previous_side < 0.0 && side > 0.0) || (previous_side > 0.0 && side < 0.0)) {
       const double t = previous_side / (previous_side - side);
-      Point3 cut;
+      Vector3 cut;
       for (int a = 0; a < 3; ++a) cut[a] = (*previous)[a] + t * (corner[a] - (*previous)[a]);
       cut[axis] = value;
       low->add(cut);

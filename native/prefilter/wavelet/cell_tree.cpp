@@ -1,12 +1,10 @@
 #include "prefilter/wavelet/cell_tree.h"
 
-#include <algorithm>
-
 #include "prefilter/base/parallel.h"
 
 namespace prefilter {
 namespace {
-constexpr std::size_t kBlocksPerTask = 1U << 12;
+constexpr std::int64_t kBlocksPerTask = 1 << 12;
 
 // Means of cells that are split, from their octants as they are after clamping.
 void pass_up(const TreeLevel& next, std::size_t begin, std::size_t end, TreeLevel* level) {
@@ -34,19 +32,20 @@ void link_blocks(TreeLevel* level) {
 
 void for_blocks(const TreeLevel& level, int threads, const Progress& progress,
                 const std::function<void(std::size_t, std::size_t)>& body) {
-  const std::size_t count = level.size();
-  const std::size_t tasks = (count + kBlocksPerTask - 1) / kBlocksPerTask;
-  parallel_for(static_cast<std::int64_t>(tasks), threads, progress, [&](std::int64_t task) {
-    const std::size_t begin = static_cast<std::size_t>(task) * kBlocksPerTask;
-    body(begin, std::min(count, begin + kBlocksPerTask));
-  });
+  parallel_ranges(static_cast<std::int64_t>(level.size()), kBlocksPerTask, threads, progress,
+                  [&](std::int64_t begin, std::int64_t end) {
+                    body(static_cast<std::size_t>(begin), static_cast<std::size_t>(end));
+                  });
 }
 
-void update_means(CellTree* tree, int threads) {
+void update_means(CellTree* tree, const Progress& progress, int threads) {
   if (tree->levels.empty()) return;
-  for (std::size_t k = tree->levels.size() - 1; k-- > 0;) {
+  const auto steps = static_cast<double>(tree->levels.size() - 1);
+  double done = 0.0;
+  for (std::size_t k = tree->levels.size() - 1; k-- > 0; ++done) {
     TreeLevel& level = tree->levels[k];
-    for_blocks(level, threads, Progress(), [&](std::size_t begin, std::size_t end) {
+    const Progress part = progress.part(done / steps, (done + 1.0) / steps);
+    for_blocks(level, threads, part, [&](std::size_t begin, std::size_t end) {
       pass_up(tree->levels[k + 1], begin, end, &level);
     });
   }

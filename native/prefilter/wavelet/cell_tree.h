@@ -73,6 +73,7 @@ void for_blocks(const TreeLevel& level, int threads, const Progress& progress,
                 const std::function<void(std::size_t, std::size_t)>& body);
 
 /// Sets the values of all cells that are split, and of the root where it is, from the leaves.
-void update_means(CellTree* tree, int threads);
+/// Throws Error(kCancelled).
+void update_means(CellTree* tree, const Progress& progress, int threads);
 
 }  // namespace prefilter

@@ -52,7 +52,8 @@ CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, 
     tree.root = std::clamp(tree.root, 0.0F, 1.0F);
     return tree;
   }
-  const auto count = static_cast<double>(tree.levels.size());
+  // The means take one step more.
+  const auto count = static_cast<double>(tree.levels.size() + 1);
   tree.levels.front().blocks.front()[0] = tree.root;
   for (std::size_t k = 0; k < tree.levels.size(); ++k) {
     TreeLevel& level = tree.levels[k];
@@ -66,7 +67,7 @@ CellTree synthesise(HaarTree coefficients, int depth, const Progress& progress, 
     });
   }
   tree.levels.back().first.assign(tree.levels.back().size(), 0U);
-  update_means(&tree, threads);
+  update_means(&tree, progress.part((count - 1.0) / count, 1.0), threads);
   return tree;
 }
 

@@ -25,8 +25,8 @@ class RootMean {
 
  private:
   BoundaryFlux inside_;
-  std::array<double, 3> above_{};
-  std::array<double, 3> below_{};
+  Vector3 above_{};
+  Vector3 below_{};
 };
 
 }  // namespace prefilter

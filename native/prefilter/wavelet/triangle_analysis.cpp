@@ -12,15 +12,17 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/spatial/morton.h"
 #include "prefilter/wavelet/boundary_flux.h"
+#include "prefilter/wavelet/cell_polygon.h"
 #include "prefilter/wavelet/root_mean.h"
 
 namespace prefilter {
 namespace {
 
 constexpr int kBrickDepth = 4;  // a brick is 2^4 cells wide
-constexpr std::size_t kTrianglesPerTask = 1U << 13;
+constexpr std::int64_t kTrianglesPerTask = 1 << 13;
 constexpr std::size_t kPairsPerTask = 1U << 11;
-constexpr double kScatterShare = 0.15;  // of the time
+constexpr double kScatterShare = 0.2;  // of the time
+constexpr double kAnalyzedShare = 0.95;
 
 // A triangle, and a brick that it meets.
 struct BrickTriangle {
@@ -31,7 +33,7 @@ struct BrickTriangle {
 CellPolygon triangle_of(const RootTriangles& mesh, std::size_t index, double scale) {
   CellPolygon polygon;
   for (const std::int32_t vertex : mesh.triangles[index]) {
-    const Point3& p = mesh.positions[static_cast<std::size_t>(vertex)];
+    const Vector3& p = mesh.positions[static_cast<std::size_t>(vertex)];
     polygon.add({p[0] * scale, p[1] * scale, p[2] * scale});
   }
   return polygon;
@@ -63,14 +65,14 @@ void scatter(const RootTriangles& mesh, std::size_t begin, std::size_t end, int 
     if (leaves) result->leaving.push_back(triangle);
     if (polygon.count == 0) continue;
     cut_polygon(polygon, all, [&](const std::array<int, 3>& brick, const CellPolygon&) {
-      result->pairs.push_back({morton_index(brick), triangle});
+      result->pairs.push_back({static_cast<std::uint32_t>(morton_index(brick)), triangle});
     });
   }
 }
 
 // One pass of a radix sort: stable, by some bits of the brick, from chunks to `sorted`.
 void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int shift, int bits,
-                   int threads, std::span<BrickTriangle> sorted) {
+                   const Progress& progress, int threads, std::span<BrickTriangle> sorted) {
   const std::size_t digits = std::size_t{1} << bits;
   const auto digit_of = [&](const BrickTriangle& pair) {
     return (pair.brick >> shift) & (digits - 1);
@@ -78,7 +80,7 @@ void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int s
   // Where the next pair of a chunk and a digit goes; first, how many there are.
   std::vector<std::size_t> places(chunks.size() * digits);
   const auto count = static_cast<std::int64_t>(chunks.size());
-  parallel_for(count, threads, Progress(), [&](std::int64_t i) {
+  parallel_for(count, threads, progress.part(0.0, 0.3), [&](std::int64_t i) {
     const auto chunk = static_cast<std::size_t>(i);
     std::size_t* const own = places.data() + chunk * digits;
     for (const BrickTriangle& pair : chunks[chunk]) ++own[digit_of(pair)];
@@ -89,7 +91,7 @@ void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int s
       next += std::exchange(places[chunk * digits + digit], next);
     }
   }
-  parallel_for(count, threads, Progress(), [&](std::int64_t i) {
+  parallel_for(count, threads, progress.part(0.3, 1.0), [&](std::int64_t i) {
     const auto chunk = static_cast<std::size_t>(i);
     std::size_t* const own = places.data() + chunk * digits;
     for (const BrickTriangle& pair : chunks[chunk]) sorted[own[digit_of(pair)]++] = pair;
@@ -99,7 +101,7 @@ void sort_by_digit(std::span<const std::span<const BrickTriangle>> chunks, int s
 // The pairs of all parts, by brick; each brick keeps its triangles in order. Least significant
 // digit first.
 std::vector<BrickTriangle> sorted_by_brick(const std::vector<Scattered>& parts, int key_bits,
-                                           int threads) {
+                                           const Progress& progress, int threads) {
   constexpr int kMostDigitBits = 9;
   constexpr std::size_t kPairsPerChunk = 1U << 15;
   const int passes = std::max(1, (key_bits + kMostDigitBits - 1) / kMostDigitBits);
@@ -113,7 +115,8 @@ std::vector<BrickTriangle> sorted_by_brick(const std::vector<Scattered>& parts, 
   std::vector<BrickTriangle> sorted(count);
   std::vector<BrickTriangle> other(passes > 1 ? count : 0);
   for (int pass = 0; pass < passes; ++pass) {
-    sort_by_digit(chunks, pass * bits, bits, threads, sorted);
+    const Progress part = progress.part(static_cast<double>(pass) / passes, (pass + 1.0) / passes);
+    sort_by_digit(chunks, pass * bits, bits, part, threads, sorted);
     if (pass + 1 == passes) break;
     sorted.swap(other);
     chunks.clear();
@@ -154,7 +157,7 @@ class Brick {
     }
     const CellBox box = {low, {low[0] + side_, low[1] + side_, low[2] + side_}};
     cut_polygon(triangle, box, [&](const std::array<int, 3>& cell, const CellPolygon& piece) {
-      const std::uint32_t index =
+      const std::uint64_t index =
           morton_index({cell[0] - low[0], cell[1] - low[1], cell[2] - low[2]});
       fluxes_[depth_][index].add(
           polygon_flux(piece, {static_cast<double>(cell[0]), static_cast<double>(cell[1]),
@@ -208,16 +211,17 @@ class Brick {
 // All triangles' bricks, sorted by brick and then by triangle.
 Scattered scatter_all(const RootTriangles& mesh, int bricks_per_axis, const Progress& progress,
                       int threads) {
-  const std::size_t count = mesh.triangles.size();
-  std::vector<Scattered> parts((count + kTrianglesPerTask - 1) / kTrianglesPerTask);
-  parallel_for(static_cast<std::int64_t>(parts.size()), threads, progress, [&](std::int64_t task) {
-    const std::size_t begin = static_cast<std::size_t>(task) * kTrianglesPerTask;
-    scatter(mesh, begin, std::min(count, begin + kTrianglesPerTask), bricks_per_axis,
-            &parts[static_cast<std::size_t>(task)]);
-  });
+  const auto count = static_cast<std::int64_t>(mesh.triangles.size());
+  std::vector<Scattered> parts(static_cast<std::size_t>(range_count(count, kTrianglesPerTask)));
+  parallel_ranges(count, kTrianglesPerTask, threads, progress.part(0.0, 0.6),
+                  [&](std::int64_t begin, std::int64_t end) {
+                    scatter(mesh, static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
+                            bricks_per_axis,
+                            &parts[static_cast<std::size_t>(begin / kTrianglesPerTask)]);
+                  });
   Scattered all;
   const int bits = 3 * std::bit_width(static_cast<unsigned>(bricks_per_axis - 1));
-  all.pairs = sorted_by_brick(parts, bits, threads);
+  all.pairs = sorted_by_brick(parts, bits, progress.part(0.6, 1.0), threads);
   for (const Scattered& part : parts) {
     all.leaving.insert(all.leaving.end(), part.leaving.begin(), part.leaving.end());
   }
@@ -253,8 +257,11 @@ BrickBlocks analyse_bricks(const RootTriangles& mesh, std::span<const BrickTrian
 }
 
 // Moves the tasks' blocks together, one level after the other.
-void join(std::vector<BrickBlocks>* parts, int brick_depth, std::span<TreeLevel> levels) {
+void join(const Progress& progress, std::vector<BrickBlocks>* parts, int brick_depth,
+          std::span<TreeLevel> levels) {
   for (int k = 0; k < brick_depth; ++k) {
+    const Progress of_level =
+        progress.part(static_cast<double>(k) / brick_depth, (k + 1.0) / brick_depth);
     std::size_t count = 0;
     for (const BrickBlocks& part : *parts) count += part.levels[k].size();
     TreeLevel& level = levels[static_cast<std::size_t>(k)];
@@ -265,6 +272,7 @@ void join(std::vector<BrickBlocks>* parts, int brick_depth, std::span<TreeLevel>
       level.blocks.insert(level.blocks.end(), from.blocks.begin(), from.blocks.end());
       level.split.insert(level.split.end(), from.split.begin(), from.split.end());
       from = TreeLevel();
+      of_level.report(static_cast<double>(level.size()) / static_cast<double>(count));
     }
   }
 }
@@ -298,8 +306,8 @@ HaarTree analyse_triangles(const RootTriangles& mesh, int depth, const Progress&
 
   const std::vector<std::size_t> starts = task_starts(scattered.pairs);
   std::vector<BrickBlocks> parts(starts.size() - 1);
-  parallel_for(static_cast<std::int64_t>(parts.size()), threads, progress.part(kScatterShare, 1.0),
-               [&](std::int64_t task) {
+  parallel_for(static_cast<std::int64_t>(parts.size()), threads,
+               progress.part(kScatterShare, kAnalyzedShare), [&](std::int64_t task) {
                  const auto i = static_cast<std::size_t>(task);
                  const std::span<const BrickTriangle> pairs(scattered.pairs);
                  parts[i] =
@@ -318,7 +326,8 @@ HaarTree analyse_triangles(const RootTriangles& mesh, int depth, const Progress&
   HaarTree tree;
   if (!cells.empty()) {
     tree.levels.resize(static_cast<std::size_t>(depth));
-    join(&parts, brick_depth, std::span(tree.levels).subspan(coarse_depth));
+    join(progress.part(kAnalyzedShare, 1.0), &parts, brick_depth,
+         std::span(tree.levels).subspan(coarse_depth));
     for (int k = coarse_depth - 1; k >= 0; --k) {
       cells = add_parents(cells, &tree.levels[static_cast<std::size_t>(k)]);
     }

@@ -1,22 +1,16 @@
 // From triangles to Haar coefficients (section 3.2.3).
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <span>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/wavelet/cell_polygon.h"
 #include "prefilter/wavelet/haar.h"
 
 namespace prefilter {
 
-/// Triangles in coordinates in which the root is the unit cube; counter-clockwise seen from
-/// outside.
-struct RootTriangles {
-  std::span<const Point3> positions;
-  std::span<const std::array<std::int32_t, 3>> triangles;
-};
+/// Triangles in coordinates in which the root is the unit cube.
+using RootTriangles = MeshView<std::int32_t>;
 
 /// The Haar coefficients of the shape that the triangles bound, down to cells of `depth` (1 to
 /// kMaxTreeDepth). What lies outside of the root does not count. The surface need not be closed: a

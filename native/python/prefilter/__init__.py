@@ -1,8 +1,9 @@
 """Prefilter: images and shapes filtered for the surface that uses them.
 
-Arrays are numpy, float32 or float64 in, float32 out. Images have shape (height, width, channels),
-row 0 at v = 0 (the bottom row, as in Blender and OpenGL). Bad arguments raise ValueError, with a
-message that names the argument, what was found and what is allowed.
+Arrays are numpy, float32 or float64 in; images and occupancies come out as float32, positions as
+float64. Images have shape (height, width, channels), row 0 at v = 0 (the bottom row, as in Blender
+and OpenGL). Bad arguments raise ValueError, with a message that names the argument, what was found
+and what is allowed.
 """
 
 from ._native import Cancelled
@@ -10,7 +11,7 @@ from .color import to_linear, to_srgb
 from .contours import contour
 from .cutout import keep_coverage
 from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
-from .nearest import nearest_points
+from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
@@ -26,6 +27,7 @@ __all__ = [
     "Cancelled",
     "ClosedMesh",
     "MipmapFilter",
+    "NearestPoints",
     "Octree",
     "Surface",
     "close_holes",

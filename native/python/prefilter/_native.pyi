@@ -38,6 +38,18 @@ class Surface:
     @property
     def areas(self) -> npt.NDArray[np.float64]: ...
 
+class NearestPoints:
+    def __init__(
+        self,
+        positions: npt.NDArray[np.float64],
+        triangles: npt.NDArray[np.int64],
+        progress: ProgressCallback | None,
+        threads: int,
+    ) -> None: ...
+    def find(
+        self, points: npt.NDArray[np.float64], progress: ProgressCallback | None, threads: int
+    ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+
 def nearest_points(
     points: npt.NDArray[np.float64],
     positions: npt.NDArray[np.float64],
@@ -222,7 +234,7 @@ def contour_octree(
     clean_up: bool,
     progress: ProgressCallback | None,
     threads: int,
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]: ...
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]: ...
 def contour_grid(
     grid: npt.NDArray[np.float32],
     interpolant: str,
@@ -232,12 +244,12 @@ def contour_grid(
     clean_up: bool,
     progress: ProgressCallback | None,
     threads: int,
-) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]: ...
-def contour_image(
-    image: npt.NDArray[np.float32],
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]: ...
+def contour_outlines(
+    grid: npt.NDArray[np.float32],
     interpolant: str,
     isovalue: float,
     spacing: list[float],
     origin: list[float],
     progress: ProgressCallback | None,
-) -> list[npt.NDArray[np.float32]]: ...
+) -> list[npt.NDArray[np.float64]]: ...

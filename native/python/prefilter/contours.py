@@ -7,8 +7,8 @@ from . import _native
 from ._border.arguments import ProgressCallback, as_name, as_number, as_progress
 from ._border.arrays import as_floats, as_threads
 
-Mesh = tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]
-Outlines = list[npt.NDArray[np.float32]]
+Mesh = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
+Outlines = list[npt.NDArray[np.float64]]
 
 
 def contour(
@@ -43,13 +43,13 @@ def contour(
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
-        For a 3D grid positions (vertices, 3) float32 and triangles (triangles, 3) int32,
+        For a 3D grid positions (vertices, 3) float64 and triangles (triangles, 3) int32,
         counter-clockwise seen from outside. For a 2D grid a list of closed outlines, each
-        (points, 2) float32, the last point joined to the first, with the inside to their left.
+        (points, 2) float64, the last point joined to the first, with the inside to their left.
 
     Raises:
         ValueError: A shape or type is wrong, a sample is not finite, `interpolant` is no such name,
-            or `spacing` is not above 0.
+            `spacing` is not above 0, or cells have no volume where `origin` puts them.
         MemoryError: The surface would not fit into memory.
         Cancelled: `progress` returned False.
     """
@@ -65,7 +65,7 @@ def contour(
         raise ValueError(f"spacing: {spacing!r}; sizes above 0 are needed")
     corner = _as_vector("origin", origin, axes)
     if axes == 2:
-        return _native.contour_image(samples, name, level, size, corner, as_progress(progress))
+        return _native.contour_outlines(samples, name, level, size, corner, as_progress(progress))
     return _native.contour_grid(
         samples,
         name,
@@ -87,6 +87,4 @@ def _as_vector(name: str, value: npt.ArrayLike, axes: int) -> list[float]:
         raise ValueError(f"{name}: shape {numbers.shape}; one number, or ({axes},), is needed")
     if not np.isfinite(numbers).all():
         raise ValueError(f"{name}: {value!r}; finite numbers are needed")
-    padded = np.ones(3)
-    padded[:axes] = numbers
-    return padded.tolist()
+    return np.broadcast_to(numbers, axes).tolist()

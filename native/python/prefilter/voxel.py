@@ -137,7 +137,7 @@ class Octree(_native.Octree):
         cleanup: bool = True,
         progress: ProgressCallback | None = None,
         threads: int = 0,
-    ) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.int32]]:
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
         """The surface of the shape: marching cubes on the dual grid of the leaves (chapter 5).
 
         The mesh is closed and two-manifold whatever the octree, and leaves of different sizes leave
@@ -154,8 +154,10 @@ class Octree(_native.Octree):
             threads: 0 means all processors. The result does not depend on it.
 
         Returns:
-            Positions (vertices, 3), in the units of the bounds, and triangles (triangles, 3) int32,
-            counter-clockwise seen from outside.
+            Positions (vertices, 3) float64, in the units of the bounds, and triangles
+            (triangles, 3) int32, counter-clockwise seen from outside. Before positions are rounded
+            to float32, subtract a point of the bounds: far from the origin float32 cannot tell
+            vertices apart.
 
         Raises:
             ValueError: `interpolant` is no such name, or `isovalue` is out of range.

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "prefilter/base/triangle_mesh.h"
+#include "prefilter/base/geometry.h"
 
 namespace prefilter::testing {
 
@@ -20,23 +20,15 @@ inline std::string fault_of(const TriangleMesh& mesh) {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> thirds;
   std::vector<std::size_t> counts(mesh.positions.size());
   for (const auto& t : mesh.triangles) {
-    std::array<std::array<double, 3>, 3> p;
+    std::array<Vector3, 3> p;
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto& q = mesh.positions.at(static_cast<std::size_t>(t[i]));
-      p[i] = {static_cast<double>(q[0]), static_cast<double>(q[1]), static_cast<double>(q[2])};
+      p[i] = mesh.positions.at(static_cast<std::size_t>(t[i]));
       ++counts[static_cast<std::size_t>(t[i])];
       if (!thirds.insert({{t[i], t[(i + 1) % 3]}, t[(i + 2) % 3]}).second) {
         return "an edge is there twice in one direction";
       }
     }
-    std::array<double, 3> u;
-    std::array<double, 3> v;
-    for (std::size_t a = 0; a < 3; ++a) {
-      u[a] = p[1][a] - p[0][a];
-      v[a] = p[2][a] - p[0][a];
-    }
-    if (!(std::hypot(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2],
-                     u[0] * v[1] - u[1] * v[0]) > 0.0)) {
+    if (!(length(cross(p[1] - p[0], p[2] - p[0])) > 0.0)) {
       return "a triangle has zero area";
     }
   }
@@ -62,14 +54,9 @@ inline std::string fault_of(const TriangleMesh& mesh) {
 inline double volume_of(const TriangleMesh& mesh) {
   double sum = 0.0;
   for (const auto& t : mesh.triangles) {
-    std::array<std::array<double, 3>, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto& q = mesh.positions[static_cast<std::size_t>(t[i])];
-      p[i] = {static_cast<double>(q[0]), static_cast<double>(q[1]), static_cast<double>(q[2])};
-    }
-    sum += p[0][0] * (p[1][1] * p[2][2] - p[1][2] * p[2][1]) +
-           p[0][1] * (p[1][2] * p[2][0] - p[1][0] * p[2][2]) +
-           p[0][2] * (p[1][0] * p[2][1] - p[1][1] * p[2][0]);
+    std::array<Vector3, 3> p;
+    for (std::size_t i = 0; i < 3; ++i) p[i] = mesh.positions[static_cast<std::size_t>(t[i])];
+    sum += dot(p[0], cross(p[1], p[2]));
   }
   return sum / 6.0;
 }

@@ -10,14 +10,11 @@ namespace prefilter {
 namespace {
 
 struct Arrays {
-  std::vector<double> positions{0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 5};
-  std::vector<std::int64_t> triangles{0, 1, 2, 0, 2, 3};
+  std::vector<Vector3> positions{{0, 0, 0}, {2, 0, 0}, {0, 3, 0}, {0, 0, 5}};
+  std::vector<std::array<std::int64_t, 3>> triangles{{0, 1, 2}, {0, 2, 3}};
   std::vector<double> uvs = std::vector<double>(12, 0.25);
 
-  Surface make() const {
-    return make_surface({positions.data(), positions.size() / 3, triangles.data(), uvs.data(),
-                         triangles.size() / 3});
-  }
+  Surface make() const { return make_surface({{positions, triangles}, uvs.data()}); }
 };
 
 std::string message_of(const Arrays& arrays) {
@@ -39,16 +36,15 @@ TEST(MakeSurface, MeasuresAreas) {
 TEST(MakeSurface, NamesWhatIsWrong) {
   Arrays arrays;
   arrays.triangles.clear();
-  EXPECT_EQ(message_of(arrays),
-            "triangles: the mesh has no faces; at least one triangle is needed");
+  EXPECT_EQ(message_of(arrays), "triangles: none; at least one is needed");
 
   arrays = {};
-  arrays.triangles[4] = 9;
+  arrays.triangles[1][1] = 9;
   EXPECT_EQ(message_of(arrays),
             "triangles: triangle 1 names vertex 9, but there are 4 vertices (0 to 3)");
 
   arrays = {};
-  arrays.positions[7] = NAN;
+  arrays.positions[2][1] = NAN;
   EXPECT_EQ(message_of(arrays), "positions: vertex 2 holds nan; all values must be finite");
 
   arrays = {};
@@ -56,7 +52,9 @@ TEST(MakeSurface, NamesWhatIsWrong) {
   EXPECT_EQ(message_of(arrays), "uvs: triangle 1 holds inf; all values must be finite");
 
   arrays = {};
-  for (double& value : arrays.positions) value *= 1e250;
+  for (Vector3& position : arrays.positions) {
+    for (double& value : position) value *= 1e250;
+  }
   EXPECT_EQ(message_of(arrays),
             "positions: the area of triangle 0 is too large for a floating-point number");
 }

@@ -7,6 +7,7 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/voxel/queries.h"
+#include "prefilter/voxel/voxelize.h"
 #include "wavelet/meshes.h"
 
 namespace prefilter {
@@ -24,12 +25,12 @@ Triangles triangles_of(const Mesh& mesh) {
 }
 
 // How often edges are run through one way more than the other, over all edges.
-std::size_t imbalance(const std::vector<Point3>& positions, const Triangles& triangles) {
-  std::map<std::pair<Point3, Point3>, int> runs;
+std::size_t imbalance(const std::vector<Vector3>& positions, const Triangles& triangles) {
+  std::map<std::pair<Vector3, Vector3>, int> runs;
   for (const auto& t : triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const Point3& a = positions[static_cast<std::size_t>(t[i])];
-      const Point3& b = positions[static_cast<std::size_t>(t[(i + 1) % 3])];
+      const Vector3& a = positions[static_cast<std::size_t>(t[i])];
+      const Vector3& b = positions[static_cast<std::size_t>(t[(i + 1) % 3])];
       if (a == b) continue;
       a < b ? ++runs[{a, b}] : --runs[{b, a}];
     }
@@ -40,13 +41,13 @@ std::size_t imbalance(const std::vector<Point3>& positions, const Triangles& tri
 }
 
 struct Closed {
-  std::vector<Point3> positions;
+  std::vector<Vector3> positions;
   Triangles triangles;
   Caps caps;
 };
 
-Closed closed(const std::vector<Point3>& positions, const Triangles& triangles) {
-  Closed result{positions, triangles, close_holes({positions, triangles}, Progress())};
+Closed closed(const std::vector<Vector3>& positions, const Triangles& triangles) {
+  Closed result{positions, triangles, close_holes({positions, triangles}, Progress(), 1)};
   result.positions.insert(result.positions.end(), result.caps.positions.begin(),
                           result.caps.positions.end());
   result.triangles.insert(result.triangles.end(), result.caps.triangles.begin(),
@@ -64,7 +65,7 @@ TEST(CloseHoles, AClosedMeshNeedsNone) {
 
 TEST(CloseHoles, SoupsAreWelded) {
   const Mesh mesh = sphere_mesh({0.5, 0.5, 0.5}, 0.4, 10);
-  std::vector<Point3> positions;
+  std::vector<Vector3> positions;
   Triangles triangles;
   for (const auto& t : mesh.triangles) {
     const auto first = static_cast<std::int64_t>(positions.size());
@@ -110,7 +111,7 @@ TEST(CloseHoles, RandomSoupsToo) {
   std::mt19937 random(2);
   std::uniform_int_distribution<std::int64_t> vertex(0, 19);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<Point3> positions;
+  std::vector<Vector3> positions;
   for (int i = 0; i < 20; ++i)
     positions.push_back({uniform(random), uniform(random), uniform(random)});
   for (int trial = 0; trial < 50; ++trial) {
@@ -123,10 +124,10 @@ TEST(CloseHoles, RandomSoupsToo) {
 }
 
 TEST(CloseHoles, NamesWhatIsWrong) {
-  const std::vector<Point3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  EXPECT_THROW(close_holes({positions, Triangles()}, Progress()), Error);
+  const std::vector<Vector3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  EXPECT_THROW(close_holes({positions, Triangles()}, Progress(), 1), Error);
   const Triangles bad = {{0, 1, 7}};
-  EXPECT_THROW(close_holes({positions, bad}, Progress()), Error);
+  EXPECT_THROW(close_holes({positions, bad}, Progress(), 1), Error);
 }
 
 }  // namespace

@@ -92,7 +92,7 @@ TEST(Octree, PointsFindTheirCells) {
   const std::vector<float> cells = dense(octree);
   std::mt19937 random(6);
   std::uniform_real_distribution<double> uniform(-0.1, 1.1);
-  std::vector<Point3> points = {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}, {1.0 + 1e-9, 0.5, 0.5}};
+  std::vector<Vector3> points = {{0, 0, 0}, {1, 1, 1}, {0.5, 0.5, 0.5}, {1.0 + 1e-9, 0.5, 0.5}};
   for (int i = 0; i < 1000; ++i)
     points.push_back({uniform(random), uniform(random), uniform(random)});
   const std::vector<float> found = values_at(octree, points, 2);
@@ -174,7 +174,7 @@ TEST(Combine, CoincidentFacesLeaveNoFilm) {
   const Octree box = voxelized(box_mesh({0.1, 0.1, 0.1}, {0.53125, 0.9, 0.9}), 4);
   const Octree beside = voxelized(box_mesh({0.53125, 0.1, 0.1}, {0.9, 0.9, 0.9}), 4);
   const auto at_face = [](const Octree& octree) {
-    return values_at(octree, std::vector<Point3>{{0.53, 0.5, 0.5}}, 1)[0];
+    return values_at(octree, std::vector<Vector3>{{0.53, 0.5, 0.5}}, 1)[0];
   };
   ASSERT_NEAR(at_face(box), 0.5, 1e-6);
   EXPECT_LT(at_face(combine(box, box, SetOperation::kDifference, Progress(), 1)), 0.5F);
@@ -202,8 +202,8 @@ TEST(Combine, OtherBoundsAreCarriedOver) {
 TEST(Resample, KeepsTheVolumeOfWhatItCovers) {
   const Octree octree = random_octree(30, 4);
   const Box around = {{-0.31, -0.17, -0.4}, {1.2, 1.33, 1.11}};
-  EXPECT_NEAR(volume(regridded(octree, around, 4, Progress())), volume(octree), 1e-6);
-  const Octree same = regridded(octree, kUnit, 4, Progress());
+  EXPECT_NEAR(volume(regridded(octree, around, 4, Progress(), 1)), volume(octree), 1e-6);
+  const Octree same = regridded(octree, kUnit, 4, Progress(), 1);
   EXPECT_EQ(dense(same), dense(octree));
 }
 
@@ -219,9 +219,9 @@ TEST(Voxelize, LeavesAMarginAroundTheMesh) {
 }
 
 TEST(Voxelize, NamesWhatIsWrong) {
-  const std::vector<Point3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
+  const std::vector<Vector3> corners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}};
   using Triangles = std::vector<std::array<std::int64_t, 3>>;
-  const auto message = [&](const std::vector<Point3>& positions, const Triangles& triangles,
+  const auto message = [&](const std::vector<Vector3>& positions, const Triangles& triangles,
                            const VoxelizeOptions& options) {
     return message_of([&] { voxelize({positions, triangles}, options); });
   };
@@ -229,7 +229,7 @@ TEST(Voxelize, NamesWhatIsWrong) {
   EXPECT_NE(message(corners, {{0, 1, 4}}, {}).find("names vertex 4"), std::string::npos);
   EXPECT_NE(message(corners, {{0, 1, 3}}, {}).find("zero area"), std::string::npos);
   EXPECT_NE(message(corners, {{1, 1, 1}}, {}).find("zero area"), std::string::npos);
-  EXPECT_NE(message({{0, 0, NAN}}, {{0, 0, 0}}, {}).find("row 0 holds nan"), std::string::npos);
+  EXPECT_NE(message({{0, 0, NAN}}, {{0, 0, 0}}, {}).find("vertex 0 holds nan"), std::string::npos);
   VoxelizeOptions deep;
   deep.depth = 13;
   EXPECT_NE(message(corners, {{0, 1, 2}}, deep).find("depth: 13"), std::string::npos);

@@ -13,7 +13,7 @@
 namespace prefilter::testing {
 
 struct Mesh {
-  std::vector<Point3> positions;
+  std::vector<Vector3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;
 
   RootTriangles view() const { return {positions, triangles}; }
@@ -29,7 +29,7 @@ struct Mesh {
 };
 
 /// Corner i is high along x where bit 0 is set, along y for bit 1, along z for bit 2.
-inline Mesh box_mesh(const Point3& low, const Point3& high) {
+inline Mesh box_mesh(const Vector3& low, const Vector3& high) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i) {
     mesh.positions.push_back({(i & 1) != 0 ? high[0] : low[0], (i & 2) != 0 ? high[1] : low[1],
@@ -45,15 +45,15 @@ inline Mesh box_mesh(const Point3& low, const Point3& high) {
 }
 
 /// A sphere of rings of triangles.
-inline Mesh sphere_mesh(const Point3& centre, double radius, int rings) {
+inline Mesh sphere_mesh(const Vector3& centre, double radius, int rings) {
   Mesh mesh;
   const int columns = 2 * rings;
   const auto point = [&](int ring, int column) {
     const double theta = std::numbers::pi * ring / rings;
     const double phi = 2.0 * std::numbers::pi * column / columns;
-    return Point3{centre[0] + radius * std::sin(theta) * std::cos(phi),
-                  centre[1] + radius * std::sin(theta) * std::sin(phi),
-                  centre[2] + radius * std::cos(theta)};
+    return Vector3{centre[0] + radius * std::sin(theta) * std::cos(phi),
+                   centre[1] + radius * std::sin(theta) * std::sin(phi),
+                   centre[2] + radius * std::cos(theta)};
   };
   mesh.positions.push_back(point(0, 0));
   for (int ring = 1; ring < rings; ++ring) {

@@ -25,7 +25,7 @@ std::vector<float> occupancies(const Mesh& mesh, int depth, int shown_depth = -1
 }
 
 // The largest difference from a box's occupancies in closed form.
-double box_error(const std::vector<float>& found, const Point3& low, const Point3& high, int n) {
+double box_error(const std::vector<float>& found, const Vector3& low, const Vector3& high, int n) {
   double worst = 0.0;
   std::size_t i = 0;
   for (int x = 0; x < n; ++x) {
@@ -44,8 +44,8 @@ TEST(TriangleAnalysis, BoxesHaveTheirOccupancyAtEveryDepth) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int trial = 0; trial < 20; ++trial) {
-    Point3 low;
-    Point3 high;
+    Vector3 low;
+    Vector3 high;
     for (int a = 0; a < 3; ++a) {
       low[a] = 0.5 * uniform(random);
       high[a] = low[a] + 0.01 + 0.48 * uniform(random);
@@ -58,38 +58,38 @@ TEST(TriangleAnalysis, BoxesHaveTheirOccupancyAtEveryDepth) {
 }
 
 TEST(TriangleAnalysis, FewerCoefficientsGiveTheMeans) {
-  const Point3 low = {0.11, 0.23, 0.31};
-  const Point3 high = {0.71, 0.57, 0.97};
+  const Vector3 low = {0.11, 0.23, 0.31};
+  const Vector3 high = {0.71, 0.57, 0.97};
   for (int shown = 1; shown < 6; ++shown) {
     EXPECT_LT(box_error(occupancies(box_mesh(low, high), 6, shown), low, high, 1 << shown), 1e-6);
   }
 }
 
 TEST(TriangleAnalysis, FacesOnTheGridAreExact) {
-  const Point3 low = {0.25, 0.0, 0.5};
-  const Point3 high = {0.75, 1.0, 0.625};
+  const Vector3 low = {0.25, 0.0, 0.5};
+  const Vector3 high = {0.75, 1.0, 0.625};
   EXPECT_LT(box_error(occupancies(box_mesh(low, high), 5), low, high, 32), 1e-6);
 }
 
 TEST(TriangleAnalysis, WhatLeavesTheRootIsCutOff) {
-  const Point3 low = {-0.4, 0.3, -3.0};
-  const Point3 high = {0.6, 7.0, 0.4};
+  const Vector3 low = {-0.4, 0.3, -3.0};
+  const Vector3 high = {0.6, 7.0, 0.4};
   EXPECT_LT(box_error(occupancies(box_mesh(low, high), 5), low, high, 32), 1e-6);
-  const Point3 around_low = {-1.0, -2.0, -1.5};
-  const Point3 around_high = {2.0, 3.0, 1.5};
+  const Vector3 around_low = {-1.0, -2.0, -1.5};
+  const Vector3 around_high = {2.0, 3.0, 1.5};
   EXPECT_EQ(
       box_error(occupancies(box_mesh(around_low, around_high), 3), around_low, around_high, 8),
       0.0);
-  const Point3 beside_low = {1.5, 0.1, 0.1};
-  const Point3 beside_high = {1.8, 0.9, 0.9};
+  const Vector3 beside_low = {1.5, 0.1, 0.1};
+  const Vector3 beside_high = {1.8, 0.9, 0.9};
   EXPECT_EQ(
       box_error(occupancies(box_mesh(beside_low, beside_high), 3), beside_low, beside_high, 8),
       0.0);
 }
 
 TEST(TriangleAnalysis, CavitiesAreEmptyAndOverlapsCountOnce) {
-  const Point3 low = {0.1, 0.1, 0.1};
-  const Point3 high = {0.9, 0.9, 0.9};
+  const Vector3 low = {0.1, 0.1, 0.1};
+  const Vector3 high = {0.9, 0.9, 0.9};
   Mesh hollow = box_mesh(low, high);
   Mesh cavity = box_mesh({0.3, 0.35, 0.4}, {0.55, 0.6, 0.65});
   for (auto& triangle : cavity.triangles) std::swap(triangle[0], triangle[1]);
@@ -124,8 +124,8 @@ TEST(TriangleAnalysis, ThreadsDoNotChangeTheResult) {
 }
 
 TEST(TriangleAnalysis, AMissingFaceLeavesTheMeanOfTheRoot) {
-  const Point3 low = {0.2, 0.3, 0.25};
-  const Point3 high = {0.8, 0.9, 0.65};
+  const Vector3 low = {0.2, 0.3, 0.25};
+  const Vector3 high = {0.8, 0.9, 0.65};
   const double volume = 0.6 * 0.6 * 0.4;
   for (std::size_t face = 0; face < 6; ++face) {
     Mesh mesh = box_mesh(low, high);
@@ -143,8 +143,8 @@ TEST(TriangleAnalysis, FarFromAHoleLittleChanges) {
   const auto& a = closed.positions[static_cast<std::size_t>(gone[0])];
   const auto& b = closed.positions[static_cast<std::size_t>(gone[1])];
   const auto& c = closed.positions[static_cast<std::size_t>(gone[2])];
-  Point3 u;
-  Point3 v;
+  Vector3 u;
+  Vector3 v;
   for (int i = 0; i < 3; ++i) {
     u[i] = b[i] - a[i];
     v[i] = c[i] - a[i];

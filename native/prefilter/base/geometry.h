@@ -1,0 +1,111 @@
+// Points, boxes and triangle meshes in space.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace prefilter {
+
+/// The difference of any two coordinates has to be finite as well.
+inline constexpr double kLargestCoordinate = 1e300;
+
+/// A point or a direction.
+using Vector3 = std::array<double, 3>;
+
+inline Vector3 operator+(const Vector3& a, const Vector3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Vector3 operator-(const Vector3& a, const Vector3& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+inline double dot(const Vector3& a, const Vector3& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline Vector3 cross(const Vector3& a, const Vector3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+/// Neither overflows nor underflows on the way.
+inline double length(const Vector3& a) { return std::hypot(a[0], a[1], a[2]); }
+
+/// A box along the axes.
+struct Box {
+  Vector3 low{};
+  Vector3 high{};
+
+  double size(int axis) const { return high[axis] - low[axis]; }
+  double volume() const { return size(0) * size(1) * size(2); }
+
+  void include(const Vector3& point) {
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], point[a]);
+      high[a] = std::max(high[a], point[a]);
+    }
+  }
+  void include(const Box& other) {
+    for (int a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], other.low[a]);
+      high[a] = std::max(high[a], other.high[a]);
+    }
+  }
+  double squared_distance(const Vector3& point) const {
+    double sum = 0.0;
+    for (int a = 0; a < 3; ++a) {
+      const double outside = std::max({low[a] - point[a], point[a] - high[a], 0.0});
+      sum += outside * outside;
+    }
+    return sum;
+  }
+};
+
+/// The box that holds nothing: what it includes first becomes the box.
+inline constexpr Box kEmptyBox = {
+    {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+     std::numeric_limits<double>::infinity()},
+    {-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+     -std::numeric_limits<double>::infinity()}};
+
+/// Triangles that share vertices, as someone else holds them; counter-clockwise seen from outside.
+template <typename Index>
+struct MeshView {
+  std::span<const Vector3> positions;
+  std::span<const std::array<Index, 3>> triangles;
+
+  std::array<Vector3, 3> corners(std::size_t triangle) const {
+    const auto& [a, b, c] = triangles[triangle];
+    return {positions[static_cast<std::size_t>(a)], positions[static_cast<std::size_t>(b)],
+            positions[static_cast<std::size_t>(c)]};
+  }
+};
+
+/// A mesh as callers pass it: its indices are not yet known to name vertices.
+using InputMesh = MeshView<std::int64_t>;
+
+/// Triangles that share vertices; counter-clockwise seen from outside.
+struct TriangleMesh {
+  std::vector<Vector3> positions;
+  std::vector<std::array<std::int32_t, 3>> triangles;
+};
+
+/// Throws Error where a row holds a value that is not finite, or larger than `largest`. `rows` says
+/// what they are: "points: row".
+void check_points(std::span<const Vector3> points, const char* rows, double largest);
+
+/// Throws Error where an index names none of `count` vertices; `who` names it.
+[[noreturn]] void throw_no_vertex(const std::string& who, std::int64_t vertex, std::size_t count);
+
+/// Throws Error for a mesh without triangles, or with more than the library counts (2^31 - 1
+/// vertices, 2^32 - 1 triangles); an index that names no vertex; a position as check_points says.
+void check_mesh(const InputMesh& mesh, double largest);
+
+/// Throws Error, with the name of the argument, where a box has no volume, is not finite, or is so
+/// thin for its distance from the origin that its finest cells have no volume.
+void check_box(const Box& box, const char* argument);
+
+}  // namespace prefilter

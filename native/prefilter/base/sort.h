@@ -1,0 +1,83 @@
+// Sorting of much, on several threads, that can be stopped on the way.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+
+namespace sort_detail {
+
+constexpr std::size_t kPiece = 1U << 15;  // a few milliseconds of work
+
+/// How many of the first `count` elements of two merged sorted ranges come from the first one,
+/// which goes first where elements are equal.
+template <typename T, typename Less>
+std::size_t share_of_first(const T* a, std::size_t a_size, const T* b, std::size_t b_size,
+                           std::size_t count, const Less& less) {
+  std::size_t low = count > b_size ? count - b_size : 0;
+  std::size_t high = std::min(count, a_size);
+  while (low < high) {
+    const std::size_t i = low + (high - low) / 2;
+    if (less(b[count - i - 1], a[i])) {
+      high = i;
+    } else {
+      low = i + 1;
+    }
+  }
+  return low;
+}
+
+/// Writes elements [begin, end) of the merged ranges a and b.
+template <typename T, typename Less>
+void merge_piece(const T* a, std::size_t a_size, const T* b, std::size_t b_size, std::size_t begin,
+                 std::size_t end, const Less& less, T* merged) {
+  const std::size_t i = share_of_first(a, a_size, b, b_size, begin, less);
+  const std::size_t last = share_of_first(a, a_size, b, b_size, end, less);
+  std::merge(a + i, a + last, b + (begin - i), b + (end - last), merged + begin, less);
+}
+
+}  // namespace sort_detail
+
+/// Sorts by an order in which no two elements that differ are equal. Needs the same memory again.
+/// Throws Error(kCancelled), and then leaves the elements in some order.
+template <typename T, typename Less = std::less<T>>
+void sort_in_parallel(std::vector<T>* values, const Progress& progress, int threads,
+                      const Less& less = Less()) {
+  using sort_detail::kPiece;
+  const std::size_t count = values->size();
+  const auto pieces = static_cast<std::int64_t>((count + kPiece - 1) / kPiece);
+  int passes = 0;
+  while ((kPiece << passes) < count) ++passes;
+  // A pass costs about a sixth of the sorting of the pieces.
+  const double pass_share = 1.0 / (6.0 + passes);
+  const double sorted = 1.0 - passes * pass_share;
+  parallel_for(pieces, threads, progress.part(0.0, sorted), [&](std::int64_t piece) {
+    const std::size_t begin = static_cast<std::size_t>(piece) * kPiece;
+    std::sort(values->data() + begin, values->data() + std::min(count, begin + kPiece), less);
+  });
+  if (passes == 0) return;
+  std::vector<T> other(count);
+  for (int pass = 0; pass < passes; ++pass) {
+    const std::size_t width = kPiece << pass;
+    const Progress part =
+        progress.part(sorted + pass * pass_share, sorted + (pass + 1) * pass_share);
+    parallel_for(pieces, threads, part, [&](std::int64_t piece) {
+      const std::size_t at = static_cast<std::size_t>(piece) * kPiece;
+      const std::size_t begin = at / (2 * width) * (2 * width);
+      const std::size_t middle = std::min(count, begin + width);
+      const std::size_t end = std::min(count, begin + 2 * width);
+      sort_detail::merge_piece(values->data() + begin, middle - begin, values->data() + middle,
+                               end - middle, at - begin, std::min(end, at + kPiece) - begin, less,
+                               other.data() + begin);
+    });
+    values->swap(other);
+  }
+}
+
+}  // namespace prefilter

@@ -1,0 +1,77 @@
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "convert.h"
+#include "instances.h"
+#include "prefilter/spatial/nearest.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+namespace {
+
+using Found = std::tuple<Array<std::int64_t>, Array<double>, Array<double>>;
+
+Found to_arrays(const std::vector<SurfacePoint>& points) {
+  const auto count = static_cast<py::ssize_t>(points.size());
+  Array<std::int64_t> triangles(count);
+  Array<double> weights({count, py::ssize_t{3}});
+  Array<double> distances(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const SurfacePoint& point = points[static_cast<std::size_t>(i)];
+    triangles.mutable_at(i) = point.triangle;
+    for (py::ssize_t c = 0; c < 3; ++c) {
+      weights.mutable_at(i, c) = point.weights[static_cast<std::size_t>(c)];
+    }
+    distances.mutable_at(i) = point.distance;
+  }
+  return {std::move(triangles), std::move(weights), std::move(distances)};
+}
+
+std::unique_ptr<NearestPoints> bound_tree(const Array<double>& positions,
+                                          const Array<std::int64_t>& triangles,
+                                          const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  const py::gil_scoped_release unlocked;
+  return std::make_unique<NearestPoints>(mesh_of(positions, triangles), progress, threads);
+}
+
+Found bound_find(const NearestPoints& tree, const Array<double>& points, const py::object& callback,
+                 int threads) {
+  const Progress progress = to_progress(callback);
+  std::vector<SurfacePoint> found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = tree.find(rows_of(points), progress, threads);
+  }
+  return to_arrays(found);
+}
+
+Found bound_nearest_points(const Array<double>& points, const Array<double>& positions,
+                           const Array<std::int64_t>& triangles, const py::object& callback,
+                           int threads) {
+  const Progress progress = to_progress(callback);
+  std::vector<SurfacePoint> found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = nearest_points(rows_of(points), mesh_of(positions, triangles), progress, threads);
+  }
+  return to_arrays(found);
+}
+
+}  // namespace
+
+void bind_spatial(py::module_& m) {
+  py::class_<NearestPoints>(m, "NearestPoints")
+      .def(py::init(&bound_tree), py::arg("positions"), py::arg("triangles"), py::arg("progress"),
+           py::arg("threads"))
+      .def("find", &bound_find, py::arg("points"), py::arg("progress"), py::arg("threads"));
+  m.def("nearest_points", &bound_nearest_points, py::arg("points"), py::arg("positions"),
+        py::arg("triangles"), py::arg("progress"), py::arg("threads"));
+}
+
+}  // namespace prefilter::python

@@ -1,0 +1,119 @@
+// Work on shapes can be stopped at any time: how much of it is done between two reports. Counted in
+// seconds of the processor, which others on the machine do not change.
+#include <gtest/gtest.h>
+
+#include <ctime>
+#include <functional>
+
+#include "prefilter/contour/tree_contour.h"
+#include "prefilter/spatial/nearest.h"
+#include "prefilter/voxel/close_holes.h"
+#include "prefilter/voxel/combine.h"
+#include "prefilter/voxel/voxelize.h"
+#include "wavelet/meshes.h"
+
+namespace prefilter {
+namespace {
+
+// Of the 0.2 s that are promised.
+constexpr double kLongest = 0.15;
+
+double processor_seconds() {
+  timespec now;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// The longest that `work` does not report.
+double longest_gap(const std::function<void(const Progress&)>& work) {
+  double longest = 0.0;
+  double last = processor_seconds();
+  const auto note = [&] {
+    const double now = processor_seconds();
+    longest = std::max(longest, now - last);
+    last = now;
+  };
+  work(Progress([&](double) {
+    note();
+    return true;
+  }));
+  note();
+  return longest;
+}
+
+class ReportGaps : public ::testing::Test {
+ protected:
+  static constexpr int kDepth = 8;
+
+  static void SetUpTestSuite() {
+    mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 450);
+    for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
+    sphere = voxelize(input(), options(Progress()));
+    other = voxelize(input(), options(Progress(), 0.01));
+  }
+  static void TearDownTestSuite() {
+    mesh = {};
+    triangles = {};
+    sphere = {};
+    other = {};
+  }
+
+  static InputMesh input() { return {mesh.positions, triangles}; }
+  static VoxelizeOptions options(const Progress& progress, double offset = 0.0) {
+    VoxelizeOptions result;
+    result.depth = kDepth;
+    result.bounds = Box{{offset, offset, offset}, {offset + 1.0, offset + 1.0, offset + 1.0}};
+    result.threads = 1;
+    result.progress = progress;
+    return result;
+  }
+
+  static inline testing::Mesh mesh;
+  static inline std::vector<std::array<std::int64_t, 3>> triangles;
+  static inline Octree sphere;
+  static inline Octree other;
+};
+
+TEST_F(ReportGaps, OfVoxelize) {
+  EXPECT_LT(longest_gap([](const Progress& progress) { voxelize(input(), options(progress)); }),
+            kLongest);
+}
+
+TEST_F(ReportGaps, OfContoursAndCleanUp) {
+  for (const Interpolant interpolant : {Interpolant::kOccupancy, Interpolant::kPlane}) {
+    ContourOptions contour;
+    contour.interpolant = interpolant;
+    contour.clean_up = true;
+    contour.threads = 1;
+    const double gap = longest_gap([&](const Progress& progress) {
+      contour.progress = progress;
+      contour_tree(sphere.cells, sphere.bounds, contour);
+    });
+    EXPECT_LT(gap, kLongest);
+  }
+}
+
+TEST_F(ReportGaps, OfSetOperations) {
+  EXPECT_LT(longest_gap([](const Progress& progress) {
+              combine(sphere, other, SetOperation::kUnion, progress, 1);
+            }),
+            kLongest);
+}
+
+TEST_F(ReportGaps, OfHoles) {
+  const std::span<const std::array<std::int64_t, 3>> all = triangles;
+  EXPECT_LT(longest_gap([&](const Progress& progress) {
+              close_holes({mesh.positions, all.subspan(0, all.size() - 7)}, progress, 1);
+            }),
+            kLongest);
+}
+
+TEST_F(ReportGaps, OfNearestPoints) {
+  EXPECT_LT(longest_gap([](const Progress& progress) {
+              nearest_points(std::span(mesh.positions).subspan(0, 50000), input(), progress, 1);
+            }),
+            kLongest);
+}
+
+}  // namespace
+}  // namespace prefilter
