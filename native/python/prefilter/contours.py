@@ -87,4 +87,4 @@ def _as_vector(name: str, value: npt.ArrayLike, axes: int) -> list[float]:
         raise ValueError(f"{name}: shape {numbers.shape}; one number, or ({axes},), is needed")
     if not np.isfinite(numbers).all():
         raise ValueError(f"{name}: {value!r}; finite numbers are needed")
-    return np.broadcast_to(numbers, axes).tolist()
+    return [float(number) for number in np.broadcast_to(numbers, axes)]
