@@ -99,8 +99,10 @@ class Voxelization:
 
         Raises:
             ValueError: An object is gone.
+            OSError: A file cannot be put into place; then none is.
         """
         targets = [still_there(result.place.name) for result in self._results]
+        staging.commit_all([result.staged for result in self._results if result.staged is not None])
         made = [
             self._show(obj, result).name for obj, result in zip(targets, self._results, strict=True)
         ]
@@ -156,7 +158,6 @@ class Voxelization:
         if result.contour is not None:
             return new_meshes.show_contour(obj, result.contour)
         assert result.staged is not None
-        result.staged.commit()
         volume = volumes.new_volume(obj.name, result.staged.target)
         made = new_meshes.new_object_beside(obj, volume, ".volume")
         made.matrix_world = Matrix.Translation(result.place.origin)

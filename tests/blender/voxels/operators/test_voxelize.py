@@ -309,6 +309,31 @@ def test_volume_of_an_object_of_a_linked_collection(tmp_path, addon):
     assert made.select_get()
 
 
+def test_volumes_are_written_all_or_none(tmp_path, addon, monkeypatch):
+    if not addon("bridge.files.volumes").is_available():
+        pytest.skip("there is no OpenVDB module")
+    for name in ("First", "Second"):
+        bpy.ops.mesh.primitive_cube_add()
+        bpy.context.object.name = name
+    bpy.ops.object.select_all(action="SELECT")
+    earlier = tmp_path / "out.First.vdb"
+    earlier.write_bytes(b"earlier")
+    staged = addon("bridge.files.staging").StagedFile
+    commit = staged.commit
+
+    def failing(self):
+        if self.target.name == "out.Second.vdb":
+            raise OSError("the disk is full")
+        commit(self)
+
+    monkeypatch.setattr(staged, "commit", failing)
+    with pytest.raises(RuntimeError, match="the disk is full"):
+        voxelize(output="volume", depth=4, filepath=str(tmp_path / "out.vdb"))
+    assert [path.name for path in tmp_path.iterdir()] == ["out.First.vdb"]
+    assert earlier.read_bytes() == b"earlier"
+    assert len(bpy.data.volumes) == 0
+
+
 def test_volume_that_cannot_be_shown_leaves_no_file(tmp_path, addon, monkeypatch):
     if not addon("bridge.files.volumes").is_available():
         pytest.skip("there is no Python module for OpenVDB")
