@@ -148,7 +148,7 @@ TEST(ContourGrid, MovesWithItsSamples) {
   constexpr int kBlocks = 3;
   constexpr int kSize = 32;
   std::mt19937 random(8);
-  for (int trial = 0; trial < 30; ++trial) {
+  for (int trial = 0; trial < 10; ++trial) {
     std::vector<float> blocks(kBlocks * kBlocks * kBlocks);
     for (float& block : blocks) block = static_cast<float>(random() % 5) / 4.0F;
     for (const Interpolant interpolant : kInterpolants) {
@@ -232,7 +232,7 @@ TEST(ContourGrid, TakesIsoValuesOfZeroAndBelow) {
 }
 
 TEST(ContourTree, LeavesOfAnySizesGiveClosedManifolds) {
-  for (unsigned seed = 0; seed < 200; ++seed) {
+  for (unsigned seed = 0; seed < 80; ++seed) {
     const CellTree tree = random_tree(seed, 1 + static_cast<int>(seed % 5));
     for (const Interpolant interpolant : kInterpolants) {
       ContourOptions options = options_of(interpolant);
@@ -263,7 +263,7 @@ TEST(ContourTree, HasNoZeroAreaInFloats) {
 
 // Far from the origin and at any scale, the surface is the same.
 TEST(ContourTree, MovesWithItsRoot) {
-  const CellTree tree = random_tree(9, 6);
+  const CellTree tree = random_tree(9, 4);
   for (const Interpolant interpolant : kInterpolants) {
     ContourOptions options = options_of(interpolant);
     options.clean_up = interpolant == Interpolant::kPlane;

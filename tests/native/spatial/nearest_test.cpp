@@ -145,7 +145,7 @@ TEST(NearestPoints, HaveTheLowestIndexOfSeveral) {
   Soup soup = random_soup(7, 60, 0.4);
   std::mt19937 random(8);
   const std::size_t own = soup.triangles.size();
-  for (int copy = 0; copy < 400; ++copy) {
+  for (int copy = 0; copy < 150; ++copy) {
     Triangle triangle = soup.triangles[random() % own];
     std::rotate(triangle.begin(), triangle.begin() + random() % 3, triangle.end());
     if (copy % 2 == 0) std::swap(triangle[0], triangle[1]);
@@ -153,7 +153,8 @@ TEST(NearestPoints, HaveTheLowestIndexOfSeveral) {
   }
   std::shuffle(soup.triangles.begin(), soup.triangles.end(), random);
   // On the vertices many triangles are at distance 0.
-  for (const Vector3& vertex : soup.positions) {
+  for (std::size_t v = 0; v < soup.positions.size(); v += 5) {
+    const Vector3& vertex = soup.positions[v];
     std::int64_t lowest = -1;
     for (std::size_t t = soup.triangles.size(); t-- > 0;) {
       const auto one =

@@ -45,7 +45,17 @@ class ReportGaps : public ::testing::Test {
  protected:
   static constexpr int kDepth = 8;
 
+#ifdef __SANITIZE_ADDRESS__
+  static constexpr bool kIsSlowed = true;
+#else
+  static constexpr bool kIsSlowed = false;
+#endif
+
+  void SetUp() override {
+    if (kIsSlowed) GTEST_SKIP() << "sanitizers take most of the time";
+  }
   static void SetUpTestSuite() {
+    if (kIsSlowed) return;
     mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 450);
     for (const auto& t : mesh.triangles) triangles.push_back({t[0], t[1], t[2]});
     sphere = voxelize(input(), options(Progress()));
