@@ -59,8 +59,8 @@ def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
     image = shown_image(context) or _image_of(context.active_object)
     if image is None:
         raise ValueError(
-            "image: no name is given, the editor shows no image, and the active material has not "
-            "one base color"
+            "image: no name is given, the editor shows no image, and the active object has no "
+            "single base color image"
         )
     return image
 

@@ -94,7 +94,7 @@ def with_vectors(quad):
 
 
 ROWS = {
-    "no name": Row(["image: no name is given"], named=""),
+    "no name": Row(["image: no name is given"], change=without_material, named=""),
     "another name": Row(["image: ", "no image named 'Pain'", "'Paint'"], named="Pain"),
     "no object": Row(
         ["image 'Paint'", "no object is selected"], {"objects": "selected"}, change=not_selected
