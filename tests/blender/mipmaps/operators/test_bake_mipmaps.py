@@ -24,7 +24,7 @@ def test_without_an_editor_the_active_material_says_which():
     assert bake(levels=2) == {"FINISHED"}
     assert "Paint.mip01" in bpy.data.images
     scenes.image_node(quad.active_material.node_tree, scenes.image("Other", scenes.noise(8, 8)))
-    with pytest.raises(RuntimeError, match="active material has not one base color"):
+    with pytest.raises(RuntimeError, match="active object has no single base color image"):
         bake(levels=2)
 
 
