@@ -10,7 +10,7 @@ LIBRARY = Path(__file__).resolve().parents[2] / "native/prefilter"
 FLOORS = (
     {"base"},
     {"color", "filters", "moments", "solve", "spatial", "surface"},
-    {"texels", "wavelet"},
+    {"scan", "texels", "wavelet"},
     {"contour", "mipmap", "voxel"},
 )
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
