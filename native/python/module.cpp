@@ -89,6 +89,8 @@ PYBIND11_MODULE(_native, m) {
         PyErr_SetString(cancelled->ptr(), error.what());
       } else if (error.code() == ErrorCode::kOutOfMemory) {
         PyErr_SetString(PyExc_MemoryError, error.what());
+      } else if (error.code() == ErrorCode::kFile) {
+        PyErr_SetString(PyExc_OSError, error.what());
       } else {
         PyErr_SetString(PyExc_ValueError, error.what());
       }

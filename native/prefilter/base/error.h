@@ -13,6 +13,7 @@ enum class ErrorCode {
   kInvalidArgument,  // a value that the caller can correct
   kCancelled,        // the progress callback asked to stop
   kOutOfMemory,      // the result would not fit into memory
+  kFile,             // the system refuses to open, read or write a file
 };
 
 class Error : public std::runtime_error {

@@ -1,0 +1,37 @@
+#include "prefilter/scan/temporary_file.h"
+
+#include <filesystem>
+
+#include "prefilter/base/error.h"
+
+namespace prefilter {
+namespace {
+
+File unnamed_file(std::string folder) {
+  if (folder.empty()) {
+    std::error_code error;
+    folder = std::filesystem::temp_directory_path(error).string();
+    if (error) {
+      throw Error(ErrorCode::kFile, "there is no folder for temporary files: " + error.message());
+    }
+  }
+  return File::create_unnamed(folder, "temporary file in '" + folder + "'");
+}
+
+}  // namespace
+
+TemporaryFile::TemporaryFile(const std::string& folder) : file_(unnamed_file(folder)) {}
+
+void TemporaryFile::write(std::span<const std::byte> bytes) {
+  file_.write_at(size_, bytes);
+  size_ += bytes.size();
+}
+
+void TemporaryFile::read_at(std::uint64_t offset, std::span<std::byte> bytes) const {
+  if (file_.read_at(offset, bytes) == bytes.size()) return;
+  throw Error(ErrorCode::kFile, file_.name() + ": found " + std::to_string(file_.size()) +
+                                    " bytes; bytes " + std::to_string(offset) + " to " +
+                                    std::to_string(offset + bytes.size()) + " are needed");
+}
+
+}  // namespace prefilter
