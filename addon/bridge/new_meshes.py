@@ -1,5 +1,6 @@
 """Triangles to Blender: meshes with materials and colours, and the objects that show them."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -22,7 +23,8 @@ class Contour:
         colors: By name: the type of the attribute, and (n, 4) scene-linear values.
         active_color: The name of the active colour attribute.
         render_color: The name of the one that renders use.
-        sharp_angle: Edges with a greater angle are sharp; None for flat faces.
+        sharp_angle: Edges with a greater angle are sharp, in radians; None for flat faces.
+        numbers: By name: (n,) values of a FLOAT attribute.
     """
 
     positions: NDArray[np.float32]
@@ -33,6 +35,7 @@ class Contour:
     active_color: str = ""
     render_color: str = ""
     sharp_angle: float | None = None
+    numbers: dict[str, NDArray[np.float32]] = field(default_factory=dict)
 
 
 def is_editable(obj: bpy.types.Object) -> bool:
@@ -73,11 +76,15 @@ def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
     for color_name, (data_type, values) in contour.colors.items():
         attribute = mesh.color_attributes.new(color_name, data_type, "POINT")
         attribute.data.foreach_set("color", np.ascontiguousarray(values, np.float32).ravel())
+    for number_name, numbers in contour.numbers.items():
+        attribute = mesh.attributes.new(number_name, "FLOAT", "POINT")
+        attribute.data.foreach_set("value", np.ascontiguousarray(numbers, np.float32))
     mesh.update(calc_edges=True)
     if contour.sharp_angle is None:
         mesh.shade_flat()
     else:
         mesh.shade_smooth()
+    if contour.sharp_angle is not None and contour.sharp_angle < math.pi:
         mesh.set_sharp_from_angle(angle=contour.sharp_angle)
     colors = mesh.color_attributes
     if contour.active_color in colors:

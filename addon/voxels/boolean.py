@@ -9,13 +9,13 @@ import numpy as np
 import prefilter
 
 from ..bridge import new_meshes, solids
+from ..bridge.place import Place, naming, still_there
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import listed
 from .choices import BooleanSettings
 from .grid import Box, check_memory, choose_grid
-from .place import Place, naming, still_there
 from .solid_meshes import SolidMesh, join, solid_mesh
 from .steps import VOXELIZED, Load, Result, contoured, tell_defects, told, voxelized
 

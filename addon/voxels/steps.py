@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import bpy
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
@@ -12,11 +11,12 @@ from numpy.typing import NDArray
 from ..bridge import solids
 from ..bridge.files.staging import StagedFile
 from ..bridge.new_meshes import Contour
+from ..bridge.place import Place
+from ..bridge.units import length, volume
 from ..core.jobs import Progress, share
 from ..core.wording import amount
 from .choices import VoxelSettings
 from .grid import Box, Grid, cells_crossed, choose_grid
-from .place import Place
 from .solid_meshes import SolidMesh
 
 # What a load takes in seconds, as measured once on two cores; ratios are what counts.
@@ -199,21 +199,6 @@ def tell_defects(name: str, mesh: SolidMesh, warnings: list[str], notes: list[st
 
 def told(result: Result) -> str:
     """Returns numbers about a result, in words."""
-    cells = f"'{result.place.name}' in {result.grid.cells}³ cells of {_length(result.grid.spacing)}"
+    cells = f"'{result.place.name}' in {result.grid.cells}³ cells of {length(result.grid.spacing)}"
     triangles = f"{amount(result.triangles, 'triangle')}, " if result.contour is not None else ""
-    return f"{cells}: {triangles}volume {_in_units(result.volume, 'VOLUME')}"
-
-
-def _length(value: float) -> str:
-    return _in_units(value, "LENGTH")
-
-
-def _in_units(value: float, category: str) -> str:
-    units = bpy.context.scene.unit_settings
-    if units.system == "NONE":
-        return f"{value:.4g}"
-    scaled = value * units.scale_length ** (3 if category == "VOLUME" else 1)
-    # Blender has no unit between a cubic meter and a millionth of it.
-    if units.system == "METRIC" and category == "VOLUME" and 1e-3 <= scaled < 1.0:
-        return f"{scaled:.4g} m³"
-    return bpy.utils.units.to_string(units.system, category, scaled, precision=4)
+    return f"{cells}: {triangles}volume {volume(result.volume)}"

@@ -11,13 +11,13 @@ from mathutils import Matrix
 
 from ..bridge import new_meshes, solids
 from ..bridge.files import staging, volumes
+from ..bridge.place import Place, naming, still_there
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import amount, counted, listed
 from .choices import VoxelizeSettings
 from .grid import check_dense_memory, check_memory, choose_grid
-from .place import Place, naming, still_there
 from .solid_meshes import solid_mesh
 from .steps import VOXELIZED, Load, Result, contoured, tell_defects, told, voxelized
 
