@@ -56,6 +56,9 @@ Array<T> to_array(std::vector<Value> values, std::vector<pybind11::ssize_t> shap
 /// The wrap mode of a public name.
 Wrap wrap_mode(const std::string& name);
 
+/// Whether the interpreter is going away: it then ends any thread that asks for its lock.
+bool is_finalizing();
+
 /// Calls a Python callable, or for None nothing; in both cases lets a keyboard interrupt through.
 Progress to_progress(const pybind11::object& callback);
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "prefilter/scan/point_source.h"
 #include "prefilter/spatial/nearest.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/voxel/octree.h"
@@ -42,6 +43,10 @@ class pybind11::detail::type_caster<prefilter::NearestPoints>
 template <>
 class pybind11::detail::type_caster<prefilter::Octree>
     : public prefilter::python::InstanceCaster<prefilter::Octree> {};
+
+template <>
+class pybind11::detail::type_caster<prefilter::PointSource>
+    : public prefilter::python::InstanceCaster<prefilter::PointSource> {};
 
 template <>
 class pybind11::detail::type_caster<prefilter::Surface>

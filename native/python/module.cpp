@@ -1,5 +1,6 @@
 #include <pybind11/pybind11.h>
 
+#include <cstring>
 #include <memory>
 #include <utility>
 
@@ -16,6 +17,7 @@ void bind_contour(py::module_& m);
 void bind_cutout(py::module_& m);
 void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
+void bind_scan(py::module_& m);
 void bind_spatial(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_voxel(py::module_& m);
@@ -52,7 +54,6 @@ Wrap wrap_mode(const std::string& name) {
   throw_invalid("wrap: '" + name + "' is not one of clamp, repeat, border");
 }
 
-namespace {
 bool is_finalizing() {
 #if PY_VERSION_HEX >= 0x030D0000
   return Py_IsFinalizing() != 0;
@@ -60,11 +61,9 @@ bool is_finalizing() {
   return _Py_IsFinalizing() != 0;
 #endif
 }
-}  // namespace
 
 Progress to_progress(const py::object& callback) {
   return Progress([callback = py::handle(callback)](double fraction) {
-    // An interpreter that is going away ends any thread that asks for its lock.
     if (is_finalizing()) return false;
     const py::gil_scoped_acquire locked;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -74,6 +73,17 @@ Progress to_progress(const py::object& callback) {
 }
 
 }  // namespace prefilter::python
+
+namespace {
+// Names of files in messages may hold any bytes.
+void set_error(PyObject* type, const char* message) {
+  const auto length = static_cast<Py_ssize_t>(std::strlen(message));
+  PyObject* const text = PyUnicode_DecodeUTF8(message, length, "backslashreplace");
+  if (text == nullptr) return;
+  PyErr_SetObject(type, text);
+  Py_DECREF(text);
+}
+}  // namespace
 
 PYBIND11_MODULE(_native, m) {
   using prefilter::Error;
@@ -86,13 +96,13 @@ PYBIND11_MODULE(_native, m) {
       if (pointer) std::rethrow_exception(pointer);
     } catch (const Error& error) {
       if (error.code() == ErrorCode::kCancelled) {
-        PyErr_SetString(cancelled->ptr(), error.what());
+        set_error(cancelled->ptr(), error.what());
       } else if (error.code() == ErrorCode::kOutOfMemory) {
-        PyErr_SetString(PyExc_MemoryError, error.what());
+        set_error(PyExc_MemoryError, error.what());
       } else if (error.code() == ErrorCode::kFile) {
-        PyErr_SetString(PyExc_OSError, error.what());
+        set_error(PyExc_OSError, error.what());
       } else {
-        PyErr_SetString(PyExc_ValueError, error.what());
+        set_error(PyExc_ValueError, error.what());
       }
     }
   });
@@ -100,6 +110,7 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_color(m);
   prefilter::python::bind_cutout(m);
   prefilter::python::bind_normals(m);
+  prefilter::python::bind_scan(m);
   prefilter::python::bind_spatial(m);
   prefilter::python::bind_surface(m);
   prefilter::python::bind_mipmap(m);

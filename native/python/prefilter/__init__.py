@@ -13,6 +13,7 @@ from .cutout import keep_coverage
 from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
 from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
+from .scan_files import ScanPoints, read_points
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
@@ -29,6 +30,7 @@ __all__ = [
     "MipmapFilter",
     "NearestPoints",
     "Octree",
+    "ScanPoints",
     "Surface",
     "close_holes",
     "contour",
@@ -39,6 +41,7 @@ __all__ = [
     "mipmaps",
     "nearest_points",
     "normal_mipmaps",
+    "read_points",
     "seam_contrast",
     "texel_weights",
     "to_linear",

@@ -7,6 +7,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._border.arguments import ProgressCallback
+from .point_reader import PointReader
 
 class Cancelled(Exception): ...  # noqa: N818
 
@@ -50,6 +51,28 @@ class NearestPoints:
         self, points: npt.NDArray[np.float64], progress: ProgressCallback | None, threads: int
     ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
 
+class PointSource:
+    def __init__(self, reader: PointReader) -> None: ...
+    @property
+    def count(self) -> int | None: ...
+    @property
+    def has_normals(self) -> bool: ...
+    @property
+    def is_double(self) -> bool: ...
+    @property
+    def attributes(self) -> list[tuple[str, bool]]: ...
+    @property
+    def viewpoint(self) -> tuple[float, float, float] | None: ...
+
+def open_points(path: bytes) -> PointSource: ...
+def read_points(
+    source: PointSource, progress: ProgressCallback | None
+) -> tuple[
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float32] | None,
+    npt.NDArray[np.float32] | None,
+    dict[str, npt.NDArray[np.uint8 | np.float32]],
+]: ...
 def nearest_points(
     points: npt.NDArray[np.float64],
     positions: npt.NDArray[np.float64],

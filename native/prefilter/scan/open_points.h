@@ -1,0 +1,15 @@
+// Files of points, whatever their format.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "prefilter/scan/point_source.h"
+
+namespace prefilter {
+
+/// Opens a file as its ending says: .ply. Throws Error(kFile) where it cannot be opened, else
+/// Error where the ending is another or the file is not what it says.
+std::unique_ptr<PointSource> open_points(const std::string& path);
+
+}  // namespace prefilter

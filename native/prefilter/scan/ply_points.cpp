@@ -1,0 +1,82 @@
+#include "prefilter/scan/ply_points.h"
+
+#include <algorithm>
+
+#include "prefilter/base/error.h"
+#include "prefilter/scan/ply_file.h"
+
+namespace prefilter {
+namespace {
+
+std::size_t vertex_element(const PlyFile& file) {
+  const std::size_t found = file.find("vertex");
+  if (found == file.elements().size()) {
+    throw_invalid(file.name() + ": there is no element 'vertex' in its header");
+  }
+  return found;
+}
+
+PointFields fields_of(const PlyElement& element, const std::string& name) {
+  std::vector<ScanField> fields;
+  std::size_t offset = 0;  // means nothing where there are lists
+  for (std::size_t i = 0; i < element.properties.size(); ++i) {
+    const PlyProperty& property = element.properties[i];
+    if (!property.count_type) fields.push_back({property.name, property.type, i, offset});
+    offset += size_of(property.type);
+  }
+  return {fields, name};
+}
+
+class PlyPoints final : public PointSource {
+ public:
+  explicit PlyPoints(const std::string& path)
+      : file_(path),
+        element_(vertex_element(file_)),
+        fields_(fields_of(file_.elements()[element_], file_.name())),
+        has_records_(!file_.is_text() && !file_.elements()[element_].has_lists()) {
+    rewind();
+  }
+
+  std::optional<std::size_t> count() const override {
+    return static_cast<std::size_t>(file_.elements()[element_].count);
+  }
+  bool has_normals() const override { return fields_.has_normals(); }
+  const std::vector<PointAttribute>& attributes() const override { return fields_.attributes(); }
+  bool is_double() const override { return fields_.is_double(); }
+
+  void rewind() override { file_.go_to(element_); }
+
+  bool read(std::size_t most, PointBatch* batch) override {
+    const auto count = static_cast<std::size_t>(std::min<std::uint64_t>(most, file_.rows_left()));
+    fields_.resize(count, batch);
+    const std::size_t stride = file_.elements()[element_].row_size();
+    for (std::size_t point = 0; point < count;) {
+      if (has_records_) {
+        const auto records = file_.read_records(count - point);
+        const std::size_t some = records.size() / stride;
+        fields_.put_records(records.data(), stride, file_.is_swapped(), point, some, batch);
+        point += some;
+      } else {
+        file_.read_row();
+        fields_.put_values(file_.scalars().data(), point, batch);
+        ++point;
+      }
+    }
+    if (file_.rows_left() == 0) file_.check_end();
+    return count > 0;
+  }
+
+ private:
+  PlyFile file_;
+  std::size_t element_;
+  PointFields fields_;
+  bool has_records_;
+};
+
+}  // namespace
+
+std::unique_ptr<PointSource> open_ply_points(const std::string& path) {
+  return std::make_unique<PlyPoints>(path);
+}
+
+}  // namespace prefilter

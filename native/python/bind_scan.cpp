@@ -1,0 +1,148 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "convert.h"
+#include "instances.h"
+#include "prefilter/base/memory.h"
+#include "prefilter/scan/open_points.h"
+#include "prefilter/scan/point_source.h"
+#include "python_points.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+namespace {
+
+constexpr std::size_t kPointsAtOnce = 1 << 16;
+
+// All the values of one attribute.
+struct AttributeValues {
+  std::vector<float> floats;
+  std::vector<std::uint8_t> bytes;  // instead, where it is one of bytes
+};
+
+struct AllPoints {
+  std::vector<Vector3> positions;
+  std::vector<std::array<float, 3>> normals;
+  std::vector<float> weights;
+  std::vector<AttributeValues> attributes;
+};
+
+// Names in files may hold any bytes.
+py::str to_str(const std::string& text) {
+  PyObject* const decoded =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "backslashreplace");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
+std::uint8_t to_byte(float value) {
+  return value >= 0.0F ? static_cast<std::uint8_t>(std::lround(std::min(value, 255.0F))) : 0;
+}
+
+void check_room(const PointSource& source) {
+  if (!source.count()) return;
+  std::size_t bytes = sizeof(Vector3) + sizeof(float);
+  if (source.has_normals()) bytes += sizeof(std::array<float, 3>);
+  for (const PointAttribute& each : source.attributes()) {
+    bytes += each.is_byte ? sizeof(std::uint8_t) : sizeof(float);
+  }
+  check_memory("a cloud of " + std::to_string(*source.count()) + " points",
+               static_cast<double>(bytes) * static_cast<double>(*source.count()));
+}
+
+template <typename T>
+void append(const std::vector<T>& more, std::vector<T>* all) {
+  all->insert(all->end(), more.begin(), more.end());
+}
+
+AllPoints read_all(PointSource* source, const Progress& progress) {
+  check_room(*source);
+  const std::vector<PointAttribute>& attributes = source->attributes();
+  AllPoints all;
+  all.attributes.resize(attributes.size());
+  if (source->count()) all.positions.reserve(*source->count());
+  source->rewind();
+  PointBatch batch;
+  while (source->read(kPointsAtOnce, &batch)) {
+    append(batch.positions, &all.positions);
+    append(batch.normals, &all.normals);
+    append(batch.weights, &all.weights);
+    for (std::size_t a = 0; a < attributes.size(); ++a) {
+      for (std::size_t i = a; i < batch.attributes.size(); i += attributes.size()) {
+        if (attributes[a].is_byte) {
+          all.attributes[a].bytes.push_back(to_byte(batch.attributes[i]));
+        } else {
+          all.attributes[a].floats.push_back(batch.attributes[i]);
+        }
+      }
+    }
+    if (source->count()) {
+      progress.report(static_cast<double>(all.positions.size()) /
+                      static_cast<double>(*source->count()));
+    } else {
+      progress.report(0.0);
+    }
+  }
+  progress.report(1.0);
+  return all;
+}
+
+py::tuple bound_read_points(PointSource* source, const py::object& callback) {
+  const Progress progress = to_progress(callback);
+  AllPoints all;
+  {
+    const py::gil_scoped_release unlocked;
+    all = read_all(source, progress);
+  }
+  const auto count = static_cast<py::ssize_t>(all.positions.size());
+  py::object normals = py::none();
+  py::object weights = py::none();
+  if (source->has_normals()) normals = to_array<float>(std::move(all.normals), {count, 3});
+  if (!all.weights.empty()) weights = to_array<float>(std::move(all.weights), {count});
+  py::dict attributes;
+  for (std::size_t a = 0; a < all.attributes.size(); ++a) {
+    const PointAttribute& attribute = source->attributes()[a];
+    AttributeValues& values = all.attributes[a];
+    if (attribute.is_byte) {
+      attributes[to_str(attribute.name)] = to_array<std::uint8_t>(std::move(values.bytes), {count});
+    } else {
+      attributes[to_str(attribute.name)] = to_array<float>(std::move(values.floats), {count});
+    }
+  }
+  return py::make_tuple(to_array<double>(std::move(all.positions), {count, 3}), normals, weights,
+                        attributes);
+}
+
+}  // namespace
+
+void bind_scan(py::module_& m) {
+  py::class_<PointSource>(m, "PointSource")
+      .def(py::init(&make_python_points), py::arg("reader"))
+      .def_property_readonly("count", &PointSource::count)
+      .def_property_readonly("has_normals", &PointSource::has_normals)
+      .def_property_readonly("is_double", &PointSource::is_double)
+      .def_property_readonly("attributes",
+                             [](const PointSource& source) {
+                               std::vector<std::pair<py::str, bool>> attributes;
+                               for (const PointAttribute& each : source.attributes()) {
+                                 attributes.emplace_back(to_str(each.name), each.is_byte);
+                               }
+                               return attributes;
+                             })
+      .def_property_readonly("viewpoint", [](const PointSource& source) -> py::object {
+        const std::optional<Vector3> viewpoint = source.viewpoint();
+        if (!viewpoint) return py::none();
+        return py::make_tuple((*viewpoint)[0], (*viewpoint)[1], (*viewpoint)[2]);
+      });
+  m.def("open_points", &open_points, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+  m.def("read_points", &bound_read_points, py::arg("source"), py::arg("progress"));
+}
+
+}  // namespace prefilter::python

@@ -1,0 +1,73 @@
+"""Files of points, as scanners and their programs write them."""
+
+import os
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._border.arguments import ProgressCallback, as_progress
+from ._border.output import as_path
+
+AttributeArray: TypeAlias = npt.NDArray[np.uint8 | np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class ScanPoints:
+    """Points of a scan, with what is known of them.
+
+    Attributes:
+        positions: (n, 3). A value that is not finite in the file is not finite here.
+        normals: (n, 3), of any length; None where the file has none.
+        weights: (n,), how much each point counts (a scanner's confidence); None: all the same.
+        attributes: An (n,) array for each other value that the points have, by its name in the
+            file: uint8 where the file has bytes, else float32.
+        viewpoint: Where the scanner stood, in the coordinates of the points; None where the file
+            does not say.
+    """
+
+    positions: npt.NDArray[np.float64]
+    normals: npt.NDArray[np.float32] | None = None
+    weights: npt.NDArray[np.float32] | None = None
+    attributes: dict[str, AttributeArray] = field(default_factory=dict)
+    viewpoint: npt.NDArray[np.float64] | None = None
+
+    @property
+    def colors(self) -> AttributeArray | None:
+        """(n, 3), of the attributes red, green and blue; None where one is missing."""
+        names = ("red", "green", "blue")
+        if not all(name in self.attributes for name in names):
+            return None
+        return np.stack([self.attributes[name] for name in names], axis=1)
+
+
+def read_points(
+    path: str | os.PathLike[str], *, progress: ProgressCallback | None = None
+) -> ScanPoints:
+    """Reads all points of a file; its ending says of which format it is.
+
+    .ply: the element "vertex", in text or binary. nx, ny, nz (or normal_x and so on) are normals,
+    confidence is the weight; other properties are attributes.
+
+    Args:
+        path: Of the file.
+        progress: Called with the fraction done; returning False stops the work.
+
+    Raises:
+        ValueError: The extension is another, or the file is damaged; the message names the line or
+            the point.
+        OSError: The file cannot be read.
+        MemoryError: The points would not fit into memory.
+        Cancelled: `progress` returned False.
+    """
+    source = open_points(path)
+    positions, normals, weights, attributes = _native.read_points(source, as_progress(progress))
+    viewpoint = None if source.viewpoint is None else np.array(source.viewpoint)
+    return ScanPoints(positions, normals, weights, attributes, viewpoint)
+
+
+def open_points(path: str | os.PathLike[str]) -> _native.PointSource:
+    """Opens a file for functions of the native module that read it piece by piece."""
+    return _native.open_points(os.fsencode(as_path(path)))

@@ -1,0 +1,130 @@
+#include "python_points.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "convert.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+namespace {
+
+// Positions, normals, weights and attributes of some points.
+using Chunk = std::tuple<Array<double>, std::optional<Array<float>>, std::optional<Array<float>>,
+                         Array<float>>;
+
+// What needs the interpreter's lock to be changed or to go.
+struct Held {
+  py::object reader;
+  py::object iterator;
+  std::optional<Chunk> chunk;
+};
+
+// Throws where an array is not of the size that the reader has promised.
+template <typename T>
+const T* rows(const Array<T>& array, std::size_t count, std::size_t width, std::size_t first) {
+  if (static_cast<std::size_t>(array.size()) != count * width) {
+    throw py::value_error("reader: arrays of a chunk have different lengths");
+  }
+  return array.data() + first * width;
+}
+
+class PythonPoints final : public PointSource {
+ public:
+  explicit PythonPoints(const py::object& reader)
+      : count_(reader.attr("count").cast<std::optional<std::size_t>>()),
+        viewpoint_(reader.attr("viewpoint").cast<std::optional<Vector3>>()),
+        has_normals_(reader.attr("has_normals").cast<bool>()) {
+    for (auto& [name, is_byte] :
+         reader.attr("attributes").cast<std::vector<std::pair<std::string, bool>>>()) {
+      attributes_.push_back({std::move(name), is_byte});
+    }
+    held_ = std::make_unique<Held>(Held{reader, py::object(), std::nullopt});
+  }
+
+  ~PythonPoints() override {
+    if (is_finalizing()) {
+      (void)held_.release();
+      return;
+    }
+    const py::gil_scoped_acquire locked;
+    held_.reset();
+  }
+
+  std::optional<std::size_t> count() const override { return count_; }
+  bool has_normals() const override { return has_normals_; }
+  const std::vector<PointAttribute>& attributes() const override { return attributes_; }
+  std::optional<Vector3> viewpoint() const override { return viewpoint_; }
+  // These formats keep coordinates as scaled integers or doubles.
+  bool is_double() const override { return true; }
+
+  void rewind() override {
+    const py::gil_scoped_acquire locked;
+    held_->iterator = py::object();
+    held_->chunk.reset();
+  }
+
+  bool read(std::size_t most, PointBatch* batch) override {
+    const py::gil_scoped_acquire locked;
+    batch->clear();
+    if (!held_->iterator) held_->iterator = held_->reader.attr("chunks")();
+    while (!held_->chunk || done_ == size_) {
+      PyObject* const next = PyIter_Next(held_->iterator.ptr());
+      if (next == nullptr) {
+        if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+        held_->chunk.reset();
+        return false;
+      }
+      held_->chunk = py::reinterpret_steal<py::object>(next).cast<Chunk>();
+      size_ = static_cast<std::size_t>(std::get<0>(*held_->chunk).shape(0));
+      done_ = 0;
+    }
+    take(std::min(most, size_ - done_), batch);
+    return true;
+  }
+
+ private:
+  void take(std::size_t count, PointBatch* batch) {
+    const auto& [positions, normals, weights, attributes] = *held_->chunk;
+    const double* const position = rows(positions, size_, 3, done_);
+    for (std::size_t i = 0; i < count; ++i) {
+      batch->positions.push_back({position[3 * i], position[3 * i + 1], position[3 * i + 2]});
+    }
+    if (has_normals_ && normals) {
+      const float* const normal = rows(*normals, size_, 3, done_);
+      for (std::size_t i = 0; i < count; ++i) {
+        batch->normals.push_back({normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]});
+      }
+    }
+    if (weights) {
+      const float* const weight = rows(*weights, size_, 1, done_);
+      batch->weights.assign(weight, weight + count);
+    }
+    const float* const values = rows(attributes, size_, attributes_.size(), done_);
+    batch->attributes.assign(values, values + count * attributes_.size());
+    done_ += count;
+  }
+
+  std::unique_ptr<Held> held_;
+  std::optional<std::size_t> count_;
+  std::optional<Vector3> viewpoint_;
+  std::vector<PointAttribute> attributes_;
+  bool has_normals_;
+  std::size_t size_ = 0;  // of the chunk
+  std::size_t done_ = 0;  // points of it
+};
+
+}  // namespace
+
+std::unique_ptr<PointSource> make_python_points(const py::object& reader) {
+  return std::make_unique<PythonPoints>(reader);
+}
+
+}  // namespace prefilter::python

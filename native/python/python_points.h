@@ -1,0 +1,15 @@
+// Points that Python code reads, for formats whose libraries are Python modules.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <memory>
+
+#include "prefilter/scan/point_source.h"
+
+namespace prefilter::python {
+
+/// A source of what a `PointReader`, of the package's module of that name, reads.
+std::unique_ptr<PointSource> make_python_points(const pybind11::object& reader);
+
+}  // namespace prefilter::python

@@ -1,0 +1,347 @@
+"""Files of points are read as others write them, and damage is told."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import prefilter
+import pytest
+from prefilter import _native
+from scan_writers import FORMATS, TYPES, ply, random_rows, write
+
+SHARED = Path(__file__).resolve().parents[3] / "shared" / "data" / "points"
+XYZ = [("float", axis) for axis in "xyz"]
+CORNERS = [(0.0, 0.5, 1.0), (1.0, 0.25, -2.0), (3.0, 4.0, 5.5)]
+
+
+def read(folder, contents, name="cloud.ply"):
+    return prefilter.read_points(write(folder, name, contents))
+
+
+@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("newline", ["\n", "\r\n"])
+def test_all_types_are_read(tmp_path, form, newline):
+    properties = [(kind, f"of_{kind}") for kind in TYPES]
+    properties[5:5] = [("double", "z"), ("float", "x")]
+    properties.append(("int", "y"))
+    rows = random_rows([kind for kind, _ in properties], 1000)
+    points = read(tmp_path, ply(form, [("vertex", properties, rows)], newline=newline))
+    columns = dict(zip([name for _, name in properties], np.array(rows).T, strict=True))
+    np.testing.assert_array_equal(
+        points.positions, np.stack([columns.pop(axis) for axis in "xyz"], axis=1)
+    )
+    assert list(points.attributes) == list(columns)
+    for name, values in columns.items():
+        is_byte = name in ("of_uchar", "of_uint8")
+        assert points.attributes[name].dtype == (np.uint8 if is_byte else np.float32)
+        np.testing.assert_array_equal(points.attributes[name], values.astype(np.float32))
+    assert points.normals is points.weights is points.viewpoint is points.colors is None
+
+
+@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("prefix", ["n", "normal_"])
+def test_normals_weights_and_colors(tmp_path, form, prefix):
+    properties = [
+        *XYZ,
+        *(("uchar", color) for color in ("red", "green", "blue", "alpha")),
+        ("float", "confidence"),
+        *(("float", prefix + axis) for axis in "xyz"),
+        ("float", "quality"),
+    ]
+    rows = random_rows([kind for kind, _ in properties], 300)
+    points = read(tmp_path, ply(form, [("vertex", properties, rows)]))
+    table = np.array(rows)
+    np.testing.assert_array_equal(points.positions, table[:, :3])
+    np.testing.assert_array_equal(points.colors, table[:, 3:6])
+    np.testing.assert_array_equal(points.weights, table[:, 7])
+    np.testing.assert_array_equal(points.normals, table[:, 8:11])
+    np.testing.assert_array_equal(points.attributes["quality"], table[:, 11].astype(np.float32))
+    assert points.colors.dtype == np.uint8
+    assert set(points.attributes) == {"red", "green", "blue", "alpha", "quality"}
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_other_elements_and_lists_are_passed_over(tmp_path, form):
+    lists = [("uchar", "int", "some"), ("float", "between"), ("int", "double", "more")]
+    others = [([1, 2, 3], 0.5, []), ([], 1.5, [0.25]), ([7] * 200, 2.5, [1.0, 2.0])]
+    vertices = [(i, *corner, [i] * i) for i, corner in enumerate(CORNERS)]
+    contents = ply(
+        form,
+        [
+            ("camera", lists, others),
+            ("nothing", [], [(), ()]),
+            ("pair", [("float", "x"), ("short", "y")], [(1.0, 2), (3.0, 4)]),
+            ("vertex", [("uchar", "id"), *XYZ, ("uchar", "ushort", "links")], vertices),
+            ("face", [("uchar", "int", "vertex_indices")], [([0, 1, 2],)]),
+        ],
+        lines=["comment made by hand", "obj_info number 7", "comment"],
+    )
+    points = read(tmp_path, contents)
+    np.testing.assert_array_equal(points.positions, CORNERS)
+    np.testing.assert_array_equal(points.attributes["id"], [0, 1, 2])
+    assert list(points.attributes) == ["id"]
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_many_points_are_read_in_pieces(tmp_path, form):
+    rows = random_rows(["float", "float", "double"], 70_000)
+    properties = [("float", "x"), ("float", "y"), ("double", "z")]
+    told = []
+    path = write(tmp_path, "cloud.ply", ply(form, [("vertex", properties, rows)]))
+    points = prefilter.read_points(path, progress=told.append)
+    np.testing.assert_array_equal(points.positions, rows)
+    assert told[-1] == 1.0
+    assert sorted(told) == told
+    with pytest.raises(prefilter.Cancelled):
+        prefilter.read_points(path, progress=lambda _: False)
+
+
+def test_numbers_as_programs_write_them(tmp_path):
+    header = ply("ascii", [("vertex", XYZ, [])]).replace(b"vertex 0", b"vertex 5")
+    text = (
+        b"+1 -1. .5\r\n\n  1e3\t1E-3 -0\nnan NaN -inf\n1.#QNAN -1.#IND -1.#INF\n1e999 -1e999 1e-999"
+    )
+    expected = [
+        (1, -1, 0.5),
+        (1000, 0.001, 0),
+        (np.nan, np.nan, -np.inf),
+        (np.nan, np.nan, -np.inf),
+        (np.inf, -np.inf, 0),
+    ]
+    np.testing.assert_array_equal(read(tmp_path, header + text).positions, expected)
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_no_points_are_no_error(tmp_path, form):
+    points = read(tmp_path, ply(form, [("vertex", [*XYZ, ("uchar", "red")], [])]))
+    assert points.positions.shape == (0, 3)
+    assert points.attributes["red"].shape == (0,)
+
+
+def vertices(form="ascii", properties=XYZ, rows=CORNERS):
+    return ply(form, [("vertex", properties, rows)])
+
+
+@pytest.mark.parametrize(
+    ("contents", "message"),
+    [
+        (b"", "is no PLY file: it begins with ''"),
+        (b"plywood", "is no PLY file: it begins with 'plyw'"),
+        (b"\x89PNG\r\n", r"is no PLY file: it begins with '\?PNG'"),
+        (b"ply\n", "ends within the header, after line 1"),
+        (vertices()[:38], "ends within the header, after line"),
+        (vertices().replace(b"ascii", b"text"), "line 2: format 'text'; ascii, binary_little"),
+        (vertices().replace(b"format ascii 1.0\n", b""), "the header has no line 'format'"),
+        (vertices().replace(b"vertex 3", b"vertex -3"), "line 3: element 'vertex' with count '-3'"),
+        (vertices().replace(b"vertex 3", b"vertex 1e3"), "with count '1e3'; a name and a whole"),
+        (vertices().replace(b"vertex 3", b"vertex"), "with count ''"),
+        (vertices().replace(b"vertex 3", b"vertex 99999999999999999999"), "2\\^63 - 1 are needed"),
+        (vertices().replace(b"vertex 3", b"vertex 9000000000000000000"), "too short for the 90000"),
+        (vertices("binary_big_endian").replace(b"vertex 3", b"vertex 4"), "too short for the 4 ro"),
+        (vertices("binary_big_endian")[:-1], "too short for the 3 rows of 'vertex' in its header"),
+        (vertices("binary_big_endian").replace(b"vertex 3", b"vertex 2"), "more than the 2 rows"),
+        (vertices().replace(b"vertex 3", b"vertex 2"), "holds more than the 2 rows of 'vertex'"),
+        (vertices().replace(b"vertex 3", b"vertex 4"), "line 10: vertex 4 of 4: the file ends"),
+        (
+            vertices().replace(b"0.25", b"a\033[31m"),
+            r"line 9: found 'a\?\[31m'; a number is needed",
+        ),
+        (vertices().replace(b"0.25", b""), "line 9: vertex 2 of 3: found 2 values; more are need"),
+        (vertices().replace(b"0.25", b"0,25"), "line 9: found '0,25'; a number is needed"),
+        (vertices().replace(b"0.25", b"0 25"), "line 9: vertex 2 of 3: found 4 values; 3 are need"),
+        (vertices().replace(b"vertex 3", b"face 3"), "there is no element 'vertex' in its header"),
+        (vertices().replace(b"float z", b"float w"), "points have no coordinate 'z'; x, y and z"),
+        (vertices().replace(b"float z", b"float x"), "line 6: a second property 'x' of 'vertex'"),
+        (vertices().replace(b"float z", b"half z"), "line 6: 'half' is not a type of PLY"),
+        (vertices().replace(b"float z", b"float"), "line 6: a property without a name"),
+        (vertices().replace(b"float z", b"list float int z"), "of a type of whole numbers"),
+        (vertices().replace(b"element", b"elements"), "line 3: 'elements' is not part of a PLY"),
+        (vertices().replace(b"element vertex 3\n", b""), "line 3: a property before any element"),
+        (vertices() + b"\n" * 10 + b"x", "holds more than the 3 rows"),
+    ],
+    ids=str,
+)
+def test_damaged_ply_files(tmp_path, contents, message):
+    path = write(tmp_path, "cloud.ply", contents)
+    with pytest.raises(ValueError, match=f"^'{path}'.*{message}"):
+        prefilter.read_points(path)
+
+
+def test_what_is_too_long_for_text(tmp_path):
+    with pytest.raises(ValueError, match=r"line 131.*: the header is longer than 1 MiB"):
+        read(tmp_path, b"ply\nformat ascii 1.0\n" + b"comment\n" * 200_000)
+    with pytest.raises(ValueError, match="line 10 is longer than 16 MiB; this is no text"):
+        read(tmp_path, vertices()[:-5] + b" " * 40_000_000)
+
+
+@pytest.mark.parametrize(
+    ("row", "message"),
+    [
+        (b"-1 5", "line 11: camera 2 of 3: found a list of length -1"),
+        (b"1.5 5", "line 11: camera 2 of 3: found a list of length 1.5"),
+        (b"2 5", "line 11: camera 2 of 3: a list is longer than its line"),
+        (b"1 5 5", "line 11: camera 2 of 3: found 3 values; 2 are needed"),
+    ],
+)
+def test_damaged_lists(tmp_path, row, message):
+    cameras = ("camera", [("char", "int", "some")], [([1],), ([5],), ([],)])
+    contents = ply("ascii", [cameras, ("vertex", XYZ, CORNERS)])
+    assert len(read(tmp_path, contents).positions) == 3
+    with pytest.raises(ValueError, match=message):
+        read(tmp_path, contents.replace(b"\n1 5\n", b"\n" + row + b"\n"))
+
+
+def test_damaged_binary_lists(tmp_path):
+    cameras = ("camera", [("int", "int", "some")], [([1],), ([5],)])
+    contents = ply("binary_little_endian", [cameras, ("vertex", XYZ, CORNERS)])
+    start = contents.index(b"end_header\n") + 11
+    for length, message in [(-2, "length -2"), (10**9, "length 1e.09 is longer than the file")]:
+        damaged = contents[:start] + length.to_bytes(4, "little", signed=True)
+        with pytest.raises(ValueError, match=f"camera 1 of 2: .* {message}"):
+            read(tmp_path, damaged + contents[start + 4 :])
+
+
+def test_what_the_system_refuses(tmp_path):
+    with pytest.raises(OSError, match=r"none.ply': cannot be opened: No such file or directory"):
+        prefilter.read_points(tmp_path / "none.ply")
+    (tmp_path / "folder.ply").mkdir()
+    with pytest.raises(OSError, match=r"folder.ply' is a folder; a regular file is needed"):
+        prefilter.read_points(tmp_path / "folder.ply")
+    os.mkfifo(tmp_path / "pipe.ply")
+    with pytest.raises(OSError, match=r"pipe.ply' is a device or pipe; a regular file is needed"):
+        prefilter.read_points(tmp_path / "pipe.ply")
+
+
+def test_bad_arguments(tmp_path):
+    with pytest.raises(ValueError, match="path: 7; the path of a file is needed"):
+        prefilter.read_points(7)
+    with pytest.raises(ValueError, match=r"cloud.obj': unsupported extension '.obj'; .*ply"):
+        read(tmp_path, b"", "cloud.obj")
+    with pytest.raises(ValueError, match="cloud': unsupported extension ''"):
+        read(tmp_path, b"", "cloud")
+
+
+def test_any_name_of_a_file(tmp_path):
+    name = os.fsdecode(b"b\xe4r ' \xf0.PLY")
+    assert len(read(tmp_path, vertices(), name).positions) == 3
+    with pytest.raises(ValueError, match=r"b\\xe4r"):
+        read(tmp_path, b"", name)
+
+
+def test_a_name_in_a_file_may_hold_any_bytes(tmp_path):
+    contents = vertices(properties=[*XYZ, ("float", "QQ")], rows=[(1.0, 2.0, 3.0, 4.0)])
+    points = read(tmp_path, contents.replace(b"QQ", b"\xff\xe4"))
+    assert points.attributes == {"\\xff\\xe4": 4.0}
+
+
+def garble(random, contents):
+    """Cuts a file, or changes, repeats or leaves out some of its bytes."""
+    garbled = bytearray(contents)
+    for _ in range(random.integers(1, 4)):
+        at, length = random.integers(0, len(garbled) + 1), random.integers(1, 9)
+        kind = random.integers(5)
+        if kind == 0:
+            del garbled[at:]
+        elif kind == 1:
+            del garbled[at : at + length]
+        elif kind == 2:
+            garbled[at:at] = garbled[max(at - length, 0) : at]
+        elif kind == 3:
+            garbled[at : at + length] = random.bytes(length)
+        else:
+            garbled[at : at + 1] = random.choice([b"9", b"-", b" ", b"\n", b"\xff", b"e"])
+    return bytes(garbled)
+
+
+def some_files():
+    rows = random_rows(["float", "float", "float", "uchar"], 5)
+    for form in FORMATS:
+        yield (
+            f"{form}.ply",
+            ply(
+                form,
+                [
+                    ("camera", [("uchar", "int", "some")], [([1, 2],), ([],)]),
+                    ("vertex", [*XYZ, ("uchar", "red")], rows),
+                ],
+            ),
+        )
+
+
+@pytest.mark.parametrize(("name", "contents"), some_files(), ids=FORMATS)
+def test_garbled_files_are_read_or_refused(tmp_path, name, contents):
+    random = np.random.default_rng(5)
+    read(tmp_path, contents, name)
+    messages = []
+    for _ in range(200):
+        try:
+            points = read(tmp_path, garble(random, contents), name)
+        except ValueError as error:
+            messages.append(str(error))
+        else:
+            assert len(points.positions) < 100
+    assert len(messages) > 40
+    assert all(name in message for message in messages)
+
+
+def test_a_range_scan(tmp_path):
+    path = SHARED / "bunny" / "bun000.ply"
+    if not path.exists():
+        pytest.skip(f"{path} is missing")
+    rows = path.read_text().split("end_header\n")[1].split("\n")[:40256]
+    expected = np.array([row.split() for row in rows], np.float64)
+    np.testing.assert_array_equal(prefilter.read_points(path).positions, expected)
+
+
+class Reader:
+    """Points in chunks, as a reader of a format that the native module does not know."""
+
+    count = None
+    has_normals = True
+    attributes = (("red", True), ("intensity", False))
+    viewpoint = (1.0, 2.0, 3.0)
+
+    def __init__(self, *sizes):
+        self.sizes = sizes
+
+    def chunks(self):
+        random = np.random.default_rng(1)
+        for size in self.sizes:
+            yield (
+                random.normal(size=(size, 3)),
+                random.normal(size=(size, 3)).astype(np.float32),
+                random.random(size).astype(np.float32),
+                np.floor(255 * random.random((size, 2), np.float32)),
+            )
+
+
+def test_points_come_from_python_in_chunks_of_any_size():
+    source = _native.PointSource(Reader(1, 0, 100_000, 7))
+    assert source.attributes == [("red", True), ("intensity", False)]
+    assert source.viewpoint == (1.0, 2.0, 3.0)
+    chunks = [np.concatenate(each) for each in zip(*Reader(1, 0, 100_000, 7).chunks(), strict=True)]
+    for _ in range(2):
+        positions, normals, weights, attributes = _native.read_points(source, None)
+        np.testing.assert_array_equal(positions, chunks[0])
+        np.testing.assert_array_equal(normals, chunks[1])
+        np.testing.assert_array_equal(weights, chunks[2])
+        np.testing.assert_array_equal(attributes["red"], chunks[3][:, 0].astype(np.uint8))
+        np.testing.assert_array_equal(attributes["intensity"], chunks[3][:, 1])
+
+
+def test_what_goes_wrong_in_python_is_passed_on():
+    class Torn(Reader):
+        def chunks(self):
+            yield from super().chunks()
+            raise RuntimeError("torn")
+
+    with pytest.raises(RuntimeError, match="torn"):
+        _native.read_points(_native.PointSource(Torn(5)), None)
+
+    class Short(Reader):
+        def chunks(self):
+            for positions, normals, weights, attributes in super().chunks():
+                yield positions, normals, weights[1:], attributes
+
+    with pytest.raises(ValueError, match="arrays of a chunk have different lengths"):
+        _native.read_points(_native.PointSource(Short(5)), None)
