@@ -34,6 +34,11 @@ std::string own_link(int descriptor) { return "/proc/self/fd/" + std::to_string(
 
 }  // namespace
 
+std::string random_path(const std::string& folder) {
+  std::random_device random;
+  return folder + "/.prefilter-" + std::to_string(random());
+}
+
 void throw_system_error(const std::string& what) {
   const int error = errno;
   throw Error(ErrorCode::kFile, what + ": " + std::generic_category().message(error));
@@ -56,17 +61,10 @@ File File::open(const std::string& path) {
 }
 
 File File::create_unnamed(const std::string& folder, std::string name) {
-#ifdef O_TMPFILE
-  const int unnamed = open_retried(folder, O_RDWR | O_TMPFILE);
-  if (unnamed >= 0) {
-    File file(unnamed, std::move(name));
-    return file;
-  }
-#endif
+  if (std::optional<File> file = open_without_name(folder, name)) return *std::move(file);
   // File systems that know no unnamed files have it named for a moment.
-  std::random_device random;
   while (true) {
-    const std::string path = folder + "/.prefilter-" + std::to_string(random());
+    const std::string path = random_path(folder);
     const int descriptor = open_retried(path, O_RDWR | O_CREAT | O_EXCL);
     if (descriptor < 0 && errno == EEXIST) continue;
     if (descriptor < 0) throw_system_error(name + ": cannot be created");
@@ -76,10 +74,26 @@ File File::create_unnamed(const std::string& folder, std::string name) {
   }
 }
 
+std::optional<File> File::create_linkable(const std::string& folder, std::string name) {
+  std::optional<File> file = open_without_name(folder, std::move(name));
+  // Without /proc there is no way to its name.
+  if (file && ::access(own_link(file->descriptor_).c_str(), F_OK) != 0) file.reset();
+  return file;
+}
+
 File File::create(const std::string& path, std::string name) {
   const int descriptor = open_retried(path, O_RDWR | O_CREAT | O_EXCL);
   if (descriptor < 0) throw_system_error(name + ": cannot be created");
   return File(descriptor, std::move(name));
+}
+
+std::optional<File> File::open_without_name([[maybe_unused]] const std::string& folder,
+                                            [[maybe_unused]] std::string name) {
+#ifdef O_TMPFILE
+  const int descriptor = open_retried(folder, O_RDWR | O_TMPFILE);
+  if (descriptor >= 0) return File(descriptor, std::move(name));
+#endif
+  return std::nullopt;
 }
 
 File::File(File&& other) noexcept

@@ -3,8 +3,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace prefilter {
 
@@ -17,6 +19,8 @@ class File {
   /// A new file without a name, for reading and writing: it is gone when it is closed, also by a
   /// kill. `name` is what messages call it.
   static File create_unnamed(const std::string& folder, std::string name);
+  /// The same, but one that link can give a name; none where the system cannot do that.
+  static std::optional<File> create_linkable(const std::string& folder, std::string name);
   /// A new file for reading and writing. Throws where there is one.
   static File create(const std::string& path, std::string name);
 
@@ -30,7 +34,7 @@ class File {
   /// Returns how many bytes were read: fewer than were asked for only at the end of the file.
   std::size_t read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
-  /// Gives a file without a name one. Throws where there is a file of that name.
+  /// Gives a linkable file a name. Throws where there is a file of that name.
   void link(const std::string& path) const;
   /// Its permissions, as those of chmod.
   void set_mode(unsigned mode) const;
@@ -38,11 +42,15 @@ class File {
   void close();
 
  private:
+  static std::optional<File> open_without_name(const std::string& folder, std::string name);
   File(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
 
   int descriptor_ = -1;
   std::string name_;
 };
+
+/// A path in a folder that nobody else thinks of.
+std::string random_path(const std::string& folder);
 
 /// Throws Error(kFile) with a message made of `what` and the system's last error.
 [[noreturn]] void throw_system_error(const std::string& what);
