@@ -11,6 +11,7 @@
 #include "instances.h"
 #include "prefilter/base/memory.h"
 #include "prefilter/scan/open_points.h"
+#include "prefilter/scan/ply_faces.h"
 #include "prefilter/scan/point_source.h"
 #include "python_points.h"
 
@@ -120,6 +121,26 @@ py::tuple bound_read_points(PointSource* source, const py::object& callback) {
                         attributes);
 }
 
+py::object bound_read_range_grid(const std::string& path) {
+  std::optional<RangeGrid> grid;
+  {
+    const py::gil_scoped_release unlocked;
+    grid = read_range_grid(path);
+  }
+  if (!grid) return py::none();
+  return to_array<std::int64_t>(std::move(grid->points), {grid->rows, grid->columns});
+}
+
+Array<std::int64_t> bound_read_faces(const std::string& path) {
+  std::vector<std::array<std::int64_t, 3>> triangles;
+  {
+    const py::gil_scoped_release unlocked;
+    triangles = read_faces(path);
+  }
+  const auto count = static_cast<py::ssize_t>(triangles.size());
+  return to_array<std::int64_t>(std::move(triangles), {count, 3});
+}
+
 }  // namespace
 
 void bind_scan(py::module_& m) {
@@ -142,6 +163,8 @@ void bind_scan(py::module_& m) {
         return py::make_tuple((*viewpoint)[0], (*viewpoint)[1], (*viewpoint)[2]);
       });
   m.def("open_points", &open_points, py::arg("path"), py::call_guard<py::gil_scoped_release>());
+  m.def("read_range_grid", &bound_read_range_grid, py::arg("path"));
+  m.def("read_faces", &bound_read_faces, py::arg("path"));
   m.def("read_points", &bound_read_points, py::arg("source"), py::arg("progress"));
 }
 

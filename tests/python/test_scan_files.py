@@ -7,6 +7,7 @@ import numpy as np
 import prefilter
 import pytest
 from prefilter import _native
+from prefilter.scan_files import read_faces, read_range_grid
 from scan_writers import FORMATS, TYPES, ply, random_rows, write
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data" / "points"
@@ -291,6 +292,79 @@ def test_a_range_scan(tmp_path):
     rows = path.read_text().split("end_header\n")[1].split("\n")[:40256]
     expected = np.array([row.split() for row in rows], np.float64)
     np.testing.assert_array_equal(prefilter.read_points(path).positions, expected)
+    grid = read_range_grid(path)
+    assert grid.shape == (400, 512)
+    np.testing.assert_array_equal(np.sort(grid[grid >= 0]), np.arange(40256))
+    # Neighbours in the grid are neighbours in space.
+    both = (grid[:, :-1] >= 0) & (grid[:, 1:] >= 0)
+    steps = expected[grid[:, 1:][both]] - expected[grid[:, :-1][both]]
+    assert np.median(np.linalg.norm(steps, axis=1)) < 0.001
+
+
+def range_scan(form="ascii", sizes=("num_rows 2", "num_cols 3"), last=2):
+    grid = [([0],), ([],), ([1],), ([],), ([],), ([last],)]
+    return ply(
+        form,
+        [
+            ("vertex", XYZ, CORNERS),
+            ("range_grid", [("uchar", "int", "vertex_indices")], grid),
+        ],
+        lines=["obj_info is_warped 0", *(f"obj_info {size}" for size in sizes)],
+    )
+
+
+@pytest.mark.parametrize("form", FORMATS)
+def test_range_grids(tmp_path, form):
+    path = write(tmp_path, "scan.ply", range_scan(form))
+    np.testing.assert_array_equal(read_range_grid(path), [[0, -1, 1], [-1, -1, 2]])
+    assert read_faces(path).shape == (0, 3)
+    np.testing.assert_array_equal(prefilter.read_points(path).positions, CORNERS)
+    assert read_range_grid(write(tmp_path, "cloud.ply", vertices(form))) is None
+
+
+@pytest.mark.parametrize(
+    ("contents", "message"),
+    [
+        (range_scan(last=3), "range_grid 6 of 6: names point 3; there are 3, numbered from 0"),
+        (range_scan(last=-1), "range_grid 6 of 6: names point -1"),
+        (range_scan(sizes=["num_rows 2"]), "a range grid, but no line 'obj_info num_cols'"),
+        (range_scan(sizes=["num_rows 2", "num_cols 2"]), "6 places; its header says 2 rows of 2"),
+        (
+            range_scan(sizes=["num_rows 2", "num_cols -3"]),
+            "no line 'obj_info num_cols' with a whol",
+        ),
+        (range_scan(sizes=["num_rows 9223372036854775808", "num_cols 0"]), "num_rows' with a"),
+        (
+            range_scan(sizes=["num_rows 6148914691236517206", "num_cols 3"]),
+            "says 61489146912365172",
+        ),
+        (range_scan(sizes=["num_rows 2", "num_cols 0"]), "header says 2 rows of 0"),
+        (range_scan().replace(b"uchar int", b""), "line 11: 'vertex_indices' is not a type of PLY"),
+        (range_scan().replace(b"vertex_ind", b"ind"), "range_grid has no list 'vertex_indices'"),
+        (range_scan()[:-4], "range_grid 6 of 6: the file ends before it"),
+    ],
+    ids=str,
+)
+def test_damaged_range_grids(tmp_path, contents, message):
+    path = write(tmp_path, "scan.ply", contents)
+    with pytest.raises(ValueError, match=f"^'{path}'.*{message}"):
+        read_range_grid(path)
+
+
+@pytest.mark.parametrize("form", FORMATS)
+@pytest.mark.parametrize("name", ["vertex_index", "vertex_indices"])
+def test_faces_become_triangles(tmp_path, form, name):
+    faces = [(0.5, [0, 1, 2]), (1.0, [3, 4, 2, 0]), (0.0, []), (0.0, [1, 2])]
+    properties = [("float", "quality"), ("uchar", "uint", name)]
+    elements = [("vertex", XYZ, random_rows(["float"] * 3, 5)), ("face", properties, faces)]
+    path = write(tmp_path, "mesh.ply", ply(form, elements))
+    np.testing.assert_array_equal(read_faces(path), [(0, 1, 2), (3, 4, 2), (3, 2, 0)])
+    elements[1][2].append((0.0, [0, 1, 5]))
+    with pytest.raises(ValueError, match=r"face 5 of 5: names point 5; there are 5, numbered"):
+        read_faces(write(tmp_path, "mesh.ply", ply(form, elements)))
+    elements[1][2].pop()
+    with pytest.raises(ValueError, match="holds more than the 4 rows of 'face' in its header"):
+        read_faces(write(tmp_path, "mesh.ply", ply(form, elements) + b"1"))
 
 
 class Reader:

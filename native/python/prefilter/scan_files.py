@@ -71,3 +71,29 @@ def read_points(
 def open_points(path: str | os.PathLike[str]) -> _native.PointSource:
     """Opens a file for functions of the native module that read it piece by piece."""
     return _native.open_points(os.fsencode(as_path(path)))
+
+
+def read_range_grid(path: str | os.PathLike[str]) -> npt.NDArray[np.int64] | None:
+    """Reads the grid in which a scanner saw the points of a PLY file, its element "range_grid".
+
+    Returns:
+        (rows, columns) indices of points, -1 where the scanner saw nothing; None where the file has
+        no grid.
+
+    Raises:
+        ValueError: This is no PLY file, or it is damaged.
+        OSError: The file cannot be read.
+    """
+    return _native.read_range_grid(os.fsencode(as_path(path)))
+
+
+def read_faces(path: str | os.PathLike[str]) -> npt.NDArray[np.int64]:
+    """Reads the faces of a PLY file as (triangles, 3) indices of its points.
+
+    Polygons become fans around their first corner; (0, 3) where there are no faces.
+
+    Raises:
+        ValueError: This is no PLY file, or it is damaged.
+        OSError: The file cannot be read.
+    """
+    return _native.read_faces(os.fsencode(as_path(path)))

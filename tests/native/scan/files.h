@@ -1,6 +1,7 @@
 // Folders, and disks that are full, for tests of files.
 #pragma once
 
+#include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -26,6 +27,16 @@ class TestFolder {
 
   std::string path() const { return path_.string(); }
   std::string path(const std::string& name) const { return (path_ / name).string(); }
+  /// Whether files in it can do without a name; older overlays, of containers, cannot do that.
+  bool has_unnamed_files() const {
+#ifdef O_TMPFILE
+    const int descriptor = ::open(path().c_str(), O_RDWR | O_TMPFILE, 0600);
+    if (descriptor >= 0) ::close(descriptor);
+    return descriptor >= 0;
+#else
+    return false;
+#endif
+  }
   std::size_t file_count() const {
     return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_),
                                                   std::filesystem::directory_iterator()));

@@ -58,7 +58,7 @@ TEST(PlyMeshWriter, WritesWhatItIsGiven) {
     writer.add_vertices({{-1, 0, 7}}, {300, -2, NAN});
     writer.add_triangles({{0, 1, 2}});
     writer.add_triangles({{2, 1, 0}});
-    EXPECT_EQ(folder.file_count(), 0U);
+    EXPECT_EQ(folder.file_count(), folder.has_unnamed_files() ? 0U : 1U);
     writer.finish(Progress());
     EXPECT_EQ(writer.vertex_count(), 3U);
     EXPECT_EQ(writer.triangle_count(), 2U);
@@ -124,7 +124,7 @@ TEST(PlyMeshWriter, WritesInPieces) {
   const std::string path = folder.path("mesh.ply");
   PlyMeshWriter writer(path, {{"gray", true}}, true);
   add_grid(kVertices, kTriangles, &writer);
-  EXPECT_EQ(folder.file_count(), 0U);
+  EXPECT_EQ(folder.file_count(), folder.has_unnamed_files() ? 0U : 1U);
   writer.finish(Progress());
   const std::string body = header_and_body(path).second;
   ASSERT_EQ(body.size(), kVertices * 25 + kTriangles * 13);
@@ -223,6 +223,7 @@ TEST(PlyMeshWriter, TellsOfAFullDiskAndLeavesNothing) {
 
 TEST(PlyMeshWriter, LeavesNothingWhenItIsKilled) {
   const TestFolder folder;
+  if (!folder.has_unnamed_files()) GTEST_SKIP() << "files need names in " << folder.path();
   const pid_t child = fork();
   if (child == 0) {
     PlyMeshWriter writer(folder.path("mesh.ply"), {{"gray", true}}, false);

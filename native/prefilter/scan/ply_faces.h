@@ -1,0 +1,30 @@
+// How the points of PLY files are connected.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace prefilter {
+
+/// The points of a range scan as its scanner saw them. Those of neighbouring places are neighbours
+/// on the surface, or on both sides of an edge that hides one from the other.
+struct RangeGrid {
+  std::int64_t rows = 0;
+  std::int64_t columns = 0;
+  /// Row by row the index of a point, or -1 where the scanner saw nothing.
+  std::vector<std::int64_t> points;
+};
+
+/// The element "range_grid" of a PLY file, with the size that lines "obj_info num_rows" and
+/// "num_cols" tell; none where it has none. Throws Error for what is no PLY file or is damaged,
+/// and for an index that names no point.
+std::optional<RangeGrid> read_range_grid(const std::string& path);
+
+/// The element "face" of a PLY file as triangles, polygons as fans around their first corner;
+/// none where it has none. Throws Error likewise.
+std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path);
+
+}  // namespace prefilter
