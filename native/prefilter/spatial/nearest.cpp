@@ -11,7 +11,7 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/sort.h"
-#include "prefilter/spatial/morton.h"
+#include "prefilter/spatial/curve_order.h"
 
 namespace prefilter {
 namespace {
@@ -66,47 +66,6 @@ Vector3 nearest_weights(const Vector3& p, const Vector3& a, const Vector3& b, co
   return {std::max(0.0, 1.0 - v - w), v, w};
 }
 
-// A point's place along the Morton curve.
-struct Place {
-  std::uint64_t key;
-  std::uint32_t index;
-
-  bool operator<(const Place& other) const {
-    return key != other.key ? key < other.key : index < other.index;
-  }
-};
-
-// Points in the order of the Morton curve through their box. `point_of(i)` is one of `count`.
-template <typename PointOf>
-std::vector<Place> along_curve(std::size_t count, const PointOf& point_of, const Progress& progress,
-                               int threads) {
-  const auto rows = static_cast<std::int64_t>(count);
-  std::vector<Box> boxes(static_cast<std::size_t>(range_count(rows, kRowsPerTask)), kEmptyBox);
-  const auto measure = [&](std::int64_t begin, std::int64_t end) {
-    Box& box = boxes[static_cast<std::size_t>(begin / kRowsPerTask)];
-    for (std::int64_t i = begin; i < end; ++i) box.include(point_of(static_cast<std::size_t>(i)));
-  };
-  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.0, 0.1), measure);
-  Box all = kEmptyBox;
-  for (const Box& box : boxes) all.include(box);
-  std::vector<Place> places(count);
-  const auto place = [&](std::int64_t begin, std::int64_t end) {
-    for (std::int64_t i = begin; i < end; ++i) {
-      const Vector3 point = point_of(static_cast<std::size_t>(i));
-      std::array<int, 3> cell;
-      for (int a = 0; a < 3; ++a) {
-        const double size = all.size(a);
-        const double along = size > 0.0 ? (point[a] - all.low[a]) / size : 0.0;
-        cell[a] = static_cast<int>(along * ((1 << kMortonBits) - 1));
-      }
-      places[static_cast<std::size_t>(i)] = {morton_index(cell), static_cast<std::uint32_t>(i)};
-    }
-  };
-  parallel_ranges(rows, kRowsPerTask, threads, progress.part(0.1, 0.2), place);
-  sort_in_parallel(&places, progress.part(0.2, 1.0), threads);
-  return places;
-}
-
 // The corners of a triangle in an order that does not depend on the one that they are named in.
 std::array<Vector3, 3> sorted_corners(const InputMesh& mesh, std::size_t triangle) {
   std::array<Vector3, 3> corners = mesh.corners(triangle);
@@ -126,7 +85,7 @@ struct Copy {
 
 // Leaves of identical triangles, which have the same key, the one with the lowest index.
 void drop_copies(const InputMesh& mesh, const Progress& progress, int threads,
-                 std::vector<Place>* places) {
+                 std::vector<CurvePlace>* places) {
   constexpr std::size_t kMany = 1U << 15;
   std::vector<Copy> copies;
   std::size_t kept = 0;
@@ -170,11 +129,21 @@ struct NearestPoints::Best {
 
 NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, int threads) {
   check_mesh(mesh, kLargest);
-  sort_triangles(mesh, progress.part(0.0, 0.8), threads);
-  build(progress.part(0.8, 1.0), threads);
+  const std::vector<std::uint64_t> keys = sort_triangles(mesh, progress.part(0.0, 0.8), threads);
+  const auto box = [&](std::size_t place) { return box_of(place); };
+  tree_ = BoxTree(keys, kLeafTriangles, box, progress.part(0.8, 1.0));
+  lowest_indices_.resize(tree_.nodes().size());
+  for (std::size_t n = lowest_indices_.size(); n-- > 0;) {
+    const BoxTree::Node& node = tree_.nodes()[n];
+    lowest_indices_[n] =
+        node.right == 0
+            ? *std::min_element(indices_.begin() + node.begin, indices_.begin() + node.end)
+            : std::min(lowest_indices_[n + 1], lowest_indices_[node.right]);
+  }
 }
 
-void NearestPoints::sort_triangles(const InputMesh& mesh, const Progress& progress, int threads) {
+std::vector<std::uint64_t> NearestPoints::sort_triangles(const InputMesh& mesh,
+                                                         const Progress& progress, int threads) {
   positions_.assign(mesh.positions.begin(), mesh.positions.end());
   const auto middle = [&](std::size_t triangle) {
     Box box = kEmptyBox;
@@ -183,13 +152,15 @@ void NearestPoints::sort_triangles(const InputMesh& mesh, const Progress& progre
     for (int a = 0; a < 3; ++a) result[a] = box.low[a] + box.size(a) / 2.0;
     return result;
   };
-  std::vector<Place> places =
+  std::vector<CurvePlace> places =
       along_curve(mesh.triangles.size(), middle, progress.part(0.0, 0.8), threads);
   drop_copies(mesh, progress.part(0.8, 0.9), threads, &places);
   triangles_.resize(places.size());
   indices_.resize(places.size());
+  std::vector<std::uint64_t> keys(places.size());
   const auto copy = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      keys[i] = places[i].key;
       indices_[i] = places[i].index;
       const auto& triangle = mesh.triangles[places[i].index];
       for (int c = 0; c < 3; ++c) triangles_[i][c] = static_cast<std::int32_t>(triangle[c]);
@@ -197,29 +168,7 @@ void NearestPoints::sort_triangles(const InputMesh& mesh, const Progress& progre
   };
   parallel_ranges(static_cast<std::int64_t>(places.size()), kRowsPerTask, threads,
                   progress.part(0.9, 1.0), copy);
-}
-
-void NearestPoints::build(const Progress& progress, int threads) {
-  while ((triangles_.size() >> depth_) > kLeafTriangles) ++depth_;
-  const std::size_t leaves = std::size_t{1} << depth_;
-  boxes_.assign(2 * leaves - 1, kEmptyBox);
-  lowest_indices_.assign(2 * leaves - 1, std::numeric_limits<std::uint32_t>::max());
-  const auto fill = [&](std::int64_t begin, std::int64_t end) {
-    for (auto leaf = static_cast<std::size_t>(begin); leaf < static_cast<std::size_t>(end);
-         ++leaf) {
-      const std::size_t node = leaves - 1 + leaf;
-      for (std::size_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
-        boxes_[node].include(box_of(i));
-        lowest_indices_[node] = std::min(lowest_indices_[node], indices_[i]);
-      }
-    }
-  };
-  parallel_ranges(static_cast<std::int64_t>(leaves), kRowsPerTask, threads, progress, fill);
-  for (std::size_t node = leaves - 1; node-- > 0;) {
-    boxes_[node] = boxes_[2 * node + 1];
-    boxes_[node].include(boxes_[2 * node + 2]);
-    lowest_indices_[node] = std::min(lowest_indices_[2 * node + 1], lowest_indices_[2 * node + 2]);
-  }
+  return keys;
 }
 
 Box NearestPoints::box_of(std::size_t place) const {
@@ -250,33 +199,16 @@ void NearestPoints::try_triangle(std::size_t place, const Vector3& point, Best* 
 }
 
 void NearestPoints::search(const Vector3& point, Best* best) const {
-  struct Waiting {
-    std::size_t node;
-    double squared;
-  };
-  constexpr std::size_t kDeepest = 32;
-  std::array<Waiting, kDeepest> waiting;
-  std::size_t count = 0;
-  waiting[count++] = {0, boxes_[0].squared_distance(point)};
-  const std::size_t first_leaf = (std::size_t{1} << depth_) - 1;
-  while (count > 0) {
-    auto [node, squared] = waiting[--count];
-    while (best->may_be(squared, lowest_indices_[node])) {
-      if (node >= first_leaf) {
-        const std::size_t leaf = node - first_leaf;
-        for (std::size_t i = leaf_begin(leaf); i < leaf_begin(leaf + 1); ++i) {
+  tree_.search(
+      point,
+      [&](double squared, std::size_t node) {
+        return best->may_be(squared, lowest_indices_[node]);
+      },
+      [&](std::size_t node) {
+        for (std::size_t i = tree_.nodes()[node].begin; i < tree_.nodes()[node].end; ++i) {
           try_triangle(i, point, best);
         }
-        break;
-      }
-      Waiting near = {2 * node + 1, boxes_[2 * node + 1].squared_distance(point)};
-      Waiting far = {2 * node + 2, boxes_[2 * node + 2].squared_distance(point)};
-      if (far.squared < near.squared) std::swap(near, far);
-      waiting[count++] = far;
-      node = near.node;
-      squared = near.squared;
-    }
-  }
+      });
 }
 
 std::vector<SurfacePoint> NearestPoints::find(std::span<const Vector3> points,
@@ -284,7 +216,7 @@ std::vector<SurfacePoint> NearestPoints::find(std::span<const Vector3> points,
   check_points(points, "points: row", kLargest);
   // Along the curve a point's neighbours come before it: the triangle nearest to them is a good
   // first guess, and what was read for them is at hand.
-  const std::vector<Place> order = along_curve(
+  const std::vector<CurvePlace> order = along_curve(
       points.size(), [&](std::size_t i) { return points[i]; }, progress.part(0.0, 0.1), threads);
   std::vector<SurfacePoint> found(points.size());
   const auto find_some = [&](std::int64_t begin, std::int64_t end) {

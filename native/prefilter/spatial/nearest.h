@@ -8,6 +8,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/spatial/box_tree.h"
 
 namespace prefilter {
 
@@ -35,11 +36,10 @@ class NearestPoints {
 
  private:
   struct Best;
-  void sort_triangles(const InputMesh& mesh, const Progress& progress, int threads);
-  void build(const Progress& progress, int threads);
+  // Returns where the triangles are along the curve.
+  std::vector<std::uint64_t> sort_triangles(const InputMesh& mesh, const Progress& progress,
+                                            int threads);
   Box box_of(std::size_t place) const;
-  // Where the triangles of a leaf begin, and those before it end.
-  std::size_t leaf_begin(std::size_t leaf) const { return (triangles_.size() * leaf) >> depth_; }
   void try_triangle(std::size_t place, const Vector3& point, Best* best) const;
   void search(const Vector3& point, Best* best) const;
 
@@ -47,11 +47,8 @@ class NearestPoints {
   // Along the Morton curve through their middles, each once; and their indices in the mesh.
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<std::uint32_t> indices_;
-  // Node i has the children 2 i + 1 and 2 i + 2; the 2^depth leaves come last, and have about equal
-  // numbers of triangles.
-  int depth_ = 0;
-  std::vector<Box> boxes_;
-  std::vector<std::uint32_t> lowest_indices_;
+  BoxTree tree_;
+  std::vector<std::uint32_t> lowest_indices_;  // for each node of the tree
 };
 
 /// The same in one step, for a mesh that is asked once.
