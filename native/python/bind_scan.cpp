@@ -10,6 +10,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/memory.h"
+#include "prefilter/scan/normals.h"
 #include "prefilter/scan/open_points.h"
 #include "prefilter/scan/ply_faces.h"
 #include "prefilter/scan/point_source.h"
@@ -141,6 +142,18 @@ Array<std::int64_t> bound_read_faces(const std::string& path) {
   return to_array<std::int64_t>(std::move(triangles), {count, 3});
 }
 
+Array<double> bound_estimate_normals(const Array<double>& points, int neighbours,
+                                     const Array<double>& viewpoints, const py::object& callback,
+                                     int threads) {
+  const Progress progress = to_progress(callback);
+  std::vector<Vector3> normals;
+  {
+    const py::gil_scoped_release unlocked;
+    normals = estimate_normals(rows_of(points), neighbours, rows_of(viewpoints), progress, threads);
+  }
+  return to_array<double>(std::move(normals), {points.shape(0), 3});
+}
+
 }  // namespace
 
 void bind_scan(py::module_& m) {
@@ -166,6 +179,8 @@ void bind_scan(py::module_& m) {
   m.def("read_range_grid", &bound_read_range_grid, py::arg("path"));
   m.def("read_faces", &bound_read_faces, py::arg("path"));
   m.def("read_points", &bound_read_points, py::arg("source"), py::arg("progress"));
+  m.def("estimate_normals", &bound_estimate_normals, py::arg("points"), py::arg("neighbours"),
+        py::arg("viewpoints"), py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

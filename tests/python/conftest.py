@@ -19,6 +19,7 @@ SAME_IN_ANY_PYTHON = {
     "test_mipmaps_laws.py",
     "test_mipmaps_oracle.py",
     "test_normals.py",
+    "test_normals_of_points.py",
     "test_places.py",
     "test_reader.py",
     "test_seams.py",

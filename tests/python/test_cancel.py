@@ -40,6 +40,8 @@ BALL = sphere(0.45, 6, (0.5, 0.5, 0.5))
 OPEN = BALL.without(range(0, len(BALL.triangles), 37))
 BOUNDS = ((0.0,) * 3, (1.0,) * 3)
 POINTS = np.random.default_rng(1).random((10_000, 3))
+# Noise so large that there are many patches of normals, and as many votes as there can be.
+CLOUD = BALL.positions + np.random.default_rng(2).normal(scale=0.01, size=BALL.positions.shape)
 
 
 def octree(offset=0.0):
@@ -111,6 +113,7 @@ WORK = {
     "nearest_points": lambda **options: prefilter.nearest_points(
         POINTS, BALL.positions, BALL.triangles, threads=1, **options
     ),
+    "estimate_normals": lambda **options: prefilter.estimate_normals(CLOUD, threads=1, **options),
     "contour": lambda **options: prefilter.contour(GRID, threads=1, **options),
     "contour, 2D": lambda **options: prefilter.contour(IMAGE[..., 0], **options),
     **{

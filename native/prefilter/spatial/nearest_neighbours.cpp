@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "prefilter/base/error.h"
-#include "prefilter/base/parallel.h"
+#include "prefilter/base/pulse.h"
 #include "prefilter/base/sort.h"
 #include "prefilter/spatial/curve_order.h"
 
@@ -12,46 +13,12 @@ namespace prefilter {
 namespace {
 
 constexpr std::size_t kLeafPoints = 8;
-constexpr std::int64_t kPointsPerTask = 1024;
 constexpr double kLargest = 1e150;
 
 bool is_usable(const Vector3& point) {
   return std::abs(point[0]) <= kLargest && std::abs(point[1]) <= kLargest &&
          std::abs(point[2]) <= kLargest;
 }
-
-// The nearest ones that were found so far, from near to far.
-class Nearest {
- public:
-  explicit Nearest(std::size_t count) : places_(count), squares_(count) {}
-
-  void clear() {
-    found_ = 0;
-    worst_ = std::numeric_limits<double>::infinity();
-  }
-  double worst() const { return worst_; }
-  std::span<const std::uint32_t> places() const { return {places_.data(), found_}; }
-  std::span<const double> squares() const { return {squares_.data(), found_}; }
-
-  void add(std::uint32_t place, double square) {
-    if (found_ < places_.size()) ++found_;
-    std::size_t at = found_ - 1;
-    while (at > 0 && squares_[at - 1] > square) {
-      squares_[at] = squares_[at - 1];
-      places_[at] = places_[at - 1];
-      --at;
-    }
-    squares_[at] = square;
-    places_[at] = place;
-    if (found_ == places_.size()) worst_ = squares_[found_ - 1];
-  }
-
- private:
-  std::vector<std::uint32_t> places_;
-  std::vector<double> squares_;
-  std::size_t found_ = 0;
-  double worst_ = 0.0;
-};
 
 // Identical points, which have the same key, next to each other.
 void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* order,
@@ -63,7 +30,9 @@ void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* 
   };
   constexpr std::size_t kMany = 1U << 15;
   std::vector<CurvePlace> copies;
+  Pulse pulse(progress);
   for (std::size_t begin = 0, end = 0; begin < order->size(); begin = end) {
+    pulse.step();
     while (end < order->size() && (*order)[end].key == (*order)[begin].key) ++end;
     if (end == begin + 1) continue;
     const auto first = order->begin() + static_cast<std::ptrdiff_t>(begin);
@@ -80,12 +49,40 @@ void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* 
 
 }  // namespace
 
+void Neighbours::clear(std::size_t most) {
+  most_ = most;
+  worst_ = std::numeric_limits<double>::infinity();
+  places_.clear();
+  squares_.clear();
+}
+
+void Neighbours::add(std::uint32_t place, double square) {
+  if (places_.size() < most_) {
+    places_.push_back(place);
+    squares_.push_back(square);
+  }
+  std::size_t at = places_.size() - 1;
+  for (; at > 0 && squares_[at - 1] > square; --at) {
+    squares_[at] = squares_[at - 1];
+    places_[at] = places_[at - 1];
+  }
+  squares_[at] = square;
+  places_[at] = place;
+  if (places_.size() == most_) worst_ = squares_.back();
+}
+
 NeighbourSearch::NeighbourSearch(std::span<const Vector3> points, const Progress& progress,
                                  int threads) {
-  if (points.size() >= kNowhere) throw_invalid("points: too many; 2^32 - 1 are the most");
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
+  if (points.size() > kMost) {
+    throw_invalid("points: found " + std::to_string(points.size()) + "; " + std::to_string(kMost) +
+                  " are the most");
+  }
   std::vector<std::uint32_t> usable;
   usable.reserve(points.size());
+  Pulse pulse(progress);
   for (std::size_t i = 0; i < points.size(); ++i) {
+    pulse.step();
     if (is_usable(points[i])) usable.push_back(static_cast<std::uint32_t>(i));
   }
   std::vector<CurvePlace> order = along_curve(
@@ -98,6 +95,7 @@ NeighbourSearch::NeighbourSearch(std::span<const Vector3> points, const Progress
   std::vector<std::uint64_t> keys;
   keys.reserve(order.size());
   for (const CurvePlace& place : order) {
+    pulse.step();
     const Vector3& point = points[place.index];
     if (positions_.empty() || positions_.back() != point) {
       positions_.push_back(point);
@@ -109,28 +107,18 @@ NeighbourSearch::NeighbourSearch(std::span<const Vector3> points, const Progress
   tree_ = BoxTree(keys, kLeafPoints, box_of, progress.part(0.8, 1.0));
 }
 
-void NeighbourSearch::find(std::size_t count, const Visit& visit, const Progress& progress,
-                           int threads) const {
-  const auto find_some = [&](std::int64_t begin, std::int64_t end) {
-    Nearest nearest(std::min(count, positions_.size()));
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      const Vector3 point = positions_[i];
-      nearest.clear();
-      tree_.search(
-          point, [&](double squared, std::size_t) { return squared < nearest.worst(); },
-          [&](std::size_t node) {
-            for (std::uint32_t place = tree_.nodes()[node].begin; place < tree_.nodes()[node].end;
-                 ++place) {
-              const Vector3 offset = positions_[place] - point;
-              const double square = dot(offset, offset);
-              if (square < nearest.worst()) nearest.add(static_cast<std::uint32_t>(place), square);
-            }
-          });
-      visit(static_cast<std::uint32_t>(i), nearest.places(), nearest.squares());
+void NeighbourSearch::find(std::uint32_t place, std::size_t count, Neighbours* found) const {
+  const Vector3 point = positions_[place];
+  found->clear(count);
+  const auto may_be = [&](double squared, std::size_t) { return squared < found->worst_; };
+  tree_.search(point, may_be, [&](std::size_t leaf) {
+    const BoxTree::Node& node = tree_.nodes()[leaf];
+    for (std::uint32_t i = node.begin; i < node.end; ++i) {
+      const Vector3 offset = positions_[i] - point;
+      const double square = dot(offset, offset);
+      if (square < found->worst_) found->add(i, square);
     }
-  };
-  parallel_ranges(static_cast<std::int64_t>(positions_.size()), kPointsPerTask, threads, progress,
-                  find_some);
+  });
 }
 
 }  // namespace prefilter

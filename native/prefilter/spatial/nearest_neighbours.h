@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <span>
 #include <vector>
@@ -14,15 +13,33 @@
 
 namespace prefilter {
 
-/// Points made ready for searches of neighbors: each position once, along the Morton curve, under
-/// a tree of boxes. What follows calls them by their places along the curve.
+/// What a search found; used for one search after another.
+class Neighbours {
+ public:
+  /// Places from near to far, and the squares of their distances.
+  std::span<const std::uint32_t> places() const { return places_; }
+  std::span<const double> squares() const { return squares_; }
+
+ private:
+  friend class NeighbourSearch;
+  void clear(std::size_t most);
+  void add(std::uint32_t place, double square);
+
+  std::size_t most_ = 0;
+  double worst_ = 0.0;  // what is no nearer than the root of this is of no interest
+  std::vector<std::uint32_t> places_;
+  std::vector<double> squares_;
+};
+
+/// Points made ready for searches of their neighbors: each position once, along the Morton curve,
+/// under a tree of boxes. All that follows names them by their places on the curve.
 class NeighbourSearch {
  public:
   /// The place of a point that has none.
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
   /// Points that hold a value that is not finite, or above 1e150, whose square would overflow, are
-  /// left out. Throws Error for more than 2^32 - 1 points; Error(kCancelled).
+  /// left out. Throws Error for more than 2^31 - 1 points; Error(kCancelled).
   NeighbourSearch(std::span<const Vector3> points, const Progress& progress, int threads);
 
   /// The distinct positions, by their places.
@@ -30,14 +47,10 @@ class NeighbourSearch {
   /// The place of each of the points that were given; kNowhere for those left out.
   std::span<const std::uint32_t> places() const { return places_; }
 
-  /// Called with a place; the places of the positions nearest to it, itself first and then from
-  /// near to far; and the squares of their distances. From several threads at once.
-  using Visit =
-      std::function<void(std::uint32_t, std::span<const std::uint32_t>, std::span<const double>)>;
-  /// Calls `visit` for every place, with `count` (at least 1) neighbors, or all positions where
-  /// there are fewer. Which of several at one distance is taken depends on nothing but the points.
-  /// Throws Error(kCancelled).
-  void find(std::size_t count, const Visit& visit, const Progress& progress, int threads) const;
+  /// The `count` positions (at least 1) nearest to one of them, which is one of these; all of them
+  /// where there are fewer. Which of several at one distance it is depends on nothing but the
+  /// points.
+  void find(std::uint32_t place, std::size_t count, Neighbours* found) const;
 
  private:
   std::vector<Vector3> positions_;

@@ -13,6 +13,7 @@ from .cutout import keep_coverage
 from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
 from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
+from .points import estimate_normals
 from .scan_files import ScanPoints, read_points
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
@@ -35,6 +36,7 @@ __all__ = [
     "close_holes",
     "contour",
     "cube_around",
+    "estimate_normals",
     "fill_unused",
     "keep_coverage",
     "mipmap_error",

@@ -191,6 +191,13 @@ def normal_mipmaps(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[list[npt.NDArray[np.float32]], list[npt.NDArray[np.float32]]]: ...
+def estimate_normals(
+    points: npt.NDArray[np.float64],
+    neighbours: int,
+    viewpoints: npt.NDArray[np.float64],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float64]: ...
 
 MAX_DEPTH: Final[int]
 

@@ -20,7 +20,7 @@ def as_floats(
     `shape` gives the length of each axis, or a name where any length will do.
     Raises ValueError where the shape differs or the values are not floating-point numbers.
     """
-    found = _as_array(name, array)
+    found = as_array(name, array)
     if found.dtype not in (np.float32, np.float64):
         raise ValueError(f"{name}: dtype {found.dtype}; float32 or float64 is needed")
     check_shape(name, found, shape)
@@ -30,7 +30,7 @@ def as_floats(
 
 def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
     """The array as C-contiguous int64. Raises ValueError where it holds no integers."""
-    found = _as_array(name, array)
+    found = as_array(name, array)
     if not np.issubdtype(found.dtype, np.integer):
         raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
     check_shape(name, found, shape)
@@ -73,7 +73,8 @@ def as_threads(threads: int) -> int:
     return min(int(threads), _LARGEST_INT)
 
 
-def _as_array(name: str, array: npt.ArrayLike) -> np.ndarray:
+def as_array(name: str, array: npt.ArrayLike) -> np.ndarray:
+    """Any array. Raises ValueError where it is none."""
     try:
         return np.asarray(array)
     except (TypeError, ValueError) as error:

@@ -1,0 +1,278 @@
+// Propagation of directions as in Hoppe et al., Surface Reconstruction from Unorganized Points
+// (1992), by patches instead of points: near points whose normals leave no doubt are joined first,
+// and then patch by patch, by the sum of what all pairs along their common border say.
+#include "prefilter/scan/orientation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/pulse.h"
+#include "prefilter/base/sort.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::int64_t kPointsPerTask = 1 << 12;
+// Agreements are whole numbers up to this, so that their sums do not depend on the order.
+constexpr int kFullAgreement = 1023;
+constexpr int kNoDoubt = 992;  // 0.97
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+// Sets of normals whose directions are known with respect to each other.
+class SignedSets {
+ public:
+  struct Member {
+    std::uint32_t set;
+    std::uint32_t is_reversed;  // with respect to the one that the set is named after: 1 or 0
+  };
+
+  explicit SignedSets(std::size_t count) : links_(count) {
+    for (std::size_t i = 0; i < count; ++i) links_[i] = link(static_cast<std::uint32_t>(i), 0);
+  }
+
+  Member find(std::uint32_t i) {
+    std::uint32_t reversed = 0;
+    while (true) {
+      const std::uint32_t up = links_[i];
+      const std::uint32_t next = up >> 1U;
+      if (next == i) return {i, reversed};
+      // Halves the way for the next search.
+      links_[i] = links_[next] ^ (up & 1U);
+      reversed ^= links_[i] & 1U;
+      i = links_[i] >> 1U;
+    }
+  }
+
+  // The set of the lower number goes on.
+  void join(std::uint32_t a, std::uint32_t b, bool are_opposite) {
+    const Member first = find(a);
+    const Member second = find(b);
+    if (first.set == second.set) return;
+    const std::uint32_t reversed =
+        first.is_reversed ^ second.is_reversed ^ static_cast<std::uint32_t>(are_opposite);
+    links_[std::max(first.set, second.set)] = link(std::min(first.set, second.set), reversed);
+  }
+
+ private:
+  static std::uint32_t link(std::uint32_t to, std::uint32_t reversed) {
+    return (to << 1U) | reversed;
+  }
+
+  std::vector<std::uint32_t> links_;
+};
+
+// How surely two near normals have the same direction, from -1 to 1: the mean of what holds on a
+// plane, where they are parallel, and on a circle through both, where they are mirror images (Xie
+// et al. 2003). Where these contradict each other, as across a thin sheet, it is near 0.
+double agreement(const Vector3& a, const Vector3& b, const Vector3& offset) {
+  const double square = dot(offset, offset);
+  return square > 0.0 ? dot(a, b) - dot(a, offset) * dot(b, offset) / square : 0.0;
+}
+
+std::vector<std::int16_t> agreements(const LinkedPoints& points, std::span<const Vector3> normals,
+                                     const Progress& progress, int threads) {
+  std::vector<std::int16_t> result(points.links.size());
+  const auto compare = [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      for (std::size_t e = i * points.degree; e < (i + 1) * points.degree; ++e) {
+        const std::uint32_t j = points.links[e];
+        const double share =
+            std::clamp(agreement(normals[i], normals[j], points.positions[j] - points.positions[i]),
+                       -1.0, 1.0);
+        result[e] = static_cast<std::int16_t>(std::lround(share * kFullAgreement));
+      }
+    }
+  };
+  parallel_ranges(static_cast<std::int64_t>(points.positions.size()), kPointsPerTask, threads,
+                  progress, compare);
+  return result;
+}
+
+// Each point's patch, from 0, and its direction in it.
+struct Patches {
+  std::vector<SignedSets::Member> members;
+  std::size_t count = 0;
+};
+
+Patches grow_patches(const LinkedPoints& points, std::span<const std::int16_t> agreements,
+                     const Progress& progress) {
+  const std::size_t count = points.positions.size();
+  SignedSets sets(count);
+  Pulse pulse(progress);
+  for (std::size_t i = 0, e = 0; i < count; ++i) {
+    pulse.step();
+    for (std::size_t end = e + points.degree; e < end; ++e) {
+      if (std::abs(agreements[e]) < kNoDoubt) continue;
+      sets.join(static_cast<std::uint32_t>(i), points.links[e], agreements[e] < 0);
+    }
+  }
+  Patches patches;
+  patches.members.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    pulse.step();
+    SignedSets::Member& own = patches.members[i];
+    own = sets.find(static_cast<std::uint32_t>(i));
+    // A set is named after its first member, so that one has been numbered.
+    own.set =
+        own.set == i ? static_cast<std::uint32_t>(patches.count++) : patches.members[own.set].set;
+  }
+  return patches;
+}
+
+// What the pairs of points between two patches say: above 0 that they have the same direction.
+struct Border {
+  std::uint32_t a;  // the lower number
+  std::uint32_t b;
+  std::int64_t votes;
+
+  bool operator<(const Border& other) const {
+    if (a != other.a) return a < other.a;
+    return b != other.b ? b < other.b : votes < other.votes;
+  }
+};
+
+// Adds the border between two members of patches or sets of them, unless it is inside of one.
+void add_border(SignedSets::Member a, SignedSets::Member b, std::int64_t votes,
+                std::vector<Border>* borders) {
+  if (a.set == b.set) return;
+  if (a.is_reversed != b.is_reversed) votes = -votes;
+  borders->push_back({std::min(a.set, b.set), std::max(a.set, b.set), votes});
+}
+
+std::vector<Border> find_borders(const LinkedPoints& points,
+                                 std::span<const std::int16_t> agreements, const Patches& patches,
+                                 const Progress& progress) {
+  std::vector<Border> borders;
+  Pulse pulse(progress);
+  for (std::size_t i = 0, e = 0; i < points.positions.size(); ++i) {
+    pulse.step();
+    for (std::size_t end = e + points.degree; e < end; ++e) {
+      // The fourth power: many doubtful pairs count for less than a few good ones.
+      const std::int64_t square = agreements[e] * agreements[e];
+      const std::int64_t votes = (square * square) >> 16;
+      if (votes == 0) continue;
+      add_border(patches.members[i], patches.members[points.links[e]],
+                 agreements[e] < 0 ? -votes : votes, &borders);
+    }
+  }
+  return borders;
+}
+
+// Sums the votes of the same two patches.
+void merge_borders(std::vector<Border>* borders, const Progress& progress, int threads) {
+  sort_in_parallel(borders, progress, threads);
+  std::size_t kept = 0;
+  for (const Border& border : *borders) {
+    if (kept > 0 && (*borders)[kept - 1].a == border.a && (*borders)[kept - 1].b == border.b) {
+      (*borders)[kept - 1].votes += border.votes;
+    } else {
+      (*borders)[kept++] = border;
+    }
+  }
+  borders->resize(kept);
+}
+
+// Joins each patch to the one that most votes tie it to, and so on with what comes of that.
+SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Progress& progress,
+                        int threads) {
+  SignedSets sets(count);
+  Pulse pulse(progress);
+  while (!borders.empty()) {
+    merge_borders(&borders, progress.part(0.0, 0.0), threads);
+    std::vector<std::uint32_t> strongest(count, kNone);
+    for (std::uint32_t k = 0; k < borders.size(); ++k) {
+      pulse.step();
+      for (const std::uint32_t patch : {borders[k].a, borders[k].b}) {
+        std::uint32_t& best = strongest[patch];
+        if (best == kNone || std::abs(borders[k].votes) > std::abs(borders[best].votes)) best = k;
+      }
+    }
+    for (const std::uint32_t k : strongest) {
+      if (k != kNone) sets.join(borders[k].a, borders[k].b, borders[k].votes < 0);
+    }
+    std::vector<Border> left;
+    for (const Border& border : borders) {
+      pulse.step();
+      add_border(sets.find(border.a), sets.find(border.b), border.votes, &left);
+    }
+    borders.swap(left);
+  }
+  return sets;
+}
+
+// What is summed over the points of a part of the surface.
+struct Part {
+  Vector3 first_moment{};
+  double area = 0.0;
+  double flux = 0.0;
+};
+
+// Whether the normals of each set point inward as a whole: the flux through it of the positions, as
+// seen from its middle, which is three times the volume of a closed surface, is negative.
+std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Vector3> normals,
+                                  const Patches& patches, const Progress& progress) {
+  // Numbers that neither overflow nor vanish, whatever the units are.
+  Box box = kEmptyBox;
+  for (const Vector3& position : points.positions) box.include(position);
+  const double size = std::max({box.size(0), box.size(1), box.size(2)});
+  const double largest = *std::max_element(points.areas.begin(), points.areas.end());
+  const auto place = [&](std::size_t i) {
+    Vector3 p = points.positions[i] - box.low;
+    for (double& x : p) x /= size;
+    return p;
+  };
+  std::vector<Part> parts(patches.count);
+  Pulse pulse(progress);
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    pulse.step();
+    Part& part = parts[patches.members[i].set];
+    const double area = points.areas[i] / largest;
+    const Vector3 p = place(i);
+    for (int a = 0; a < 3; ++a) part.first_moment[a] += area * p[a];
+    part.area += area;
+  }
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    pulse.step();
+    Part& part = parts[patches.members[i].set];
+    const double area = points.areas[i] / largest;
+    Vector3 offset = place(i);
+    for (int a = 0; a < 3; ++a) offset[a] -= part.first_moment[a] / part.area;
+    const double flux = area * dot(offset, normals[i]);
+    part.flux += patches.members[i].is_reversed != 0 ? -flux : flux;
+  }
+  std::vector<bool> result;
+  for (const Part& part : parts) result.push_back(part.flux < 0.0);
+  return result;
+}
+
+}  // namespace
+
+void orient_normals(const LinkedPoints& points, const Progress& progress, int threads,
+                    std::vector<Vector3>* normals) {
+  const std::vector<std::int16_t> near =
+      agreements(points, *normals, progress.part(0.0, 0.3), threads);
+  Patches patches = grow_patches(points, near, progress.part(0.3, 0.6));
+  std::vector<Border> borders = find_borders(points, near, patches, progress.part(0.6, 0.7));
+  SignedSets sets =
+      join_patches(patches.count, std::move(borders), progress.part(0.7, 0.9), threads);
+  for (SignedSets::Member& own : patches.members) {
+    const SignedSets::Member patch = sets.find(own.set);
+    own = {patch.set, own.is_reversed ^ patch.is_reversed};
+  }
+  const std::vector<bool> is_inside_out =
+      sets_inside_out(points, *normals, patches, progress.part(0.9, 1.0));
+  const auto reverse = [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const SignedSets::Member& own = patches.members[i];
+      Vector3& normal = (*normals)[i];
+      if ((own.is_reversed != 0) != is_inside_out[own.set]) normal = Vector3{} - normal;
+    }
+  };
+  parallel_ranges(static_cast<std::int64_t>(normals->size()), kPointsPerTask, threads,
+                  progress.part(1.0, 1.0), reverse);
+}
+
+}  // namespace prefilter

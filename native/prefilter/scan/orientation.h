@@ -1,0 +1,28 @@
+// Which of its two directions each normal of a cloud of points has.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
+
+namespace prefilter {
+
+/// Points, and which of them are near each other.
+struct LinkedPoints {
+  std::span<const Vector3> positions;  // no two the same; fewer than 2^31
+  std::span<const double> areas;       // of the surface around each point, in any unit
+  std::size_t degree = 0;
+  // `degree` points near each point, which may be the point itself.
+  std::span<const std::uint32_t> links;
+};
+
+/// Reverses normals, 1 long or zero, so that those of near points agree, and those of each
+/// connected part point outward as a whole. Throws Error(kCancelled).
+void orient_normals(const LinkedPoints& points, const Progress& progress, int threads,
+                    std::vector<Vector3>* normals);
+
+}  // namespace prefilter
