@@ -10,6 +10,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/memory.h"
+#include "prefilter/scan/face_normals.h"
 #include "prefilter/scan/normals.h"
 #include "prefilter/scan/open_points.h"
 #include "prefilter/scan/ply_faces.h"
@@ -154,6 +155,31 @@ Array<double> bound_estimate_normals(const Array<double>& points, int neighbours
   return to_array<double>(std::move(normals), {points.shape(0), 3});
 }
 
+Array<double> bound_mesh_normals(const Array<double>& points, const Array<std::int64_t>& triangles,
+                                 const py::object& callback) {
+  const Progress progress = to_progress(callback);
+  std::vector<Vector3> normals;
+  {
+    const py::gil_scoped_release unlocked;
+    normals = mesh_normals(mesh_of(points, triangles), progress);
+  }
+  return to_array<double>(std::move(normals), {points.shape(0), 3});
+}
+
+py::tuple bound_grid_normals(const Array<double>& points, const Array<std::int64_t>& grid,
+                             const std::optional<Vector3>& viewpoint, const py::object& callback) {
+  const Progress progress = to_progress(callback);
+  GridNormals found;
+  {
+    const py::gil_scoped_release unlocked;
+    const RangeGrid range_grid = {
+        grid.shape(0), grid.shape(1), {grid.data(), grid.data() + grid.size()}};
+    found = grid_normals(rows_of(points), range_grid, viewpoint, progress);
+  }
+  return py::make_tuple(to_array<double>(std::move(found.normals), {points.shape(0), 3}),
+                        to_array<float>(std::move(found.weights), {points.shape(0)}));
+}
+
 }  // namespace
 
 void bind_scan(py::module_& m) {
@@ -179,6 +205,10 @@ void bind_scan(py::module_& m) {
   m.def("read_range_grid", &bound_read_range_grid, py::arg("path"));
   m.def("read_faces", &bound_read_faces, py::arg("path"));
   m.def("read_points", &bound_read_points, py::arg("source"), py::arg("progress"));
+  m.def("mesh_normals", &bound_mesh_normals, py::arg("points"), py::arg("triangles"),
+        py::arg("progress"));
+  m.def("grid_normals", &bound_grid_normals, py::arg("points"), py::arg("grid"),
+        py::arg("viewpoint"), py::arg("progress"));
   m.def("estimate_normals", &bound_estimate_normals, py::arg("points"), py::arg("neighbours"),
         py::arg("viewpoints"), py::arg("progress"), py::arg("threads"));
 }

@@ -15,6 +15,7 @@ SAME_IN_ANY_PYTHON = {
     "test_boolean.py",
     "test_contour.py",
     "test_cutout.py",
+    "test_face_normals.py",
     "test_floors.py",
     "test_mipmaps_laws.py",
     "test_mipmaps_oracle.py",

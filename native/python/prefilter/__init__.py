@@ -13,7 +13,7 @@ from .cutout import keep_coverage
 from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
 from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
-from .points import estimate_normals
+from .points import estimate_normals, grid_normals, mesh_normals
 from .scan_files import ScanPoints, read_points
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
@@ -38,7 +38,9 @@ __all__ = [
     "cube_around",
     "estimate_normals",
     "fill_unused",
+    "grid_normals",
     "keep_coverage",
+    "mesh_normals",
     "mipmap_error",
     "mipmaps",
     "nearest_points",

@@ -191,6 +191,17 @@ def normal_mipmaps(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[list[npt.NDArray[np.float32]], list[npt.NDArray[np.float32]]]: ...
+def mesh_normals(
+    points: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int64],
+    progress: ProgressCallback | None,
+) -> npt.NDArray[np.float64]: ...
+def grid_normals(
+    points: npt.NDArray[np.float64],
+    grid: npt.NDArray[np.int64],
+    viewpoint: list[float] | None,
+    progress: ProgressCallback | None,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float32]]: ...
 def estimate_normals(
     points: npt.NDArray[np.float64],
     neighbours: int,

@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_progress
-from ._border.arrays import as_array, as_floats, as_threads
+from ._border.arrays import as_array, as_floats, as_indices, as_threads
 
 
 def estimate_normals(
@@ -43,6 +43,70 @@ def estimate_normals(
         _as_viewpoints(viewpoint),
         as_progress(progress),
         as_threads(threads),
+    )
+
+
+def mesh_normals(
+    points: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    *,
+    progress: ProgressCallback | None = None,
+) -> npt.NDArray[np.float64]:
+    """The normals of points that triangles connect: the mean of those of the triangles, by area.
+
+    Args:
+        points: (points, 3).
+        triangles: (triangles, 3) integer indices of points, counter-clockwise seen from outside.
+        progress: Called with the fraction done; returning False stops the work.
+
+    Returns:
+        (points, 3) float64, 1 long; zero for points without triangles that have a normal.
+
+    Raises:
+        ValueError: A shape or type is wrong, or an index names no point.
+        Cancelled: `progress` returned False.
+    """
+    return _native.mesh_normals(
+        as_floats("points", points, ("points", 3), np.float64),
+        as_indices("triangles", triangles, ("triangles", 3)),
+        as_progress(progress),
+    )
+
+
+def grid_normals(
+    points: npt.ArrayLike,
+    grid: npt.ArrayLike,
+    *,
+    viewpoint: npt.ArrayLike | None = None,
+    progress: ProgressCallback | None = None,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float32]]:
+    """The normals of points that a scanner saw in a grid, from the triangles between neighbors.
+
+    Triangles with an edge over four times as long as usual would join a surface to what is behind
+    it, and are left out.
+
+    Args:
+        points: (points, 3), as the scanner saw them: not yet moved to where other scans are.
+        grid: (rows, columns) integer indices of points, -1 for none; `read_range_grid` reads them.
+        viewpoint: Where the scanner stood, (3,): the side that shows more to it is outside. None
+            stands for far away where z is large, as with the scanners of Stanford's range scans.
+        progress: Called with the fraction done; returning False stops the work.
+
+    Returns:
+        Normals, (points, 3) float64, 1 long, zero for points without neighbors; and weights,
+        (points,) float32 in [0, 1], which are lower where the surface was seen at an angle and
+        within six places of where it ends.
+
+    Raises:
+        ValueError: A shape or type is wrong, an index names no point, or the viewpoint is not
+            finite.
+        Cancelled: `progress` returned False.
+    """
+    return _native.grid_normals(
+        as_floats("points", points, ("points", 3), np.float64),
+        as_indices("grid", grid, ("rows", "columns")),
+        None if viewpoint is None else as_floats("viewpoint", viewpoint, (3,), np.float64).tolist(),
+        as_progress(progress),
     )
 
 
