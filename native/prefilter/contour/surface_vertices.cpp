@@ -20,11 +20,13 @@ struct Visit {
   CellCoordinates at;  // in cells of its depth
 };
 
+CellCoordinates octant_at(const CellCoordinates& at, int o) {
+  return {2 * at[0] + (o & 1), 2 * at[1] + ((o >> 1) & 1), 2 * at[2] + ((o >> 2) & 1)};
+}
+
 Visit octant_of(const ContourTree& tree, const Visit& visit, int o) {
-  return {tree.octant(visit.cell, o),
-          octant_neighbours(tree, visit.cell, visit.neighbours, o),
-          {2 * visit.at[0] + (o & 1), 2 * visit.at[1] + ((o >> 1) & 1),
-           2 * visit.at[2] + ((o >> 2) & 1)}};
+  return {tree.octant(visit.cell, o), octant_neighbours(tree, visit.cell, visit.neighbours, o),
+          octant_at(visit.at, o)};
 }
 
 bool meets_surface(const Visit& visit) {
@@ -73,6 +75,7 @@ Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode&
 // What a task makes of its blocks: vertices in order, and the blocks of each level that it saw.
 struct TaskVertices {
   std::vector<Vector3> positions;
+  std::vector<VertexPlace> places;  // where heights are given
   struct Range {
     std::size_t begin = std::numeric_limits<std::size_t>::max();
     std::size_t end = 0;
@@ -83,9 +86,14 @@ struct TaskVertices {
 class VertexMaker {
  public:
   VertexMaker(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
-              std::vector<std::vector<std::uint64_t>>* cuts,
+              const HeightRange* heights, std::vector<std::vector<std::uint64_t>>* cuts,
               std::vector<std::vector<std::uint32_t>>* firsts)
-      : tree_(tree), frame_(frame), interpolant_(interpolant), cuts_(*cuts), firsts_(*firsts) {}
+      : tree_(tree),
+        frame_(frame),
+        interpolant_(interpolant),
+        heights_(heights),
+        cuts_(*cuts),
+        firsts_(*firsts) {}
 
   // The octants of a cell that are leaves get their vertices; descend(octant) is called for others
   // that the surface meets.
@@ -100,20 +108,24 @@ class VertexMaker {
     std::uint64_t cuts = 0;
     for (int o = 0; o < 8; ++o) {
       const CellNode leaf = tree_.octant(visit.cell, o);
-      if (leaf.is_split) continue;
+      if (leaf.is_split || !is_wanted(octant_at(visit.at, o), leaf.depth)) continue;
       const FaceNeighbours neighbours = octant_neighbours(tree_, visit.cell, visit.neighbours, o);
       for (int face = 0; face < 6; ++face) {
         const CellNode& neighbour = neighbours[face];
         if (!owns(leaf, neighbour, face) || leaf.sides == neighbour.sides) continue;
         cuts |= std::uint64_t{1} << (6 * o + face);
         task->positions.push_back(position(visit, o, face, leaf, neighbour));
+        if (heights_ != nullptr) {
+          task->places.push_back(
+              {octant_at(visit.at, o), leaf.depth, static_cast<std::int8_t>(face)});
+        }
       }
     }
     cuts_[level][block] = cuts;
     for (int o = 0; o < 8; ++o) {
       if (!tree_.octant(visit.cell, o).is_split) continue;
       const Visit octant = octant_of(tree_, visit, o);
-      if (meets_surface(octant)) descend(octant);
+      if (meets_surface(octant) && is_wanted(octant.at, octant.cell.depth)) descend(octant);
     }
   }
 
@@ -122,6 +134,12 @@ class VertexMaker {
   }
 
  private:
+  bool is_wanted(const CellCoordinates& at, int depth) const {
+    if (heights_ == nullptr) return true;
+    const int shift = tree_.cells().depth() - depth;
+    return at[2] << shift < heights_->high && (at[2] + 1) << shift >= heights_->low;
+  }
+
   Vector3 position(const Visit& visit, int o, int face, const CellNode& leaf,
                    const CellNode& neighbour) const {
     const Crossing found = crossing(tree_, leaf, neighbour, interpolant_);
@@ -138,6 +156,7 @@ class VertexMaker {
   const ContourTree& tree_;
   const RootFrame& frame_;
   Interpolant interpolant_;
+  const HeightRange* heights_;
   std::vector<std::vector<std::uint64_t>>& cuts_;
   std::vector<std::vector<std::uint32_t>>& firsts_;
 };
@@ -145,12 +164,22 @@ class VertexMaker {
 
 SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame,
                                  Interpolant interpolant, const Progress& progress, int threads) {
+  make(tree, frame, interpolant, nullptr, progress, threads);
+}
+
+SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame,
+                                 Interpolant interpolant, const HeightRange& heights) {
+  make(tree, frame, interpolant, &heights, Progress(), 1);
+}
+
+void SurfaceVertices::make(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
+                           const HeightRange* heights, const Progress& progress, int threads) {
   const std::vector<TreeLevel>& levels = tree.cells().levels;
   for (const TreeLevel& level : levels) {
     cuts_.emplace_back(level.size());
     firsts_.emplace_back(level.size());
   }
-  const VertexMaker maker(tree, frame, interpolant, &cuts_, &firsts_);
+  const VertexMaker maker(tree, frame, interpolant, heights, &cuts_, &firsts_);
 
   // The first task is what lies above the others.
   std::vector<TaskVertices> tasks(1);
@@ -190,6 +219,7 @@ SurfaceVertices::SurfaceVertices(const ContourTree& tree, const RootFrame& frame
       }
     }
     positions_.insert(positions_.end(), task.positions.begin(), task.positions.end());
+    places_.insert(places_.end(), task.places.begin(), task.places.end());
     task = TaskVertices();
     joining.report(static_cast<double>(positions_.size()) / static_cast<double>(count));
   }

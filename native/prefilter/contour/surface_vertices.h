@@ -3,15 +3,30 @@
 
 #include <array>
 #include <bit>
+#include <compare>
 #include <cstdint>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/contour/contour_options.h"
 #include "prefilter/contour/contour_tree.h"
+#include "prefilter/contour/height_range.h"
 #include "prefilter/contour/root_frame.h"
 
 namespace prefilter {
+
+/// What tells a vertex from all others of a tree: the leaf that its pair belongs to, and the face.
+struct VertexPlace {
+  std::array<std::int32_t, 3> leaf;  // in cells of its depth
+  std::int8_t depth;
+  std::int8_t face;
+
+  auto operator<=>(const VertexPlace&) const = default;
+
+  /// The heights that the face reaches, in cells of a tree's depth.
+  int low(int tree_depth) const { return (leaf[2] + (face == 5 ? 1 : 0)) << (tree_depth - depth); }
+  int high(int tree_depth) const { return (leaf[2] + (face == 4 ? 0 : 1)) << (tree_depth - depth); }
+};
 
 /// A pair belongs to the finer of its leaves; of two of the same size, to the one at the low side.
 /// Its vertex lies on the line through that leaf's centre across the face that they share, where
@@ -20,6 +35,9 @@ class SurfaceVertices {
  public:
   SurfaceVertices(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
                   const Progress& progress, int threads);
+  /// Those between leaves of which one reaches some heights at least, and their places.
+  SurfaceVertices(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
+                  const HeightRange& heights);
 
   /// The vertex of the leaf that a pair belongs to, and its face.
   std::int32_t index(const CellNode& leaf, int face) const {
@@ -37,6 +55,8 @@ class SurfaceVertices {
 
   const std::vector<Vector3>& positions() const { return positions_; }
   std::vector<Vector3> take_positions() { return std::move(positions_); }
+  /// Of all vertices, where heights were given.
+  const std::vector<VertexPlace>& places() const { return places_; }
 
   /// The faces with a vertex, of all octants of a block: bit 6 o + f.
   std::uint64_t cuts(std::size_t level, std::size_t block) const { return cuts_[level][block]; }
@@ -44,9 +64,13 @@ class SurfaceVertices {
   void move(std::size_t vertex, const Vector3& position) { positions_[vertex] = position; }
 
  private:
+  void make(const ContourTree& tree, const RootFrame& frame, Interpolant interpolant,
+            const HeightRange* heights, const Progress& progress, int threads);
+
   std::vector<std::vector<std::uint64_t>> cuts_;
   std::vector<std::vector<std::uint32_t>> firsts_;  // the vertex of a block's lowest bit
   std::vector<Vector3> positions_;
+  std::vector<VertexPlace> places_;
 };
 
 }  // namespace prefilter

@@ -1,6 +1,7 @@
 #include "prefilter/contour/tree_contour.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -197,6 +198,26 @@ TriangleMesh join(const Progress& progress, SurfaceVertices* vertices,
   return mesh;
 }
 
+// Leaves out the vertices that no triangle has; returns where the others were.
+std::vector<std::int32_t> leave_out_unused(TriangleMesh* mesh) {
+  std::vector<std::int32_t> places(mesh->positions.size(), -1);
+  for (const Triangle& triangle : mesh->triangles) {
+    for (const std::int32_t vertex : triangle) places[static_cast<std::size_t>(vertex)] = 0;
+  }
+  std::vector<std::int32_t> used;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] < 0) continue;
+    places[i] = static_cast<std::int32_t>(used.size());
+    mesh->positions[used.size()] = mesh->positions[i];
+    used.push_back(static_cast<std::int32_t>(i));
+  }
+  mesh->positions.resize(used.size());
+  for (Triangle& triangle : mesh->triangles) {
+    for (std::int32_t& vertex : triangle) vertex = places[static_cast<std::size_t>(vertex)];
+  }
+  return used;
+}
+
 // The contour of a tree whose root is split.
 TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options) {
   constexpr double kPlacing = 0.98;
@@ -231,6 +252,29 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   return mesh;
 }
 }  // namespace
+
+ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant interpolant,
+                         const HeightRange& heights) {
+  assert(!cells.levels.empty());
+  const ContourTree tree(cells, isovalue, Progress(), 1);
+  SurfaceVertices vertices(tree, RootFrame({{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}}), interpolant,
+                           heights);
+  const DualCells dual(tree, heights);
+  const TriangleMaker maker(vertices);
+  std::vector<TaskTriangles> tasks(1);
+  for (std::size_t part = 0; part < dual.part_count(); ++part) {
+    dual.for_part(part, [&](const Meeting& leaves) { maker.add(leaves, tasks.data()); });
+  }
+  ContourSlab slab;
+  const std::size_t pairs = vertices.places().size();
+  slab.mesh = join(Progress(), &vertices, &tasks);
+  const std::vector<std::int32_t> used = leave_out_unused(&slab.mesh);
+  for (const std::int32_t vertex : used) {
+    const auto i = static_cast<std::size_t>(vertex);
+    if (i < pairs) slab.places.push_back(vertices.places()[i]);
+  }
+  return slab;
+}
 
 TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourOptions& options) {
   check_box(root, "bounds");
