@@ -12,6 +12,7 @@ FLOORS = (
     {"color", "filters", "moments", "solve", "spatial", "surface"},
     {"scan", "texels", "wavelet"},
     {"contour", "mipmap", "voxel"},
+    {"reconstruct"},
 )
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"prefilter/(\w+)/', re.MULTILINE)

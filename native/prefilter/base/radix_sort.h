@@ -1,0 +1,35 @@
+// Sorting of numbers by some of their bits.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace prefilter {
+
+/// Sorts by the bits from `low` up to, but not including, `high`; numbers equal in these keep their
+/// order. `other` is memory that is used on the way.
+inline void radix_sort(std::vector<std::uint64_t>* values, int low, int high,
+                       std::vector<std::uint64_t>* other) {
+  constexpr int kMostDigitBits = 11;
+  const int passes = (high - low + kMostDigitBits - 1) / kMostDigitBits;
+  other->resize(values->size());
+  for (int pass = 0; pass < passes; ++pass) {
+    const int begin = low + (high - low) * pass / passes;
+    const int bits = low + (high - low) * (pass + 1) / passes - begin;
+    const std::uint64_t mask = (std::uint64_t{1} << bits) - 1;
+    std::array<std::size_t, std::size_t{1} << kMostDigitBits> places{};
+    for (const std::uint64_t value : *values) ++places[(value >> begin) & mask];
+    std::size_t next = 0;
+    for (std::size_t digit = 0; digit <= mask; ++digit) {
+      const std::size_t count = places[digit];
+      places[digit] = next;
+      next += count;
+    }
+    for (const std::uint64_t value : *values) (*other)[places[(value >> begin) & mask]++] = value;
+    values->swap(*other);
+  }
+}
+
+}  // namespace prefilter

@@ -1,0 +1,34 @@
+// The tree around a slab, put together from the parts that are kept.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/reconstruct/flux_tree.h"
+#include "prefilter/wavelet/cell_tree.h"
+
+namespace prefilter {
+
+/// The coarse levels of a tree whose finer ones are in slabs, and where these go on.
+struct CoarseTree {
+  FluxTree tree;  // values, from depth 0 to that of the slabs' first cells
+  float root = 0.0F;
+  // Of each cell of the slabs' first depth that is split, along the Morton curve: its slab, and its
+  // number among the slab's blocks.
+  struct Continuation {
+    int slab;
+    std::uint32_t block;
+  };
+  std::vector<Continuation> continuations;
+};
+
+/// The slabs below, at and above the one; null where there is none.
+using SlabTrees = std::array<const FluxTree*, 3>;
+
+/// The tree of `depth` as the slab needs it: all blocks that reach within two of their octants of
+/// it, and the values times `scale`.
+CellTree assemble(const CoarseTree& coarse, const SlabTrees& trees, int slab, int depth,
+                  float scale);
+
+}  // namespace prefilter

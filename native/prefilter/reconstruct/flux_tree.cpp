@@ -1,0 +1,147 @@
+#include "prefilter/reconstruct/flux_tree.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "prefilter/base/radix_sort.h"
+#include "prefilter/spatial/morton.h"
+#include "prefilter/wavelet/haar.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kPlaceBits = 3 * kMaxTreeDepth;
+
+// The flux of samples with this area per weight, in the cell `shift` depths up.
+CellFlux flux_in_leaf(const SampleCell& cell, double unit_area, int shift) {
+  const CellPosition at = cell_position(cell.key);
+  const double scale = std::ldexp(1.0, -shift);
+  CellFlux result;
+  CellPosition leaf;
+  for (std::size_t a = 0; a < 3; ++a) {
+    leaf[a] = at[a] >> shift;
+    const double offset = at[a] - (leaf[a] << shift);
+    const auto normal = static_cast<double>(cell.normal[a]);
+    const double area = unit_area * scale * scale;
+    result.flux.area[a] = area * normal;
+    result.flux.moment[a] = area * scale * (static_cast<double>(cell.flux[a]) + offset * normal);
+  }
+  result.place = morton_index(leaf);
+  return result;
+}
+
+// Sorted, and each place once.
+std::vector<CellFlux> joined(const std::vector<CellFlux>& entries) {
+  std::vector<std::uint64_t> order;
+  order.reserve(entries.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    order.push_back(entries[i].place << (64 - kPlaceBits) | i);
+  }
+  std::vector<std::uint64_t> other;
+  radix_sort(&order, 64 - kPlaceBits, 64, &other);
+  std::vector<CellFlux> result;
+  result.reserve(entries.size());
+  for (const std::uint64_t entry : order) {
+    const CellFlux& cell = entries[entry & ((std::uint64_t{1} << (64 - kPlaceBits)) - 1)];
+    if (!result.empty() && result.back().place == cell.place) {
+      result.back().flux.add(cell.flux);
+      result.back().is_split = result.back().is_split || cell.is_split;
+    } else {
+      result.push_back(cell);
+    }
+  }
+  return result;
+}
+
+// Appends the blocks of the cells of which some of `octants` are; returns these cells.
+std::vector<CellFlux> add_blocks(const std::vector<CellFlux>& octants, NodeLevel* level) {
+  std::vector<CellFlux> cells;
+  for (std::size_t i = 0; i < octants.size();) {
+    CellFlux cell;
+    cell.place = octants[i].place >> 3U;
+    cell.is_split = true;
+    std::array<BoundaryFlux, 8> fluxes;
+    std::uint8_t split = 0;
+    for (; i < octants.size() && octants[i].place >> 3U == cell.place; ++i) {
+      const std::uint64_t o = octants[i].place & 7U;
+      fluxes[o] = octants[i].flux;
+      if (octants[i].is_split) split |= static_cast<std::uint8_t>(1U << o);
+    }
+    cell.flux = flux_of_octants(fluxes);
+    level->places.push_back(cell.place);
+    level->blocks.blocks.push_back(details_of_octants(fluxes));
+    level->blocks.split.push_back(split);
+    cells.push_back(cell);
+  }
+  return cells;
+}
+
+}  // namespace
+
+double pool_flux(const SampleSlab& slab, const SampleSlab& whole, std::size_t offset,
+                 int least_leaf, PooledFlux* pooled) {
+  const int depth = slab.depth();
+  const SampleLevel& finest = slab.at(depth);
+  double left_out = 0.0;
+  for (std::size_t i = 0; i < finest.size(); ++i) {
+    const SampleCell& cell = finest.samples.cells[i];
+    const int leaf = finest.leaf[i];
+    if (leaf < least_leaf) {
+      left_out += static_cast<double>(cell.weight);
+      continue;
+    }
+    std::size_t at = i;
+    int k = depth;
+    for (; k > std::max(leaf, slab.top); --k) at = slab.at(k).parents[at];
+    const SampleLevel* level = &slab.at(k);
+    if (leaf < slab.top) {
+      at += offset;
+      for (; k > leaf; --k) at = whole.at(k).parents[at];
+      level = &whole.at(k);
+    }
+    (*pooled)[static_cast<std::size_t>(leaf)].push_back(
+        flux_in_leaf(cell, static_cast<double>(level->unit_area[at]), depth - leaf));
+  }
+  return left_out;
+}
+
+FluxTree analyse_flux(PooledFlux pooled, int top, int depth) {
+  FluxTree tree;
+  tree.top = top;
+  tree.levels.resize(static_cast<std::size_t>(depth - top));
+  std::vector<CellFlux> cells = joined(pooled[static_cast<std::size_t>(depth)]);
+  for (int k = depth - 1; k >= top; --k) {
+    NodeLevel& level = tree.levels[static_cast<std::size_t>(k - top)];
+    cells = add_blocks(cells, &level);
+    link_blocks(&level.blocks);
+    std::vector<CellFlux>& own = pooled[static_cast<std::size_t>(k)];
+    if (own.empty()) continue;
+    cells.insert(cells.end(), own.begin(), own.end());
+    cells = joined(cells);
+  }
+  tree.tops = std::move(cells);
+  return tree;
+}
+
+void synthesise_part(const std::vector<float>& tops, FluxTree* tree) {
+  if (tree->levels.empty()) return;
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < tree->tops.size(); ++i) {
+    if (tree->tops[i].is_split) tree->levels.front().blocks.blocks[next++][0] = tops[i];
+  }
+  for (std::size_t k = 0; k < tree->levels.size(); ++k) {
+    TreeLevel& level = tree->levels[k].blocks;
+    for (std::size_t b = 0; b < level.size(); ++b) {
+      hadamard(&level.blocks[b]);
+      std::size_t child = level.first[b];
+      for (unsigned bits = level.split[b]; bits != 0U; bits &= bits - 1U) {
+        tree->levels[k + 1].blocks.blocks[child++][0] =
+            level.blocks[b][static_cast<std::size_t>(std::countr_zero(bits))];
+      }
+    }
+  }
+}
+
+}  // namespace prefilter

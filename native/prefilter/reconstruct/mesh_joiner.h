@@ -1,0 +1,48 @@
+// Parts of a mesh to one, as they come.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "prefilter/contour/tree_contour.h"
+#include "prefilter/reconstruct/sample_grid.h"
+#include "prefilter/scan/point_source.h"
+
+namespace prefilter {
+
+/// A slab's part of the mesh, ready to be joined.
+struct SlabMesh {
+  ContourSlab contour;                   // positions in cells
+  std::vector<float> attributes;         // of each vertex
+  std::vector<std::uint8_t> is_trimmed;  // vertices too far from all samples; empty: none
+};
+
+/// Numbers vertices as triangles first name them, and hands all on. Slabs come from below.
+class MeshJoiner {
+ public:
+  MeshJoiner(const SampleGrid& grid, std::size_t attribute_count, MeshSink* sink)
+      : grid_(grid), attribute_count_(attribute_count), sink_(sink) {}
+
+  /// `top` is the height at which the next slab begins.
+  void add(const SlabMesh& slab, int top);
+
+  std::size_t vertices() const { return vertices_; }
+  std::size_t triangles() const { return triangles_; }
+
+ private:
+  struct Known {
+    std::int64_t number;
+    int high;  // that the vertex reaches
+  };
+
+  SampleGrid grid_;
+  std::size_t attribute_count_;
+  MeshSink* sink_;
+  std::size_t vertices_ = 0;
+  std::size_t triangles_ = 0;
+  std::unordered_map<std::uint64_t, Known> known_;  // that the next slabs may name
+};
+
+}  // namespace prefilter

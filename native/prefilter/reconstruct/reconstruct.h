@@ -1,0 +1,65 @@
+// Oriented points to closed surfaces (chapter 4).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "prefilter/base/progress.h"
+#include "prefilter/scan/point_source.h"
+
+namespace prefilter {
+
+enum class WaveletBasis {
+  kHaar,  // blocks: fast, and sharp where points are clean
+  kD4,    // Daubechies' with four coefficients: more points to a coefficient, so less noise
+};
+
+enum class Isovalue {
+  kMean,   // the mean of the function at the points
+  kHalf,   // 1/2
+  kGiven,  // a number
+};
+
+struct ReconstructOptions {
+  int depth = 9;  // 1 to kMaxTreeDepth: 2^depth cells along the longest axis
+  WaveletBasis basis = WaveletBasis::kHaar;
+  bool smooth = true;  // the indicator function, over the neighbouring cells
+  Isovalue isovalue = Isovalue::kMean;
+  double given_isovalue = 0.5;  // of a function that is 0 outside and 1 inside
+  bool fit = true;              // move vertices onto the surface of the points around them
+  std::optional<double> trim;   // leave out what is farther from all points than so many cells
+  std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  // in bytes
+  std::string folder;  // for temporary files; "": the system's
+  int threads = 0;     // 0: all processors
+  Progress progress;
+};
+
+struct ReconstructReport {
+  std::size_t points = 0;
+  std::size_t dropped = 0;  // not finite, without a normal, or of no weight
+  double outliers = 0.0;    // the weight of those left out as outliers, of that of all
+  std::size_t vertices = 0;
+  std::size_t triangles = 0;
+  bool is_flipped = false;  // normals point inward, most of them: taken as the opposite
+  double residual = 0.0;    // the mean distance of samples from the local surface, in cells
+  double cell = 0.0;        // the side of a finest cell
+  bool is_spilled = false;  // temporary files were needed
+};
+
+/// The surface of oriented points: where a function that is 1 inside and 0 outside takes the
+/// iso-value. Wavelet coefficients of the function are sums over the points (equation 4.2), each of
+/// the area that follows from its neighbours; the octree they make is contoured on its dual grid.
+///
+/// Untrimmed, the mesh is closed and two-manifold; the outside is where triangles are
+/// counter-clockwise. It is the same for any number of threads and any limit of memory, and to
+/// rounding for any order of the points.
+///
+/// Throws Error for options out of range, fewer than 3 points that count, or points that all
+/// coincide; what the source and the sink throw; Error(kOutOfMemory); Error(kCancelled).
+ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
+                              MeshSink* sink);
+
+}  // namespace prefilter

@@ -1,0 +1,50 @@
+// Samples between two heights, at all depths: where they tell of a surface, and how much of it.
+//
+// Area per sample follows section 4.2, with corrections. A cell counts where at least three of its
+// neighbours of the same depth have samples as well; what counts in none counts in the next larger
+// one. A plane of normal n meets |n_x| + |n_y| + |n_z| cells per cell side squared, so each cell
+// stands for one over that, not for one. Cells that the surface merely grazes may have no sample:
+// their share follows from the number of samples per cell that has some. Both are taken over cells
+// two depths up.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/reconstruct/sample_cell.h"
+
+namespace prefilter {
+
+/// The cells of one depth.
+struct SampleLevel {
+  SampleCells samples;
+  std::vector<std::uint32_t> parents;  // of each, its index on the level above; none on the first
+  std::vector<std::uint8_t> is_met;    // whether enough neighbours have samples
+  std::vector<std::int8_t> leaf;  // the depth at which its samples count, if not at a larger one
+  std::vector<float> unit_area;   // of the surface, in finest cells, per unit of weight
+
+  std::size_t size() const { return samples.size(); }
+};
+
+/// Depths from `top`, of cells as high as the slab, to the finest.
+struct SampleSlab {
+  int top = 0;
+  std::vector<SampleLevel> levels;
+
+  int depth() const { return top + static_cast<int>(levels.size()) - 1; }
+  SampleLevel& at(int depth) { return levels[static_cast<std::size_t>(depth - top)]; }
+  const SampleLevel& at(int depth) const { return levels[static_cast<std::size_t>(depth - top)]; }
+};
+
+/// The levels of cells of `depth`, up to `top`.
+SampleSlab make_sample_slab(SampleCells finest, int depth, int top, std::size_t attribute_count);
+
+/// Sets is_met of all levels, where the slabs below and above, if there are any, have been made.
+void find_met_cells(const SampleSlab* below, const SampleSlab* above, SampleSlab* slab);
+
+/// Sets `leaf`, from that of the first level, and unit_area. `mean_weight` is that of a sample;
+/// `finest` the depth of the cells that areas are measured in.
+void find_leaves(double mean_weight, int finest, SampleSlab* slab);
+
+}  // namespace prefilter

@@ -1,0 +1,164 @@
+#include "prefilter/reconstruct/sample_store.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/progress.h"
+
+namespace prefilter {
+namespace {
+
+void append(const SampleCells& from, std::size_t begin, std::size_t end,
+            std::size_t attribute_count, SampleCells* to) {
+  const auto at = [](auto& values, std::size_t i) {
+    return values.begin() + static_cast<std::ptrdiff_t>(i);
+  };
+  to->cells.insert(to->cells.end(), at(from.cells, begin), at(from.cells, end));
+  to->attributes.insert(to->attributes.end(), at(from.attributes, begin * attribute_count),
+                        at(from.attributes, end * attribute_count));
+}
+
+SampleCells merged(const SampleCells& a, const SampleCells& b, std::size_t attribute_count) {
+  SampleCells result;
+  result.cells.reserve(a.size() + b.size());
+  result.attributes.reserve((a.size() + b.size()) * attribute_count);
+  std::size_t i = 0;
+  std::size_t j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (a.cells[i].key < b.cells[j].key) {
+      append(a, i, i + 1, attribute_count, &result);
+      ++i;
+    } else if (b.cells[j].key < a.cells[i].key) {
+      append(b, j, j + 1, attribute_count, &result);
+      ++j;
+    } else {
+      append(a, i, i + 1, attribute_count, &result);
+      result.cells.back().add(b.cells[j]);
+      float* const sums = result.attributes.data() + result.attributes.size() - attribute_count;
+      for (std::size_t k = 0; k < attribute_count; ++k) {
+        sums[k] += b.attributes[j * attribute_count + k];
+      }
+      ++i;
+      ++j;
+    }
+  }
+  append(a, i, a.size(), attribute_count, &result);
+  append(b, j, b.size(), attribute_count, &result);
+  return result;
+}
+
+}  // namespace
+
+SampleStore::SampleStore(int depth, int slab_bits, std::size_t attribute_count,
+                         std::uint64_t memory_limit, std::string folder)
+    : slab_shift_(slab_bits),
+      attribute_count_(attribute_count),
+      memory_limit_(memory_limit),
+      folder_(std::move(folder)),
+      slabs_(std::size_t{1} << (depth - slab_bits)) {}
+
+void SampleStore::add(const SampleCells& run) {
+  for (std::size_t begin = 0; begin < run.size();) {
+    const int slab = cell_position(run.cells[begin].key)[2] >> slab_shift_;
+    const CellKey limit = cell_key({-1, -1, (slab + 1) << slab_shift_});
+    const auto end = static_cast<std::size_t>(
+        std::lower_bound(run.cells.begin() + static_cast<std::ptrdiff_t>(begin), run.cells.end(),
+                         limit, [](const SampleCell& c, CellKey key) { return c.key < key; }) -
+        run.cells.begin());
+    Runs& runs = slabs_[static_cast<std::size_t>(slab)];
+    runs.emplace_back();
+    append(run, begin, end, attribute_count_, &runs.back().cells);
+    runs.back().count = end - begin;
+    held_ += end - begin;
+    while (runs.size() > 1 && runs[runs.size() - 2].count < 2 * runs.back().count) {
+      merge_last(&runs);
+    }
+    begin = end;
+  }
+  if (held_ * bytes_per_cell() > memory_limit_) spill();
+}
+
+void SampleStore::merge_last(Runs* runs) {
+  Run last = std::move(runs->back());
+  runs->pop_back();
+  Run& first = runs->back();
+  for (const Run* run : {&first, &last}) held_ -= run->is_in_file ? 0 : run->count;
+  first.cells = first.is_in_file ? merged(read(first), read(last), attribute_count_)
+                                 : merged(first.cells, read(last), attribute_count_);
+  first.is_in_file = false;
+  first.count = first.cells.size();
+  held_ += first.count;
+}
+
+void SampleStore::spill() {
+  if (!file_) file_ = std::make_unique<TemporaryFile>(folder_);
+  for (Runs& runs : slabs_) {
+    for (Run& run : runs) {
+      if (run.is_in_file) continue;
+      run.offset = file_->size();
+      run.is_in_file = true;
+      file_->write(std::as_bytes(std::span(run.cells.cells)));
+      file_->write(std::as_bytes(std::span(run.cells.attributes)));
+      run.cells = SampleCells();
+    }
+  }
+  held_ = 0;
+}
+
+void SampleStore::finish(int threads) {
+  // Where a file is written, slabs take turns, so that one of them is in memory at a time.
+  const int width = file_ ? 1 : threads;
+  parallel_for(slab_count(), width, Progress(), [&](std::int64_t i) {
+    Runs& runs = slabs_[static_cast<std::size_t>(i)];
+    while (runs.size() > 1) merge_last(&runs);
+    for (Run& run : runs) {
+      run.cells.cells.shrink_to_fit();
+      run.cells.attributes.shrink_to_fit();
+    }
+    if (file_ && held_ * bytes_per_cell() > memory_limit_) spill();
+  });
+}
+
+std::size_t SampleStore::size() const {
+  std::size_t cells = 0;
+  for (const Runs& runs : slabs_) {
+    for (const Run& run : runs) cells += run.count;
+  }
+  return cells;
+}
+
+std::size_t SampleStore::largest() const {
+  std::size_t most = 0;
+  for (const Runs& runs : slabs_) {
+    std::size_t cells = 0;
+    for (const Run& run : runs) cells += run.count;
+    most = std::max(most, cells);
+  }
+  return most;
+}
+
+SampleCells SampleStore::read(const Run& run) const {
+  if (!run.is_in_file) return run.cells;
+  SampleCells cells;
+  cells.cells.resize(run.count);
+  cells.attributes.resize(run.count * attribute_count_);
+  file_->read_at(run.offset, std::as_writable_bytes(std::span(cells.cells)));
+  file_->read_at(run.offset + run.count * sizeof(SampleCell),
+                 std::as_writable_bytes(std::span(cells.attributes)));
+  return cells;
+}
+
+SampleCells SampleStore::slab(int index) const {
+  const Runs& runs = slabs_[static_cast<std::size_t>(index)];
+  return runs.empty() ? SampleCells() : read(runs.front());
+}
+
+SampleCells SampleStore::take(int index) {
+  Runs& runs = slabs_[static_cast<std::size_t>(index)];
+  if (runs.empty() || runs.front().is_in_file) return slab(index);
+  return std::move(std::exchange(runs, {}).front().cells);
+}
+
+}  // namespace prefilter

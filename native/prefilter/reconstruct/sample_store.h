@@ -1,0 +1,66 @@
+// The cells of a cloud, slab by slab: in memory, or where that is not enough, in a temporary file.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "prefilter/reconstruct/sample_cell.h"
+#include "prefilter/scan/temporary_file.h"
+
+namespace prefilter {
+
+class SampleStore {
+ public:
+  /// Slabs are 2^slab_bits cells high, from 0 up to 2^depth. What is held is at most `memory_limit`
+  /// bytes, but for what a single `add` brings; the rest goes to a file in a folder. Sums are the
+  /// same, to the last bit, for any limit.
+  SampleStore(int depth, int slab_bits, std::size_t attribute_count, std::uint64_t memory_limit,
+              std::string folder);
+
+  /// Cells in the order of their keys; some may be there already.
+  void add(const SampleCells& run);
+  /// Call once, after the last `add`.
+  void finish(int threads);
+
+  int slab_count() const { return static_cast<int>(slabs_.size()); }
+  bool is_spilled() const { return file_ != nullptr; }
+  /// Cells of all slabs, and of the largest.
+  std::size_t size() const;
+  std::size_t largest() const;
+  /// The cells of a slab.
+  SampleCells slab(int index) const;
+  /// The same, for the last time.
+  SampleCells take(int index);
+
+ private:
+  // Cells in memory, or in the file.
+  struct Run {
+    SampleCells cells;
+    std::uint64_t offset = 0;
+    std::size_t count = 0;
+    bool is_in_file = false;
+  };
+  // Each run but the last is at least twice as long as the next, when an `add` ends.
+  using Runs = std::vector<Run>;
+
+  void spill();
+  void merge_last(Runs* runs);
+  SampleCells read(const Run& run) const;
+  std::size_t bytes_per_cell() const {
+    return sizeof(SampleCell) + attribute_count_ * sizeof(float);
+  }
+
+  int slab_shift_;
+  std::size_t attribute_count_;
+  std::uint64_t memory_limit_;
+  std::string folder_;
+  std::vector<Runs> slabs_;
+  std::atomic<std::size_t> held_ = 0;  // cells in memory
+  std::unique_ptr<TemporaryFile> file_;
+};
+
+}  // namespace prefilter
