@@ -18,6 +18,7 @@ void bind_cutout(py::module_& m);
 void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
 void bind_scan(py::module_& m);
+void bind_reconstruct(py::module_& m);
 void bind_spatial(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_voxel(py::module_& m);
@@ -116,4 +117,5 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_mipmap(m);
   prefilter::python::bind_voxel(m);
   prefilter::python::bind_contour(m);
+  prefilter::python::bind_reconstruct(m);
 }

@@ -135,6 +135,7 @@ void synthesise_part(const std::vector<float>& tops, FluxTree* tree) {
     TreeLevel& level = tree->levels[k].blocks;
     for (std::size_t b = 0; b < level.size(); ++b) {
       hadamard(&level.blocks[b]);
+      if (k + 1 == tree->levels.size()) continue;
       std::size_t child = level.first[b];
       for (unsigned bits = level.split[b]; bits != 0U; bits &= bits - 1U) {
         tree->levels[k + 1].blocks.blocks[child++][0] =

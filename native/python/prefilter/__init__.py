@@ -15,6 +15,7 @@ from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
 from .scan_files import ScanPoints, read_points
+from .reconstruction import ReconstructionReport, reconstruct
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
@@ -32,6 +33,7 @@ __all__ = [
     "NearestPoints",
     "Octree",
     "ScanPoints",
+    "ReconstructionReport",
     "Surface",
     "close_holes",
     "contour",
@@ -46,6 +48,7 @@ __all__ = [
     "nearest_points",
     "normal_mipmaps",
     "read_points",
+    "reconstruct",
     "seam_contrast",
     "texel_weights",
     "to_linear",

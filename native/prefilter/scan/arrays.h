@@ -1,0 +1,99 @@
+// Points from arrays, and a mesh into arrays.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "prefilter/scan/point_source.h"
+
+namespace prefilter {
+
+/// Rows of three floats or doubles, as someone else holds them.
+using VectorRows =
+    std::variant<std::span<const std::array<float, 3>>, std::span<const std::array<double, 3>>>;
+
+/// Points from arrays, which must outlive it.
+class ArraySource : public PointSource {
+ public:
+  /// `weights` may be empty; `attributes` has a row for each point.
+  ArraySource(VectorRows positions, VectorRows normals, std::span<const float> weights,
+              std::span<const float> attributes, std::vector<PointAttribute> names)
+      : positions_(positions),
+        normals_(normals),
+        weights_(weights),
+        attributes_(attributes),
+        names_(std::move(names)) {}
+
+  std::optional<std::size_t> count() const override {
+    return std::visit([](const auto& rows) { return rows.size(); }, positions_);
+  }
+  bool has_normals() const override { return true; }
+  const std::vector<PointAttribute>& attributes() const override { return names_; }
+  void rewind() override { next_ = 0; }
+
+  bool read(std::size_t most, PointBatch* batch) override {
+    const std::size_t n = std::min(most, *count() - next_);
+    copy_rows(positions_, n, &batch->positions);
+    copy_rows(normals_, n, &batch->normals);
+    const auto copy = [&](std::span<const float> values, std::size_t width) {
+      const std::span<const float> part =
+          values.empty() ? values : values.subspan(next_ * width, n * width);
+      return std::vector<float>(part.begin(), part.end());
+    };
+    batch->weights = copy(weights_, 1);
+    batch->attributes = copy(attributes_, names_.size());
+    next_ += n;
+    return n > 0;
+  }
+
+ private:
+  template <typename T>
+  void copy_rows(const VectorRows& rows, std::size_t n, std::vector<std::array<T, 3>>* to) const {
+    to->resize(n);
+    std::visit(
+        [&](const auto& from) {
+          for (std::size_t i = 0; i < n; ++i) {
+            for (std::size_t a = 0; a < 3; ++a) (*to)[i][a] = static_cast<T>(from[next_ + i][a]);
+          }
+        },
+        rows);
+  }
+
+  VectorRows positions_;
+  VectorRows normals_;
+  std::span<const float> weights_;
+  std::span<const float> attributes_;
+  std::vector<PointAttribute> names_;
+  std::size_t next_ = 0;
+};
+
+/// Keeps a mesh in memory.
+class ArraySink : public MeshSink {
+ public:
+  void add_vertices(std::vector<Vector3> added, std::vector<float> values) override {
+    append(added, &positions);
+    append(values, &attributes);
+  }
+  void add_triangles(std::vector<std::array<std::int64_t, 3>> added) override {
+    append(added, &triangles);
+  }
+
+  std::vector<Vector3> positions;
+  std::vector<float> attributes;
+  std::vector<std::array<std::int64_t, 3>> triangles;
+
+ private:
+  template <typename T>
+  static void append(const std::vector<T>& from, std::vector<T>* to) {
+    to->insert(to->end(), from.begin(), from.end());
+  }
+};
+
+}  // namespace prefilter

@@ -1,0 +1,130 @@
+"""Scans: oriented points to closed surfaces."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
+from ._border.arrays import as_floats, as_threads
+
+Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]
+MeshWithAttributes: TypeAlias = tuple[
+    npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.float32]
+]
+
+
+@dataclass
+class ReconstructionReport:
+    """What a reconstruction found.
+
+    Attributes:
+        points: That there were.
+        dropped: Of these, how many were left out: not finite, without a normal, or of no weight.
+        outliers: The share of the others, by weight, that was left out because it lies much thinner
+            than most: from 0 to 1.
+        vertices: Of the mesh.
+        triangles: Of the mesh.
+        is_flipped: Most normals point inward; the opposite ones were used.
+        residual: The mean distance of the samples from the local surface, in finest cells.
+        cell: The side of a finest cell, in the points' units.
+        is_spilled: Temporary files were needed.
+    """
+
+    points: int = 0
+    dropped: int = 0
+    outliers: float = 0.0
+    vertices: int = 0
+    triangles: int = 0
+    is_flipped: bool = False
+    residual: float = 0.0
+    cell: float = 0.0
+    is_spilled: bool = False
+
+
+def reconstruct(
+    points: npt.ArrayLike,
+    normals: npt.ArrayLike | None = None,
+    *,
+    depth: int = 9,
+    wavelet: str = "haar",
+    smooth: bool = True,
+    isovalue: str | float = "auto",
+    fit: bool = True,
+    trim: float | None = None,
+    weights: npt.ArrayLike | None = None,
+    attributes: npt.ArrayLike | None = None,
+    memory_limit: int | None = None,
+    report: ReconstructionReport | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> Mesh | MeshWithAttributes:
+    """The closed surface that points with normals were taken from (chapter 4).
+
+    The surface is where a function that is 1 inside and 0 outside takes an iso-value; its wavelet
+    coefficients are sums over the points (equation 4.2). Points that are not finite, have no normal
+    or no weight are left out and counted.
+
+    Args:
+        points: (points, 3).
+        normals: (points, 3), outward, of any length. None: estimated.
+        depth: 1 to 12: the longest side of the cloud is 2^depth cells long, less a margin.
+        wavelet: "haar", or "d4" for noisy points.
+        smooth: The function is smoothed over neighbouring cells (section 4.3.1).
+        isovalue: "auto" and "mean": the function's mean at the points. "half": 1/2. Or a number.
+        fit: Vertices are moved onto the surface of the points around them.
+        trim: Leaves out what is farther from all points than so many finest cells, so that the
+            surface may end where the points do. None: the surface is closed.
+        weights: (points,), how much each counts; 0 and up. None: all count the same.
+        attributes: (points, n), carried over to the vertices: colours, for example.
+        memory_limit: In bytes, above what is passed in; beyond it temporary files are used.
+        report: Is filled in.
+        progress: Called with the fraction done; returning False stops the work.
+        threads: 0 means all processors. The result does not depend on it.
+
+    Returns:
+        Positions (vertices, 3) float64 and triangles (triangles, 3) int64, counter-clockwise seen
+        from outside; with `attributes` also those of the vertices, (vertices, n) float32. Untrimmed
+        the mesh is closed and two-manifold.
+
+    Raises:
+        ValueError: A shape, type or value is wrong; fewer than 3 points count; all coincide.
+        MemoryError: The result would not fit into memory.
+        OSError: A temporary file could not be written.
+        Cancelled: `progress` returned False.
+    """
+    rows = _as_rows("points", points)
+    count = len(rows)
+    if normals is None:
+        raise ValueError("normals: None; arrays are needed")
+    given = _as_rows("normals", normals)
+    if len(given) != count:
+        raise ValueError(f"normals: {len(given)} rows; {count} are needed, one for each point")
+    position, triangles, values, found = _native.reconstruct(
+        rows,
+        given,
+        None if weights is None else as_floats("weights", weights, (count,), np.float32),
+        None if attributes is None else as_floats("attributes", attributes, (count, "n"), np.float32),
+        as_int("depth", depth, "a whole number from 1 to 12 is needed"),
+        as_name("wavelet", wavelet),
+        bool(smooth),
+        as_name("isovalue", isovalue) if isinstance(isovalue, str) else as_number("isovalue", isovalue),
+        bool(fit),
+        None if trim is None else as_number("trim", trim),
+        memory_limit,
+        as_progress(progress),
+        as_threads(threads),
+    )
+    if report is not None:
+        for name in vars(report):
+            setattr(report, name, getattr(found, name))
+    return (position, triangles) if attributes is None else (position, triangles, values)
+
+
+def _as_rows(name: str, array: npt.ArrayLike) -> np.ndarray:
+    """Rows of three, float32 or float64 as they are."""
+    found = np.asarray(array)
+    dtype = np.float32 if found.dtype == np.float32 else np.float64
+    return as_floats(name, found, ("points", 3), dtype)
