@@ -19,6 +19,7 @@
 #include "prefilter/reconstruct/flux_tree.h"
 #include "prefilter/reconstruct/gather_samples.h"
 #include "prefilter/reconstruct/mesh_joiner.h"
+#include "prefilter/reconstruct/plane_patches.h"
 #include "prefilter/reconstruct/sample_grid.h"
 #include "prefilter/reconstruct/sample_slab.h"
 #include "prefilter/reconstruct/sample_store.h"
@@ -141,6 +142,11 @@ class Reconstruction {
     for_slabs(0.2, 0.3, [&](std::size_t s) {
       PooledFlux pooled(static_cast<std::size_t>(depth()) + 1);
       left_out[s] = pool_flux(slabs_[s], whole_, offsets_[s], least_leaf, &pooled);
+      const int height = 1 << (depth() - top_);
+      const int low = static_cast<int>(s) * height;
+      add_patches(s > 0 ? &slabs_[s - 1].at(depth()) : nullptr, slabs_[s].at(depth()),
+                  s + 1 < slabs_.size() ? &slabs_[s + 1].at(depth()) : nullptr, depth(), low,
+                  low + height, &pooled.back());
       coarse[s].assign(std::make_move_iterator(pooled.begin()),
                        std::make_move_iterator(pooled.begin() + top_));
       trees_[s] = analyse_flux(std::move(pooled), top_, depth());

@@ -48,28 +48,6 @@ SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   return result;
 }
 
-// The keys of some cells and, where there are any, of the layers next to them.
-std::vector<CellKey> keys_with_layers(const SampleLevel* below, const SampleLevel& level,
-                                      const SampleLevel* above) {
-  std::vector<CellKey> keys;
-  if (below != nullptr && below->size() > 0) {
-    const std::vector<SampleCell>& cells = below->samples.cells;
-    const int last = cell_position(cells.back().key)[2];
-    auto first = cells.end();
-    while (first != cells.begin() && cell_position(std::prev(first)->key)[2] == last) --first;
-    for (; first != cells.end(); ++first) keys.push_back(first->key);
-  }
-  for (const SampleCell& cell : level.samples.cells) keys.push_back(cell.key);
-  if (above != nullptr && above->size() > 0) {
-    const int first = cell_position(above->samples.cells.front().key)[2];
-    for (const SampleCell& cell : above->samples.cells) {
-      if (cell_position(cell.key)[2] != first) break;
-      keys.push_back(cell.key);
-    }
-  }
-  return keys;
-}
-
 // Of the cells, those with enough neighbours. As keys are in row-major order, so are the nine rows
 // around them: one cursor for each goes through all keys once.
 void mark_met(const std::vector<CellKey>& keys, SampleLevel* level) {
@@ -133,6 +111,27 @@ SampleSlab make_sample_slab(SampleCells finest, int depth, int top, std::size_t 
   slab.at(depth).samples = std::move(finest);
   for (int k = depth; k > top; --k) slab.at(k - 1) = coarser(&slab.at(k), attribute_count);
   return slab;
+}
+
+std::vector<CellKey> keys_with_layers(const SampleLevel* below, const SampleLevel& level,
+                                      const SampleLevel* above) {
+  std::vector<CellKey> keys;
+  if (below != nullptr && below->size() > 0) {
+    const std::vector<SampleCell>& cells = below->samples.cells;
+    const int last = cell_position(cells.back().key)[2];
+    auto first = cells.end();
+    while (first != cells.begin() && cell_position(std::prev(first)->key)[2] == last) --first;
+    for (; first != cells.end(); ++first) keys.push_back(first->key);
+  }
+  for (const SampleCell& cell : level.samples.cells) keys.push_back(cell.key);
+  if (above != nullptr && above->size() > 0) {
+    const int first = cell_position(above->samples.cells.front().key)[2];
+    for (const SampleCell& cell : above->samples.cells) {
+      if (cell_position(cell.key)[2] != first) break;
+      keys.push_back(cell.key);
+    }
+  }
+  return keys;
 }
 
 void find_met_cells(const SampleSlab* below, const SampleSlab* above, SampleSlab* slab) {

@@ -43,6 +43,10 @@ SampleSlab make_sample_slab(SampleCells finest, int depth, int top, std::size_t 
 /// Sets is_met of all levels, where the slabs below and above, if there are any, have been made.
 void find_met_cells(const SampleSlab* below, const SampleSlab* above, SampleSlab* slab);
 
+/// The keys of the cells of a level and, where there are any, of the layers next to them; sorted.
+std::vector<CellKey> keys_with_layers(const SampleLevel* below, const SampleLevel& level,
+                                      const SampleLevel* above);
+
 /// Sets `leaf`, from that of the first level, and unit_area. `mean_weight` is that of a sample;
 /// `finest` the depth of the cells that areas are measured in.
 void find_leaves(double mean_weight, int finest, SampleSlab* slab);

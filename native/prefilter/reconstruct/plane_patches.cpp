@@ -1,0 +1,167 @@
+#include "prefilter/reconstruct/plane_patches.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/spatial/morton.h"
+#include "prefilter/wavelet/cell_polygon.h"
+
+namespace prefilter {
+namespace {
+
+constexpr double kHalfDiagonal = 0.8661;
+constexpr double kLeastCoherence = 0.2;
+
+// A plane in the coordinates of a unit cell.
+struct Plane {
+  Vector3 normal;  // of length 1
+  Vector3 point;
+};
+
+std::optional<Plane> plane_of(const Vector3& normal, const Vector3& position, double weight) {
+  const double length = std::sqrt(dot(normal, normal));
+  if (!(length > kLeastCoherence * weight)) return std::nullopt;
+  Plane plane;
+  for (std::size_t a = 0; a < 3; ++a) {
+    plane.normal[a] = normal[a] / length;
+    plane.point[a] = position[a] / weight;
+  }
+  return plane;
+}
+
+std::optional<Plane> plane_of(const SampleCell& cell) {
+  Vector3 normal;
+  Vector3 position;
+  for (std::size_t a = 0; a < 3; ++a) {
+    normal[a] = static_cast<double>(cell.normal[a]);
+    position[a] = static_cast<double>(cell.position[a]);
+  }
+  return plane_of(normal, position, static_cast<double>(cell.weight));
+}
+
+// The part of a plane in the unit cell; its corners run around the normal.
+CellPolygon cut_to_cell(const Plane& plane) {
+  const Vector3& n = plane.normal;
+  const Vector3 middle = {0.5, 0.5, 0.5};
+  const double height = dot(plane.point - middle, n);
+  CellPolygon polygon;
+  if (std::abs(height) >= kHalfDiagonal) return polygon;
+  const int least = std::abs(n[0]) < std::abs(n[1]) ? (std::abs(n[0]) < std::abs(n[2]) ? 0 : 2)
+                                                    : (std::abs(n[1]) < std::abs(n[2]) ? 1 : 2);
+  Vector3 axis{};
+  axis[least] = 1.0;
+  Vector3 u = cross(n, axis);
+  const double length = std::sqrt(dot(u, u));
+  for (double& x : u) x /= length;
+  const Vector3 v = cross(n, u);
+  constexpr std::array<std::array<double, 2>, 4> kCorners = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  for (const auto& [s, t] : kCorners) {
+    Vector3 corner;
+    for (std::size_t a = 0; a < 3; ++a) corner[a] = middle[a] + height * n[a] + s * u[a] + t * v[a];
+    polygon.add(corner);
+  }
+  for (int a = 0; a < 3 && polygon.count > 0; ++a) clip_to_slab(a, 0.0, 1.0, &polygon);
+  return polygon;
+}
+
+CellFlux patch(const CellPosition& at, const CellPolygon& polygon) {
+  CellFlux result;
+  result.place = morton_index(at);
+  result.flux = polygon_flux(polygon, {0.0, 0.0, 0.0});
+  return result;
+}
+
+// Sums for a cell without samples, from the planes next to it.
+struct Guess {
+  CellKey key;
+  float weight;
+  std::array<float, 3> normal;
+  std::array<float, 3> position;
+};
+
+// Whether there are samples in the neighbours of cells that are asked for in row-major order.
+class Neighbours {
+ public:
+  explicit Neighbours(const std::vector<CellKey>& keys) : keys_(keys) {}
+
+  bool has(std::size_t face, CellKey key) {
+    std::size_t& cursor = cursors_[face];
+    while (cursor < keys_.size() && keys_[cursor] < key) ++cursor;
+    return cursor < keys_.size() && keys_[cursor] == key;
+  }
+
+ private:
+  const std::vector<CellKey>& keys_;
+  std::array<std::size_t, 6> cursors_{};
+};
+
+}  // namespace
+
+void add_patches(const SampleLevel* below, const SampleLevel& level, const SampleLevel* above,
+                 int depth, int low, int high, std::vector<CellFlux>* patches) {
+  const std::vector<CellKey> keys = keys_with_layers(below, level, above);
+  Neighbours neighbours(keys);
+  std::vector<Guess> guesses;
+  const int side = 1 << depth;
+  const auto visit = [&](const SampleLevel& from, std::size_t i, bool is_own) {
+    if (from.is_met[i] == 0) return;
+    const SampleCell& cell = from.samples.cells[i];
+    const std::optional<Plane> plane = plane_of(cell);
+    if (!plane) return;
+    const CellPolygon polygon = cut_to_cell(*plane);
+    if (polygon.count < 3) return;
+    const CellPosition at = cell_position(cell.key);
+    if (is_own) patches->push_back(patch(at, polygon));
+    for (int face = 0; face < 6; ++face) {
+      const int axis = face / 2;
+      const bool is_high = (face & 1) != 0;
+      if (is_high ? polygon.highest(axis) < 1.0 : polygon.lowest(axis) > 0.0) continue;
+      CellPosition next = at;
+      next[axis] += is_high ? 1 : -1;
+      if (next[axis] < 0 || next[axis] >= side || next[2] < low || next[2] >= high) continue;
+      if (neighbours.has(static_cast<std::size_t>(face), cell_key(next))) continue;
+      Guess guess = {cell_key(next), cell.weight, cell.normal, cell.position};
+      guess.position[axis] += is_high ? -cell.weight : cell.weight;
+      guesses.push_back(guess);
+    }
+  };
+  // In row-major order, as the keys are.
+  if (below != nullptr) {
+    for (std::size_t i = 0; i < below->size(); ++i) {
+      if (cell_position(below->samples.cells[i].key)[2] == low - 1) visit(*below, i, false);
+    }
+  }
+  for (std::size_t i = 0; i < level.size(); ++i) visit(level, i, true);
+  if (above != nullptr) {
+    for (std::size_t i = 0; i < above->size(); ++i) {
+      if (cell_position(above->samples.cells[i].key)[2] > high) break;
+      visit(*above, i, false);
+    }
+  }
+  std::stable_sort(guesses.begin(), guesses.end(),
+                   [](const Guess& a, const Guess& b) { return a.key < b.key; });
+  for (std::size_t i = 0; i < guesses.size();) {
+    Vector3 normal{};
+    Vector3 position{};
+    double weight = 0.0;
+    const CellKey key = guesses[i].key;
+    for (; i < guesses.size() && guesses[i].key == key; ++i) {
+      const Guess& guess = guesses[i];
+      weight += static_cast<double>(guess.weight);
+      for (std::size_t a = 0; a < 3; ++a) {
+        normal[a] += static_cast<double>(guess.normal[a]);
+        position[a] += static_cast<double>(guess.position[a]);
+      }
+    }
+    const std::optional<Plane> plane = plane_of(normal, position, weight);
+    if (!plane) continue;
+    const CellPolygon polygon = cut_to_cell(*plane);
+    if (polygon.count >= 3) patches->push_back(patch(cell_position(key), polygon));
+  }
+}
+
+}  // namespace prefilter

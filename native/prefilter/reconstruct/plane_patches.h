@@ -1,0 +1,22 @@
+// The surface in each cell as a piece of a plane.
+//
+// Beyond the text, which gives each leaf the area of its side. A few samples scattered over a cell
+// give its flux but roughly; the plane across their mean normal, cut to the cell, gives it to the
+// second order. Where such a plane leaves through a face and there are no samples behind it, the
+// surface is taken to go on: cells that it merely grazes may have been missed.
+#pragma once
+
+#include <vector>
+
+#include "prefilter/reconstruct/flux_tree.h"
+#include "prefilter/reconstruct/sample_slab.h"
+
+namespace prefilter {
+
+/// Appends the pieces in the cells of one depth of a slab whose samples count there, and in those
+/// between them. The slab is from `low` up to `high`, in cells; `below` and `above` are the same
+/// depth of the slabs next to it, if there are any.
+void add_patches(const SampleLevel* below, const SampleLevel& level, const SampleLevel* above,
+                 int depth, int low, int high, std::vector<CellFlux>* patches);
+
+}  // namespace prefilter
