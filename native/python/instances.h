@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "prefilter/reconstruct/reconstruct.h"
 #include "prefilter/scan/point_source.h"
 #include "prefilter/spatial/nearest.h"
 #include "prefilter/surface/surface.h"
@@ -51,3 +52,7 @@ class pybind11::detail::type_caster<prefilter::PointSource>
 template <>
 class pybind11::detail::type_caster<prefilter::Surface>
     : public prefilter::python::InstanceCaster<prefilter::Surface> {};
+
+template <>
+class pybind11::detail::type_caster<prefilter::ReconstructOptions>
+    : public prefilter::python::InstanceCaster<prefilter::ReconstructOptions> {};

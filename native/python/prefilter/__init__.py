@@ -14,8 +14,8 @@ from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_co
 from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
+from .reconstruction import ReconstructionReport, reconstruct, reconstruct_file
 from .scan_files import ScanPoints, read_points
-from .reconstruction import ReconstructionReport, reconstruct
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
@@ -32,8 +32,8 @@ __all__ = [
     "MipmapFilter",
     "NearestPoints",
     "Octree",
-    "ScanPoints",
     "ReconstructionReport",
+    "ScanPoints",
     "Surface",
     "close_holes",
     "contour",
@@ -49,6 +49,7 @@ __all__ = [
     "normal_mipmaps",
     "read_points",
     "reconstruct",
+    "reconstruct_file",
     "seam_contrast",
     "texel_weights",
     "to_linear",

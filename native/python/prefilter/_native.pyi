@@ -296,3 +296,40 @@ def contour_outlines(
     origin: list[float],
     progress: ProgressCallback | None,
 ) -> list[npt.NDArray[np.float64]]: ...
+
+class ReconstructOptions:
+    def __init__(
+        self,
+        depth: int,
+        wavelet: str,
+        smooth: bool,
+        isovalue: float | str,
+        fit: bool,
+        trim: float | None,
+        memory_limit: int | None,
+        folder: bytes,
+        progress: ProgressCallback | None,
+        threads: int,
+    ) -> None: ...
+
+class ArrayPoints(PointSource):
+    def __init__(
+        self,
+        positions: npt.NDArray[np.floating],
+        normals: npt.NDArray[np.floating],
+        weights: npt.NDArray[np.float32] | None,
+        attributes: npt.NDArray[np.float32] | None,
+        names: list[tuple[str, bool]],
+    ) -> None: ...
+
+def reconstruct(
+    source: PointSource, options: ReconstructOptions
+) -> tuple[
+    npt.NDArray[np.float64],
+    npt.NDArray[np.int64],
+    npt.NDArray[np.float32],
+    dict[str, float],
+]: ...
+def reconstruct_file(
+    source: PointSource, target: bytes, options: ReconstructOptions
+) -> dict[str, float]: ...

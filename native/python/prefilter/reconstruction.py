@@ -1,5 +1,6 @@
 """Scans: oriented points to closed surfaces."""
 
+import os
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -9,6 +10,8 @@ import numpy.typing as npt
 from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
 from ._border.arrays import as_floats, as_threads
+from ._border.output import as_target
+from .scan_files import ScanPoints, open_points, read_points
 
 Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]
 MeshWithAttributes: TypeAlias = tuple[
@@ -97,33 +100,137 @@ def reconstruct(
     """
     rows = _as_rows("points", points)
     count = len(rows)
-    if normals is None:
-        raise ValueError("normals: None; arrays are needed")
-    given = _as_rows("normals", normals)
+    given = _normals_of(rows) if normals is None else _as_rows("normals", normals)
     if len(given) != count:
         raise ValueError(f"normals: {len(given)} rows; {count} are needed, one for each point")
-    position, triangles, values, found = _native.reconstruct(
+    values = None
+    if attributes is not None:
+        values = as_floats("attributes", attributes, (count, "n"), np.float32)
+    source = _native.ArrayPoints(
         rows,
         given,
         None if weights is None else as_floats("weights", weights, (count,), np.float32),
-        None if attributes is None else as_floats("attributes", attributes, (count, "n"), np.float32),
+        values,
+        [] if values is None else [("", False)] * values.shape[1],
+    )
+    options = _options(
+        depth, wavelet, smooth, isovalue, fit, trim, memory_limit, "", progress, threads
+    )
+    positions, triangles, carried, found = _native.reconstruct(source, options)
+    if report is not None:
+        _fill_in(report, found)
+    return (positions, triangles) if attributes is None else (positions, triangles, carried)
+
+
+def reconstruct_file(
+    source: str | os.PathLike[str],
+    target: str | os.PathLike[str],
+    *,
+    depth: int = 9,
+    wavelet: str = "haar",
+    smooth: bool = True,
+    isovalue: str | float = "auto",
+    fit: bool = True,
+    trim: float | None = None,
+    memory_limit: int | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> ReconstructionReport:
+    """`reconstruct` from file to file, of clouds and meshes that may be larger than memory.
+
+    Attributes of the points become properties of the vertices.
+
+    Args:
+        source: A file that `read_points` reads. Where it has no normals all points are read, and
+            normals estimated.
+        target: A .ply file: binary, in double precision where the source is. Temporary files are
+            made in its folder.
+        depth: And all others: as `reconstruct` has them.
+        wavelet: See there.
+        smooth: See there.
+        isovalue: See there.
+        fit: See there.
+        trim: See there.
+        memory_limit: See there.
+        progress: Called with the fraction done; returning False stops the work, and leaves a file
+            that was there before as it was.
+        threads: 0 means all processors. The result does not depend on it.
+
+    Raises:
+        ValueError: As `reconstruct`; or the source is damaged, or the target's ending is another.
+        OSError: A file cannot be read or written.
+        MemoryError: The points have no normals, and would not fit into memory.
+        Cancelled: `progress` returned False.
+    """
+    place = as_target(target)
+    if place.suffix.lower() != ".ply":
+        raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
+    options = _options(
+        depth, wavelet, smooth, isovalue, fit, trim, memory_limit, str(place.parent), progress,
+        threads,
+    )  # fmt: skip
+    points = open_points(source)
+    if not points.has_normals:
+        points = _with_normals(points, read_points(source))
+    report = ReconstructionReport()
+    _fill_in(report, _native.reconstruct_file(points, os.fsencode(place), options))
+    return report
+
+
+def _options(
+    depth: int,
+    wavelet: str,
+    smooth: bool,
+    isovalue: str | float,
+    fit: bool,
+    trim: float | None,
+    memory_limit: int | None,
+    folder: str,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> _native.ReconstructOptions:
+    is_name = isinstance(isovalue, str)
+    limit = None
+    if memory_limit is not None:
+        if not isinstance(memory_limit, int | np.integer) or memory_limit < 0:
+            raise ValueError(
+                f"memory_limit: {memory_limit!r}; a number of bytes from 0 is needed, or None"
+            )
+        limit = min(int(memory_limit), 2**62)
+    return _native.ReconstructOptions(
         as_int("depth", depth, "a whole number from 1 to 12 is needed"),
         as_name("wavelet", wavelet),
         bool(smooth),
-        as_name("isovalue", isovalue) if isinstance(isovalue, str) else as_number("isovalue", isovalue),
+        as_name("isovalue", isovalue) if is_name else as_number("isovalue", isovalue),
         bool(fit),
         None if trim is None else as_number("trim", trim),
-        memory_limit,
+        limit,
+        os.fsencode(folder),
         as_progress(progress),
         as_threads(threads),
     )
-    if report is not None:
-        for name in vars(report):
-            setattr(report, name, getattr(found, name))
-    return (position, triangles) if attributes is None else (position, triangles, values)
 
 
-def _as_rows(name: str, array: npt.ArrayLike) -> np.ndarray:
+def _with_normals(points: _native.PointSource, read: ScanPoints) -> _native.ArrayPoints:
+    names = points.attributes
+    columns = [read.attributes[name] for name, _ in names]
+    values = np.stack(columns, axis=1).astype(np.float32) if columns else None
+    normals = _normals_of(read.positions, read.viewpoint)
+    return _native.ArrayPoints(read.positions, normals, read.weights, values, names)
+
+
+def _normals_of(
+    points: npt.NDArray[np.floating], viewpoint: npt.NDArray[np.float64] | None = None
+) -> npt.NDArray[np.float64]:
+    raise ValueError("normals: None; arrays are needed")
+
+
+def _fill_in(report: ReconstructionReport, found: dict[str, float]) -> None:
+    for name, value in found.items():
+        setattr(report, name, value)
+
+
+def _as_rows(name: str, array: npt.ArrayLike) -> npt.NDArray[np.floating]:
     """Rows of three, float32 or float64 as they are."""
     found = np.asarray(array)
     dtype = np.float32 if found.dtype == np.float32 else np.float64

@@ -1,0 +1,84 @@
+"""Points to surfaces, against the surfaces that the points were taken from."""
+
+from pathlib import Path
+
+import numpy as np
+import prefilter
+import pytest
+import solids
+from clouds import Cloud, sphere, torus
+
+CLOUDS = {"sphere": sphere(40_000), "torus": torus(60_000)}
+DEPTH = 6
+
+
+def _rebuilt(cloud: Cloud, **options: object) -> tuple[np.ndarray, np.ndarray, float]:
+    """Positions, triangles, and the mean distance of vertices from the surface in cells."""
+    report = prefilter.ReconstructionReport()
+    positions, triangles = prefilter.reconstruct(
+        cloud.points, cloud.normals, report=report, **({"depth": DEPTH} | options)
+    )
+    assert (report.vertices, report.triangles) == (len(positions), len(triangles))
+    return positions, triangles, float(np.abs(cloud.distance(positions)).mean() / report.cell)
+
+
+@pytest.mark.parametrize("name", CLOUDS)
+@pytest.mark.parametrize(
+    ("options", "limit"),
+    [
+        ({}, 0.002),
+        ({"smooth": False}, 0.002),
+        ({"fit": False}, 0.06),
+        ({"fit": False, "smooth": False}, 0.06),
+        ({"fit": False, "smooth": False, "isovalue": "half"}, 0.06),
+        ({"fit": False, "isovalue": 0.5}, 0.06),
+    ],
+)
+def test_surface_is_closed_and_near(name: str, options: dict[str, object], limit: float) -> None:
+    positions, triangles, error = _rebuilt(CLOUDS[name], **options)
+    assert solids.surface_faults(positions, triangles).none
+    assert error < limit
+
+
+def test_outside_is_where_normals_point() -> None:
+    positions, triangles, _ = _rebuilt(CLOUDS["sphere"])
+    assert solids.mesh_volume(positions, triangles) == pytest.approx(4 / 3 * np.pi, rel=1e-3)
+
+
+@pytest.mark.parametrize("depth", [1, 2, 3, 5, 6, 8])
+def test_all_depths(depth: int) -> None:
+    positions, triangles, _ = _rebuilt(CLOUDS["sphere"], depth=depth)
+    assert solids.surface_faults(positions, triangles).none
+
+
+def test_threads_and_memory_change_nothing(tmp_path: Path) -> None:
+    cloud = CLOUDS["torus"]
+    expected = _rebuilt(cloud, threads=1)
+    report = prefilter.ReconstructionReport()
+    found = prefilter.reconstruct(
+        cloud.points, cloud.normals, depth=DEPTH, threads=3, memory_limit=0, report=report
+    )
+    assert report.is_spilled
+    for a, b in zip(expected, found, strict=False):
+        np.testing.assert_array_equal(a, b)
+
+
+def test_order_of_points_changes_rounding_alone() -> None:
+    cloud = CLOUDS["torus"]
+    order = np.random.default_rng(3).permutation(len(cloud.points))
+    positions, triangles, _ = _rebuilt(cloud)
+    other = prefilter.reconstruct(cloud.points[order], cloud.normals[order], depth=DEPTH)
+    np.testing.assert_array_equal(other[1], triangles)
+    np.testing.assert_allclose(other[0], positions, atol=1e-5)
+
+
+def test_points_that_tell_nothing_are_counted() -> None:
+    cloud = sphere(20_000)
+    points, normals = cloud.points.copy(), cloud.normals.copy()
+    points[0], points[1], points[2] = np.nan, np.inf, -np.inf
+    normals[3], normals[4] = np.nan, 0.0
+    report = prefilter.ReconstructionReport()
+    found = prefilter.reconstruct(points, normals, depth=6, report=report)
+    assert (report.points, report.dropped) == (20_000, 5)
+    expected = prefilter.reconstruct(points[5:], normals[5:], depth=6)
+    np.testing.assert_array_equal(found[0], expected[0])
