@@ -82,3 +82,11 @@ def test_points_that_tell_nothing_are_counted() -> None:
     assert (report.points, report.dropped) == (20_000, 5)
     expected = prefilter.reconstruct(points[5:], normals[5:], depth=6)
     np.testing.assert_array_equal(found[0], expected[0])
+
+
+def test_normals_are_estimated() -> None:
+    cloud = CLOUDS["sphere"]
+    report = prefilter.ReconstructionReport()
+    positions, triangles = prefilter.reconstruct(cloud.points, depth=DEPTH, report=report)
+    assert solids.surface_faults(positions, triangles).none
+    assert np.abs(cloud.distance(positions)).mean() < 0.01 * report.cell

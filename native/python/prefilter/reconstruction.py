@@ -8,9 +8,17 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
+from ._border.arguments import (
+    ProgressCallback,
+    as_int,
+    as_name,
+    as_number,
+    as_progress,
+    progress_part,
+)
 from ._border.arrays import as_floats, as_threads
 from ._border.output import as_target
+from .points import estimate_normals
 from .scan_files import ScanPoints, open_points, read_points
 
 Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]
@@ -100,7 +108,12 @@ def reconstruct(
     """
     rows = _as_rows("points", points)
     count = len(rows)
-    given = _normals_of(rows) if normals is None else _as_rows("normals", normals)
+    given: npt.NDArray[np.floating]
+    if normals is None:
+        given = estimate_normals(rows, progress=progress_part(progress, 0.0, 0.5), threads=threads)
+        progress = progress_part(progress, 0.5, 1.0)
+    else:
+        given = _as_rows("normals", normals)
     if len(given) != count:
         raise ValueError(f"normals: {len(given)} rows; {count} are needed, one for each point")
     values = None
@@ -165,13 +178,21 @@ def reconstruct_file(
     place = as_target(target)
     if place.suffix.lower() != ".ply":
         raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
-    options = _options(
-        depth, wavelet, smooth, isovalue, fit, trim, memory_limit, str(place.parent), progress,
-        threads,
-    )  # fmt: skip
     points = open_points(source)
     if not points.has_normals:
-        points = _with_normals(points, read_points(source))
+        read = read_points(source, progress=progress_part(progress, 0.0, 0.1))
+        normals = estimate_normals(
+            read.positions,
+            viewpoint=read.viewpoint,
+            progress=progress_part(progress, 0.1, 0.5),
+            threads=threads,
+        )
+        points = _with_normals(points, read, normals)
+        progress = progress_part(progress, 0.5, 1.0)
+    folder = str(place.parent)
+    options = _options(
+        depth, wavelet, smooth, isovalue, fit, trim, memory_limit, folder, progress, threads
+    )
     report = ReconstructionReport()
     _fill_in(report, _native.reconstruct_file(points, os.fsencode(place), options))
     return report
@@ -189,7 +210,11 @@ def _options(
     progress: ProgressCallback | None,
     threads: int,
 ) -> _native.ReconstructOptions:
-    is_name = isinstance(isovalue, str)
+    level: str | float
+    if isinstance(isovalue, str):
+        level = as_name("isovalue", isovalue)
+    else:
+        level = as_number("isovalue", isovalue)
     limit = None
     if memory_limit is not None:
         if not isinstance(memory_limit, int | np.integer) or memory_limit < 0:
@@ -201,7 +226,7 @@ def _options(
         as_int("depth", depth, "a whole number from 1 to 12 is needed"),
         as_name("wavelet", wavelet),
         bool(smooth),
-        as_name("isovalue", isovalue) if is_name else as_number("isovalue", isovalue),
+        level,
         bool(fit),
         None if trim is None else as_number("trim", trim),
         limit,
@@ -211,18 +236,13 @@ def _options(
     )
 
 
-def _with_normals(points: _native.PointSource, read: ScanPoints) -> _native.ArrayPoints:
+def _with_normals(
+    points: _native.PointSource, read: ScanPoints, normals: npt.NDArray[np.float64]
+) -> _native.ArrayPoints:
     names = points.attributes
     columns = [read.attributes[name] for name, _ in names]
     values = np.stack(columns, axis=1).astype(np.float32) if columns else None
-    normals = _normals_of(read.positions, read.viewpoint)
     return _native.ArrayPoints(read.positions, normals, read.weights, values, names)
-
-
-def _normals_of(
-    points: npt.NDArray[np.floating], viewpoint: npt.NDArray[np.float64] | None = None
-) -> npt.NDArray[np.float64]:
-    raise ValueError("normals: None; arrays are needed")
 
 
 def _fill_in(report: ReconstructionReport, found: dict[str, float]) -> None:

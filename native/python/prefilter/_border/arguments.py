@@ -42,6 +42,16 @@ def as_progress(progress: ProgressCallback | None) -> ProgressCallback | None:
     return progress
 
 
+def progress_part(
+    progress: ProgressCallback | None, low: float, high: float
+) -> ProgressCallback | None:
+    """What covers the share from `low` to `high` of the work that `progress` is told of."""
+    told = as_progress(progress)
+    if told is None:
+        return None
+    return lambda fraction: told(low + (high - low) * fraction)
+
+
 def as_level_count(levels: int | None) -> int:
     if levels is None:
         return 0
