@@ -7,7 +7,7 @@ holds pixels: a program inherits the peak memory of what started it, so that has
 import os
 import subprocess
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -45,8 +45,23 @@ class Peer(Protocol):
 
 def run(command: Sequence[str]) -> tuple[float, float, str]:
     """Runs a program; returns its wall time [s], its peak memory [MiB] and what it printed."""
+    found, printed = run_measured(command)
+    return found.seconds, found.peak_mib, printed
+
+
+def run_measured(
+    command: Sequence[str], environment: Mapping[str, str] | None = None
+) -> tuple[Measurement, str]:
+    """Runs a program, with these variables besides ours; returns what it took and printed.
+
+    Raises:
+        OSError: The program is missing or failed.
+    """
+    variables = {**os.environ, **(environment or {})}
     began = time.perf_counter()
-    process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True, env=variables
+    )
     with process.stdout as stream:
         printed = stream.read()
     _, status, usage = os.wait4(process.pid, 0)
@@ -54,4 +69,5 @@ def run(command: Sequence[str]) -> tuple[float, float, str]:
     process.returncode = os.waitstatus_to_exitcode(status)
     if process.returncode != 0:
         raise OSError(f"'{' '.join(command)}' ended with status {process.returncode}: {printed}")
-    return seconds, usage.ru_maxrss / 1024, printed
+    cpu = usage.ru_utime + usage.ru_stime
+    return Measurement(seconds, usage.ru_maxrss / 1024, cpu_seconds=cpu), printed

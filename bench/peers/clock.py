@@ -9,7 +9,7 @@ import os
 import re
 import resource
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -54,9 +54,11 @@ def pinned(command: Sequence[str], threads: int) -> list[str]:
     return ["taskset", "--cpu-list", ",".join(map(str, processors)), *command]
 
 
-def run_clocked(command: Sequence[str]) -> "Measurement":
-    """Runs a program that calls `clocked` once."""
-    _, _, printed = run(command)
+def run_clocked(
+    command: Sequence[str], environment: Mapping[str, str] | None = None
+) -> "Measurement":
+    """Runs a program that calls `clocked` once, with these variables besides ours."""
+    _, printed = run_measured(command, environment)
     lines = [line for line in printed.splitlines() if line.startswith(MARK)]
     if len(lines) != 1:
         raise OSError(f"'{' '.join(command)}' told no time: {printed}")
@@ -64,4 +66,4 @@ def run_clocked(command: Sequence[str]) -> "Measurement":
 
 
 if __package__:
-    from . import Measurement, run
+    from . import Measurement, run_measured

@@ -1,0 +1,1 @@
+"""Oriented points to surfaces."""
