@@ -45,7 +45,11 @@ class Model:
     @staticmethod
     def read(path: Path) -> "Model":
         """Reads a mesh."""
-        mesh = ply.read_mesh(path)
+        return Model.of(ply.read_mesh(path))
+
+    @staticmethod
+    def of(mesh: Triangles) -> "Model":
+        """Makes a mesh ready."""
         areas = np.linalg.norm(mesh.area_vectors, axis=1)
         normals = mesh.area_vectors / np.where(areas > 0, areas, 1)[:, None]
         return Model(mesh, normals, np.cumsum(areas))
