@@ -12,6 +12,8 @@ import itertools
 import math
 import sys
 import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
@@ -32,7 +34,7 @@ from bench.voxels.meshes import Triangles
 Floats = NDArray[np.floating]
 Mesh = tuple[Floats, NDArray[np.integer]]
 Panel = tuple[str, str, demo.Array]
-SAMPLES = 48
+SAMPLES = 24
 CLAY = (0.45, 0.42, 0.38)
 INK = (0.03, 0.05, 0.09)
 HUES = np.array(
@@ -51,8 +53,52 @@ HUES = np.array(
 )
 BUNNY_DEPTH = 9
 NOISY_DEPTH, NOISY_POINTS = 8, 400_000
-UNEVEN_DEPTH, UNEVEN_POINTS = 9, 120_000
-SPARSEST = 1 / 400  # Of the densest points' density.
+UNEVEN_DEPTH, UNEVEN_POINTS = 7, 400_000  # Before they are thinned out.
+SPARSEST = 1 / 1000  # Of the densest points' density.
+KINDS = {
+    "Haar": {"wavelet": "haar", "smooth": False, "fit": False},
+    "D4": {"wavelet": "d4", "smooth": False, "fit": False},
+    "D4 smoothed": {"wavelet": "d4", "smooth": True, "fit": False},
+}
+
+
+@dataclass(frozen=True)
+class View:
+    """What the camera sees: a place, this wide, from angles in degrees.
+
+    `dot` is the radius of points, and `edge` the width of edges, both in widths of the view.
+    """
+
+    target: tuple[float, float, float]
+    width: float
+    turn: float
+    tilt: float
+    dot: float
+    edge: float = 0.0
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What is shown, and the lines under it."""
+
+    title: str
+    note: str
+    add: Callable[[View], bpy.types.Object]
+
+
+# The bunny's are of its points in metres, turned to have z upwards.
+BUNNY_VIEWS = (
+    View((-0.017, 0.0, 0.11), 0.2, -12, 8, dot=0.0011),
+    View((-0.062, 0.0, 0.137), 0.075, -38, 8, dot=0.0026),
+)
+NOISE_VIEWS = (
+    View((0.0, 0.0, 0.0), 2.8, -20, 4, dot=0.0011),
+    View((-0.38, -0.8, 0.27), 0.8, -20, 4, dot=0.0022),
+)
+UNEVEN_VIEWS = (
+    View((0.0, 0.0, 0.0), 2.9, -8, 4, dot=0.0011, edge=0.0006),
+    View((0.1, -0.7, 0.2), 0.9, -8, 4, dot=0.003, edge=0.002),
+)
 
 
 def main(folder: Path, shared: Path) -> None:
@@ -60,15 +106,36 @@ def main(folder: Path, shared: Path) -> None:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     set_up_render()
     with tempfile.TemporaryDirectory() as name:
+        work = Path(name)
         conf = shared / "points/bunny/bun.conf"
         if conf.exists():
-            demo.save(demo.comparison(bunny(conf, Path(name))), folder / "scans.png")
+            first, second = shots(bunny(conf), BUNNY_VIEWS, work)
+            demo.save(demo.comparison([*first, *second]), folder / "scans.png")
         source = monkey()
-        demo.save(noise(source, Path(name)), folder / "noise.png")
-        demo.save(demo.comparison(uneven(source, Path(name))), folder / "density.png")
+        whole, close = map(demo.comparison, shots(noisy(source, work), NOISE_VIEWS, work))
+        page = np.concatenate([whole[: demo.GAP + demo.PANEL_HEIGHT], close])
+        demo.save(page, folder / "noise.png")
+        first, second = shots(uneven(source), UNEVEN_VIEWS, work)
+        demo.save(demo.comparison([*first, *second]), folder / "density.png")
 
 
-def bunny(conf: Path, folder: Path) -> list[Panel]:
+def shots(subjects: Sequence[Subject], views: Sequence[View], folder: Path) -> list[list[Panel]]:
+    """Renders all subjects in each view."""
+    found = []
+    for view in views:
+        look(view)
+        panels = []
+        for subject in subjects:
+            obj = subject.add(view)
+            panels.append((subject.title, subject.note, demo.render(folder)))
+            mesh = obj.data
+            bpy.data.objects.remove(obj)
+            bpy.data.meshes.remove(mesh)
+        found.append(panels)
+    return found
+
+
+def bunny(conf: Path) -> list[Subject]:
     """The ten range scans, each in a colour, and what becomes of them."""
     placed = [range_scans.placed(*scan) for scan in range_scans.placements(conf)]
     points, normals = (np.concatenate(parts) for parts in zip(*placed, strict=True))
@@ -78,91 +145,58 @@ def bunny(conf: Path, folder: Path) -> list[Panel]:
     to_z_up = np.array([(1, 0, 0), (0, 0, -1), (0, 1, 0)])
     points, normals = points @ to_z_up.T, normals @ to_z_up.T
     made = prefilter.reconstruct(points, normals, depth=BUNNY_DEPTH)
-    titles = (
-        ("Ten scans", f"{len(points):,} points"),
-        ("One surface", f"{len(made[1]):,} triangles"),
-    )
-    middle, size = middle_and_size(points)
-    views = (("", middle, 1.3 * size), (", the head", middle + size * HEAD, 0.45 * size))
-    panels = []
-    for suffix, target, width in views:
-        look_at(target, width, turn=-12, tilt=8)
-        for (title, note), add in zip(
-            titles,
-            (lambda: add_points(points, normals, colors, size / 900), lambda: add_surface(made)),
-            strict=True,
-        ):
-            panels.append((title + suffix, note, shot(add(), folder)))
-    return panels
+    return [dots("Ten scans", points, normals, colors), surface("One surface", made)]
 
 
-HEAD = np.array((-0.22, 0.0, 0.16))  # Of the bunny, from its middle, in its size.
-
-
-def noise(source: Mesh, folder: Path) -> demo.Array:
+def noisy(source: Mesh, folder: Path) -> list[Subject]:
     """A cloud with noise of position and normals, by each basis and by Poisson."""
     random = np.random.default_rng(5)
-    model = sets.Model.of(Triangles(*source))
-    cloud = model.draw(NOISY_POINTS, random)
+    cloud = sets.Model.of(Triangles(*source)).draw(NOISY_POINTS, random)
     cell = sets.cell_of(cloud[0], NOISY_DEPTH)
     points, normals = sets.tilted(cloud, random)
     points = points + random.normal(scale=sets.NOISE * cell, size=points.shape)
-    kinds = {
-        "Haar": {"wavelet": "haar", "smooth": False, "fit": False},
-        "D4": {"wavelet": "d4", "smooth": False, "fit": False},
-        "D4 smoothed": {"wavelet": "d4", "smooth": True, "fit": False},
-    }
-    surfaces = {
-        name: prefilter.reconstruct(points, normals, depth=NOISY_DEPTH, **options)
-        for name, options in kinds.items()
-    }
+    subjects = [dots("Points", points, normals, HUES[1])]
+    for name, options in KINDS.items():
+        made = prefilter.reconstruct(points, normals, depth=NOISY_DEPTH, **options)
+        subjects.append(surface(name, made))
     if not PoissonRecon.missing():
-        files = folder / "points.ply", folder / "poisson.ply"
-        ply.write_points(files[0], len(points), [(points, normals.astype(np.float32))])
-        PoissonRecon(*files, NOISY_DEPTH).measure()
-        read = ply.read_mesh(files[1])
-        surfaces["Screened Poisson"] = read.positions, read.triangles
-    color = np.tile(HUES[1], (len(points), 1))
-    rows = []
-    for target, width in (((0.0, 0.0, 0.0), 2.7), (EYE, 0.62)):
-        look_at(np.array(target), width, turn=24, tilt=6)
-        notes = {"Points": f"{len(points):,}, noise of half a cell"}
-        panels = [
-            ("Points", notes["Points"], shot(add_points(points, normals, color, 0.0022), folder))
-        ]
-        for name, surface in surfaces.items():
-            panels.append(
-                (name, f"{len(surface[1]):,} triangles", shot(add_surface(surface), folder))
-            )
-        rows.append(panels)
-    whole, close = (demo.comparison(row) for row in rows)
-    return np.concatenate([whole[: demo.GAP + demo.PANEL_HEIGHT], close])
+        file, target = folder / "points.ply", folder / "poisson.ply"
+        ply.write_points(file, len(points), [(points, normals)])
+        PoissonRecon(file, target, NOISY_DEPTH).measure()
+        read = ply.read_mesh(target)
+        subjects.append(surface("Screened Poisson", (read.positions, read.triangles)))
+    return subjects
 
 
-EYE = (-0.38, -0.8, 0.22)  # Of the monkey, the right one.
-
-
-def uneven(source: Mesh, folder: Path) -> list[Panel]:
+def uneven(source: Mesh) -> list[Subject]:
     """Points that thin out to one side, and the triangles of their surface."""
     random = np.random.default_rng(6)
-    drawn = sets.Model.of(Triangles(*source)).draw(UNEVEN_POINTS * 4, random)
-    low, high = drawn[0][:, 0].min(), drawn[0][:, 0].max()
-    share = SPARSEST ** ((drawn[0][:, 0] - low) / (high - low))
+    points, normals = sets.Model.of(Triangles(*source)).draw(UNEVEN_POINTS, random)
+    low, high = points[:, 0].min(), points[:, 0].max()
+    share = SPARSEST ** ((points[:, 0] - low) / (high - low))
     kept = random.random(len(share)) < share
-    points, normals = drawn[0][kept], drawn[1][kept]
+    points, normals = points[kept], normals[kept]
     made = prefilter.reconstruct(points, normals, depth=UNEVEN_DEPTH)
-    color = np.tile(HUES[1], (len(points), 1))
-    panels = []
-    for target, width, suffix in (((0.0, 0.0, 0.0), 2.7, ""), (BROW, 0.7, ", between the eyes")):
-        look_at(np.array(target), width, turn=8, tilt=6)
-        dots = shot(add_points(points, normals, color, 0.0012 * width), folder)
-        panels.append(("Points" + suffix, f"{len(points):,}", dots))
-        lines = shot(add_surface(made, wires=width / 500), folder)
-        panels.append(("Triangles" + suffix, f"{len(made[1]):,}", lines))
-    return panels
+    return [dots("Points", points, normals, HUES[1]), surface("Triangles", made, has_edges=True)]
 
 
-BROW = (0.0, -0.7, 0.2)
+def dots(title: str, points: Floats, normals: Floats, colors: Floats) -> Subject:
+    """Points, in one colour or in one each."""
+    each = np.broadcast_to(colors, points.shape)
+    return Subject(
+        title,
+        f"{len(points):,} points",
+        lambda view: add_points(points, normals, each, view.dot * view.width),
+    )
+
+
+def surface(title: str, mesh: Mesh, *, has_edges: bool = False) -> Subject:
+    """A surface, smooth or with its edges."""
+    return Subject(
+        title,
+        f"{len(mesh[1]):,} triangles",
+        lambda view: add_surface(mesh, wires=view.edge * view.width if has_edges else 0.0),
+    )
 
 
 def monkey() -> Mesh:
@@ -175,26 +209,21 @@ def monkey() -> Mesh:
     triangles = np.empty((len(mesh.loop_triangles), 3), np.int32)
     mesh.loop_triangles.foreach_get("vertices", triangles.ravel())
     bpy.data.objects.remove(obj)
-    octree = prefilter.voxelize(positions, triangles, depth=9)
+    closed = prefilter.close_holes(positions, triangles)
+    octree = prefilter.voxelize(closed.positions, closed.triangles, depth=9)
     positions, triangles = octree.contour(interpolant="plane", cleanup=True)
     return positions.astype(float), triangles.astype(np.int64)
 
 
-def middle_and_size(points: Floats) -> tuple[Floats, float]:
-    """Returns the middle of the points' box, and its longest side."""
-    low, high = points.min(axis=0), points.max(axis=0)
-    return (low + high) / 2, float((high - low).max())
-
-
-def look_at(target: Floats, width: float, *, turn: float, tilt: float) -> None:
-    """Points the camera at a place; `width` is what it sees, angles in degrees."""
+def look(view: View) -> None:
+    """Places the camera."""
     camera = bpy.context.scene.camera
-    yaw, pitch = math.radians(turn), math.radians(tilt)
+    yaw, pitch = math.radians(view.turn), math.radians(view.tilt)
     back = Vector(
         (math.sin(yaw) * math.cos(pitch), -math.cos(yaw) * math.cos(pitch), math.sin(pitch))
     )
-    camera.data.ortho_scale = width
-    camera.location = Vector(target) + 20 * back
+    camera.data.ortho_scale = view.width
+    camera.location = Vector(view.target) + 20 * back
     camera.rotation_euler = back.to_track_quat("Z", "Y").to_euler()
 
 
@@ -209,30 +238,19 @@ def set_up_render() -> None:
     sun.data.angle = math.radians(3)
     sun.rotation_euler = (math.radians(58), 0, math.radians(-52))
     scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.4
-    scene.camera.data.clip_end = 1000
 
 
-def shot(obj: bpy.types.Object, folder: Path) -> demo.Array:
-    """Renders an object, and removes it."""
-    picture = demo.render(folder)
-    data = obj.data
-    bpy.data.objects.remove(obj)
-    bpy.data.meshes.remove(data)
-    return picture
-
-
-def add_surface(surface: Mesh, *, wires: float = 0.0) -> bpy.types.Object:
+def add_surface(mesh: Mesh, *, wires: float = 0.0) -> bpy.types.Object:
     """Adds a mesh of clay; with `wires`, the width of its edges, flat and with its edges."""
-    positions, triangles = surface
+    positions, triangles = mesh
     obj = new_object(positions, triangles)
-    mesh = obj.data
-    mesh.polygons.foreach_set("use_smooth", np.full(len(triangles), wires == 0))
+    obj.data.polygons.foreach_set("use_smooth", np.full(len(triangles), wires == 0))
     material = bpy.data.materials.new("Clay")
     material.use_nodes = True
     shader = material.node_tree.nodes["Principled BSDF"]
     shader.inputs["Base Color"].default_value = (*CLAY, 1)
     shader.inputs["Roughness"].default_value = 0.55
-    mesh.materials.append(material)
+    obj.data.materials.append(material)
     if wires:
         nodes, links = material.node_tree.nodes, material.node_tree.links
         edges = nodes.new("ShaderNodeWireframe")
