@@ -37,9 +37,10 @@ OURS: dict[str, dict[str, Any]] = {
     "Haar": {"wavelet": "haar", "smooth": False, "fit": False},
     "Haar smoothed": {"wavelet": "haar", "smooth": True, "fit": False},
     "Haar fitted": {"wavelet": "haar", "smooth": False, "fit": True},
+    "Haar smoothed, fitted": {"wavelet": "haar", "smooth": True, "fit": True},
     "D4": {"wavelet": "d4", "smooth": False, "fit": False},
     "D4 smoothed": {"wavelet": "d4", "smooth": True, "fit": False},
-    "D4 fitted": {"wavelet": "d4", "smooth": True, "fit": True},
+    "D4 smoothed, fitted": {"wavelet": "d4", "smooth": True, "fit": True},
 }
 THEIRS = {peer.name: peer for peer in (PoissonRecon, Open3d, MeshLab)}
 TIME_BARS = {
