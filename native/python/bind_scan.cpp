@@ -34,6 +34,7 @@ struct AllPoints {
   std::vector<Vector3> positions;
   std::vector<std::array<float, 3>> normals;
   std::vector<float> weights;
+  std::vector<Vector3> viewpoints;
   std::vector<AttributeValues> attributes;
 };
 
@@ -77,6 +78,7 @@ AllPoints read_all(PointSource* source, const Progress& progress) {
     append(batch.positions, &all.positions);
     append(batch.normals, &all.normals);
     append(batch.weights, &all.weights);
+    append(batch.viewpoints, &all.viewpoints);
     for (std::size_t a = 0; a < attributes.size(); ++a) {
       for (std::size_t i = a; i < batch.attributes.size(); i += attributes.size()) {
         if (attributes[a].is_byte) {
@@ -109,6 +111,8 @@ py::tuple bound_read_points(PointSource* source, const py::object& callback) {
   py::object weights = py::none();
   if (source->has_normals()) normals = to_array<float>(std::move(all.normals), {count, 3});
   if (!all.weights.empty()) weights = to_array<float>(std::move(all.weights), {count});
+  py::object viewpoints = py::none();
+  if (!all.viewpoints.empty()) viewpoints = to_array<double>(std::move(all.viewpoints), {count, 3});
   py::dict attributes;
   for (std::size_t a = 0; a < all.attributes.size(); ++a) {
     const PointAttribute& attribute = source->attributes()[a];
@@ -120,7 +124,7 @@ py::tuple bound_read_points(PointSource* source, const py::object& callback) {
     }
   }
   return py::make_tuple(to_array<double>(std::move(all.positions), {count, 3}), normals, weights,
-                        attributes);
+                        viewpoints, attributes);
 }
 
 py::object bound_read_range_grid(const std::string& path) {

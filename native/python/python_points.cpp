@@ -16,9 +16,9 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-// Positions, normals, weights and attributes of some points.
+// Positions, normals, weights, viewpoints and attributes of some points.
 using Chunk = std::tuple<Array<double>, std::optional<Array<float>>, std::optional<Array<float>>,
-                         Array<float>>;
+                         std::optional<Array<double>>, Array<float>>;
 
 // What needs the interpreter's lock to be changed or to go.
 struct Held {
@@ -91,18 +91,19 @@ class PythonPoints final : public PointSource {
   }
 
  private:
-  void take(std::size_t count, PointBatch* batch) {
-    const auto& [positions, normals, weights, attributes] = *held_->chunk;
-    const double* const position = rows(positions, size_, 3, done_);
+  template <typename T>
+  void append(const Array<T>& array, std::size_t count, std::vector<std::array<T, 3>>* to) const {
+    const T* const row = rows(array, size_, 3, done_);
     for (std::size_t i = 0; i < count; ++i) {
-      batch->positions.push_back({position[3 * i], position[3 * i + 1], position[3 * i + 2]});
+      to->push_back({row[3 * i], row[3 * i + 1], row[3 * i + 2]});
     }
-    if (has_normals_ && normals) {
-      const float* const normal = rows(*normals, size_, 3, done_);
-      for (std::size_t i = 0; i < count; ++i) {
-        batch->normals.push_back({normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]});
-      }
-    }
+  }
+
+  void take(std::size_t count, PointBatch* batch) {
+    const auto& [positions, normals, weights, viewpoints, attributes] = *held_->chunk;
+    append(positions, count, &batch->positions);
+    if (has_normals_ && normals) append(*normals, count, &batch->normals);
+    if (viewpoints) append(*viewpoints, count, &batch->viewpoints);
     if (weights) {
       const float* const weight = rows(*weights, size_, 1, done_);
       batch->weights.assign(weight, weight + count);

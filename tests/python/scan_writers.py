@@ -4,6 +4,7 @@ import struct
 from pathlib import Path
 
 import numpy as np
+import prefilter
 
 TYPES = {
     "char": "b",
@@ -72,3 +73,108 @@ def random_rows(types, count, seed=0):
             info = np.iinfo(code)
             columns.append(random.integers(info.min, info.max, count, endpoint=True).tolist())
     return list(zip(*columns, strict=True))
+
+
+def pcd(data, fields, rows, *, lines=None):
+    """The bytes of a PCD file; a field is (name, type of numpy, count)."""
+    kinds = [np.dtype(kind) for _, kind, _ in fields]
+    header = {
+        "VERSION": "0.7",
+        "FIELDS": " ".join(name for name, _, _ in fields),
+        "SIZE": " ".join(str(kind.itemsize) for kind in kinds),
+        "TYPE": " ".join({"f": "F", "i": "I", "u": "U"}[kind.kind] for kind in kinds),
+        "COUNT": " ".join(str(count) for _, _, count in fields),
+        "WIDTH": str(len(rows)),
+        "HEIGHT": "1",
+        "VIEWPOINT": "0 0 0 1 0 0 0",
+        "POINTS": str(len(rows)),
+        "DATA": data,
+        **(lines or {}),
+    }
+    text = "# .PCD v0.7 - Point Cloud Data file format\n"
+    text += "".join(f"{key} {value}\n" for key, value in header.items() if value is not None)
+    layout = np.dtype([(f"f{k}", kind, (n,)) for k, (_, kind, n) in enumerate(fields)])
+    table = np.array([tuple(np.atleast_1d(value) for value in row) for row in rows], layout)
+    if data == "binary":
+        body = table.tobytes()
+    elif data == "binary_compressed":
+        plain = b"".join(table[name].tobytes() for name in layout.names)
+        packed = lzf(plain)
+        body = struct.pack("<II", len(packed), len(plain)) + packed
+    else:
+        words = (" ".join(str(v) for part in row for v in part.tolist()) for row in table)
+        body = "".join(line + "\n" for line in words).encode()
+    return text.encode() + body
+
+
+def lzf(plain):
+    """Compresses as LibLZF does, only that it looks longer for what repeats."""
+    packed, literals, seen, at = bytearray(), bytearray(), {}, 0
+
+    def flush():
+        for k in range(0, len(literals), 32):
+            some = literals[k : k + 32]
+            packed.append(len(some) - 1)
+            packed.extend(some)
+        literals.clear()
+
+    while at < len(plain):
+        key = plain[at : at + 3]
+        start = seen.get(key)
+        seen[key] = at
+        if start is None or len(key) < 3 or at - start > 8192:
+            literals.append(plain[at])
+            at += 1
+            continue
+        flush()
+        length = 3
+        while (
+            length < 264
+            and at + length < len(plain)
+            and (plain[start + length] == plain[at + length])
+        ):
+            length += 1
+        back = at - start - 1
+        if length - 2 < 7:
+            packed.append(((length - 2) << 5) | (back >> 8))
+        else:
+            packed += bytes([(7 << 5) | (back >> 8), length - 2 - 7])
+        packed.append(back & 255)
+        at += length
+    flush()
+    return bytes(packed)
+
+
+def garble(random, contents):
+    """Cuts a file, or changes, repeats or leaves out some of its bytes."""
+    garbled = bytearray(contents)
+    for _ in range(random.integers(1, 4)):
+        at, length = random.integers(0, len(garbled) + 1), random.integers(1, 9)
+        kind = random.integers(5)
+        if kind == 0:
+            del garbled[at:]
+        elif kind == 1:
+            del garbled[at : at + length]
+        elif kind == 2:
+            garbled[at:at] = garbled[max(at - length, 0) : at]
+        elif kind == 3:
+            garbled[at : at + length] = random.bytes(length)
+        else:
+            garbled[at : at + 1] = random.choice([b"9", b"-", b" ", b"\n", b"\xff", b"e"])
+    return bytes(garbled)
+
+
+def garbled_are_refused(folder, name, contents):
+    """Asserts that a file that is damaged in any way is read, or refused with its name."""
+    random = np.random.default_rng(5)
+    prefilter.read_points(write(folder, name, contents))
+    messages = []
+    for _ in range(200):
+        try:
+            points = prefilter.read_points(write(folder, name, garble(random, contents)))
+        except ValueError as error:
+            messages.append(str(error))
+        else:
+            assert len(points.positions) < 100
+    assert len(messages) > 20
+    assert all(name in message for message in messages)

@@ -4,17 +4,36 @@
 #include <filesystem>
 
 #include "prefilter/base/error.h"
+#include "prefilter/scan/pcd_points.h"
 #include "prefilter/scan/ply_points.h"
+#include "prefilter/scan/text_points.h"
 
 namespace prefilter {
+namespace {
+
+struct Format {
+  const char* ending;
+  std::unique_ptr<PointSource> (*open)(const std::string& path);
+};
+constexpr Format kFormats[] = {
+    {".ply", open_ply_points},  {".pcd", open_pcd_points},   {".pts", open_text_points},
+    {".xyz", open_text_points}, {".xyzn", open_text_points}, {".asc", open_text_points},
+    {".txt", open_text_points},
+};
+
+}  // namespace
 
 std::unique_ptr<PointSource> open_points(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
   // No locale takes part in the names of formats.
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  if (ending == ".ply") return open_ply_points(path);
-  throw_invalid("'" + path + "': unsupported extension '" + ending + "'; .ply is needed");
+  std::string endings;
+  for (const Format& format : kFormats) {
+    if (ending == format.ending) return format.open(path);
+    endings += (endings.empty() ? "" : ", ") + std::string(format.ending);
+  }
+  throw_invalid("'" + path + "': unsupported extension '" + ending + "'; use " + endings);
 }
 
 }  // namespace prefilter

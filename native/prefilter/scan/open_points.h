@@ -8,7 +8,8 @@
 
 namespace prefilter {
 
-/// Opens a file as its ending says: .ply. Throws Error(kFile) where it cannot be opened, else
+/// Opens a file as its ending says: .ply; .pcd; .pts, .xyz, .xyzn, .asc or .txt, which are
+/// lines of numbers. Throws Error(kFile) where it cannot be opened, else
 /// Error where the ending is another or the file is not what it says.
 std::unique_ptr<PointSource> open_points(const std::string& path);
 

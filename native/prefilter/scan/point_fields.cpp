@@ -156,6 +156,7 @@ void PointFields::resize(std::size_t count, PointBatch* batch) const {
   batch->positions.resize(count);
   batch->normals.resize(has_normals_ ? count : 0);
   batch->weights.resize(has_weights_ ? count : 0);
+  batch->viewpoints.clear();
   batch->attributes.resize(count * attributes_.size());
 }
 

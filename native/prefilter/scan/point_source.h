@@ -24,6 +24,9 @@ struct PointBatch {
   std::vector<std::array<float, 3>> normals;
   // How much each point counts (a scanner's confidence), 0 and up; empty where all count 1.
   std::vector<float> weights;
+  // For each point where the scanner stood that saw it, where that differs among the points of the
+  // source; else none.
+  std::vector<Vector3> viewpoints;
   // For each point one value for each attribute of the source.
   std::vector<float> attributes;
 
@@ -31,6 +34,7 @@ struct PointBatch {
     positions.clear();
     normals.clear();
     weights.clear();
+    viewpoints.clear();
     attributes.clear();
   }
 };
@@ -45,7 +49,8 @@ class PointSource {
   virtual bool has_normals() const = 0;
   /// What every batch carries, in this order.
   virtual const std::vector<PointAttribute>& attributes() const = 0;
-  /// Where the scanner stood, in the points' coordinates.
+  /// Where the scanner stood, in the points' coordinates; none where batches tell it, or nothing
+  /// does.
   virtual std::optional<Vector3> viewpoint() const { return std::nullopt; }
   /// Whether positions need more than float precision (a file of doubles).
   virtual bool is_double() const { return false; }

@@ -73,6 +73,7 @@ def read_points(
     npt.NDArray[np.float64],
     npt.NDArray[np.float32] | None,
     npt.NDArray[np.float32] | None,
+    npt.NDArray[np.float64] | None,
     dict[str, npt.NDArray[np.uint8 | np.float32]],
 ]: ...
 def nearest_points(

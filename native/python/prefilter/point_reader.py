@@ -6,11 +6,13 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-# Of some points: positions (n, 3), normals (n, 3), weights (n,), and attributes (n, attributes).
+# Of some points: positions (n, 3), normals (n, 3), weights (n,), viewpoints (n, 3), and attributes
+# (n, attributes).
 PointChunk: TypeAlias = tuple[
     npt.NDArray[np.float64],
     npt.NDArray[np.float32] | None,
     npt.NDArray[np.float32] | None,
+    npt.NDArray[np.float64] | None,
     npt.NDArray[np.float32],
 ]
 
@@ -31,7 +33,8 @@ class PointReader(Protocol):
 
     @property
     def viewpoint(self) -> tuple[float, float, float] | None:
-        """Where the scanner stood, in the coordinates of the points."""
+        """Where the scanner stood, in the coordinates of the points; None where
+        that differs among them, or is not known."""
 
     def chunks(self) -> Iterator[PointChunk]:
         """Yields points, some at a time, anew from the first."""

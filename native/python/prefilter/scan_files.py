@@ -24,8 +24,9 @@ class ScanPoints:
         weights: (n,), how much each point counts (a scanner's confidence); None: all the same.
         attributes: An (n,) array for each other value that the points have, by its name in the
             file: uint8 where the file has bytes, else float32.
-        viewpoint: Where the scanner stood, in the coordinates of the points; None where the file
-            does not say.
+        viewpoint: Where the scanner stood, (3,), in the coordinates of the points; or for each
+            point, (n, 3), where these were seen from several places; None where the file does not
+            say.
     """
 
     positions: npt.NDArray[np.float64]
@@ -48,8 +49,11 @@ def read_points(
 ) -> ScanPoints:
     """Reads all points of a file; its ending says of which format it is.
 
-    .ply: the element "vertex", in text or binary. nx, ny, nz (or normal_x and so on) are normals,
-    confidence is the weight; other properties are attributes.
+    .ply, .pcd: nx, ny, nz (or normal_x and so on) are normals, confidence is the weight; all other
+    numbers are attributes. VIEWPOINT of a .pcd file is the viewpoint, except for the origin in a
+    cloud that is no image: it stands there, too, where nothing is known.
+    .xyz, .xyzn, .pts, .asc, .txt: lines of x y z, and then a normal, a color, an intensity; which
+    of these the columns are is told from the first thousands of lines.
 
     Args:
         path: Of the file.
@@ -63,8 +67,11 @@ def read_points(
         Cancelled: `progress` returned False.
     """
     source = open_points(path)
-    positions, normals, weights, attributes = _native.read_points(source, as_progress(progress))
-    viewpoint = None if source.viewpoint is None else np.array(source.viewpoint)
+    positions, normals, weights, viewpoint, attributes = _native.read_points(
+        source, as_progress(progress)
+    )
+    if viewpoint is None and source.viewpoint is not None:
+        viewpoint = np.array(source.viewpoint)
     return ScanPoints(positions, normals, weights, attributes, viewpoint)
 
 

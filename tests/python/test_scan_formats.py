@@ -1,0 +1,305 @@
+"""Points in lines of numbers, and in PCD files."""
+
+from pathlib import Path
+
+import numpy as np
+import prefilter
+import pytest
+from scan_writers import garbled_are_refused, pcd, write
+
+SHARED = Path(__file__).resolve().parents[3] / "shared" / "data" / "points"
+POINTS = np.array([(0.0, 0.5, 1.0), (1.0, 0.25, -2.0), (3.0, 4.0, 5.5)])
+NORMALS = np.array([(0.0, 0.6, -0.8), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)])
+COLORS = np.array([(0, 10, 255), (1, 1, 1), (200, 0, 3)])
+INTENSITY = np.array([-2048.0, 0.5, 2047.0])
+
+
+def lines(*columns, separator=" "):
+    return "".join(
+        separator.join(map(str, row)) + "\n" for row in np.column_stack(columns).tolist()
+    )
+
+
+def read(folder, text, name="cloud.xyz"):
+    return prefilter.read_points(write(folder, name, text.encode()))
+
+
+def whole(text):
+    return text.replace(".0 ", " ").replace(".0\n", "\n")
+
+
+@pytest.mark.parametrize(
+    "order", ["", "n", "c", "i", "nc", "cn", "ic", "ci", "in", "ni", "inc", "icn"]
+)
+@pytest.mark.parametrize("form", [str, whole])
+def test_columns_are_told_apart(tmp_path, order, form):
+    columns = {"n": NORMALS, "c": COLORS, "i": INTENSITY}
+    points = read(tmp_path, form(lines(POINTS, *(columns[each] for each in order))))
+    np.testing.assert_array_equal(points.positions, POINTS)
+    named = dict(points.attributes)
+    if "n" in order:
+        np.testing.assert_array_equal(points.normals, NORMALS.astype(np.float32))
+    else:
+        assert points.normals is None
+    if "c" in order:
+        np.testing.assert_array_equal(points.colors, COLORS)
+        assert points.colors.dtype == np.uint8
+        for name in ("red", "green", "blue"):
+            del named[name]
+    if "i" in order:
+        np.testing.assert_array_equal(named.pop("intensity"), INTENSITY.astype(np.float32))
+        assert not named
+
+
+def test_other_columns_are_attributes(tmp_path):
+    points = read(tmp_path, lines(POINTS, NORMALS, NORMALS, [7.5, 8, 9], [1, 2, 3]))
+    names = ["value7", "value8", "value9", "value10", "value11"]
+    assert list(points.attributes) == names
+    np.testing.assert_array_equal(points.attributes["value10"], [7.5, 8, 9])
+    deep = read(tmp_path, lines(POINTS, COLORS * 256))
+    assert deep.colors.dtype == np.float32
+    np.testing.assert_array_equal(deep.colors, COLORS * 256)
+
+
+@pytest.mark.parametrize("separator", [" ", "\t", ",", ", ", ";", "  "])
+@pytest.mark.parametrize("name", ["a.xyz", "a.XYZ", "a.xyzn", "a.pts", "a.txt", "a.asc"])
+def test_separators_and_comments(tmp_path, separator, name):
+    text = "# x y z\n\n" + lines(POINTS, separator=separator)
+    text = text.replace("5.5\n", f"5.5{separator}# the last\n// the end")
+    np.testing.assert_array_equal(read(tmp_path, text, name).positions, POINTS)
+    windows = text.replace("\n", "\r\n")
+    np.testing.assert_array_equal(read(tmp_path, windows, name).positions, POINTS)
+
+
+def test_counts_are_checked(tmp_path):
+    several = "3\n" + lines(POINTS) + "0\n2\n" + lines(POINTS[:2])
+    points = read(tmp_path, several, "cloud.pts")
+    np.testing.assert_array_equal(points.positions, np.concatenate([POINTS, POINTS[:2]]))
+    assert len(read(tmp_path, "0\n", "cloud.pts").positions) == 0
+    assert len(read(tmp_path, "", "cloud.pts").positions) == 0
+
+
+def test_large_coordinates_are_doubles(tmp_path):
+    # Whether a mesh of these points has to be written in double precision.
+    for text, expected in [
+        ("1.5 2.123456 -0.3\n", False),
+        ("456789.123 5123456.789 100.25\n", True),
+    ]:
+        path = write(tmp_path, "cloud.xyz", text.encode())
+        assert prefilter.scan_files.open_points(path).is_double == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("1 2 3\n4 5\n", "line 2: found 2 numbers; 3 are needed, as before"),
+        ("1 2 3\n4 5 6 7\n", "line 2: found 4 numbers; 3 are needed, as before"),
+        ("1 2 3\n4\n", "line 2: found 1 number; 3 are needed, as before"),
+        ("1 2\n", "line 1: found 2 numbers; x, y and z are needed"),
+        ("x y z\n", "line 1: found 'x'; a number is needed"),
+        ("1 2 3\n1 2 3e\n", "line 2: found '3e'; a number is needed"),
+        ("\0\1\2\3", r"line 1: found '\?\?\?\?'; a number is needed"),
+        ("3\n1 2 3\n", "line 2: ends after 1 of the 3 points that were announced"),
+        ("2\n1 2 3\n3\n", "line 3: ends after 1 of the 2 points that were announced"),
+        ("1\n1 2 3\n4 5 6\n", "line 3: more points than the 1 that were announced"),
+        ("-1\n1 2 3\n", "line 1: found a single number that is no count; a point needs x, y"),
+        ("1.5\n1 2 3\n", "line 1: found a single number that is no count"),
+        ("nan\n1 2 3\n", "line 1: found a single number that is no count"),
+        ("1 2 3\n" * 5000 + "1 2\n", "line 5001: found 2 numbers; 3 are needed, as before"),
+    ],
+    ids=lambda each: each[:20],
+)
+def test_damaged_lines(tmp_path, text, message):
+    path = write(tmp_path, "cloud.pts", text.encode())
+    with pytest.raises(ValueError, match=f"^'{path}': {message}"):
+        prefilter.read_points(path)
+
+
+FIELDS = [("x", "<f4", 1), ("y", "<f4", 1), ("z", "<f4", 1)]
+DATA = ["ascii", "binary", "binary_compressed"]
+
+
+@pytest.mark.parametrize("data", DATA)
+def test_pcd_files_of_all_types(tmp_path, data):
+    random = np.random.default_rng(1)
+    kinds = ["i1", "<i2", "<i4", "<i8", "u1", "<u2", "<u4", "<u8", "<f4", "<f8"]
+    fields = [
+        *((f"of_{kind.strip('<')}", kind, 1) for kind in kinds),
+        ("_", "u1", 3),
+        *(("xyz"[axis], "<f8" if axis == 1 else "<f4", 1) for axis in (2, 0, 1)),
+        ("histogram", "<f4", 5),
+        *((f"normal_{axis}", "<f4", 1) for axis in "xyz"),
+    ]
+    rows = [
+        tuple(
+            random.integers(0, 100, count) if count > 1 else random.integers(0, 100)
+            for _, _, count in fields
+        )
+        for _ in range(3000)
+    ]
+    points = prefilter.read_points(write(tmp_path, "cloud.pcd", pcd(data, fields, rows)))
+    named = {name: [row[k] for row in rows] for k, (name, _, _) in enumerate(fields)}
+    np.testing.assert_array_equal(points.positions, np.column_stack([named[a] for a in "xyz"]))
+    normals = np.column_stack([named[f"normal_{axis}"] for axis in "xyz"])
+    np.testing.assert_array_equal(points.normals, normals)
+    assert list(points.attributes) == [f"of_{kind.strip('<')}" for kind in kinds]
+    for name, values in points.attributes.items():
+        np.testing.assert_array_equal(values, named[name])
+    assert points.attributes["of_u1"].dtype == np.uint8
+    assert points.viewpoint is None
+
+
+@pytest.mark.parametrize("data", DATA)
+@pytest.mark.parametrize("kind", ["<f4", "<u4", "<i4"])
+@pytest.mark.parametrize("name", ["rgb", "rgba"])
+def test_packed_colors(tmp_path, data, kind, name):
+    # The alpha of a float stays below 0x7f, where it would be no number.
+    colors = np.array([(1, 2, 3, 0), (255, 0, 127, 100), (0, 0, 0, 0), (0, 255, 0, 63)])
+    packed = (colors @ [1 << 16, 1 << 8, 1, 1 << 24]).astype(np.uint32).view(np.dtype(kind))
+    fields = [*FIELDS[:2], (name, kind, 1), FIELDS[2]]
+    rows = [(k, k + 1, packed[k], k + 2) for k in range(4)]
+    points = prefilter.read_points(write(tmp_path, "cloud.pcd", pcd(data, fields, rows)))
+    np.testing.assert_array_equal(points.positions[:, 2], [2, 3, 4, 5])
+    np.testing.assert_array_equal(points.colors, colors[:, :3])
+    assert ("alpha" in points.attributes) == (name == "rgba")
+    if name == "rgba":
+        np.testing.assert_array_equal(points.attributes["alpha"], colors[:, 3])
+
+
+@pytest.mark.parametrize("data", DATA)
+def test_points_that_are_not_there_are_passed_on(tmp_path, data):
+    rows = [(1, 2, 3), (np.nan, np.nan, np.nan), (np.inf, 0, 0)]
+    points = prefilter.read_points(write(tmp_path, "cloud.pcd", pcd(data, FIELDS, rows)))
+    np.testing.assert_array_equal(points.positions, rows)
+
+
+def test_viewpoints(tmp_path):
+    def viewpoint(**lines):
+        contents = pcd("ascii", FIELDS, [(1, 2, 3)] * 4, lines=lines)
+        return prefilter.read_points(write(tmp_path, "cloud.pcd", contents)).viewpoint
+
+    assert viewpoint() is None
+    assert viewpoint(VIEWPOINT=None) is None
+    assert viewpoint(VIEWPOINT="nan 0 0 1 0 0 0") is None
+    np.testing.assert_array_equal(viewpoint(VIEWPOINT="1 -2 0.5 0 1 0 0"), [1, -2, 0.5])
+    np.testing.assert_array_equal(viewpoint(WIDTH=2, HEIGHT=2), [0, 0, 0])
+
+
+@pytest.mark.parametrize("data", DATA)
+def test_a_large_pcd_file(tmp_path, data):
+    rows = np.random.default_rng(2).integers(-9, 9, (100_000, 3))
+    path = write(tmp_path, "cloud.pcd", pcd(data, FIELDS, rows.tolist()))
+    np.testing.assert_array_equal(prefilter.read_points(path).positions, rows)
+
+
+def cloud(data="ascii", **lines):
+    return pcd(data, FIELDS, POINTS, lines=lines)
+
+
+@pytest.mark.parametrize(
+    ("contents", "message"),
+    [
+        (b"", " is no PCD file: there is no line DATA"),
+        (b"\x89PNG\r\n", r": line 1: '\?PNG' of nothing"),
+        (cloud().split(b"DATA")[0], ": there is no line DATA"),
+        (cloud(FIELDS=None, SIZE=None, TYPE=None, COUNT=None), ": there is no line FIELDS"),
+        (cloud(WIDTH=None, POINTS=None), ": there is no line WIDTH or POINTS"),
+        (cloud(FIELDS="x y w"), ": points have no coordinate 'z'; x, y and z are needed"),
+        (cloud(FIELDS="x y z x"), ": line 4: found 3 words for 4 fields"),
+        (cloud(TYPE="F F Q"), ": field 'z' of TYPE 'Q' and SIZE 4; I or U of 1, 2"),
+        (cloud(SIZE="4 4 3"), ": field 'z' of TYPE 'F' and SIZE 3; I or U of 1, 2"),
+        (cloud(COUNT="1 1 2000000000000"), ": points are larger than 1 MiB"),
+        (cloud(COUNT="1 1 0"), ": points have no coordinate 'z'"),
+        (cloud(WIDTH="-3"), ": line 7: found '-3'; a whole number from 0"),
+        (cloud(WIDTH=4), ": POINTS is 3, but WIDTH is 4 and HEIGHT 1"),
+        (cloud(WIDTH=2**62, HEIGHT=2**62), ": WIDTH times HEIGHT is above 2\\^62"),
+        (cloud(WIDTH=4, POINTS=4), ": line 14: ends after 3 of 4 points"),
+        (cloud(WIDTH=2, POINTS=2), ": holds more than the 2 points in its header"),
+        (cloud("binary", WIDTH=4, POINTS=4), ": too short for the 4 points in its header: 36 byt"),
+        (cloud("binary", WIDTH=2, POINTS=2), ": holds more than the 2 points in its header"),
+        (cloud(WIDTH=10**18, POINTS=10**18), ": too short for the 1000000000000000000 points"),
+        (cloud(VIEWPOINT="0 0 0"), ": line 9: VIEWPOINT needs seven numbers"),
+        (cloud(DATA="text"), ": line 11: DATA 'text'; ascii, binary or binary_compressed is n"),
+        (cloud(VERSION="0.7\nSIZES 4"), ": line 3: 'SIZES' is not part of a PCD header"),
+        (cloud() + b"1 2 3\n", ": holds more than the 3 points in its header"),
+        (cloud()[:-4] + b"\n", ": line 14: found 2 numbers; 3 are needed"),
+        (
+            cloud("binary_compressed", WIDTH=4, POINTS=4),
+            ": 4 points of 12 bytes in its header, but",
+        ),
+        (cloud("binary_compressed")[:-1], ": .. bytes of compressed points are announced; .. fol"),
+        (cloud("binary_compressed", DATA="binary_compressed\n\0\0\0\0\0\0"), ": 3 points of 12"),
+        (b"VERSION 0.7\n" + b"# comment\n" * 200_000, " is no PCD file: there is no line DATA"),
+    ],
+    ids=lambda each: each[-50:] if isinstance(each, str) else None,
+)
+def test_damaged_pcd_files(tmp_path, contents, message):
+    path = write(tmp_path, "cloud.pcd", contents)
+    with pytest.raises(ValueError, match=f"^'{path}'{message}"):
+        prefilter.read_points(path)
+
+
+@pytest.mark.parametrize(
+    "packed",
+    [
+        b"",  # nothing
+        b"\x23" + b"a" * 35,  # more copied than was said
+        b"\x1f" + b"a" * 32,  # fewer
+        b"\x20\x00" * 9,  # what repeats is before the first
+        b"\x00a\x20\x01" + b"\x05aaaaaa" * 5,
+        b"\x1f" + b"a" * 31,  # ends within a run
+        b"\x00a\xe0",
+        b"\x00a\xe0\xff",
+        b"\x00a\xe0\xff\x00",  # more than was said
+    ],
+)
+def test_damaged_compression(tmp_path, packed):
+    start = cloud("binary_compressed")
+    start = start[: start.index(b"binary_compressed\n") + 18]
+    sizes = len(packed).to_bytes(4, "little") + (36).to_bytes(4, "little")
+    path = write(tmp_path, "cloud.pcd", start + sizes + packed)
+    with pytest.raises(ValueError, match=f"^'{path}': the compressed points are damaged at byte"):
+        prefilter.read_points(path)
+
+
+@pytest.mark.parametrize(
+    ("name", "contents"),
+    [
+        ("counted.pts", b"3\n" + whole(lines(POINTS, COLORS)).encode()),
+        *((f"{data}.pcd", pcd(data, FIELDS, POINTS)) for data in DATA),
+    ],
+    ids=lambda each: each if isinstance(each, str) else "",
+)
+def test_garbled_files_are_read_or_refused(tmp_path, name, contents):
+    garbled_are_refused(tmp_path, name, contents)
+
+
+def shared(name):
+    path = SHARED / name
+    if not path.exists():
+        pytest.skip(f"{path} is missing")
+    return path
+
+
+def test_files_of_others():
+    points = prefilter.read_points(shared("bunnyData.pts"))
+    np.testing.assert_array_equal(points.positions, np.loadtxt(shared("bunnyData.pts"), skiprows=1))
+    points = prefilter.read_points(shared("kitten.xyz"))
+    table = np.loadtxt(shared("kitten.xyz"))
+    np.testing.assert_array_equal(points.positions, table[:, :3])
+    np.testing.assert_array_equal(points.normals, table[:, 3:].astype(np.float32))
+    np.testing.assert_allclose(np.linalg.norm(points.normals, axis=1), 1, atol=1e-5)
+
+
+def test_an_image_of_depths():
+    points = prefilter.read_points(shared("pcl_capture0001.pcd"))
+    assert points.positions.shape == (640 * 480, 3)
+    np.testing.assert_array_equal(points.viewpoint, [0, 0, 0])
+    x, y, z = points.positions.reshape(480, 640, 3).transpose(2, 0, 1)
+    seen = np.isfinite(z)
+    assert 0.5 < seen.mean() < 1
+    # A pinhole camera: what is seen at a pixel lies on the ray through it.
+    columns, rows = np.meshgrid(np.arange(640), np.arange(480))
+    for along, pixels in [(x, columns), (y, rows)]:
+        slope, middle = np.polyfit(pixels[seen], (along / z)[seen], 1)
+        np.testing.assert_allclose((along / z)[seen], slope * pixels[seen] + middle, atol=1e-4)
