@@ -159,3 +159,37 @@ def test_a_range_scan_of_the_bunny():
     assert np.mean(errors[sure]) < 12
     outward = prefilter.estimate_normals(points, viewpoint=(0.0, 0.1, 10.0))
     assert np.mean(np.sum(outward * normals, axis=1)[sure] > 0) > 0.9999
+
+
+def ply(path, points, lists):
+    """A file in text, with elements of one list a row."""
+    head = ["ply", "format ascii 1.0", "obj_info num_rows 40", "obj_info num_cols 50"]
+    head += [f"element vertex {len(points)}", *(f"property double {axis}" for axis in "xyz")]
+    rows = [" ".join(map(repr, point)) for point in points.tolist()]
+    for name, values in lists.items():
+        head += [f"element {name} {len(values)}", "property list uchar int vertex_indices"]
+        rows += [" ".join(map(str, [len(row), *row])) for row in values]
+    path.write_text("\n".join([*head, "end_header", *rows, ""]))
+    return path
+
+
+def test_a_file_with_a_grid(tmp_path):
+    points, _, grid = hills()
+    grid[:, 1] = grid[:, 48] = -1
+    grid[:, 0] = -1
+    cells = [[index] if index >= 0 else [] for index in grid.ravel()]
+    source = ply(tmp_path / "scan.ply", points, {"range_grid": cells})
+    report = prefilter.reconstruct_file(source, tmp_path / "mesh.ply", depth=5)
+    # Two columns that the grid leaves out, and one that has no neighbors: no estimate drops any.
+    assert report.dropped == 4 * 40
+    assert not report.is_flipped
+
+
+def test_a_file_with_faces(tmp_path):
+    ball = solids.sphere(1.0, 4, (0.0, 0.0, 0.0)).flipped()
+    source = ply(tmp_path / "ball.ply", ball.positions, {"face": ball.triangles})
+    assert prefilter.reconstruct_file(source, tmp_path / "mesh.ply", depth=5).is_flipped
+    few = ply(tmp_path / "few.ply", ball.positions, {"face": ball.triangles[:9]})
+    report = prefilter.reconstruct_file(few, tmp_path / "mesh.ply", depth=5)
+    assert report.dropped == 0
+    assert not report.is_flipped

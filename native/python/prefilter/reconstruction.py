@@ -1,7 +1,8 @@
 """Scans: oriented points to closed surfaces."""
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
@@ -18,8 +19,8 @@ from ._border.arguments import (
 )
 from ._border.arrays import as_floats, as_threads
 from ._border.output import as_target
-from .points import estimate_normals
-from .scan_files import ScanPoints, open_points, read_points
+from .points import estimate_normals, grid_normals, mesh_normals
+from .scan_files import ScanPoints, open_points, read_faces, read_points, read_range_grid
 
 Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]
 MeshWithAttributes: TypeAlias = tuple[
@@ -154,8 +155,8 @@ def reconstruct_file(
     Attributes of the points become properties of the vertices.
 
     Args:
-        source: A file that `read_points` reads. Where it has no normals all points are read, and
-            normals estimated.
+        source: A file that `read_points` reads. Where it has no normals all points are read; a
+            scanner's grid or faces in a PLY file tell the normals, or else they are estimated.
         target: A .ply file: binary, in double precision where the source is. Temporary files are
             made in its folder.
         depth: And all others: as `reconstruct` has them.
@@ -181,13 +182,10 @@ def reconstruct_file(
     points = open_points(source)
     if not points.has_normals:
         read = read_points(source, progress=progress_part(progress, 0.0, 0.1))
-        normals = estimate_normals(
-            read.positions,
-            viewpoint=read.viewpoint,
-            progress=progress_part(progress, 0.1, 0.5),
-            threads=threads,
+        normals, weights = _normals_of(
+            source, read, progress_part(progress, 0.1, 0.5), threads=threads
         )
-        points = _with_normals(points, read, normals)
+        points = _with_normals(points, replace(read, weights=weights), normals)
         progress = progress_part(progress, 0.5, 1.0)
     folder = str(place.parent)
     options = _options(
@@ -234,6 +232,31 @@ def _options(
         as_progress(progress),
         as_threads(threads),
     )
+
+
+def _normals_of(
+    path: str | os.PathLike[str],
+    read: ScanPoints,
+    progress: ProgressCallback | None,
+    *,
+    threads: int,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float32] | None]:
+    """Normals of a file's points, by what it tells besides their positions; and weights."""
+    if Path(os.fsdecode(path)).suffix.lower() == ".ply":
+        grid = read_range_grid(path)
+        if grid is not None:
+            normals, sureness = grid_normals(
+                read.positions, grid, viewpoint=read.viewpoint, progress=progress
+            )
+            return normals, sureness if read.weights is None else sureness * read.weights
+        triangles = read_faces(path)
+        # A few faces are no mesh of the points.
+        if len(np.unique(triangles)) > len(read.positions) / 2:
+            return mesh_normals(read.positions, triangles, progress=progress), read.weights
+    normals = estimate_normals(
+        read.positions, viewpoint=read.viewpoint, progress=progress, threads=threads
+    )
+    return normals, read.weights
 
 
 def _with_normals(
