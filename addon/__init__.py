@@ -1,4 +1,4 @@
-"""Prefilter: mipmaps that know the mesh, and voxels of any mesh, in Blender."""
+"""Prefilter: mipmaps that know the mesh, voxels of any mesh, surfaces of scans, in Blender."""
 
 from importlib import import_module
 
@@ -8,6 +8,7 @@ from .core.registration import registration
 
 SUBJECTS = (
     "mipmaps",
+    "scans",
     "voxels",
 )
 """The folders of the subjects, in the order in which they are registered."""

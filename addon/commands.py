@@ -49,7 +49,9 @@ class Commands:
         """Returns what reads the arguments."""
         parser = argparse.ArgumentParser(
             prog=_PROGRAM,
-            description="Filters images for the surfaces that use them, and meshes in voxels.",
+            description=(
+                "Filters images for the surfaces that use them; makes meshes of voxels and scans."
+            ),
         )
         commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
         for subject in self._subjects:

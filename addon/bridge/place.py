@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
+from mathutils import Matrix
 from numpy.typing import NDArray
 
 
@@ -19,7 +20,18 @@ class Place:
 
     @classmethod
     def of(cls, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> "Place":
-        matrix = np.array(obj.evaluated_get(depsgraph).matrix_world, np.float64)
+        """Returns the place of an object itself."""
+        return cls._at(obj, obj.evaluated_get(depsgraph).matrix_world)
+
+    @classmethod
+    def beside(cls, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> "Place":
+        """Returns the place of a new object where another one is; it has no shear."""
+        matrix = obj.evaluated_get(depsgraph).matrix_world
+        return cls._at(obj, Matrix.LocRotScale(*matrix.decompose()))
+
+    @classmethod
+    def _at(cls, obj: bpy.types.Object, placed: Matrix) -> "Place":
+        matrix = np.array(placed, np.float64)
         linear = matrix[:3, :3]
         lengths = np.linalg.norm(linear, axis=0)
         # A matrix of tiny numbers is fine, one that is flat is not.

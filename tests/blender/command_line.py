@@ -14,6 +14,15 @@ import bpy
 
 Result = subprocess.CompletedProcess[str]
 
+IMPORTERS = {
+    ".obj": "wm.obj_import",
+    ".ply": "wm.ply_import",
+    ".stl": "wm.stl_import",
+    ".glb": "import_scene.gltf",
+    ".gltf": "import_scene.gltf",
+    ".fbx": "import_scene.fbx",
+}
+
 
 def run(*arguments: object, cwd: Path | None = None) -> Result:
     """Runs `prefilter ARGUMENTS` in this Blender, from the startup file as a new one would.
@@ -70,3 +79,15 @@ def assert_fails(result: Result, *words: str, status: int = 1) -> None:
     assert "error: " in last
     for word in words:
         assert word in last
+
+
+def loaded(path: Path) -> dict[str, bpy.types.Object]:
+    """Opens or imports a file, and returns its mesh objects."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    if path.suffix == ".blend":
+        bpy.ops.wm.open_mainfile(filepath=str(path))
+    else:
+        module, name = IMPORTERS[path.suffix].split(".")
+        getattr(getattr(bpy.ops, module), name)(filepath=str(path))
+    bpy.context.view_layer.update()
+    return {obj.name: obj for obj in bpy.data.objects if obj.type == "MESH"}

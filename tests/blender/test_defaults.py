@@ -6,7 +6,12 @@ import prefilter
 import pytest
 
 # What a setting has that stands for what the package leaves out.
-ABSENT = {"levels": (0, None), "roughness": ("", None)}
+ABSENT = {
+    "levels": (0, None),
+    "roughness": ("", None),
+    "trim": (0.0, None),
+    "memory_limit": (0, None),
+}
 
 
 def defaults(function):
@@ -20,6 +25,8 @@ def defaults(function):
         ("mipmaps.choices.Settings", prefilter.mipmaps, 5),
         ("mipmaps.choices.Settings", prefilter.normal_mipmaps, 3),
         ("mipmaps.choices.Settings", prefilter.keep_coverage, 2),
+        ("scans.choices.ScanSettings", prefilter.reconstruct, 8),
+        ("scans.choices.ScanSettings", prefilter.reconstruct_file, 8),
         ("voxels.choices.VoxelSettings", prefilter.voxelize, 2),
         ("voxels.choices.VoxelSettings", prefilter.Octree.contour, 3),
     ],

@@ -25,14 +25,22 @@ class Layout:
         pass
 
 
-def drawn(menu):
-    """Returns what the add-on draws in a menu of Blender's, and in its own in there."""
+def drawn(menu, seen=()):
+    """Returns what the add-on draws in a menu of Blender's, and in its own in there.
+
+    Menus in `seen`, a list that gets those that are drawn, are left out, as a search does.
+    """
     layout = Layout()
-    for draw in getattr(bpy.types, menu).draw._draw_funcs:
+    shown = getattr(bpy.types, menu).draw
+    for draw in getattr(shown, "_draw_funcs", [shown]):
         if "prefilter" in draw.__module__:
             draw(SimpleNamespace(layout=layout), bpy.context)
     for inner in layout.menus:
-        layout.operators += drawn(inner)
+        if inner in seen:
+            continue
+        if isinstance(seen, list):
+            seen.append(inner)
+        layout.operators += drawn(inner, seen)
     return layout.operators
 
 
@@ -41,10 +49,24 @@ def label(name):
 
 
 @pytest.mark.parametrize(
-    "menu", ["VIEW3D_MT_object", "VIEW3D_MT_object_context_menu", "IMAGE_MT_image"]
+    "menu",
+    [
+        "VIEW3D_MT_object",
+        "VIEW3D_MT_object_convert",
+        "VIEW3D_MT_object_context_menu",
+        "IMAGE_MT_image",
+    ],
 )
 def test_each_operator_once(menu):
     assert set(Counter(drawn(menu)).values()) == {1}
+
+
+def test_a_search_finds_what_is_in_two_menus_once():
+    """Object has Convert in it; a search goes through each menu once."""
+    seen = []
+    found = Counter(drawn("VIEW3D_MT_object", seen) + drawn("VIEW3D_MT_object_convert", seen))
+    assert found["prefilter.reconstruct"] == 1
+    assert set(found.values()) == {1}
 
 
 def test_every_operator_is_found():
@@ -55,7 +77,8 @@ def test_every_operator_is_found():
 @pytest.mark.parametrize(
     ("menu", "words"),
     [
-        ("VIEW3D_MT_object", ["mip", "voxel", "boolean", "texture cache"]),
+        ("VIEW3D_MT_object_convert", ["reconstruct"]),
+        ("VIEW3D_MT_object", ["mip", "voxel", "boolean", "reconstruct", "texture cache"]),
         ("IMAGE_MT_image", ["mip", "texel", "preview", "plot", "weights", "fill", "texture cache"]),
     ],
 )

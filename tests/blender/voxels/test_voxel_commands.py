@@ -5,7 +5,7 @@ import importlib.util
 import bodies
 import bpy
 import pytest
-from command_line import assert_fails, run
+from command_line import IMPORTERS, assert_fails, loaded, run
 
 
 @pytest.fixture
@@ -29,28 +29,6 @@ def blend(tmp_path):
     path = tmp_path / "scene.blend"
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     return path
-
-
-IMPORTERS = {
-    ".obj": "wm.obj_import",
-    ".ply": "wm.ply_import",
-    ".stl": "wm.stl_import",
-    ".glb": "import_scene.gltf",
-    ".gltf": "import_scene.gltf",
-    ".fbx": "import_scene.fbx",
-}
-
-
-def loaded(path):
-    """Returns the mesh objects of a file."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    if path.suffix == ".blend":
-        bpy.ops.wm.open_mainfile(filepath=str(path))
-    else:
-        module, name = IMPORTERS[path.suffix].split(".")
-        getattr(getattr(bpy.ops, module), name)(filepath=str(path))
-    bpy.context.view_layer.update()
-    return {obj.name: obj for obj in bpy.data.objects if obj.type == "MESH"}
 
 
 @pytest.mark.parametrize("command", ["voxelize", "boolean"])

@@ -1,0 +1,6 @@
+"""Surfaces of scans: points with normals to closed meshes."""
+
+from ..core.registration import registration
+from . import operator, panel, properties
+
+register, unregister = registration(properties, operator, panel)

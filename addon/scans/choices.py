@@ -1,0 +1,118 @@
+"""What a user may set for the surface of points."""
+
+from dataclasses import dataclass
+
+import prefilter
+
+from ..core.choices import Choice
+from ..core.options import number, one_of, switch, threads
+
+RESOLUTIONS = {
+    "depth": Choice("Depth", "Halve the cube around the points this many times"),
+    "size": Choice("Voxel Size", "Cells of at most this size, in the units of the world"),
+}
+WAVELETS = {
+    "haar": Choice("Haar", "Fastest, and needs the least memory: for clean, dense scans"),
+    "d4": Choice("D4", "Smoother, and slower: for noisy scans, and for sparse ones"),
+}
+ISOVALUES = {
+    "auto": Choice("Automatic", "Chosen by Prefilter: the mean of the values at the points"),
+    "half": Choice("One Half", "Where cells are half full"),
+    "mean": Choice("Mean at Points", "The mean of the values at the points"),
+    "custom": Choice("Custom", "A value of your own"),
+}
+POINTS = {
+    "keep": Choice("Keep", "The points stay visible"),
+    "hide": Choice("Hide", "The points are hidden, in renders too"),
+    "delete": Choice("Delete", "The points are deleted"),
+}
+
+
+@dataclass(frozen=True)
+class ScanSettings:
+    """What `prefilter.reconstruct` does."""
+
+    resolution: str = one_of(
+        "depth", "Resolution", "How to specify the size of the cells", RESOLUTIONS, flag=""
+    )
+    depth: int = number(
+        9,
+        "Depth",
+        "Octree depth: 9 gives 512 cells per axis. Each step quadruples the triangles, as far as "
+        "there are enough points",
+        low=1,
+        high=prefilter.MAX_DEPTH,
+        display={"soft_max": 11},
+        metavar="N",
+    )
+    voxel_size: float = number(
+        0.01,
+        "Voxel Size",
+        "The greatest side of a cell in world space: the cube around the points is halved until "
+        "cells are no larger",
+        low=1e-6,
+        subtype="DISTANCE",
+        display={"soft_min": 0.001, "precision": 4, "step": 1},
+        flag_description="The greatest side of a cell, instead of a depth",
+        metavar="LENGTH",
+    )
+    wavelet: str = one_of(
+        "haar", "Wavelet", "Which basis the surface is made in", WAVELETS, metavar="NAME"
+    )
+    use_smooth: bool = switch(
+        True,
+        "Smoothing",
+        "Smooth what is inside and outside before the surface is taken: fewer bumps from noise",
+        flag_description="Do not smooth what is inside and outside: more detail, and more noise",
+    )
+    use_fit: bool = switch(
+        True,
+        "Fit to Points",
+        "Move the vertices onto planes through the nearest points: details finer than a cell",
+        flag_description="Do not move the vertices onto planes through the nearest points",
+    )
+    trim: float = number(
+        0.0,
+        "Trim",
+        "Remove surface that is farther from every point than this many cells, so that borders of "
+        "the scan stay open. 0 keeps a closed surface",
+        low=0.0,
+        display={"soft_max": 20.0, "precision": 1, "step": 50},
+        metavar="CELLS",
+    )
+    isovalue: str = one_of(
+        "auto",
+        "Iso-Value",
+        "At which value the surface is, between 0 outside and 1 inside",
+        ISOVALUES,
+        metavar="NAME",
+    )
+    custom_isovalue: float = number(
+        0.5,
+        "Value",
+        "Higher values shrink the surface, lower ones grow it",
+        low=0.0,
+        high=1.0,
+        is_above=True,
+        flag_description="The value at the surface, instead of --isovalue",
+        metavar="VALUE",
+    )
+    points: str = one_of(
+        "hide", "Points", "What to do with the objects that have the points", POINTS, flag=""
+    )
+    use_smooth_shading: bool = switch(
+        True,
+        "Smooth Shading",
+        "Shade the result smooth",
+        flag_description="Shade the result flat",
+    )
+    memory_limit: int = number(
+        0,
+        "Memory Limit",
+        "Use at most this many megabytes beside the points, and temporary files for the rest; "
+        "0 sets no limit",
+        low=0,
+        display={"soft_max": 65536},
+        metavar="MB",
+    )
+    threads: int = threads()

@@ -1,0 +1,66 @@
+"""`prefilter.reconstruct`: the surface of points, as a new object beside them."""
+
+import bpy
+
+from ..bridge.points import may_be_points
+from ..core.operator import WorkOperator
+from .properties import ScanProperties
+from .reconstruction import Load, Reconstruction
+
+
+class PREFILTER_OT_reconstruct(ScanProperties, WorkOperator, bpy.types.Operator):
+    """Reconstructs the surface of the selected points."""
+
+    bl_idname = "prefilter.reconstruct"
+    bl_label = "Reconstruct Surface"
+    bl_description = (
+        "Make a closed surface of the points of all selected scans together: meshes without faces "
+        "and point clouds. Points without the attribute 'normal' get estimated normals"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Reconstructing"
+
+    work: Reconstruction | None = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether points are selected."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Switch to Object Mode first")
+            return False
+        if cls.may_be_redone(context):
+            return True
+        if not _chosen(context):
+            cls.poll_message_set("Select objects with vertices and no faces, or point clouds")
+            return False
+        return True
+
+    def read_work(self, context: bpy.types.Context) -> Reconstruction:
+        """Copies the selected points."""
+        return Reconstruction.read(
+            _chosen(context),
+            context.active_object,
+            self.to_settings(),
+            context.evaluated_depsgraph_get(),
+        )
+
+    def load(self) -> Load:
+        """Returns how much there was to do."""
+        assert self.work is not None
+        return self.work.load
+
+    def effort(self, load: Load) -> float:
+        """Returns about how many seconds the points take with the present settings."""
+        return load.seconds(self.to_settings())
+
+    def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+        """Draws the settings."""
+        del context
+        self.draw_in(layout)
+
+
+def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
+    return [obj for obj in context.selected_objects if may_be_points(obj)]
+
+
+register, unregister = bpy.utils.register_classes_factory((PREFILTER_OT_reconstruct,))

@@ -1,0 +1,93 @@
+"""Reconstructing: a tab in the 3D view's sidebar, entries in the Object and the Convert menu."""
+
+import bpy
+
+from ..bridge.points import may_be_points
+from ..core.menus import PREFILTER_MT_object
+from ..core.properties import copy
+from .choices import ScanSettings
+from .operator import PREFILTER_OT_reconstruct
+
+
+class _SidebarPanel:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Prefilter"
+    bl_context = "objectmode"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the active object may be a scan."""
+        return context.active_object is not None and may_be_points(context.active_object)
+
+
+class PREFILTER_PT_reconstruct(_SidebarPanel, bpy.types.Panel):
+    """What is set most often, and the button."""
+
+    bl_label = "Reconstruct Surface"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_reconstruct.draw_most_used(self.layout)
+        _draw_reconstruct(self.layout, context)
+
+
+class PREFILTER_PT_reconstruct_options(_SidebarPanel, bpy.types.Panel):
+    """The other settings."""
+
+    bl_label = "Options"
+    bl_parent_id = PREFILTER_PT_reconstruct.__name__
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_reconstruct.draw_others(self.layout)
+
+
+class PREFILTER_MT_scans(bpy.types.Menu):
+    """What makes something of scans.
+
+    Object > Prefilter and Object > Convert both have this menu, rather than its entries: a search
+    (F3) goes through each menu once.
+    """
+
+    bl_label = "Scans"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the menu."""
+        _draw_reconstruct(self.layout, context)
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (PREFILTER_PT_reconstruct, PREFILTER_PT_reconstruct_options, PREFILTER_MT_scans)
+)
+
+
+def register() -> None:
+    """Registers the panels and the menu entries."""
+    _register_classes()
+    PREFILTER_MT_object.append(_draw_object_menu)
+    bpy.types.VIEW3D_MT_object_convert.append(_draw_convert_menu)
+
+
+def unregister() -> None:
+    """Removes them."""
+    bpy.types.VIEW3D_MT_object_convert.remove(_draw_convert_menu)
+    PREFILTER_MT_object.remove(_draw_object_menu)
+    _unregister_classes()
+
+
+def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    del context
+    menu.layout.menu(PREFILTER_MT_scans.__name__)
+
+
+def _draw_convert_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    del context
+    menu.layout.separator()
+    menu.layout.menu(PREFILTER_MT_scans.__name__, text="Prefilter")
+
+
+def _draw_reconstruct(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    operator = layout.operator(PREFILTER_OT_reconstruct.bl_idname, icon="POINTCLOUD_DATA")
+    copy(context.scene.prefilter_reconstruct, operator, ScanSettings)

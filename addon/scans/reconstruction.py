@@ -1,0 +1,161 @@
+"""The surface of selected points in three steps: read from Blender, compute, write to Blender."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import bpy
+
+from ..bridge import new_meshes
+from ..bridge.place import Place, still_there
+from ..bridge.points import Points, read_points
+from ..core.jobs import Progress, go_on
+from ..core.options import check
+from ..core.outcome import Outcome
+from ..core.wording import listed
+from .choices import ScanSettings
+from .cloud import Surface, depth_of, extent, oddities, reconstructed, told
+
+# What a load takes in seconds, as measured once on two cores; ratios are what counts.
+_ALWAYS = 0.01
+_PER_POINT = {"haar": 0.15e-6, "d4": 0.6e-6}
+_PER_TRIANGLE = 1.1e-6
+_FITTING = 0.2e-6
+_TRIANGLES_OF_CUBE = 5.5
+"""How many triangles there are in unit cells where the points are those of a solid, about."""
+_TRIANGLES_PER_POINT = 5.5
+
+
+@dataclass(frozen=True)
+class Load:
+    """What decides how long points take.
+
+    Attributes:
+        points: How many there are.
+        extent: The longest side of the box around them.
+    """
+
+    points: int
+    extent: float
+
+    def seconds(self, settings: ScanSettings) -> float:
+        """Returns about how long it takes on two cores; settings that are refused take none."""
+        try:
+            depth = depth_of(self.extent, settings)
+        except ValueError:
+            return 0.0
+        triangles = min(_TRIANGLES_OF_CUBE * 4.0**depth, _TRIANGLES_PER_POINT * self.points)
+        per_triangle = _PER_TRIANGLE + (_FITTING if settings.use_fit else 0.0)
+        return _ALWAYS + _PER_POINT[settings.wavelet] * self.points + per_triangle * triangles
+
+
+class Reconstruction:
+    """The points of objects as one cloud, and its surface as a new object.
+
+    `read` and `write` belong on the main thread; `compute` touches no Blender data and runs on any
+    thread. Nothing is written before everything is computed.
+    """
+
+    def __init__(
+        self, place: Place, names: list[str], read: list[Points], settings: ScanSettings
+    ) -> None:
+        """Keeps copies of what was read; use `Reconstruction.read`."""
+        self.load = Load(
+            sum(len(points.positions) for points in read),
+            max((extent(points.positions) for points in read), default=0.0),
+        )
+        self._place = place
+        self._names = names
+        self._read = read
+        self._settings = settings
+        self._warnings: list[str] = []
+        self._notes: list[str] = []
+        self._surface: Surface | None = None
+        self._contour: new_meshes.Contour | None = None
+
+    @classmethod
+    def read(
+        cls,
+        objects: Sequence[bpy.types.Object],
+        active: bpy.types.Object | None,
+        settings: ScanSettings,
+        depsgraph: bpy.types.Depsgraph,
+    ) -> "Reconstruction":
+        """Copies everything that the work needs out of Blender.
+
+        Args:
+            objects: What has the points.
+            active: The one of them whose space the surface is in; if it is none of them, the first.
+            settings: What to do.
+            depsgraph: The evaluated dependency graph.
+
+        Raises:
+            ValueError: There is no object, or one is unfit.
+        """
+        check(settings)
+        if not objects:
+            raise ValueError("no object is selected that has points and no faces")
+        if settings.points == "delete":
+            for obj in objects:
+                new_meshes.check_editable(obj)
+        place = Place.beside(active if active in objects else objects[0], depsgraph)
+        read = read_points(objects, depsgraph, place.origin)
+        names = [obj.name for obj in objects]
+        if not read:
+            raise ValueError(f"object{'s' if len(names) > 1 else ''} {listed(names)}: no points")
+        return cls(place, names, read, settings)
+
+    def compute(self, progress: Progress) -> None:
+        """Reconstructs the surface.
+
+        Raises:
+            ValueError: There is none, or cells are too small.
+            MemoryError: The result does not fit into memory.
+            prefilter.Cancelled: `progress` has said so.
+        """
+        without = list(dict.fromkeys(one.name for one in self._read if one.normals is None))
+        if without:
+            self._notes.append(f"normals were estimated for {listed(without)}")
+        surface = reconstructed(self._read, self._settings, progress)
+        self._warnings.extend(oddities(surface.report))
+        self._surface = surface
+        self._contour = surface.contour(self._place, self._source(), self._settings)
+        go_on(progress, 1.0)
+        self._read.clear()
+
+    def write(self) -> Outcome:
+        """Adds the object, and does with the points as was chosen.
+
+        Raises:
+            ValueError: An object is gone.
+        """
+        assert self._surface is not None
+        assert self._contour is not None
+        beside = still_there(self._place.name)
+        objects = [still_there(name) for name in self._names]
+        name = f"{beside.name}.surface"
+        made = new_meshes.new_object_beside(
+            beside, new_meshes.new_mesh(name, self._contour), ".surface"
+        )
+        bpy.context.view_layer.objects.active = made
+        for obj in objects:
+            obj.select_set(False)
+            if self._settings.points == "hide":
+                obj.hide_set(True)
+                obj.hide_render = True
+            elif self._settings.points == "delete":
+                bpy.data.objects.remove(obj)
+        return Outcome(
+            f"Reconstructed '{made.name}' from {told(self._surface.report)}",
+            objects=[made.name],
+            warnings=self._warnings,
+            notes=self._notes,
+        )
+
+    def discard(self) -> None:
+        """Does nothing: nothing is staged."""
+
+    def _source(self) -> Points:
+        """Returns the points that materials are taken from, with the names of active colours."""
+        first = next((one for one in self._read if one.name == self._place.name), self._read[0])
+        colored = next((one for one in (first, *self._read) if one.active_color), first)
+        return replace(first, active_color=colored.active_color, render_color=colored.render_color)

@@ -1,0 +1,101 @@
+"""Runs in a Blender with a window: draws the panel and menus, and reconstructs a surface.
+
+One run ends well and is done again with another depth, one is cancelled by Esc, and one is for an
+object that goes meanwhile.
+
+Usage: blender --factory-startup --enable-event-simulate --python scan_session.py -- RESULT.json
+"""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import addon_utils
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import bodies
+import clouds
+import window as windows
+from window import RedoPanel, idle, play, refused, region, until
+
+RESULT = Path(sys.argv[sys.argv.index("--") + 1])
+windows.SECONDS_PER_STEP = 0.05
+
+
+def session() -> Iterator[None]:
+    """Yields whenever Blender should draw and handle events before going on."""
+    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    clouds.scan(*clouds.torus(3_000))
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    override = {"window": window, "area": area, "region": region(area, "WINDOW")}
+    area.spaces.active.show_region_ui = True
+    sidebar = region(area, "UI")
+    yield from until(lambda: sidebar.active_panel_category != "UNSUPPORTED")
+    sidebar.active_panel_category = "Prefilter"
+    area.tag_redraw()
+    yield
+    yield
+    found = {"tab": sidebar.active_panel_category}
+    for name in ("VIEW3D_MT_object", "VIEW3D_MT_object_convert", "PREFILTER_MT_scans"):
+        with bpy.context.temp_override(**override):
+            bpy.ops.wm.call_menu(name=name)
+        yield
+        window.event_simulate(type="ESC", value="PRESS")
+        yield
+
+    bpy.ops.ed.undo_push(message="before")
+    with bpy.context.temp_override(**override):
+        found["started"] = list(bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", True, depth=5))
+        found["refused_while_running"] = refused(bpy.ops.prefilter.reconstruct)
+    yield from until(idle)
+    yield
+    found["objects"] = hidden()
+    found["closed"] = bodies.is_closed(bpy.data.objects["Scan.surface"])
+    if region(area, "HUD").height < 40:
+        yield from RedoPanel(window, area).unfolded()
+    panel = RedoPanel(window, area)
+    found["before_redo"] = size(panel)
+    yield from panel.step("depth")
+    found["after_redo"] = size(panel)
+    bpy.ops.ed.undo()
+    yield
+    found["undone"] = hidden()
+
+    bpy.data.objects.remove(bpy.data.objects["Scan"])
+    # Without a graphics card so many points take long to draw.
+    area.spaces.active.overlay.show_overlays = False
+    clouds.scan(*clouds.torus(300_000))
+    yield
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=11, wavelet="d4")
+    found["works"] = not idle()
+    window.event_simulate(type="ESC", value="PRESS")
+    yield from until(idle)
+    found["cancelled"] = hidden()
+
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=9)
+    bpy.data.objects.remove(bpy.data.objects["Scan"])
+    yield from until(idle)
+    found["gone"] = hidden()
+    RESULT.write_text(json.dumps(found))
+
+
+def hidden() -> dict[str, bool]:
+    """Returns the objects, and whether they are hidden."""
+    return {obj.name: obj.hide_get() for obj in bpy.data.objects}
+
+
+def size(panel: RedoPanel) -> tuple[int, int]:
+    """Returns how many triangles there are, and at which depth."""
+    mesh = bpy.data.objects["Scan.surface"].data
+    return len(mesh.polygons), panel.operator.properties.depth
+
+
+play(session())

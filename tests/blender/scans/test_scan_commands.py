@@ -1,0 +1,164 @@
+"""The command `reconstruct`: from file to file, in memory, and from .blend files."""
+
+import bodies
+import bpy
+import clouds
+import numpy as np
+import pytest
+from command_line import assert_fails, loaded, run
+
+DEPTH = ("--depth", 6)
+
+
+def write_ply(path, points, normals=None, colors=None):
+    """Writes a binary PLY file."""
+    columns = [(name, "<f8", "double") for name in "xyz"]
+    values = list(points.T)
+    if normals is not None:
+        columns += [(name, "<f4", "float") for name in ("nx", "ny", "nz")]
+        values += list(normals.T)
+    if colors is not None:
+        columns += [(name, "u1", "uchar") for name in ("red", "green", "blue")]
+        values += list(colors.T)
+    table = np.empty(len(points), [(name, kind) for name, kind, _ in columns])
+    for (name, _, _), column in zip(columns, values, strict=True):
+        table[name] = column
+    header = "".join(f"property {kind} {name}\n" for name, _, kind in columns)
+    head = f"ply\nformat binary_little_endian 1.0\nelement vertex {len(points)}\n{header}"
+    path.write_bytes(f"{head}end_header\n".encode() + table.tobytes())
+    return path
+
+
+def torus_colors(points):
+    return np.clip(255 * (points + 2) / 4, 0, 255).astype(np.uint8)
+
+
+@pytest.fixture
+def scan(tmp_path):
+    """Writes points of a torus with normals and colours."""
+    points, normals = clouds.torus()
+    return write_ply(tmp_path / "scan.ply", points, normals, torus_colors(points))
+
+
+def assert_torus(path, within=0.1):
+    (made,) = loaded(path).values()
+    bodies.welded(made)
+    assert bodies.is_closed(made)
+    assert np.abs(clouds.torus_distance(clouds.vertices(made))).mean() < within
+    assert bodies.volume(made) == pytest.approx(clouds.TORUS_VOLUME, rel=0.05)
+    return made
+
+
+def test_help():
+    result = run("reconstruct", "--help")
+    assert result.returncode == 0
+    assert result.stdout.startswith("usage: blender --background --command prefilter reconstruct")
+    for word in ("--depth", "--voxel-size", "--wavelet", "--memory-limit", "d4", "examples:"):
+        assert word in result.stdout
+    assert "reconstruct" in run("--help").stdout
+
+
+def test_from_file_to_file(scan, tmp_path, addon, monkeypatch):
+    """The points come nowhere near Blender."""
+    monkeypatch.setattr(addon("scans.files").prefilter, "read_points", None)
+    target = tmp_path / "out.ply"
+    result = run("reconstruct", scan, target, *DEPTH, "--memory-limit", 200)
+    assert result.returncode == 0, result.stderr
+    assert "Reconstructed 'out.ply' from 20000 points in cells of" in result.stdout
+    assert "100 %" in result.stderr
+    assert {path.name for path in tmp_path.iterdir()} == {"scan.ply", "out.ply"}
+    assert len(bpy.data.meshes) == 1  # The cube of the startup file.
+    assert_torus(target)
+
+
+@pytest.mark.parametrize("ending", [".obj", ".stl", ".glb", ".blend"])
+def test_other_targets(scan, tmp_path, ending):
+    target = tmp_path / f"out{ending}"
+    result = run("reconstruct", scan, target, *DEPTH)
+    assert result.returncode == 0, result.stderr
+    assert f"Reconstructed 'out{ending}' from 20000 points" in result.stdout
+    assert_torus(target)
+
+
+def test_colors(scan, tmp_path):
+    """As the file has them, both from file to file and in memory."""
+    for name, options in (("stream.ply", DEPTH), ("memory.ply", ("--voxel-size", 0.1))):
+        result = run("reconstruct", scan, tmp_path / name, *options)
+        assert result.returncode == 0, result.stderr
+        (made,) = loaded(tmp_path / name).values()
+        colors = made.data.color_attributes.active_color
+        found = np.array([tuple(entry.color_srgb) for entry in colors.data])[:, :3]
+        expected = (clouds.vertices(made) + 2) / 4
+        np.testing.assert_allclose(found, expected, atol=0.04)
+
+
+def test_several_sources(tmp_path):
+    points, normals = clouds.torus()
+    sources = []
+    for i in range(3):
+        part = slice(i, None, 3)
+        # The last one has no normals; they are estimated.
+        own = normals[part] if i < 2 else None
+        sources.append(write_ply(tmp_path / f"{i}.ply", points[part], own))
+    target = tmp_path / "out.ply"
+    result = run("reconstruct", *sources, target, *DEPTH)
+    assert result.returncode == 0, result.stderr
+    assert "from 20000 points" in result.stdout
+    assert_torus(target)
+
+
+def test_far_away_points_keep_their_precision(tmp_path):
+    points, normals = clouds.torus()
+    offset = np.array([500_000.0, 5_000_000.0, 100.0])
+    path = write_ply(tmp_path / "far.ply", points + offset, normals)
+    target = tmp_path / "out.blend"
+    result = run("reconstruct", path, target, *DEPTH)
+    assert result.returncode == 0, result.stderr
+    (made,) = loaded(target).values()
+    np.testing.assert_allclose(made.location, offset, atol=1)
+    made.location -= made.location.copy()
+    bpy.context.view_layer.update()
+    assert bodies.is_closed(made)
+    assert np.abs(clouds.torus_distance(clouds.vertices(made))).mean() < 0.1
+
+
+def test_objects_of_a_blend_file(tmp_path):
+    clouds.scan(*clouds.torus())
+    clouds.scan(*clouds.sphere(), name="Other")
+    bodies.cube()
+    path = tmp_path / "scene.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    target = tmp_path / "out.ply"
+    result = run("reconstruct", path, target, *DEPTH, "--object", "Scan")
+    assert result.returncode == 0, result.stderr
+    assert "Reconstructed 'Scan.surface' from 20000 points" in result.stdout
+    assert_torus(target)
+
+
+def test_failures_leave_nothing(scan, tmp_path):
+    cut = tmp_path / "cut.ply"
+    cut.write_bytes(scan.read_bytes()[:-100])
+    blend = tmp_path / "scene.blend"
+    bodies.cube()
+    bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+    before = {file.name: file.read_bytes() for file in tmp_path.iterdir()}
+    target = tmp_path / "out.ply"
+    rows = [
+        ((tmp_path / "gone.ply", target), ["gone.ply"], 1),
+        ((tmp_path / "gone.ply", tmp_path / "out.stl"), ["gone.ply"], 1),
+        ((scan, tmp_path / "gone" / "out.ply"), ["there is no folder"], 1),
+        ((scan, tmp_path / "out.vdb"), ["TARGET: found", "allowed: "], 2),
+        (("image.png", target), ["SOURCE: found 'image.png'", "allowed: "], 2),
+        ((scan, target, "--depth", 13), ["--depth: found '13'", "1 to 12"], 2),
+        ((scan, target, "--custom-isovalue", 0), ["--custom-isovalue: found '0'"], 2),
+        ((scan, target, "--wavelet", "d6"), ["--wavelet: found 'd6'", "haar, d4"], 2),
+        ((scan, target, "--object", "Scan"), ["--object: only .blend files"], 2),
+        ((scan, blend, target), ["SOURCE: .blend files"], 2),
+        ((blend, target), ["no visible object with points and no faces"], 1),
+        ((cut, target), ["cut.ply"], 1),
+        ((cut, tmp_path / "out.glb"), ["cut.ply"], 1),
+        ((scan, target, "--voxel-size", "0.0001"), ["Voxel Size: 0.0001", "4096"], 1),
+    ]
+    for arguments, words, status in rows:
+        assert_fails(run("reconstruct", *arguments), *words, status=status)
+    assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before

@@ -1,0 +1,47 @@
+"""Panel, menus, redo and the modal operator of scans, in a window that nobody sees."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+SESSION = Path(__file__).with_name("scan_session.py")
+
+
+@pytest.fixture(scope="module")
+def found(in_window, tmp_path_factory):
+    result = tmp_path_factory.mktemp("scans") / "result.json"
+    in_window(SESSION, result)
+    return json.loads(result.read_text())
+
+
+def test_panel(found):
+    assert found["tab"] == "Prefilter"
+
+
+def test_works_in_the_background(found):
+    assert found["started"] == ["RUNNING_MODAL"]
+    assert "press Esc to cancel" in found["refused_while_running"]
+    assert found["objects"] == {"Scan": True, "Scan.surface": False}
+    assert found["closed"]
+
+
+def test_redo(found):
+    before, depth = found["before_redo"]
+    after, new_depth = found["after_redo"]
+    assert abs(new_depth - depth) == 1
+    assert (after > 2 * before) == (new_depth > depth)
+    assert (after < 0.5 * before) == (new_depth < depth)
+
+
+def test_undo(found):
+    assert found["undone"] == {"Scan": False}
+
+
+def test_esc(found):
+    assert found["works"]
+    assert found["cancelled"] == {"Scan": False}
+
+
+def test_an_object_that_goes_meanwhile(found):
+    assert found["gone"] == {}
