@@ -1,15 +1,18 @@
 """`blender --background --command prefilter ...`: the operators without a window."""
 
 import argparse
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 
 import bpy
+import prefilter
 
 from .core.outcome import FAILURES
 
+_CANCELED = 128 + signal.SIGINT
 _PROGRAM = "blender --background --command prefilter"
 
 
@@ -33,13 +36,17 @@ class Commands:
         """Runs `prefilter ARGUMENTS`.
 
         Returns:
-            The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments.
+            The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
+            after Ctrl-C.
         """
         try:
             options = self.parser().parse_args(arguments)
             options.execute(options)
         except SystemExit as end:
             return end.code if isinstance(end.code, int) else 0
+        except prefilter.Cancelled:
+            print("prefilter: canceled", file=sys.stderr)
+            return _CANCELED
         except FAILURES as error:
             print(f"prefilter: error: {error}", file=sys.stderr)
             return 1

@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import signal
 import sys
 from collections.abc import Iterable, Sequence
 from typing import Any
@@ -55,23 +56,34 @@ def warn(warnings: Iterable[str]) -> None:
 
 
 class ProgressLine:
-    """Shows progress on stderr: one line that changes on a terminal, else a line each quarter."""
+    """Shows progress on stderr: one line that changes on a terminal, else a line each quarter.
+
+    Ctrl-C has the work stop at its next report; a second one ends the program. Blender by itself
+    waits for the second one.
+    """
 
     def __init__(self) -> None:
         """Shows nothing yet."""
         self._step = 1 if sys.stderr.isatty() else 25
         self._shown = -1
+        self._is_stopped = False
+        signal.signal(signal.SIGINT, self._stop)
 
     def __call__(self, fraction: float) -> bool:
-        """Shows how much is done, and says to go on."""
+        """Shows how much is done, and says whether to go on."""
         percent = int(100 * fraction) // self._step * self._step
         if percent > self._shown:
             self._shown = percent
             line = f"prefilter: {percent:3d} %"
             print(line, end="\r" if self._step == 1 else "\n", file=sys.stderr, flush=True)
-        return True
+        return not self._is_stopped
 
     def end(self) -> None:
         """Leaves the line."""
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
         if self._step == 1 and self._shown >= 0:
             print(file=sys.stderr)
+
+    def _stop(self, *_: object) -> None:
+        self._is_stopped = True
+        signal.signal(signal.SIGINT, signal.SIG_DFL)

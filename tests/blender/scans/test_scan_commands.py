@@ -1,5 +1,8 @@
 """The command `reconstruct`: from file to file, in memory, and from .blend files."""
 
+import os
+import signal
+
 import bodies
 import bpy
 import clouds
@@ -162,3 +165,20 @@ def test_failures_leave_nothing(scan, tmp_path):
     for arguments, words, status in rows:
         assert_fails(run("reconstruct", *arguments), *words, status=status)
     assert {file.name: file.read_bytes() for file in tmp_path.iterdir()} == before
+
+
+def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch):
+    """As a user presses it who sees the first line of progress."""
+    module = addon("core.command")
+
+    class Interrupted(module.ProgressLine):
+        def __call__(self, fraction):
+            os.kill(os.getpid(), signal.SIGINT)
+            return super().__call__(fraction)
+
+    monkeypatch.setattr(module, "ProgressLine", Interrupted)
+    for name in ("out.ply", "out.stl"):
+        result = run("reconstruct", scan, tmp_path / name, *DEPTH)
+        assert result.returncode == 130
+        assert result.stderr.strip().endswith("prefilter: canceled")
+    assert [path.name for path in tmp_path.iterdir()] == ["scan.ply"]
