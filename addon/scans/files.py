@@ -1,6 +1,7 @@
 """The surface of points in files, without objects of them: from file to file, or in memory."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import bpy
@@ -92,10 +93,7 @@ class FilesReconstruction:
             MemoryError: The points or the surface do not fit into memory.
         """
         steps = steps_of(share(progress, 0.0, _READ), len(self._sources))
-        read = [
-            _points(prefilter.read_points(path, progress=step), path.stem)
-            for path, step in zip(self._sources, steps, strict=True)
-        ]
+        read = [_read(path, step) for path, step in zip(self._sources, steps, strict=True)]
         self._origin = _origin_of(read)
         for points in read:
             points.positions[:] -= self._origin
@@ -121,16 +119,28 @@ class FilesReconstruction:
         bpy.context.scene.collection.objects.link(made)
         bpy.context.view_layer.update()
         scenes.save(self._target, [made.name])
+        several = len(self._sources) > 1
         return Outcome(
             f"Reconstructed '{self._target.name}' from {told(self._surface.report)}",
             objects=[made.name],
             files=[str(self._target)],
             warnings=oddities(self._surface.report),
-            notes=[f"read {listed(path.name for path in self._sources)}"],
+            notes=[f"read {listed(path.name for path in self._sources)}"] if several else [],
         )
 
     def discard(self) -> None:
         """Does nothing: nothing is staged."""
+
+
+def _read(path: Path, progress: Progress) -> Points:
+    """Reads a file, with the normals that it tells in one way or another."""
+    found = prefilter.read_points(path, progress=share(progress, 0.0, 0.5))
+    if found.normals is None:
+        told = prefilter.file_normals(path, found, progress=share(progress, 0.5, 1.0))
+        if told is not None:
+            normals, weights = told
+            found = replace(found, normals=normals.astype(np.float32), weights=weights)
+    return _points(found, path.stem)
 
 
 def _points(read: "prefilter.ScanPoints", name: str) -> Points:

@@ -14,7 +14,7 @@ from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_co
 from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
-from .reconstruction import ReconstructionReport, reconstruct, reconstruct_file
+from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
 from .scan_files import ScanPoints, read_points
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
@@ -39,6 +39,7 @@ __all__ = [
     "contour",
     "cube_around",
     "estimate_normals",
+    "file_normals",
     "fill_unused",
     "grid_normals",
     "keep_coverage",

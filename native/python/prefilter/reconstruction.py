@@ -182,8 +182,13 @@ def reconstruct_file(
     points = open_points(source)
     if not points.has_normals:
         read = read_points(source, progress=progress_part(progress, 0.0, 0.1))
-        normals, weights = _normals_of(
-            source, read, progress_part(progress, 0.1, 0.5), threads=threads
+        step = progress_part(progress, 0.1, 0.5)
+        told = file_normals(source, read, progress=step)
+        normals, weights = told or (
+            estimate_normals(
+                read.positions, viewpoint=read.viewpoint, progress=step, threads=threads
+            ),
+            read.weights,
         )
         points = _with_normals(points, replace(read, weights=weights), normals)
         progress = progress_part(progress, 0.5, 1.0)
@@ -194,6 +199,42 @@ def reconstruct_file(
     report = ReconstructionReport()
     _fill_in(report, _native.reconstruct_file(points, os.fsencode(place), options))
     return report
+
+
+def file_normals(
+    path: str | os.PathLike[str], read: ScanPoints, *, progress: ProgressCallback | None = None
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float32] | None] | None:
+    """What a file without normals tells of them besides the positions of its points.
+
+    In a PLY file that is a scanner's grid, or faces of the points.
+
+    Args:
+        path: Of the file.
+        read: Its points, as `read_points` returns them.
+        progress: Called with the fraction done; returning False stops the work.
+
+    Returns:
+        Normals, (points, 3), and how much each point counts, (points,) or None: all the same. None
+        where the file tells nothing; `estimate_normals` does without.
+
+    Raises:
+        ValueError: The file is damaged.
+        OSError: The file cannot be read.
+        Cancelled: `progress` returned False.
+    """
+    if Path(os.fsdecode(path)).suffix.lower() != ".ply":
+        return None
+    grid = read_range_grid(path)
+    if grid is not None:
+        normals, sureness = grid_normals(
+            read.positions, grid, viewpoint=read.viewpoint, progress=progress
+        )
+        return normals, sureness if read.weights is None else sureness * read.weights
+    triangles = read_faces(path)
+    # A few faces are no mesh of the points.
+    if len(np.unique(triangles)) > len(read.positions) / 2:
+        return mesh_normals(read.positions, triangles, progress=progress), read.weights
+    return None
 
 
 def _options(
@@ -232,31 +273,6 @@ def _options(
         as_progress(progress),
         as_threads(threads),
     )
-
-
-def _normals_of(
-    path: str | os.PathLike[str],
-    read: ScanPoints,
-    progress: ProgressCallback | None,
-    *,
-    threads: int,
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float32] | None]:
-    """Normals of a file's points, by what it tells besides their positions; and weights."""
-    if Path(os.fsdecode(path)).suffix.lower() == ".ply":
-        grid = read_range_grid(path)
-        if grid is not None:
-            normals, sureness = grid_normals(
-                read.positions, grid, viewpoint=read.viewpoint, progress=progress
-            )
-            return normals, sureness if read.weights is None else sureness * read.weights
-        triangles = read_faces(path)
-        # A few faces are no mesh of the points.
-        if len(np.unique(triangles)) > len(read.positions) / 2:
-            return mesh_normals(read.positions, triangles, progress=progress), read.weights
-    normals = estimate_normals(
-        read.positions, viewpoint=read.viewpoint, progress=progress, threads=threads
-    )
-    return normals, read.weights
 
 
 def _with_normals(
