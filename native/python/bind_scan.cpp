@@ -205,6 +205,7 @@ void bind_scan(py::module_& m) {
         if (!viewpoint) return py::none();
         return py::make_tuple((*viewpoint)[0], (*viewpoint)[1], (*viewpoint)[2]);
       });
+  m.attr("POINT_EXTENSIONS") = py::tuple(py::cast(point_extensions()));
   m.def("open_points", &open_points, py::arg("path"), py::call_guard<py::gil_scoped_release>());
   m.def("read_range_grid", &bound_read_range_grid, py::arg("path"));
   m.def("read_faces", &bound_read_faces, py::arg("path"));

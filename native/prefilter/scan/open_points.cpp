@@ -28,12 +28,19 @@ std::unique_ptr<PointSource> open_points(const std::string& path) {
   // No locale takes part in the names of formats.
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
-  std::string endings;
   for (const Format& format : kFormats) {
     if (ending == format.ending) return format.open(path);
-    endings += (endings.empty() ? "" : ", ") + std::string(format.ending);
   }
+  std::string endings;
+  for (const std::string& each : point_extensions())
+    endings += (endings.empty() ? "" : ", ") + each;
   throw_invalid("'" + path + "': unsupported extension '" + ending + "'; use " + endings);
+}
+
+std::vector<std::string> point_extensions() {
+  std::vector<std::string> extensions;
+  for (const Format& format : kFormats) extensions.emplace_back(format.ending);
+  return extensions;
 }
 
 }  // namespace prefilter

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "prefilter/scan/point_source.h"
 
@@ -12,5 +13,8 @@ namespace prefilter {
 /// lines of numbers. Throws Error(kFile) where it cannot be opened, else
 /// Error where the ending is another or the file is not what it says.
 std::unique_ptr<PointSource> open_points(const std::string& path);
+
+/// The endings that open_points knows, in lower case.
+std::vector<std::string> point_extensions();
 
 }  // namespace prefilter

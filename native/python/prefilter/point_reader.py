@@ -1,10 +1,16 @@
 """What the native module needs of Python code that reads points."""
 
+import contextlib
+import importlib
+import sys
 from collections.abc import Iterator
+from types import ModuleType
 from typing import Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
+
+POINTS_AT_ONCE = 1 << 16
 
 # Of some points: positions (n, 3), normals (n, 3), weights (n,), viewpoints (n, 3), and attributes
 # (n, attributes).
@@ -38,3 +44,28 @@ class PointReader(Protocol):
 
     def chunks(self) -> Iterator[PointChunk]:
         """Yields points, some at a time, anew from the first."""
+
+
+def find_module(name: str, path: str, files: str, package: str) -> ModuleType:
+    """Imports the module that reads some files. Raises ValueError where it cannot be imported."""
+    # What cannot be opened is no fault of the module.
+    with open(path, "rb"):
+        pass
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise ValueError(
+            f"'{path}': {files} need the Python module {name}, which {sys.executable} cannot "
+            f"import: {error}. Install the package {package}, or convert the file to PLY"
+        ) from error
+
+
+@contextlib.contextmanager
+def damage_of(path: str, kind: str) -> Iterator[None]:
+    """Makes a ValueError that names the file of whatever a module makes of its damage."""
+    try:
+        yield
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise ValueError(f"'{path}' cannot be read as {kind}: {error}") from error

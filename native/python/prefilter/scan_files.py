@@ -1,6 +1,7 @@
 """Files of points, as scanners and their programs write them."""
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -10,6 +11,15 @@ import numpy.typing as npt
 from . import _native
 from ._border.arguments import ProgressCallback, as_progress
 from ._border.output import as_path
+from .e57_points import E57Reader
+from .las_points import LasReader
+from .point_reader import PointReader
+
+_READERS: dict[str, Callable[[str], PointReader]] = {
+    ".las": LasReader,
+    ".laz": LasReader,
+    ".e57": E57Reader,
+}
 
 AttributeArray: TypeAlias = npt.NDArray[np.uint8 | np.float32]
 
@@ -54,14 +64,17 @@ def read_points(
     cloud that is no image: it stands there, too, where nothing is known.
     .xyz, .xyzn, .pts, .asc, .txt: lines of x y z, and then a normal, a color, an intensity; which
     of these the columns are is told from the first thousands of lines.
+    .las, .laz: need the Python package laspy; .laz also lazrs or laszip.
+    .e57: needs the Python package pye57. All scans are read, in the file's coordinates; the places
+    of their poses are the viewpoint.
 
     Args:
         path: Of the file.
         progress: Called with the fraction done; returning False stops the work.
 
     Raises:
-        ValueError: The extension is another, or the file is damaged; the message names the line or
-            the point.
+        ValueError: The extension is another, a package is missing, or the file is damaged; the
+            message names the line or the point.
         OSError: The file cannot be read.
         MemoryError: The points would not fit into memory.
         Cancelled: `progress` returned False.
@@ -77,7 +90,14 @@ def read_points(
 
 def open_points(path: str | os.PathLike[str]) -> _native.PointSource:
     """Opens a file for functions of the native module that read it piece by piece."""
-    return _native.open_points(os.fsencode(as_path(path)))
+    name = as_path(path)
+    ending = os.path.splitext(name)[1].lower()
+    if ending in _READERS:
+        return _native.PointSource(_READERS[ending](name))
+    if ending not in _native.POINT_EXTENSIONS:
+        endings = ", ".join((*_native.POINT_EXTENSIONS, *_READERS))
+        raise ValueError(f"'{name}': unsupported extension '{ending}'; use {endings}")
+    return _native.open_points(os.fsencode(name))
 
 
 def read_range_grid(path: str | os.PathLike[str]) -> npt.NDArray[np.int64] | None:

@@ -110,7 +110,7 @@ void add_grid(std::size_t vertices, std::size_t triangles, PlyMeshWriter* writer
     piece = std::min(piece, triangles - done);
     Triangles some;
     for (std::size_t i = done; i < done + piece; ++i) {
-      const auto a = static_cast<std::int64_t>(i);
+      const auto a = static_cast<std::int64_t>(i % (vertices - 2));
       some.push_back({a, a + 1, a + 2});
     }
     writer->add_triangles(some);

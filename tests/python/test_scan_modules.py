@@ -1,0 +1,178 @@
+"""Points of LAS and E57 files, where the Python modules that read these can be imported."""
+
+import sys
+
+import numpy as np
+import prefilter
+import pytest
+from scan_writers import write
+
+COUNT = 150_000  # More than are read at once.
+
+
+def random_points(seed=0, count=COUNT):
+    return np.random.default_rng(seed).normal(size=(count, 3)) * 100 + (500_000, 5_000_000, 100)
+
+
+@pytest.fixture
+def laspy():
+    return pytest.importorskip("laspy", reason="laspy cannot be imported")
+
+
+@pytest.fixture
+def pye57():
+    return pytest.importorskip("pye57", reason="pye57 cannot be imported")
+
+
+@pytest.mark.parametrize(
+    ("name", "module"), [("a.las", "laspy"), ("a.LAZ", "laspy"), ("a.e57", "pye57")]
+)
+def test_a_module_that_is_missing_is_named(tmp_path, monkeypatch, name, module):
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(ValueError, match=rf"{name}': .* files need the Python module {module}, wh"):
+        prefilter.read_points(write(tmp_path, name, b""))
+    with pytest.raises(FileNotFoundError):
+        prefilter.read_points(tmp_path / f"none{name}")
+
+
+def las_file(laspy, path, *, version=2, color=None, normals=None, positions=None):
+    positions = random_points() if positions is None else positions
+    header = laspy.LasHeader(point_format=version, version="1.4" if version > 5 else "1.2")
+    header.offsets, header.scales = np.array([500_000, 5_000_000, 0]), np.full(3, 0.001)
+    for name in ("NormalX", "NormalY", "NormalZ", "amplitude") if normals is not None else ():
+        header.add_extra_dim(laspy.ExtraBytesParams(name=name, type=np.float32))
+    las = laspy.LasData(header)
+    las.x, las.y, las.z = positions.T
+    las.intensity = np.arange(len(positions)) % 65536
+    las.classification = np.arange(len(positions)) % 19
+    if color is not None:
+        las.red, las.green, las.blue = color.T
+    if normals is not None:
+        las.NormalX, las.NormalY, las.NormalZ = normals.T
+        las.amplitude = normals[:, 0] * 7
+    las.write(path)
+    return positions
+
+
+@pytest.mark.parametrize("ending", [".las", ".laz"])
+def test_las_files(laspy, tmp_path, ending):
+    if ending == ".laz":
+        pytest.importorskip("lazrs", reason="lazrs cannot be imported")
+    path = tmp_path / f"cloud{ending}"
+    normals = np.random.default_rng(3).normal(size=(COUNT, 3)).astype(np.float32)
+    color = np.random.default_rng(4).integers(0, 65536, (COUNT, 3))
+    expected = las_file(laspy, path, version=7, color=color, normals=normals)
+    points = prefilter.read_points(path)
+    np.testing.assert_allclose(points.positions, expected, atol=0.00051, rtol=0)
+    np.testing.assert_array_equal(points.normals, normals)
+    np.testing.assert_array_equal(points.colors, np.round(color / 257))
+    assert points.colors.dtype == np.uint8
+    assert list(points.attributes) == [
+        *("intensity", "amplitude", "classification", "red", "green", "blue")
+    ]
+    np.testing.assert_array_equal(points.attributes["intensity"], np.arange(COUNT) % 65536)
+    np.testing.assert_array_equal(points.attributes["classification"], np.arange(COUNT) % 19)
+    np.testing.assert_array_equal(points.attributes["amplitude"], normals[:, 0] * np.float32(7))
+    assert points.viewpoint is None
+
+
+def test_las_files_without_more(laspy, tmp_path):
+    path = tmp_path / "cloud.las"
+    expected = las_file(laspy, path, version=0, positions=random_points(count=10))
+    points = prefilter.read_points(path)
+    np.testing.assert_allclose(points.positions, expected, atol=0.00051, rtol=0)
+    assert points.normals is points.colors is None
+    las_file(laspy, path, positions=np.zeros((0, 3)), color=np.zeros((0, 3), np.uint16))
+    assert len(prefilter.read_points(path).positions) == 0
+
+
+def test_las_colors_of_eight_bits(laspy, tmp_path):
+    path = tmp_path / "cloud.las"
+    color = np.random.default_rng(4).integers(0, 256, (COUNT, 3))
+    las_file(laspy, path, color=color)
+    np.testing.assert_array_equal(prefilter.read_points(path).colors, color)
+
+
+def test_damaged_las_files(laspy, tmp_path):
+    path = tmp_path / "cloud.las"
+    las_file(laspy, path, positions=random_points(count=50))
+    contents = path.read_bytes()
+    assert len(prefilter.read_points(path).positions) == 50
+    records = contents[:100] + b"\xff\xff\xff\xff" + contents[104:]
+    for damaged, message in [
+        (b"", "is no LAS file: it begins with b''"),
+        (b"garbage" * 1000, "is no LAS file: it begins with b'garb'"),
+        (contents[:200], "is no LAS file"),
+        (contents[:-100], r"too short for the 50 points in its header: \d+ bytes follow it"),
+        (records, "too short for the records that its header announces"),
+        (contents[:104] + b"\x7f" + contents[105:], "cannot be read as a LAS file"),
+    ]:
+        path.write_bytes(damaged)
+        with pytest.raises(ValueError, match=f"cloud.las'.*{message}"):
+            prefilter.read_points(path)
+
+
+def e57_scan(seed, *, with_color=True, **more):
+    random = np.random.default_rng(seed)
+    data = {f"cartesian{axis}": random.normal(size=COUNT).astype(np.float32) for axis in "XYZ"}
+    data["intensity"] = random.random(COUNT).astype(np.float32)
+    if with_color:
+        for name in ("Red", "Green", "Blue"):
+            data[f"color{name}"] = random.integers(0, 256, COUNT).astype(np.uint8)
+    return {name: np.asarray(values) for name, values in {**data, **more}.items()}
+
+
+def test_e57_files(pye57, tmp_path):
+    path = tmp_path / "scan.e57"
+    # A quarter turn around z.
+    turn = np.array([0.5**0.5, 0.0, 0.0, 0.5**0.5])
+    invalid = (np.arange(COUNT) % 3 == 0).astype(np.int8)
+    first, second = e57_scan(1, cartesianInvalidState=invalid), e57_scan(2)
+    with pye57.E57(str(path), mode="w") as file:
+        file.write_scan_raw(first, rotation=turn, translation=np.array([1000.0, 2000.0, 30.0]))
+        file.write_scan_raw(second, rotation=[1, 0, 0, 0], translation=np.array([0.0, 0.0, 5.0]))
+    points = prefilter.read_points(path)
+    kept = invalid == 0
+    x, y, z = (first[f"cartesian{axis}"][kept].astype(float) for axis in "XYZ")
+    expected = np.concatenate(
+        [
+            np.stack([1000 - y, 2000 + x, 30 + z], axis=1),
+            np.stack([second[f"cartesian{axis}"] for axis in "XYZ"], axis=1)
+            + np.array([0, 0, 5.0]),
+        ]
+    )
+    np.testing.assert_allclose(points.positions, expected, atol=1e-9, rtol=1e-12)
+    for name in ("Red", "Green", "Blue"):
+        values = np.concatenate([first[f"color{name}"][kept], second[f"color{name}"]])
+        np.testing.assert_array_equal(points.attributes[name.lower()], values)
+        assert points.attributes[name.lower()].dtype == np.uint8
+    intensity = np.concatenate([first["intensity"][kept], second["intensity"]])
+    np.testing.assert_array_equal(points.attributes["intensity"], intensity)
+    assert points.viewpoint.shape == points.positions.shape
+    np.testing.assert_array_equal(points.viewpoint[: kept.sum()], [[1000, 2000, 30]] * kept.sum())
+    np.testing.assert_array_equal(points.viewpoint[kept.sum() :], [[0, 0, 5]] * COUNT)
+
+
+def test_one_scan_has_one_viewpoint(pye57, tmp_path):
+    path = tmp_path / "scan.e57"
+    with pye57.E57(str(path), mode="w") as file:
+        file.write_scan_raw(e57_scan(1), translation=np.array([1.0, 2.0, 3.0]))
+    np.testing.assert_array_equal(prefilter.read_points(path).viewpoint, [1, 2, 3])
+    with pye57.E57(str(path), mode="w") as file:
+        file.write_scan_raw(e57_scan(1))
+        file.write_scan_raw(e57_scan(2, with_color=False))
+    points = prefilter.read_points(path)
+    assert points.colors is None
+    assert list(points.attributes) == ["intensity"]
+
+
+def test_damaged_e57_files(pye57, tmp_path):
+    path = tmp_path / "scan.e57"
+    with pye57.E57(str(path), mode="w") as file:
+        file.write_scan_raw({name: values[:50] for name, values in e57_scan(1).items()})
+    contents = path.read_bytes()
+    for damaged in (b"", b"garbage" * 1000, contents[:-1000], contents[:3000]):
+        path.write_bytes(damaged)
+        with pytest.raises(ValueError, match=r"scan.e57' cannot be read as an E57 file"):
+            prefilter.read_points(path)
+        assert path.read_bytes() == damaged
