@@ -134,18 +134,44 @@ struct Border {
   }
 };
 
-// Adds the border between two members of patches or sets of them, unless it is inside of one.
-void add_border(SignedSets::Member a, SignedSets::Member b, std::int64_t votes,
-                std::vector<Border>* borders) {
-  if (a.set == b.set) return;
-  if (a.is_reversed != b.is_reversed) votes = -votes;
-  borders->push_back({std::min(a.set, b.set), std::max(a.set, b.set), votes});
+// The border of two members of patches or of sets of them, with the lower number first. One inside
+// of a patch has that twice.
+Border border_between(SignedSets::Member a, SignedSets::Member b, std::int64_t votes) {
+  return {std::min(a.set, b.set), std::max(a.set, b.set),
+          a.is_reversed != b.is_reversed ? -votes : votes};
 }
+
+// Borders that were met lately, whose votes are summed at once: there are many pairs of points
+// between two patches, and they come soon one after the other.
+class RecentBorders {
+ public:
+  void add(const Border& border) {
+    Border& slot = slots_[(border.a * 0x9E3779B9U + border.b * 0x85EBCA6BU) >> (32 - kSlotBits)];
+    if (slot.a == border.a && slot.b == border.b) {
+      slot.votes += border.votes;
+    } else {
+      if (slot.a != kNone) past_.push_back(slot);
+      slot = border;
+    }
+  }
+
+  std::vector<Border> take() {
+    for (const Border& slot : slots_) {
+      if (slot.a != kNone) past_.push_back(slot);
+    }
+    return std::move(past_);
+  }
+
+ private:
+  static constexpr int kSlotBits = 12;
+  std::vector<Border> slots_ = std::vector<Border>(std::size_t{1} << kSlotBits, {kNone, kNone, 0});
+  std::vector<Border> past_;
+};
 
 std::vector<Border> find_borders(const LinkedPoints& points,
                                  std::span<const std::int16_t> agreements, const Patches& patches,
                                  const Progress& progress) {
-  std::vector<Border> borders;
+  RecentBorders borders;
   Pulse pulse(progress);
   for (std::size_t i = 0, e = 0; i < points.positions.size(); ++i) {
     pulse.step();
@@ -153,12 +179,12 @@ std::vector<Border> find_borders(const LinkedPoints& points,
       // The fourth power: many doubtful pairs count for less than a few good ones.
       const std::int64_t square = agreements[e] * agreements[e];
       const std::int64_t votes = (square * square) >> 16;
-      if (votes == 0) continue;
-      add_border(patches.members[i], patches.members[points.links[e]],
-                 agreements[e] < 0 ? -votes : votes, &borders);
+      const Border border = border_between(patches.members[i], patches.members[points.links[e]],
+                                           agreements[e] < 0 ? -votes : votes);
+      if (votes != 0 && border.a != border.b) borders.add(border);
     }
   }
-  return borders;
+  return borders.take();
 }
 
 // Sums the votes of the same two patches.
@@ -196,7 +222,8 @@ SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Pr
     std::vector<Border> left;
     for (const Border& border : borders) {
       pulse.step();
-      add_border(sets.find(border.a), sets.find(border.b), border.votes, &left);
+      const Border next = border_between(sets.find(border.a), sets.find(border.b), border.votes);
+      if (next.a != next.b) left.push_back(next);
     }
     borders.swap(left);
   }
