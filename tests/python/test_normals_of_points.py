@@ -3,7 +3,9 @@
 import numpy as np
 import prefilter
 import pytest
+import solids
 
+KITTEN = solids.DATA.parent / "points" / "kitten.xyz"
 RANDOM = np.random.default_rng(0)
 
 
@@ -146,6 +148,13 @@ def test_threads_and_order_change_nothing():
     np.testing.assert_array_equal(one[order], prefilter.estimate_normals(points[order]))
 
 
+def test_outliers_do_not_turn_the_surface():
+    points, normals = sphere(20_000)
+    outliers = RANDOM.uniform(-1.2, 1.2, (400, 3))
+    found = prefilter.estimate_normals(np.concatenate([points, outliers]))
+    assert np.mean(degrees(found[: len(points)], normals) < 90) > 0.999
+
+
 def test_copies_have_the_normal_of_one():
     points, _ = sphere(2000)
     copies = np.concatenate([points, np.repeat(points[:40], 50, axis=0)])
@@ -220,3 +229,11 @@ def test_what_is_wrong_is_named(options, message):
     arguments = {"points": np.zeros((5, 3)), **options}
     with pytest.raises(ValueError, match=message):
         prefilter.estimate_normals(arguments.pop("points"), **arguments)
+
+
+@pytest.mark.skipif(not KITTEN.exists(), reason="the model is not there")
+def test_a_scanned_model_with_normals():
+    rows = np.loadtxt(KITTEN)
+    errors = degrees(prefilter.estimate_normals(rows[:, :3]), unit(rows[:, 3:6]))
+    assert errors.max() < 90
+    assert errors.mean() < 6
