@@ -4,28 +4,62 @@
 // hang together; where it runs the samples know better.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/reconstruct/sample_index.h"
 
 namespace prefilter {
 
-/// The surface of the samples within a cell's side of a point, as seen from there.
+/// The surface of the samples within a cell's side of a point, as seen from there; in cells.
 struct LocalSurface {
   Vector3 normal{};       // of length 1
-  double distance = 0.0;  // of the point from the surface, along the normal; in cells
+  double distance = 0.0;  // of the point from the surface, along the normal
+  double weight = 0.0;    // of as many samples as would have the same noise, all weighted alike
 };
 
-/// None where there are no samples. With weights w = (1 - r^2)^2 for samples r cells away, the
-/// distance is the mean of that from the plane through the mean sample, across the mean normal,
-/// and that from the samples' own planes. Where the surface curves, the first is too large by as
-/// much as the second is too small: samples of a sphere give the sphere, to the fourth order.
+/// None where there are no samples, or their normals cancel each other. With weights w = (1 -
+/// r^2)^2 for samples r cells away, the distance is the mean of that from the plane through the
+/// mean sample, across the mean normal, and that from the samples' own planes. Where the surface
+/// curves, the first is too large by as much as the second is too small: samples of a sphere give
+/// the sphere, to the fourth order. Where normals differ by more than curvature explains, the
+/// first alone counts.
 std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector3& point);
 
-/// Moves a point, in cells, onto the surface around it.
-void fit_to_samples(const SampleIndex& index, Vector3* point);
+/// What a cloud's samples are like, in finest cells.
+struct SampleNoise {
+  double distance = 0.0;  // of a sample from the surface: the standard deviation
+  double samples = 1.0;   // that count for the surface within a finest cell's side of a point
+};
+
+/// Of some cells of one depth, from the surface of the samples within two of their sides;
+/// `coarser` has the samples of the depth above. `mean_weight` is that of a sample.
+SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& coarser,
+                          double mean_weight);
+
+/// Moves points onto the surface of the samples around them. Detail wants these near, noise wants
+/// many: they are taken from cells of the smallest size at which noise leaves the surface open by
+/// no more than a small share of a leaf.
+class SampleFit {
+ public:
+  /// `index_of(k)` gives the samples of depth k; `finest` is the largest.
+  using IndexOf = std::function<const SampleIndex&(int)>;
+  SampleFit(IndexOf index_of, int finest, const SampleNoise& noise)
+      : index_of_(std::move(index_of)), finest_(finest), noise_(noise) {}
+
+  /// Of a point in finest cells, next to leaves of this depth.
+  void move(int depth, Vector3* point) const;
+
+ private:
+  int depth_of_samples(int depth) const;
+
+  IndexOf index_of_;
+  int finest_;
+  SampleNoise noise_;
+};
 
 /// The attributes of the samples within a cell's side, weighted likewise; false where there are
 /// none.

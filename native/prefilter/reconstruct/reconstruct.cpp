@@ -245,7 +245,26 @@ class Reconstruction {
     }
   }
 
+  // Of some cells of the slab that has most.
+  SampleNoise find_noise() const {
+    constexpr std::size_t kCells = 4096;
+    std::size_t largest = 0;
+    for (std::size_t s = 1; s < slabs_.size(); ++s) {
+      if (slabs_[s].at(depth()).size() > slabs_[largest].at(depth()).size()) largest = s;
+    }
+    const SampleLevel& level = slabs_[largest].at(depth());
+    const SampleIndex coarser = samples_around(largest, depth() - 1, 2);
+    const std::size_t step = std::max<std::size_t>(1, level.size() / kCells);
+    std::vector<SampleCell> cells;
+    for (std::size_t i = 0; i < level.size(); i += step) {
+      if (level.leaf[i] == depth()) cells.push_back(level.samples.cells[i]);
+    }
+    return measure_noise(cells, coarser, mean_weight_);
+  }
+
   void contour(float scale, MeshSink* sink, ReconstructReport* report) {
+    noise_ = find_noise();
+    report->residual = noise_.distance;
     MeshJoiner joiner(grid_, attribute_count_, sink);
     const auto width = static_cast<std::size_t>(resolve_threads(options_.threads));
     const int side = 1 << depth();
@@ -326,17 +345,18 @@ class Reconstruction {
       if (!index) index = std::make_unique<SampleIndex>(samples_around(s, k, 3));
       return *index;
     };
+    const SampleFit fit(index_of, depth(), noise_);
     for (std::size_t v = 0; v < positions.size(); ++v) {
       int k = v < places.size() ? places[v].depth : depth();
-      const double shrink = std::ldexp(1.0, k - depth());
-      Vector3 p = {positions[v][0] * shrink, positions[v][1] * shrink, positions[v][2] * shrink};
-      if (options_.fit) fit_to_samples(index_of(k), &p);
-      for (std::size_t a = 0; a < 3; ++a) positions[v][a] = p[a] / shrink;
+      if (options_.fit) fit.move(k, &positions[v]);
+      if (attribute_count_ == 0) continue;
       const std::span<float> attributes(slab->attributes.data() + v * attribute_count_,
                                         attribute_count_);
-      for (; k > 0 && attribute_count_ > 0; --k) {
-        if (blend_attributes(index_of(k), p, attributes)) break;
-        for (double& x : p) x /= 2.0;
+      const Vector3& p = positions[v];
+      for (; k > 0; --k) {
+        const double shrink = std::ldexp(1.0, k - depth());
+        const Vector3 in_level = {p[0] * shrink, p[1] * shrink, p[2] * shrink};
+        if (blend_attributes(index_of(k), in_level, attributes)) break;
       }
     }
     if (options_.trim) trim(s, slab);
@@ -370,6 +390,7 @@ class Reconstruction {
   const ReconstructOptions& options_;
   std::size_t attribute_count_;
   double mean_weight_;
+  SampleNoise noise_;
   SampleStore* store_;
   int top_;
   std::vector<SampleSlab> slabs_;
