@@ -6,19 +6,21 @@
 #include <cstddef>
 #include <vector>
 
+#include "prefilter/scan/local_plane.h"
+
 namespace prefilter {
 namespace {
 
 constexpr int kRounds = 2;
 // Normals that cancel each other to less than this share do not tell a side.
 constexpr double kLeastCoherence = 0.2;
-// Curved surfaces keep more than the second within a cell's side; noise of normals leaves less than
-// the first.
-constexpr double kNoisyCoherence = 0.93;
-constexpr double kCleanCoherence = 0.98;
+// Of two normals close together, the mean cosine: of noisy ones, and of such as curvature alone
+// makes differ.
+constexpr double kNoisyCosine = 0.86;
+constexpr double kCleanCosine = 0.96;
 // Of a leaf's side: what noise may leave open.
-constexpr double kOpen = 0.08;
-constexpr int kMostCoarser = 3;
+constexpr double kOpen = 0.12;
+constexpr int kMostCoarser = 2;
 
 // Calls visit(cell, index, corner, mean, weight) for the cells of samples around a point.
 template <typename Visit>
@@ -37,14 +39,30 @@ void for_weighted(const SampleIndex& index, const Vector3& point, const Visit& v
   });
 }
 
+// The samples of a cell near a point.
+struct Near {
+  double weight;   // of all together
+  Vector3 offset;  // of their mean from the point
+  double planes;   // of their own planes from the point, mean
+};
+
+// The normal of the plane that fits the means best, or zero where they are on a line.
+Vector3 across_means(std::span<const Near> cells, double weight) {
+  constexpr double kLeastFlatness = 0.02;
+  Vector3 mean{};
+  for (const Near& near : cells) {
+    for (std::size_t a = 0; a < 3; ++a) mean[a] += near.weight / weight * near.offset[a];
+  }
+  SymmetricMatrix covariance;
+  for (const Near& near : cells) covariance.add_square(near.weight / weight, near.offset - mean);
+  const Vector3 normal = least_eigenvector(covariance);
+  return flatness(covariance, normal) > kLeastFlatness ? normal : Vector3{};
+}
+
 }  // namespace
 
-std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector3& point) {
-  struct Near {
-    double weight;   // of the cell's samples, together
-    Vector3 offset;  // of their mean from the point
-    double planes;   // of their own planes from the point, mean
-  };
+std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector3& point,
+                                          double normal_trust) {
   std::array<Near, 27> cells;
   std::size_t count = 0;
   double weight = 0.0;
@@ -71,9 +89,18 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
   if (!(coherence > kLeastCoherence)) return std::nullopt;
   LocalSurface surface;
   for (std::size_t a = 0; a < 3; ++a) surface.normal[a] = normal[a] / (coherence * weight);
-  const double own_planes =
-      0.5 *
-      std::clamp((coherence - kNoisyCoherence) / (kCleanCoherence - kNoisyCoherence), 0.0, 1.0);
+  if (normal_trust < 1.0) {
+    const Vector3 across = across_means(std::span(cells.data(), count), weight);
+    const double side = dot(across, surface.normal) < 0.0 ? -1.0 : 1.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      surface.normal[a] =
+          normal_trust * surface.normal[a] + (1.0 - normal_trust) * side * across[a];
+    }
+    const double size = std::sqrt(dot(surface.normal, surface.normal));
+    if (!(size > 0.0)) return std::nullopt;
+    for (double& x : surface.normal) x /= size;
+  }
+  const double own_planes = 0.5 * normal_trust;
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     Near& near = cells[i];
@@ -91,17 +118,27 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
   constexpr double kMedianOfNormal = 0.6745;
   std::vector<double> distances;
   std::vector<double> weights;
+  double cosines = 0.0;
+  double pairs = 0.0;
   for (const SampleCell& cell : cells) {
     const CellPosition at = cell_position(cell.key);
     Vector3 point;
     for (std::size_t a = 0; a < 3; ++a) {
       point[a] = (at[a] + static_cast<double>(cell.position[a] / cell.weight)) / 2.0;
     }
-    const std::optional<LocalSurface> surface = local_surface(coarser, point);
+    const double samples = static_cast<double>(cell.weight) / mean_weight;
+    if (samples > 1.5) {
+      // Of n normals the squared length of the mean is 1 / n plus the share of the pairs.
+      double squared = 0.0;
+      for (const float n : cell.normal) squared += static_cast<double>(n * n);
+      squared /= static_cast<double>(cell.weight) * static_cast<double>(cell.weight);
+      cosines += samples * (squared - 1.0 / samples) / (1.0 - 1.0 / samples);
+      pairs += samples;
+    }
+    const std::optional<LocalSurface> surface = local_surface(coarser, point, 1.0);
     if (!surface) continue;
     // The mean of a cell's samples has less noise than each.
-    distances.push_back(2.0 * std::abs(surface->distance) *
-                        std::sqrt(static_cast<double>(cell.weight) / mean_weight));
+    distances.push_back(2.0 * std::abs(surface->distance) * std::sqrt(samples));
     weights.push_back(surface->weight / 4.0);
   }
   if (distances.empty()) return {};
@@ -110,7 +147,9 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
     std::nth_element(values->begin(), middle, values->end());
     return *middle;
   };
-  return {median(&distances) / kMedianOfNormal, median(&weights) / mean_weight};
+  const double cosine = pairs > 0.0 ? cosines / pairs : 1.0;
+  return {median(&distances) / kMedianOfNormal, median(&weights) / mean_weight,
+          std::clamp((cosine - kNoisyCosine) / (kCleanCosine - kNoisyCosine), 0.0, 1.0)};
 }
 
 int SampleFit::depth_of_samples(int depth) const {
@@ -130,7 +169,7 @@ void SampleFit::move(int depth, Vector3* point) const {
     for (const int last = std::max(1, k - kMostCoarser);; --k) {
       cell = std::ldexp(1.0, finest_ - k);
       const Vector3 p = {(*point)[0] / cell, (*point)[1] / cell, (*point)[2] / cell};
-      surface = local_surface(index_of_(k), p);
+      surface = local_surface(index_of_(k), p, noise_.normal_trust);
       if (surface || k == last) break;
     }
     if (!surface) return;

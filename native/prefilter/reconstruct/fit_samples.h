@@ -25,14 +25,16 @@ struct LocalSurface {
 /// r^2)^2 for samples r cells away, the distance is the mean of that from the plane through the
 /// mean sample, across the mean normal, and that from the samples' own planes. Where the surface
 /// curves, the first is too large by as much as the second is too small: samples of a sphere give
-/// the sphere, to the fourth order. Where normals differ by more than curvature explains, the
-/// first alone counts.
-std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector3& point);
+/// the sphere, to the fourth order. Less `normal_trust` than 1 takes the normal more and more from
+/// the plane that fits the samples' positions, and the distance from that plane alone.
+std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector3& point,
+                                          double normal_trust);
 
 /// What a cloud's samples are like, in finest cells.
 struct SampleNoise {
-  double distance = 0.0;  // of a sample from the surface: the standard deviation
-  double samples = 1.0;   // that count for the surface within a finest cell's side of a point
+  double distance = 0.0;      // of a sample from the surface: the standard deviation
+  double samples = 1.0;       // that count for the surface within a finest cell's side of a point
+  double normal_trust = 1.0;  // 1 where normals of one cell agree, 0 where they hardly do
 };
 
 /// Of some cells of one depth, from the surface of the samples within two of their sides;
