@@ -20,6 +20,8 @@ constexpr double kNoisyCosine = 0.86;
 constexpr double kCleanCosine = 0.96;
 // Of a leaf's side: what noise may leave open.
 constexpr double kOpen = 0.12;
+// On smooth surfaces 1/2 is exact; at creases the samples' own planes are the better of the two.
+constexpr double kOwnPlanes = 0.65;
 constexpr int kMostCoarser = 2;
 
 // Calls visit(cell, index, corner, mean, weight) for the cells of samples around a point.
@@ -100,7 +102,7 @@ std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector
     if (!(size > 0.0)) return std::nullopt;
     for (double& x : surface.normal) x /= size;
   }
-  const double own_planes = 0.5 * normal_trust;
+  const double own_planes = kOwnPlanes * normal_trust;
   double sum = 0.0;
   for (std::size_t i = 0; i < count; ++i) {
     Near& near = cells[i];
