@@ -26,8 +26,8 @@ def _rebuilt(cloud: Cloud, **options: object) -> tuple[np.ndarray, np.ndarray, f
 @pytest.mark.parametrize(
     ("options", "limit"),
     [
-        ({}, 0.002),
-        ({"smooth": False}, 0.002),
+        ({}, 0.004),
+        ({"smooth": False}, 0.004),
         ({"fit": False}, 0.06),
         ({"fit": False, "smooth": False}, 0.06),
         ({"fit": False, "smooth": False, "isovalue": "half"}, 0.06),
