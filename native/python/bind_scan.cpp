@@ -127,21 +127,23 @@ py::tuple bound_read_points(PointSource* source, const py::object& callback) {
                         viewpoints, attributes);
 }
 
-py::object bound_read_range_grid(const std::string& path) {
+py::object bound_read_range_grid(const std::string& path, const py::object& callback) {
+  const Progress progress = to_progress(callback);
   std::optional<RangeGrid> grid;
   {
     const py::gil_scoped_release unlocked;
-    grid = read_range_grid(path);
+    grid = read_range_grid(path, progress);
   }
   if (!grid) return py::none();
   return to_array<std::int64_t>(std::move(grid->points), {grid->rows, grid->columns});
 }
 
-Array<std::int64_t> bound_read_faces(const std::string& path) {
+Array<std::int64_t> bound_read_faces(const std::string& path, const py::object& callback) {
+  const Progress progress = to_progress(callback);
   std::vector<std::array<std::int64_t, 3>> triangles;
   {
     const py::gil_scoped_release unlocked;
-    triangles = read_faces(path);
+    triangles = read_faces(path, progress);
   }
   const auto count = static_cast<py::ssize_t>(triangles.size());
   return to_array<std::int64_t>(std::move(triangles), {count, 3});
@@ -207,8 +209,8 @@ void bind_scan(py::module_& m) {
       });
   m.attr("POINT_EXTENSIONS") = py::tuple(py::cast(point_extensions()));
   m.def("open_points", &open_points, py::arg("path"), py::call_guard<py::gil_scoped_release>());
-  m.def("read_range_grid", &bound_read_range_grid, py::arg("path"));
-  m.def("read_faces", &bound_read_faces, py::arg("path"));
+  m.def("read_range_grid", &bound_read_range_grid, py::arg("path"), py::arg("progress"));
+  m.def("read_faces", &bound_read_faces, py::arg("path"), py::arg("progress"));
   m.def("read_points", &bound_read_points, py::arg("source"), py::arg("progress"));
   m.def("mesh_normals", &bound_mesh_normals, py::arg("points"), py::arg("triangles"),
         py::arg("progress"));

@@ -288,6 +288,9 @@ def test_range_grids(tmp_path, form):
     path = write(tmp_path, "scan.ply", range_scan(form))
     np.testing.assert_array_equal(read_range_grid(path), [[0, -1, 1], [-1, -1, 2]])
     assert read_faces(path).shape == (0, 3)
+    told = []
+    read_range_grid(path, progress=told.append)
+    assert sorted(told) == told
     np.testing.assert_array_equal(prefilter.read_points(path).positions, CORNERS)
     assert read_range_grid(write(tmp_path, "cloud.ply", vertices(form))) is None
 

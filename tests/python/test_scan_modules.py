@@ -160,10 +160,14 @@ def test_one_scan_has_one_viewpoint(pye57, tmp_path):
     np.testing.assert_array_equal(prefilter.read_points(path).viewpoint, [1, 2, 3])
     with pye57.E57(str(path), mode="w") as file:
         file.write_scan_raw(e57_scan(1))
+    assert prefilter.read_points(path).viewpoint is None
+    with pye57.E57(str(path), mode="w") as file:
+        file.write_scan_raw(e57_scan(1))
         file.write_scan_raw(e57_scan(2, with_color=False))
     points = prefilter.read_points(path)
     assert points.colors is None
     assert list(points.attributes) == ["intensity"]
+    np.testing.assert_array_equal(points.viewpoint, [0, 0, 0])
 
 
 def test_damaged_e57_files(pye57, tmp_path):

@@ -42,9 +42,16 @@ std::uint64_t grid_size(const PlyFile& file, std::string_view name) {
                 std::string(name) + "' with a whole number");
 }
 
+// Now and then, as a look at the clock takes longer than a row.
+void report_rows(const PlyFile& file, std::uint64_t count, const Progress& progress) {
+  constexpr std::uint64_t kRowsPerReport = 1 << 12;
+  if (file.rows_left() % kRowsPerReport != 0) return;
+  progress.report(1.0 - static_cast<double>(file.rows_left()) / static_cast<double>(count));
+}
+
 }  // namespace
 
-std::optional<RangeGrid> read_range_grid(const std::string& path) {
+std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress& progress) {
   PlyFile file(path);
   const std::size_t found = file.find("range_grid");
   if (found == file.elements().size()) return std::nullopt;
@@ -62,8 +69,9 @@ std::optional<RangeGrid> read_range_grid(const std::string& path) {
   const std::size_t list = index_list(file, element);
   const std::uint64_t count = point_count(file);
   RangeGrid grid{static_cast<std::int64_t>(rows), static_cast<std::int64_t>(columns), {}};
-  file.go_to(found);
+  file.go_to(found, progress);
   while (file.rows_left() > 0) {
+    report_rows(file, file.elements()[found].count, progress);
     file.read_row();
     const std::span<const double> points = file.list(list);
     grid.points.push_back(points.empty() ? -1 : checked_index(file, points[0], count));
@@ -71,7 +79,8 @@ std::optional<RangeGrid> read_range_grid(const std::string& path) {
   return grid;
 }
 
-std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path) {
+std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
+                                                    const Progress& progress) {
   PlyFile file(path);
   std::vector<std::array<std::int64_t, 3>> triangles;
   const std::size_t found = file.find("face");
@@ -79,8 +88,9 @@ std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path) {
   const std::size_t list = index_list(file, file.elements()[found]);
   const std::uint64_t count = point_count(file);
   std::vector<std::int64_t> corners;
-  file.go_to(found);
+  file.go_to(found, progress);
   while (file.rows_left() > 0) {
+    report_rows(file, file.elements()[found].count, progress);
     file.read_row();
     corners.clear();
     for (const double index : file.list(list)) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "prefilter/base/progress.h"
+
 namespace prefilter {
 
 /// The points of a range scan as its scanner saw them. Those of neighbouring places are neighbours
@@ -21,10 +23,11 @@ struct RangeGrid {
 /// The element "range_grid" of a PLY file, with the size that lines "obj_info num_rows" and
 /// "num_cols" tell; none where it has none. Throws Error for what is no PLY file or is damaged,
 /// and for an index that names no point.
-std::optional<RangeGrid> read_range_grid(const std::string& path);
+std::optional<RangeGrid> read_range_grid(const std::string& path, const Progress& progress);
 
 /// The element "face" of a PLY file as triangles, polygons as fans around their first corner;
 /// none where it has none. Throws Error likewise.
-std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path);
+std::vector<std::array<std::int64_t, 3>> read_faces(const std::string& path,
+                                                    const Progress& progress);
 
 }  // namespace prefilter

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/pulse.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
@@ -163,12 +164,12 @@ void PlyFile::check_size() {
   }
 }
 
-void PlyFile::go_to(std::size_t element) {
+void PlyFile::go_to(std::size_t element, const Progress& progress) {
   while (places_.size() <= element) {
     element_ = places_.size() - 1;
     row_ = 0;
     text_.go_to(places_.back());
-    skip_rows();
+    skip_rows(progress);
     places_.push_back(text_.place());
   }
   element_ = element;
@@ -178,7 +179,7 @@ void PlyFile::go_to(std::size_t element) {
   list_ends_.assign(elements_[element].properties.size(), 0);
 }
 
-void PlyFile::skip_rows() {
+void PlyFile::skip_rows(const Progress& progress) {
   const PlyElement& element = elements_[element_];
   if (element.properties.empty()) return;
   if (!is_text_ && !element.has_lists()) {
@@ -188,7 +189,11 @@ void PlyFile::skip_rows() {
   scalars_.assign(element.properties.size(), 0.0);
   list_ends_.assign(element.properties.size(), 0);
   is_skipping_ = true;
-  while (rows_left() > 0) read_row();
+  Pulse pulse(progress);
+  while (rows_left() > 0) {
+    pulse.step();
+    read_row();
+  }
   is_skipping_ = false;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "prefilter/base/progress.h"
 #include "prefilter/scan/point_fields.h"
 #include "prefilter/scan/text_reader.h"
 
@@ -47,8 +48,9 @@ class PlyFile {
   /// What comes after a word of a line "obj_info".
   const std::vector<std::string>& obj_info() const { return obj_info_; }
 
-  /// Goes to the first row of an element.
-  void go_to(std::size_t element);
+  /// Goes to the first row of an element. Where what comes before has to be read for that, a
+  /// progress can stop it.
+  void go_to(std::size_t element, const Progress& progress = {});
   /// Reads the next row of this element, of which there must be one left.
   void read_row();
   /// Of the row that was read last: its values by the number of the property; lists have 0.
@@ -70,7 +72,7 @@ class PlyFile {
   void read_text_row(const PlyElement& element);
   void read_binary_row(const PlyElement& element);
   const std::byte* next_bytes(std::size_t count);
-  void skip_rows();
+  void skip_rows(const Progress& progress);
   void check_size();
 
   TextReader text_;

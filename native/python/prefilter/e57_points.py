@@ -19,7 +19,8 @@ class E57Reader:
 
     Points are carried to the file's coordinates by the pose of their scan; those that a scan marks
     as invalid are left out. Intensity and colors, as bytes, are attributes where all scans have
-    them, and normals likewise. Where scans have a pose, the scanner stood at its translation.
+    them, and normals likewise. Where scans have a pose, the scanner stood at its translation; the
+    origin tells nothing where there is only one scan, and no grid.
     """
 
     def __init__(self, path: str) -> None:
@@ -36,6 +37,9 @@ class E57Reader:
             has_gaps = any(name in each for each in fields for name in _INVALID)
             self.count = None if has_gaps else sum(int(scan.point_count) for scan in scans)
             places = [scan.translation for scan in scans if scan.has_pose()]
+            # A cloud put together from several scans has the origin for a pose, too.
+            if len(scans) == 1 and places and not places[0].any() and "rowIndex" not in common:
+                places = []
         self.has_normals = set(_NORMALS) <= common
         self._has_colors = set(_COLORS) <= common
         self._has_intensity = "intensity" in common

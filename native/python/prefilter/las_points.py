@@ -10,6 +10,7 @@ import numpy as np
 
 from .point_reader import POINTS_AT_ONCE, PointChunk, damage_of, find_module
 
+_COLORS_LOOKED_AT = 1_000_000
 _COLORS = ("red", "green", "blue")
 
 
@@ -66,10 +67,16 @@ class LasReader:
             )
 
     def _find_color_scale(self) -> np.float32:
-        # Colors have 16 bits, of which some programs fill only the lower 8.
+        # Colors have 16 bits, of which some programs fill only the lower 8. Many that are not black
+        # tell which.
+        colored = 0
         for points in self._pieces():
-            if _columns(points, _COLORS).max(initial=0) > 255:
+            colors = _columns(points, _COLORS)
+            if colors.max(initial=0) > 255:
                 return np.float32(255 / 65535)
+            colored += int(np.count_nonzero(colors.any(axis=1)))
+            if colored > _COLORS_LOOKED_AT:
+                break
         return np.float32(1)
 
     def _opened(self) -> Any:

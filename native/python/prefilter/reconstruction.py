@@ -224,16 +224,17 @@ def file_normals(
     """
     if Path(os.fsdecode(path)).suffix.lower() != ".ply":
         return None
-    grid = read_range_grid(path)
+    first, rest = progress_part(progress, 0.0, 0.5), progress_part(progress, 0.5, 1.0)
+    grid = read_range_grid(path, progress=first)
     if grid is not None:
         normals, sureness = grid_normals(
-            read.positions, grid, viewpoint=read.viewpoint, progress=progress
+            read.positions, grid, viewpoint=read.viewpoint, progress=rest
         )
         return normals, sureness if read.weights is None else sureness * read.weights
-    triangles = read_faces(path)
+    triangles = read_faces(path, progress=first)
     # A few faces are no mesh of the points.
     if len(np.unique(triangles)) > len(read.positions) / 2:
-        return mesh_normals(read.positions, triangles, progress=progress), read.weights
+        return mesh_normals(read.positions, triangles, progress=rest), read.weights
     return None
 
 

@@ -100,7 +100,9 @@ def open_points(path: str | os.PathLike[str]) -> _native.PointSource:
     return _native.open_points(os.fsencode(name))
 
 
-def read_range_grid(path: str | os.PathLike[str]) -> npt.NDArray[np.int64] | None:
+def read_range_grid(
+    path: str | os.PathLike[str], *, progress: ProgressCallback | None = None
+) -> npt.NDArray[np.int64] | None:
     """Reads the grid in which a scanner saw the points of a PLY file, its element "range_grid".
 
     Returns:
@@ -110,11 +112,14 @@ def read_range_grid(path: str | os.PathLike[str]) -> npt.NDArray[np.int64] | Non
     Raises:
         ValueError: This is no PLY file, or it is damaged.
         OSError: The file cannot be read.
+        Cancelled: `progress` returned False.
     """
-    return _native.read_range_grid(os.fsencode(as_path(path)))
+    return _native.read_range_grid(os.fsencode(as_path(path)), as_progress(progress))
 
 
-def read_faces(path: str | os.PathLike[str]) -> npt.NDArray[np.int64]:
+def read_faces(
+    path: str | os.PathLike[str], *, progress: ProgressCallback | None = None
+) -> npt.NDArray[np.int64]:
     """Reads the faces of a PLY file as (triangles, 3) indices of its points.
 
     Polygons become fans around their first corner; (0, 3) where there are no faces.
@@ -122,5 +127,6 @@ def read_faces(path: str | os.PathLike[str]) -> npt.NDArray[np.int64]:
     Raises:
         ValueError: This is no PLY file, or it is damaged.
         OSError: The file cannot be read.
+        Cancelled: `progress` returned False.
     """
-    return _native.read_faces(os.fsencode(as_path(path)))
+    return _native.read_faces(os.fsencode(as_path(path)), as_progress(progress))

@@ -91,10 +91,10 @@ TEST(OpenPoints, ReadsAllFormats) {
     write(folder.path(example.name), example.contents);
     EXPECT_EQ(read_all(folder.path(example.name)), 2U) << example.name;
   }
-  const std::optional<RangeGrid> grid = read_range_grid(folder.path("binary.ply"));
+  const std::optional<RangeGrid> grid = read_range_grid(folder.path("binary.ply"), Progress());
   ASSERT_TRUE(grid.has_value());
   EXPECT_EQ(grid->points, (std::vector<std::int64_t>{1, -1}));
-  EXPECT_EQ(read_faces(folder.path("binary.ply")).size(), 1U);
+  EXPECT_EQ(read_faces(folder.path("binary.ply"), Progress()).size(), 1U);
   EXPECT_EQ(open_points(folder.path("binary.pcd"))->viewpoint(), (Vector3{1, 2, 3}));
 }
 
@@ -120,8 +120,8 @@ TEST(OpenPoints, ReadsOrRefusesWhatIsDamaged) {
       try {
         read_all(path);
         if (path.ends_with(".ply")) {
-          read_range_grid(path);
-          read_faces(path);
+          read_range_grid(path, Progress());
+          read_faces(path, Progress());
         }
       } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
