@@ -21,7 +21,7 @@ from ..core.wording import listed
 from .choices import ScanSettings
 from .cloud import CONFIDENCE, Surface, oddities, options, reconstructed, told
 
-SOURCES = (".ply", ".xyz", ".pts", ".pcd", ".las", ".laz", ".e57")
+SOURCES = prefilter.POINT_EXTENSIONS
 STREAMED_TARGET = ".ply"
 
 _READ = 0.2

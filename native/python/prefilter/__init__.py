@@ -15,7 +15,7 @@ from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
 from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
-from .scan_files import ScanPoints, read_points
+from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .surface import Surface
 from .texture_use import fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
@@ -27,6 +27,7 @@ __version__ = VERSION
 __all__ = [
     "MAX_DEPTH",
     "MIPMAP_FILTERS",
+    "POINT_EXTENSIONS",
     "Cancelled",
     "ClosedMesh",
     "MipmapFilter",

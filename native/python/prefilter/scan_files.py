@@ -20,6 +20,8 @@ _READERS: dict[str, Callable[[str], PointReader]] = {
     ".laz": LasReader,
     ".e57": E57Reader,
 }
+POINT_EXTENSIONS = (*_native.POINT_EXTENSIONS, *_READERS)
+"""What the names of files of points end in."""
 
 AttributeArray: TypeAlias = npt.NDArray[np.uint8 | np.float32]
 
@@ -94,9 +96,10 @@ def open_points(path: str | os.PathLike[str]) -> _native.PointSource:
     ending = os.path.splitext(name)[1].lower()
     if ending in _READERS:
         return _native.PointSource(_READERS[ending](name))
-    if ending not in _native.POINT_EXTENSIONS:
-        endings = ", ".join((*_native.POINT_EXTENSIONS, *_READERS))
-        raise ValueError(f"'{name}': unsupported extension '{ending}'; use {endings}")
+    if ending not in POINT_EXTENSIONS:
+        raise ValueError(
+            f"'{name}': unsupported extension '{ending}'; use {', '.join(POINT_EXTENSIONS)}"
+        )
     return _native.open_points(os.fsencode(name))
 
 
