@@ -92,6 +92,13 @@ def test_box():
     assert errors.max() < 90
 
 
+def test_faces_apart_from_each_other():
+    points, normals = box(20_000)
+    kept = np.sum(np.minimum(points, 1 - points) < 0.1, axis=1) == 1
+    errors = degrees(prefilter.estimate_normals(points[kept]), normals[kept])
+    assert errors.max() < 1e-4
+
+
 def test_noise():
     points, normals = torus(20_000)
     noisy = points + RANDOM.normal(scale=0.01, size=points.shape)

@@ -230,15 +230,34 @@ SignedSets join_patches(std::size_t count, std::vector<Border> borders, const Pr
   return sets;
 }
 
-// What is summed over the points of a part of the surface.
+// The flux of the positions, as seen from some middle, through a part of the surface: three times
+// the volume of a closed one, from wherever it is seen.
+struct Flux {
+  double sum = 0.0;
+  double most = 0.0;  // what the sum would be if each normal were along its position
+
+  void add(const Vector3& offset, const Vector3& normal, double area) {
+    sum += area * dot(offset, normal);
+    most += area * std::sqrt(dot(offset, offset));
+  }
+  bool is_surer_than(const Flux& other) const {
+    return std::abs(sum) * other.most > std::abs(other.sum) * most;
+  }
+};
+
 struct Part {
   Vector3 first_moment{};
   double area = 0.0;
-  double flux = 0.0;
+  Flux from_own_middle;
+  Flux from_whole_middle;
+
+  Vector3 middle() const {
+    return {first_moment[0] / area, first_moment[1] / area, first_moment[2] / area};
+  }
 };
 
-// Whether the normals of each set point inward as a whole: the flux through it of the positions, as
-// seen from its middle, which is three times the volume of a closed surface, is negative.
+// Whether the normals of each set point inward as a whole. A set that bulges tells by itself; a
+// piece of a larger surface, as a face of a box apart from the others, by where the others are.
 std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Vector3> normals,
                                   const Patches& patches, const Progress& progress) {
   // Numbers that neither overflow nor vanish, whatever the units are.
@@ -252,26 +271,34 @@ std::vector<bool> sets_inside_out(const LinkedPoints& points, std::span<const Ve
     return p;
   };
   std::vector<Part> parts(patches.count);
+  Part whole;
   Pulse pulse(progress);
+  for (std::size_t i = 0; i < points.positions.size(); ++i) {
+    pulse.step();
+    const double area = points.areas[i] / largest;
+    const Vector3 p = place(i);
+    for (Part* part : {&parts[patches.members[i].set], &whole}) {
+      for (int a = 0; a < 3; ++a) part->first_moment[a] += area * p[a];
+      part->area += area;
+    }
+  }
   for (std::size_t i = 0; i < points.positions.size(); ++i) {
     pulse.step();
     Part& part = parts[patches.members[i].set];
     const double area = points.areas[i] / largest;
     const Vector3 p = place(i);
-    for (int a = 0; a < 3; ++a) part.first_moment[a] += area * p[a];
-    part.area += area;
-  }
-  for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    pulse.step();
-    Part& part = parts[patches.members[i].set];
-    const double area = points.areas[i] / largest;
-    Vector3 offset = place(i);
-    for (int a = 0; a < 3; ++a) offset[a] -= part.first_moment[a] / part.area;
-    const double flux = area * dot(offset, normals[i]);
-    part.flux += patches.members[i].is_reversed != 0 ? -flux : flux;
+    const Vector3 normal =
+        patches.members[i].is_reversed != 0 ? Vector3{} - normals[i] : normals[i];
+    part.from_own_middle.add(p - part.middle(), normal, area);
+    part.from_whole_middle.add(p - whole.middle(), normal, area);
   }
   std::vector<bool> result;
-  for (const Part& part : parts) result.push_back(part.flux < 0.0);
+  for (const Part& part : parts) {
+    const Flux& flux = part.from_own_middle.is_surer_than(part.from_whole_middle)
+                           ? part.from_own_middle
+                           : part.from_whole_middle;
+    result.push_back(flux.sum < 0.0);
+  }
   return result;
 }
 
