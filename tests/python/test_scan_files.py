@@ -1,6 +1,7 @@
 """Files of points are read as others write them, and damage is told."""
 
 import os
+import tarfile
 from pathlib import Path
 
 import numpy as np
@@ -75,7 +76,7 @@ def test_other_elements_and_lists_are_passed_over(tmp_path, form):
             ("vertex", [("uchar", "id"), *XYZ, ("uchar", "ushort", "links")], vertices),
             ("face", [("uchar", "int", "vertex_indices")], [([0, 1, 2],)]),
         ],
-        lines=["comment made by hand", "obj_info number 7", "comment"],
+        lines=["comment made by hand", "obj_info number 7", "comment", "bye", ""],
     )
     points = read(tmp_path, contents)
     np.testing.assert_array_equal(points.positions, CORNERS)
@@ -156,7 +157,7 @@ def vertices(form="ascii", properties=XYZ, rows=CORNERS):
         (vertices().replace(b"float z", b"half z"), "line 6: 'half' is not a type of PLY"),
         (vertices().replace(b"float z", b"float"), "line 6: a property without a name"),
         (vertices().replace(b"float z", b"list float int z"), "of a type of whole numbers"),
-        (vertices().replace(b"element", b"elements"), "line 3: 'elements' is not part of a PLY"),
+        (vertices().replace(b"element", b"elements"), "line 4: a property before any element"),
         (vertices().replace(b"element vertex 3\n", b""), "line 3: a property before any element"),
         (vertices() + b"\n" * 10 + b"x", "holds more than the 3 rows"),
     ],
@@ -269,6 +270,17 @@ def test_a_range_scan(tmp_path):
     both = (grid[:, :-1] >= 0) & (grid[:, 1:] >= 0)
     steps = expected[grid[:, 1:][both]] - expected[grid[:, :-1][both]]
     assert np.median(np.linalg.norm(steps, axis=1)) < 0.001
+
+
+def test_headers_of_the_dragon(tmp_path):
+    path = SHARED / "dragon_stand.tar.gz"
+    if not path.exists():
+        pytest.skip(f"{path} is missing")
+    with tarfile.open(path) as archive:
+        contents = archive.extractfile("dragon_stand/dragonStandRight_0.ply").read()
+    scan = write(tmp_path, "dragon.ply", contents)
+    assert len(prefilter.read_points(scan).positions) == 41841
+    assert read_range_grid(scan).shape == (262, 483)
 
 
 def range_scan(form="ascii", sizes=("num_rows 2", "num_cols 3"), last=2):

@@ -116,9 +116,8 @@ void PlyFile::read_header() {
     } else if (keyword == "end_header") {
       if (!has_format) throw_invalid(name() + ": the header has no line 'format'");
       return;
-    } else if (keyword != "comment" && keyword != "ply" && !keyword.empty()) {
-      throw_invalid(text_.where() + ": " + quoted(keyword) + " is not part of a PLY header");
     }
+    // All else are comments; so is what Stanford's scanner has left in some headers.
   }
   throw_invalid(name() + ": ends within the header, after line " +
                 std::to_string(text_.place().line));
