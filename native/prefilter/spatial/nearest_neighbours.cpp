@@ -12,7 +12,7 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kLeafPoints = 8;
+constexpr std::size_t kLeafPoints = 16;
 constexpr double kLargest = 1e150;
 
 bool is_usable(const Vector3& point) {
