@@ -21,7 +21,8 @@ def estimate_normals(
     Args:
         points: (points, 3).
         neighbours: How many points around each (itself included) the plane is fitted to, 3 to 1000.
-            More are better for noisy points, fewer for fine detail. Copies of a point count once.
+            More are better for noisy points, fewer for fine detail: the neighborhood should be
+            several times as wide as the noise. Copies of a point count once.
         viewpoint: Where the scanner stood, (3,), or one place for each point, (points, 3): normals
             point to it. Without, they agree with those around them, and those of each connected
             part point outward as a whole, as those of a closed surface do.
