@@ -26,6 +26,8 @@ _MEGABYTE = 1 << 20
 _MOST_CORNERS = 2**31 - 1
 _ESTIMATED = 0.3
 """What the progress is once normals are estimated."""
+_FEW = 1e-3
+"""The share of outliers that every scan may have."""
 _ROUNDING = 1e-6
 """Of sizes that come in single precision, and of messages."""
 _FILLED_IN = {"FLOAT": 0.0, "FLOAT_COLOR": 1.0, "BYTE_COLOR": 1.0}
@@ -173,7 +175,7 @@ def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
         found.append(
             f"left out, as they have no normal, no finite position or no weight: {dropped}"
         )
-    if report.outliers > 0.0:
+    if report.outliers > _FEW:
         outliers = f"{100.0 * report.outliers:.2g} % of the points"
         found.append(f"left out, as they lie much thinner than the others: {outliers}")
     if report.is_flipped:

@@ -298,6 +298,17 @@ def test_points_that_do_not_count(capfd):
     )
 
 
+def test_stray_points(capfd):
+    points, normals = clouds.torus()
+    random = np.random.default_rng(2)
+    stray = random.uniform(-2, 2, (200, 3))
+    clouds.scan(np.concatenate([points, stray]), np.concatenate([normals, stray]))
+    reconstruct()
+    distances = np.abs(clouds.torus_distance(clouds.vertices(surface())))
+    assert np.quantile(distances, 0.9) < CELL
+    assert "Warning: left out, as they lie much thinner than" in capfd.readouterr().out
+
+
 def test_poll():
     scan = clouds.scan(*clouds.torus(1_000))
     assert bpy.ops.prefilter.reconstruct.poll()
