@@ -1,7 +1,5 @@
 """Points to surfaces, against the surfaces that the points were taken from."""
 
-from pathlib import Path
-
 import numpy as np
 import prefilter
 import pytest
@@ -32,6 +30,9 @@ def _rebuilt(cloud: Cloud, **options: object) -> tuple[np.ndarray, np.ndarray, f
         ({"fit": False, "smooth": False}, 0.06),
         ({"fit": False, "smooth": False, "isovalue": "half"}, 0.06),
         ({"fit": False, "isovalue": 0.5}, 0.06),
+        ({"wavelet": "d4"}, 0.004),
+        ({"wavelet": "d4", "fit": False}, 0.1),
+        ({"wavelet": "d4", "fit": False, "smooth": False, "isovalue": "half"}, 0.2),
     ],
 )
 def test_surface_is_closed_and_near(name: str, options: dict[str, object], limit: float) -> None:
@@ -45,18 +46,26 @@ def test_outside_is_where_normals_point() -> None:
     assert solids.mesh_volume(positions, triangles) == pytest.approx(4 / 3 * np.pi, rel=1e-3)
 
 
+@pytest.mark.parametrize("wavelet", ["haar", "d4"])
 @pytest.mark.parametrize("depth", [1, 2, 3, 5, 6, 8])
-def test_all_depths(depth: int) -> None:
-    positions, triangles, _ = _rebuilt(CLOUDS["sphere"], depth=depth)
+def test_all_depths(depth: int, wavelet: str) -> None:
+    positions, triangles, _ = _rebuilt(CLOUDS["sphere"], depth=depth, wavelet=wavelet)
     assert solids.surface_faults(positions, triangles).none
 
 
-def test_threads_and_memory_change_nothing(tmp_path: Path) -> None:
+@pytest.mark.parametrize("wavelet", ["haar", "d4"])
+def test_threads_and_memory_change_nothing(wavelet: str) -> None:
     cloud = CLOUDS["torus"]
-    expected = _rebuilt(cloud, threads=1)
+    expected = _rebuilt(cloud, depth=8, threads=1, wavelet=wavelet)
     report = prefilter.ReconstructionReport()
     found = prefilter.reconstruct(
-        cloud.points, cloud.normals, depth=DEPTH, threads=3, memory_limit=0, report=report
+        cloud.points,
+        cloud.normals,
+        depth=8,
+        threads=3,
+        memory_limit=0,
+        wavelet=wavelet,
+        report=report,
     )
     assert report.is_spilled
     for a, b in zip(expected, found, strict=False):

@@ -11,9 +11,6 @@
 namespace prefilter {
 namespace {
 
-constexpr int kBatchBits = 18;
-constexpr std::size_t kBatch = std::size_t{1} << kBatchBits;
-
 float weight_of(const PointBatch& batch, std::size_t i) {
   return batch.weights.empty() ? 1.0F : batch.weights[i];
 }
@@ -45,7 +42,7 @@ void for_batches(PointSource* source, const Progress& progress, int threads, con
   for (bool is_more = true; is_more;) {
     std::size_t filled = 0;
     while (filled < width) {
-      is_more = source->read(kBatch, &batches[filled]);
+      is_more = source->read(PointOrder::kMostPoints, &batches[filled]);
       if (!is_more) break;
       done += batches[filled].positions.size();
       ++filled;
@@ -60,8 +57,7 @@ void for_batches(PointSource* source, const Progress& progress, int threads, con
 
 struct Scratch {
   SampleCells run;
-  std::vector<std::uint64_t> order;
-  std::vector<std::uint64_t> other;
+  PointOrder order;
 };
 
 void add_point(const PointBatch& batch, std::size_t i, const SampleGrid& grid,
@@ -88,7 +84,25 @@ void add_point(const PointBatch& batch, std::size_t i, const SampleGrid& grid,
 
 void make_run(const PointBatch& batch, const SampleGrid& grid, std::size_t attribute_count,
               Scratch* scratch) {
-  scratch->order.clear();
+  SampleCells& run = scratch->run;
+  run.cells.clear();
+  run.attributes.clear();
+  for (const std::uint64_t entry : scratch->order.sort(batch, grid)) {
+    const CellKey key = PointOrder::key(entry);
+    if (run.cells.empty() || run.cells.back().key != key) {
+      run.cells.emplace_back();
+      run.cells.back().key = key;
+      run.attributes.resize(run.attributes.size() + attribute_count);
+    }
+    add_point(batch, PointOrder::index(entry), grid, attribute_count, &run);
+  }
+}
+
+}  // namespace
+
+const std::vector<std::uint64_t>& PointOrder::sort(const PointBatch& batch,
+                                                   const SampleGrid& grid) {
+  order_.clear();
   const double last = std::ldexp(1.0, grid.depth) - 1.0;
   for (std::size_t i = 0; i < batch.positions.size(); ++i) {
     if (!(normal_scale(batch, i) > 0.0F)) continue;
@@ -97,24 +111,17 @@ void make_run(const PointBatch& batch, const SampleGrid& grid, std::size_t attri
     for (std::size_t a = 0; a < 3; ++a) {
       at[a] = static_cast<std::int32_t>(std::clamp(std::floor(p[a]), 0.0, last));
     }
-    scratch->order.push_back((cell_key(at) << kBatchBits) | i);
+    order_.push_back(cell_key(at) << kBatchBits | i);
   }
-  radix_sort(&scratch->order, kBatchBits, kBatchBits + kKeyBits, &scratch->other);
-  SampleCells& run = scratch->run;
-  run.cells.clear();
-  run.attributes.clear();
-  for (const std::uint64_t entry : scratch->order) {
-    const CellKey key = entry >> kBatchBits;
-    if (run.cells.empty() || run.cells.back().key != key) {
-      run.cells.emplace_back();
-      run.cells.back().key = key;
-      run.attributes.resize(run.attributes.size() + attribute_count);
-    }
-    add_point(batch, static_cast<std::size_t>(entry & (kBatch - 1)), grid, attribute_count, &run);
-  }
+  radix_sort(&order_, kBatchBits, kBatchBits + kKeyBits, &other_);
+  return order_;
 }
 
-}  // namespace
+std::array<float, 3> weighted_normal(const PointBatch& batch, std::size_t i) {
+  const float scale = weight_of(batch, i) * normal_scale(batch, i);
+  const auto& [x, y, z] = batch.normals[i];
+  return scale > 0.0F ? std::array{scale * x, scale * y, scale * z} : std::array<float, 3>{};
+}
 
 CloudExtent measure_cloud(PointSource* source, const Progress& progress, int threads) {
   CloudExtent extent;

@@ -1,9 +1,10 @@
 // Points to sums of samples in cells.
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <optional>
-#include <string>
+#include <cstdint>
+#include <vector>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
@@ -28,5 +29,27 @@ CloudExtent measure_cloud(PointSource* source, const Progress& progress, int thr
 /// points in any order, and to the last bit for any number of threads.
 void gather_samples(PointSource* source, const SampleGrid& grid, const Progress& progress,
                     int threads, SampleStore* store);
+
+/// Of a batch, the points that count, in the order of their cells: keys and, in the lowest
+/// kBatchBits bits, indices.
+class PointOrder {
+ public:
+  static constexpr int kBatchBits = 18;
+  static constexpr std::size_t kMostPoints = std::size_t{1} << kBatchBits;
+
+  const std::vector<std::uint64_t>& sort(const PointBatch& batch, const SampleGrid& grid);
+
+  static CellKey key(std::uint64_t entry) { return entry >> kBatchBits; }
+  static std::size_t index(std::uint64_t entry) {
+    return static_cast<std::size_t>(entry & (kMostPoints - 1));
+  }
+
+ private:
+  std::vector<std::uint64_t> order_;
+  std::vector<std::uint64_t> other_;
+};
+
+/// A point's normal, 1 long and times its weight; zero for one that does not count.
+std::array<float, 3> weighted_normal(const PointBatch& batch, std::size_t i);
 
 }  // namespace prefilter

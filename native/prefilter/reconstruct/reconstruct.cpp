@@ -15,6 +15,7 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/contour/tree_contour.h"
 #include "prefilter/reconstruct/assemble.h"
+#include "prefilter/reconstruct/d4_function.h"
 #include "prefilter/reconstruct/fit_samples.h"
 #include "prefilter/reconstruct/flux_tree.h"
 #include "prefilter/reconstruct/gather_samples.h"
@@ -51,11 +52,12 @@ SampleGrid grid_around(const Box& box, int depth) {
 
 class Reconstruction {
  public:
-  Reconstruction(const SampleGrid& grid, const ReconstructOptions& options,
-                 std::size_t attribute_count, double mean_weight, SampleStore* store)
-      : grid_(grid),
+  Reconstruction(PointSource* source, const SampleGrid& grid, const ReconstructOptions& options,
+                 double mean_weight, SampleStore* store)
+      : source_(source),
+        grid_(grid),
         options_(options),
-        attribute_count_(attribute_count),
+        attribute_count_(source->attributes().size()),
         mean_weight_(mean_weight),
         store_(store),
         top_(grid.depth - std::min(kSlabBits, grid.depth)),
@@ -66,8 +68,12 @@ class Reconstruction {
     make_slabs();
     make_whole();
     const int least_leaf = least_leaf_depth();
-    make_trees(least_leaf, report);
-    make_coarse(report);
+    if (options_.basis == WaveletBasis::kD4) {
+      make_d4_trees(least_leaf, report);
+    } else {
+      make_trees(least_leaf, report);
+      make_coarse(report);
+    }
     const float scale = scale_of_values();
     contour(scale, sink, report);
   }
@@ -164,6 +170,15 @@ class Reconstruction {
     report->outliers = weight;
   }
 
+  void make_d4_trees(int least_leaf, ReconstructReport* report) {
+    D4Function made = make_d4_function({source_, grid_, &slabs_, &whole_, &offsets_, least_leaf},
+                                       options_.progress.part(0.2, 0.4), options_.threads);
+    trees_ = std::move(made.trees);
+    coarse_ = std::move(made.coarse);
+    report->is_flipped = is_flipped_ = made.is_flipped;
+    report->outliers = made.left_out;
+  }
+
   void make_coarse(ReconstructReport* report) {
     std::vector<CellFlux> tops = coarse_flux_.back();
     std::sort(tops.begin(), tops.end(),
@@ -178,7 +193,7 @@ class Reconstruction {
     RootMean mean;
     if (!coarse_.tree.tops.empty()) mean.add_inside(coarse_.tree.tops.front().flux);
     coarse_.root = static_cast<float>(mean.median());
-    report->is_flipped = coarse_.root < 0.0F;
+    report->is_flipped = is_flipped_ = coarse_.root < 0.0F;
     synthesise_part({coarse_.root}, &coarse_.tree);
     give_values_to_slabs(tops);
   }
@@ -208,7 +223,7 @@ class Reconstruction {
   }
 
   float scale_of_values() {
-    const float sign = coarse_.root < 0.0F ? -1.0F : 1.0F;
+    const float sign = is_flipped_ ? -1.0F : 1.0F;
     if (options_.isovalue != Isovalue::kMean) return sign;
     std::vector<double> sums(slabs_.size());
     std::vector<double> weights(slabs_.size());
@@ -386,6 +401,7 @@ class Reconstruction {
     }
   }
 
+  PointSource* source_;
   SampleGrid grid_;
   const ReconstructOptions& options_;
   std::size_t attribute_count_;
@@ -399,6 +415,7 @@ class Reconstruction {
   std::vector<FluxTree> trees_;
   PooledFlux coarse_flux_;
   CoarseTree coarse_;
+  bool is_flipped_ = false;
 };
 
 }  // namespace
@@ -427,7 +444,7 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   const double mean_weight = extent.weight / static_cast<double>(extent.points - extent.dropped);
   ReconstructOptions inner = options;
   inner.progress = options.progress.part(0.4, 1.0);
-  Reconstruction(grid, inner, source->attributes().size(), mean_weight, &store).run(sink, &report);
+  Reconstruction(source, grid, inner, mean_weight, &store).run(sink, &report);
   report.outliers /= extent.weight;
   return report;
 }

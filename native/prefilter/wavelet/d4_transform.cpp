@@ -202,14 +202,16 @@ Means first_means(const Differences& differences) {
 // Doubles the points along one axis: [kBefore][5][kAfter] to [kBefore][4][kAfter].
 template <std::size_t kBefore, std::size_t kAfter>
 void add_doubled(const float* from, bool is_high, float* to) {
+  // Of point 4 b + r by point 2 b - 2 + i, at [r + 12 - 2 i].
+  std::array<float, 16> weights{};
+  for (std::size_t l = 0; l < 4; ++l) {
+    weights[l + (is_high ? 6 : 8)] = static_cast<float>(is_high ? kHigh[l] : kLow[l]);
+  }
   for (std::size_t b = 0; b < kBefore; ++b) {
     for (std::size_t r = 0; r < 4; ++r) {
       for (std::size_t i = 0; i < 5; ++i) {
-        const int l = static_cast<int>(r) + 4 - 2 * static_cast<int>(i);
-        const int first = is_high ? -2 : 0;
-        if (l < first || l > first + 3) continue;
-        const auto weight = static_cast<float>(is_high ? kHigh[static_cast<std::size_t>(l + 2)]
-                                                       : kLow[static_cast<std::size_t>(l)]);
+        const float weight = weights[r + 12 - 2 * i];
+        if (weight == 0.0F) continue;
         const float* const in = from + (b * 5 + i) * kAfter;
         float* const out = to + (b * 4 + r) * kAfter;
         for (std::size_t c = 0; c < kAfter; ++c) out[c] += weight * in[c];
