@@ -64,7 +64,9 @@ def may_be_points(obj: bpy.types.Object) -> bool:
     """Returns whether an object has points and no faces, as far as that shows without modifiers."""
     if obj.type == "POINTCLOUD":
         return True
-    return obj.type == "MESH" and not obj.data.polygons and (obj.data.vertices or _has_nodes(obj))
+    if obj.type != "MESH" or len(obj.data.polygons):
+        return False
+    return len(obj.data.vertices) > 0 or _has_nodes(obj)
 
 
 def read_points(
