@@ -17,8 +17,8 @@ from .cloud import Surface, depth_of, extent, oddities, reconstructed, told
 
 # What a load takes in seconds, as measured once on two cores; ratios are what counts.
 _ALWAYS = 0.01
-_PER_POINT = {"haar": 0.15e-6, "d4": 0.6e-6}
-_PER_TRIANGLE = 1.1e-6
+_PER_POINT = {"haar": 0.15e-6, "d4": 0.45e-6}
+_PER_TRIANGLE = {"haar": 1.1e-6, "d4": 2.7e-6}
 _FITTING = 0.2e-6
 _TRIANGLES_OF_CUBE = 5.5
 """How many triangles there are in unit cells where the points are those of a solid, about."""
@@ -44,7 +44,7 @@ class Load:
         except ValueError:
             return 0.0
         triangles = min(_TRIANGLES_OF_CUBE * 4.0**depth, _TRIANGLES_PER_POINT * self.points)
-        per_triangle = _PER_TRIANGLE + (_FITTING if settings.use_fit else 0.0)
+        per_triangle = _PER_TRIANGLE[settings.wavelet] + (_FITTING if settings.use_fit else 0.0)
         return _ALWAYS + _PER_POINT[settings.wavelet] * self.points + per_triangle * triangles
 
 
