@@ -26,9 +26,9 @@ struct LeafAreas {
   double left_out = 0.0;
 };
 
-LeafAreas leaf_areas(const D4Samples& samples, std::size_t s) {
-  const SampleSlab& slab = (*samples.slabs)[s];
-  const SampleSlab& whole = *samples.whole;
+LeafAreas leaf_areas(const Slabs& slabs, std::size_t s) {
+  const SampleSlab& slab = *slabs.samples(static_cast<int>(s));
+  const SampleSlab& whole = slabs.whole;
   const int depth = slab.depth();
   const SampleLevel& finest = slab.at(depth);
   LeafAreas result;
@@ -36,7 +36,7 @@ LeafAreas leaf_areas(const D4Samples& samples, std::size_t s) {
   result.area.resize(finest.size());
   for (std::size_t i = 0; i < finest.size(); ++i) {
     const int leaf = finest.leaf[i];
-    if (leaf < samples.least_leaf) {
+    if (leaf < slabs.least_leaf) {
       result.left_out += static_cast<double>(finest.samples.cells[i].weight);
       continue;
     }
@@ -45,7 +45,7 @@ LeafAreas leaf_areas(const D4Samples& samples, std::size_t s) {
     for (; k > std::max(leaf, slab.top); --k) at = slab.at(k).parents[at];
     const SampleLevel* level = &slab.at(k);
     if (leaf < slab.top) {
-      at += (*samples.offsets)[s];
+      at += slabs.offsets[s];
       for (; k > leaf; --k) at = whole.at(k).parents[at];
       level = &whole.at(k);
     }
@@ -63,14 +63,14 @@ struct CoarseSample {
 // Adds the samples of a batch.
 class SampleAdder {
  public:
-  SampleAdder(const D4Samples& samples, const std::vector<LeafAreas>& areas,
+  SampleAdder(const SampleGrid& grid, const Slabs& slabs, const std::vector<LeafAreas>& areas,
               std::vector<d4::Differences>* differences)
-      : samples_(samples), areas_(areas), differences_(*differences) {}
+      : grid_(grid), slabs_(slabs), areas_(areas), differences_(*differences) {}
 
   void add(const PointBatch& batch, int threads) {
-    const std::vector<std::uint64_t>& order = order_.sort(batch, samples_.grid);
-    const std::size_t count = samples_.slabs->size();
-    const int height = (1 << samples_.grid.depth) / static_cast<int>(count);
+    const std::vector<std::uint64_t>& order = order_.sort(batch, grid_);
+    const std::size_t count = areas_.size();
+    const int height = (1 << grid_.depth) / static_cast<int>(count);
     std::vector<std::size_t> begins;
     for (std::size_t s = 0; s <= count; ++s) {
       const std::uint64_t first = cell_key({-1, -1, static_cast<std::int32_t>(s) * height})
@@ -103,8 +103,9 @@ class SampleAdder {
   double add_slab(const PointBatch& batch, const std::vector<std::uint64_t>& order,
                   std::size_t begin, std::size_t end, std::size_t s,
                   std::vector<CoarseSample>* coarse) {
-    const int depth = samples_.grid.depth;
-    const std::vector<SampleCell>& cells = (*samples_.slabs)[s].at(depth).samples.cells;
+    const int depth = grid_.depth;
+    const std::vector<SampleCell>& cells =
+        slabs_.samples(static_cast<int>(s))->at(depth).samples.cells;
     const double middle = std::ldexp(0.5, depth);
     double volume = 0.0;
     std::size_t at = 0;
@@ -119,9 +120,9 @@ class SampleAdder {
       const float area = areas_[s].area[at];
       if (!(area > 0.0F)) continue;
       const std::size_t index = PointOrder::index(order[i]);
-      std::array<float, 3> normal = samples_.grid.turned(weighted_normal(batch, index));
+      std::array<float, 3> normal = grid_.turned(weighted_normal(batch, index));
       for (float& x : normal) x *= area;
-      const Vector3 p = samples_.grid.in_cells(batch.positions[index]);
+      const Vector3 p = grid_.in_cells(batch.positions[index]);
       const int leaf = areas_[s].leaf[at];
       const double scale = std::ldexp(1.0, leaf - depth);
       for (std::size_t a = 0; a < 3; ++a) {
@@ -136,7 +137,8 @@ class SampleAdder {
     return volume;
   }
 
-  const D4Samples& samples_;
+  const SampleGrid& grid_;
+  const Slabs& slabs_;
   const std::vector<LeafAreas>& areas_;
   std::vector<d4::Differences>& differences_;
   PointOrder order_;
@@ -277,30 +279,31 @@ void fill_values(const d4::Means& means, NodeLevel* level) {
 
 }  // namespace
 
-D4Function make_d4_function(const D4Samples& samples, const Progress& progress, int threads) {
-  const std::vector<SampleSlab>& slabs = *samples.slabs;
-  const SampleSlab& whole = *samples.whole;
-  const int depth = samples.grid.depth;
-  const int top = whole.depth();
-  const auto slab_count = static_cast<std::int64_t>(slabs.size());
-  std::vector<LeafAreas> areas(slabs.size());
-  std::vector<Flags> flags(slabs.size());
+D4Function make_d4_function(PointSource* source, const SampleGrid& grid, const Slabs& slabs,
+                            const Progress& progress, int threads) {
+  const SampleSlab& whole = slabs.whole;
+  const int depth = slabs.depth();
+  const int top = slabs.top();
+  const std::int64_t slab_count = slabs.count();
+  const auto count_of_slabs = static_cast<std::size_t>(slab_count);
+  std::vector<LeafAreas> areas(count_of_slabs);
+  std::vector<Flags> flags(count_of_slabs);
   parallel_for(slab_count, threads, Progress(), [&](std::int64_t i) {
     const auto s = static_cast<std::size_t>(i);
-    areas[s] = leaf_areas(samples, s);
+    areas[s] = leaf_areas(slabs, s);
     std::vector<std::uint8_t> counts(areas[s].area.size());
     for (std::size_t c = 0; c < counts.size(); ++c) counts[c] = areas[s].area[c] > 0.0F ? 1 : 0;
-    flags[s] = holds_leaves(slabs[s], counts, areas[s].leaf);
+    flags[s] = holds_leaves(*slabs.samples(static_cast<int>(i)), counts, areas[s].leaf);
   });
 
   std::vector<d4::Differences> differences;
   for (int k = 0; k <= depth; ++k) differences.emplace_back(k, d4::kShardBits);
-  SampleAdder adder(samples, areas, &differences);
+  SampleAdder adder(grid, slabs, areas, &differences);
   PointBatch batch;
-  const auto count = static_cast<double>(samples.source->count().value_or(0));
+  const auto count = static_cast<double>(source->count().value_or(0));
   std::size_t done = 0;
-  samples.source->rewind();
-  while (samples.source->read(PointOrder::kMostPoints, &batch)) {
+  source->rewind();
+  while (source->read(PointOrder::kMostPoints, &batch)) {
     adder.add(batch, threads);
     done += batch.positions.size();
     if (count > 0.0)
@@ -310,7 +313,7 @@ D4Function make_d4_function(const D4Samples& samples, const Progress& progress, 
   D4Function result;
   result.is_flipped = adder.volume() < 0.0;
   for (const LeafAreas& each : areas) result.left_out += each.left_out;
-  result.trees.resize(slabs.size());
+  result.trees.resize(count_of_slabs);
   parallel_for(slab_count, threads, progress.part(0.5, 0.55), [&](std::int64_t i) {
     const auto s = static_cast<std::size_t>(i);
     FluxTree& tree = result.trees[s];
@@ -319,9 +322,10 @@ D4Function make_d4_function(const D4Samples& samples, const Progress& progress, 
       const int height = 1 << (k - top);
       const int low = static_cast<int>(s) * height;
       SplitFinder finder(k, low / 2, (low + height) / 2);
-      for (std::size_t t = s > 0 ? s - 1 : 0; t < std::min(s + 2, slabs.size()); ++t) {
-        add_flagged(slabs[t].at(k), flags[t][static_cast<std::size_t>(k - top)], low - 1,
-                    low + height + 1, &finder);
+      for (std::size_t t = s > 0 ? s - 1 : 0; t < std::min(s + 2, count_of_slabs); ++t) {
+        add_flagged(slabs.samples(static_cast<int>(t))->at(k),
+                    flags[t][static_cast<std::size_t>(k - top)], low - 1, low + height + 1,
+                    &finder);
       }
       tree.levels.push_back(node_level(finder.take()));
     }
@@ -334,7 +338,7 @@ D4Function make_d4_function(const D4Samples& samples, const Progress& progress, 
   // The levels above the slabs' are those of all.
   std::vector<std::uint8_t> counts;
   std::vector<std::int8_t> leaf;
-  for (std::size_t s = 0; s < slabs.size(); ++s) {
+  for (std::size_t s = 0; s < count_of_slabs; ++s) {
     counts.insert(counts.end(), flags[s].front().begin(), flags[s].front().end());
   }
   leaf.assign(counts.size(), static_cast<std::int8_t>(top));
@@ -342,7 +346,7 @@ D4Function make_d4_function(const D4Samples& samples, const Progress& progress, 
     if (counts[i] != 0) continue;
     // Its samples count in larger cells, if at all.
     leaf[i] = whole.at(top).leaf[i];
-    counts[i] = leaf[i] >= samples.least_leaf ? 1 : 0;
+    counts[i] = leaf[i] >= slabs.least_leaf ? 1 : 0;
   }
   const Flags whole_flags = holds_leaves(whole, counts, leaf);
   FluxTree& coarse = result.coarse.tree;
@@ -360,7 +364,7 @@ D4Function make_d4_function(const D4Samples& samples, const Progress& progress, 
   for (std::size_t k = 0; k < coarse.levels.size(); ++k) {
     link(k + 1 < coarse.levels.size() ? coarse.levels[k + 1].places : firsts, &coarse.levels[k]);
   }
-  std::vector<std::uint32_t> next(slabs.size());
+  std::vector<std::uint32_t> next(count_of_slabs);
   for (const std::uint64_t place : firsts) {
     const auto slab = static_cast<std::size_t>(morton_cell(place)[2]);
     result.coarse.continuations.push_back({static_cast<int>(slab), next[slab]++});

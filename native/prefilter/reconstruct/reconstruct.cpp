@@ -20,10 +20,10 @@
 #include "prefilter/reconstruct/flux_tree.h"
 #include "prefilter/reconstruct/gather_samples.h"
 #include "prefilter/reconstruct/mesh_joiner.h"
-#include "prefilter/reconstruct/plane_patches.h"
 #include "prefilter/reconstruct/sample_grid.h"
 #include "prefilter/reconstruct/sample_slab.h"
 #include "prefilter/reconstruct/sample_store.h"
+#include "prefilter/reconstruct/slabs.h"
 #include "prefilter/spatial/morton.h"
 #include "prefilter/voxel/voxelize.h"
 #include "prefilter/wavelet/root_mean.h"
@@ -50,28 +50,27 @@ SampleGrid grid_around(const Box& box, int depth) {
   return grid;
 }
 
+// What is kept of a cell of the samples, in all stages, at most.
+constexpr double kBytesPerCell = 130.0;
+
 class Reconstruction {
  public:
   Reconstruction(PointSource* source, const SampleGrid& grid, const ReconstructOptions& options,
-                 double mean_weight, SampleStore* store)
+                 double mean_weight, bool keeps_all, SampleStore* store)
       : source_(source),
         grid_(grid),
         options_(options),
         attribute_count_(source->attributes().size()),
-        mean_weight_(mean_weight),
-        store_(store),
-        top_(grid.depth - std::min(kSlabBits, grid.depth)),
-        slabs_(static_cast<std::size_t>(store->slab_count())),
-        trees_(slabs_.size()) {}
+        slabs_(store, grid.depth, grid.depth - std::min(kSlabBits, grid.depth), attribute_count_,
+               keeps_all, options.threads) {
+    slabs_.mean_weight = mean_weight;
+  }
 
   void run(MeshSink* sink, ReconstructReport* report) {
-    make_slabs();
     make_whole();
-    const int least_leaf = least_leaf_depth();
     if (options_.basis == WaveletBasis::kD4) {
-      make_d4_trees(least_leaf, report);
+      make_d4_trees(report);
     } else {
-      make_trees(least_leaf, report);
       make_coarse(report);
     }
     const float scale = scale_of_values();
@@ -80,61 +79,75 @@ class Reconstruction {
 
  private:
   int depth() const { return grid_.depth; }
-  std::int64_t slab_count() const { return static_cast<std::int64_t>(slabs_.size()); }
 
-  template <typename Body>
-  void for_slabs(double from, double to, const Body& body) {
-    parallel_for(slab_count(), options_.threads, options_.progress.part(from, to),
-                 [&](std::int64_t i) { body(static_cast<std::size_t>(i)); });
+  // Brings all slabs to a stage, some at a time with those `margin` slabs to both sides of them,
+  // and calls visit(s) for each, on any thread, and then join(s), in order.
+  template <typename Visit, typename Join>
+  void for_slabs(SlabStage stage, int margin, double from, double to, const Visit& visit,
+                 const Join& join) {
+    const int width = resolve_threads(options_.threads);
+    const Progress part = options_.progress.part(from, to);
+    for (int begin = 0; begin < slabs_.count(); begin += width) {
+      const int end = std::min(begin + width, slabs_.count());
+      slabs_.bring(begin - margin, end + margin, stage);
+      parallel_for(end - begin, options_.threads, Progress(),
+                   [&](std::int64_t i) { visit(begin + static_cast<int>(i)); });
+      for (int s = begin; s < end; ++s) join(s);
+      // The next slabs need the levels of those two below the margin.
+      slabs_.drop_below(end - margin - 2);
+      part.report(static_cast<double>(end) / slabs_.count());
+    }
+    slabs_.drop_below(slabs_.count());
   }
-
-  void make_slabs() {
-    for_slabs(0.0, 0.1, [&](std::size_t s) {
-      slabs_[s] =
-          make_sample_slab(store_->take(static_cast<int>(s)), depth(), top_, attribute_count_);
-    });
-    for_slabs(0.1, 0.15, [&](std::size_t s) {
-      find_met_cells(s > 0 ? &slabs_[s - 1] : nullptr,
-                     s + 1 < slabs_.size() ? &slabs_[s + 1] : nullptr, &slabs_[s]);
-    });
-  }
+  static void do_nothing(int) {}
 
   // The levels above the slabs' first one, and this one, for all slabs together.
   void make_whole() {
     SampleCells tops;
-    for (const SampleSlab& slab : slabs_) {
-      offsets_.push_back(tops.size());
-      const SampleCells& samples = slab.at(top_).samples;
+    std::vector<double> weights(static_cast<std::size_t>(depth()) + 1);
+    std::size_t most = 0;
+    for_slabs(SlabStage::kMet, 0, 0.0, 0.15, do_nothing, [&](int s) {
+      const SampleSlab& slab = *slabs_.samples(s);
+      slabs_.offsets.push_back(tops.size());
+      const SampleCells& samples = slab.at(slabs_.top()).samples;
       tops.cells.insert(tops.cells.end(), samples.cells.begin(), samples.cells.end());
       tops.attributes.insert(tops.attributes.end(), samples.attributes.begin(),
                              samples.attributes.end());
-    }
-    whole_ = make_sample_slab(std::move(tops), top_, 0, attribute_count_);
-    find_met_cells(nullptr, nullptr, &whole_);
-    whole_.at(0).leaf.assign(whole_.at(0).size(), 0);
-    find_leaves(mean_weight_, depth(), &whole_);
-    for_slabs(0.15, 0.2, [&](std::size_t s) {
-      SampleLevel& first = slabs_[s].at(top_);
-      const SampleLevel& tops_level = whole_.at(top_);
-      first.leaf.assign(
-          tops_level.leaf.begin() + static_cast<std::ptrdiff_t>(offsets_[s]),
-          tops_level.leaf.begin() + static_cast<std::ptrdiff_t>(offsets_[s] + first.size()));
-      find_leaves(mean_weight_, depth(), &slabs_[s]);
+      weigh_leaves(slab, &weights);
+      if (slab.at(depth()).size() > most) {
+        most = slab.at(depth()).size();
+        largest_ = s;
+      }
     });
+    slabs_.whole = make_sample_slab(std::move(tops), slabs_.top(), 0, attribute_count_);
+    find_met_cells(nullptr, nullptr, &slabs_.whole);
+    slabs_.whole.at(0).leaf.assign(slabs_.whole.at(0).size(), 0);
+    find_leaves(slabs_.mean_weight, depth(), &slabs_.whole);
+    slabs_.least_leaf = least_leaf_depth(weights);
+  }
+
+  // Adds the weight of samples to that of the depth at which they count; those that count above the
+  // slab's first level are taken to count there.
+  static void weigh_leaves(const SampleSlab& slab, std::vector<double>* weights) {
+    std::vector<std::int8_t> leaf(slab.at(slab.top).size(), static_cast<std::int8_t>(slab.top));
+    for (int k = slab.top + 1; k <= slab.depth(); ++k) {
+      const SampleLevel& level = slab.at(k);
+      std::vector<std::int8_t> next(level.size());
+      for (std::size_t i = 0; i < level.size(); ++i) {
+        next[i] = level.is_met[i] != 0 ? static_cast<std::int8_t>(k) : leaf[level.parents[i]];
+      }
+      leaf = std::move(next);
+    }
+    const std::vector<SampleCell>& finest = slab.at(slab.depth()).samples.cells;
+    for (std::size_t i = 0; i < finest.size(); ++i) {
+      (*weights)[static_cast<std::size_t>(leaf[i])] += static_cast<double>(finest[i].weight);
+    }
   }
 
   // Samples that lie much thinner than most are no part of the surface.
-  int least_leaf_depth() const {
-    std::vector<double> weights(static_cast<std::size_t>(depth()) + 1);
+  int least_leaf_depth(const std::vector<double>& weights) const {
     double all = 0.0;
-    for (const SampleSlab& slab : slabs_) {
-      const SampleLevel& finest = slab.at(depth());
-      for (std::size_t i = 0; i < finest.size(); ++i) {
-        const auto weight = static_cast<double>(finest.samples.cells[i].weight);
-        weights[static_cast<std::size_t>(finest.leaf[i])] += weight;
-        all += weight;
-      }
-    }
+    for (const double weight : weights) all += weight;
     int median = 0;
     for (double sum = weights[0]; sum < all / 2.0 && median < depth();) {
       sum += weights[static_cast<std::size_t>(++median)];
@@ -142,82 +155,50 @@ class Reconstruction {
     return std::max(0, median - kOutlierDepths + 1);
   }
 
-  void make_trees(int least_leaf, ReconstructReport* report) {
-    std::vector<double> left_out(slabs_.size());
-    std::vector<PooledFlux> coarse(slabs_.size());
-    for_slabs(0.2, 0.3, [&](std::size_t s) {
-      PooledFlux pooled(static_cast<std::size_t>(depth()) + 1);
-      left_out[s] = pool_flux(slabs_[s], whole_, offsets_[s], least_leaf, &pooled);
-      const int height = 1 << (depth() - top_);
-      const int low = static_cast<int>(s) * height;
-      add_patches(s > 0 ? &slabs_[s - 1].at(depth()) : nullptr, slabs_[s].at(depth()),
-                  s + 1 < slabs_.size() ? &slabs_[s + 1].at(depth()) : nullptr, depth(), low,
-                  low + height, &pooled.back());
-      coarse[s].assign(std::make_move_iterator(pooled.begin()),
-                       std::make_move_iterator(pooled.begin() + top_));
-      trees_[s] = analyse_flux(std::move(pooled), top_, depth());
-    });
-    coarse_flux_.resize(static_cast<std::size_t>(top_) + 1);
-    double weight = 0.0;
-    for (std::size_t s = 0; s < slabs_.size(); ++s) {
-      for (std::size_t k = 0; k < coarse[s].size(); ++k) {
-        coarse_flux_[k].insert(coarse_flux_[k].end(), coarse[s][k].begin(), coarse[s][k].end());
-      }
-      const std::vector<CellFlux>& tops = trees_[s].tops;
-      coarse_flux_.back().insert(coarse_flux_.back().end(), tops.begin(), tops.end());
-      weight += left_out[s];
+  void make_d4_trees(ReconstructReport* report) {
+    slabs_.bring(0, slabs_.count(), SlabStage::kLeaves);
+    D4Function made = make_d4_function(source_, grid_, slabs_, options_.progress.part(0.15, 0.4),
+                                       options_.threads);
+    for (int s = 0; s < slabs_.count(); ++s) {
+      slabs_.set_values(s, std::move(made.trees[static_cast<std::size_t>(s)]));
     }
-    report->outliers = weight;
-  }
-
-  void make_d4_trees(int least_leaf, ReconstructReport* report) {
-    D4Function made = make_d4_function({source_, grid_, &slabs_, &whole_, &offsets_, least_leaf},
-                                       options_.progress.part(0.2, 0.4), options_.threads);
-    trees_ = std::move(made.trees);
-    coarse_ = std::move(made.coarse);
+    slabs_.coarse = std::move(made.coarse);
     report->is_flipped = is_flipped_ = made.is_flipped;
     report->outliers = made.left_out;
   }
 
   void make_coarse(ReconstructReport* report) {
-    std::vector<CellFlux> tops = coarse_flux_.back();
+    PooledFlux flux(static_cast<std::size_t>(slabs_.top()) + 1);
+    for_slabs(SlabStage::kCoefficients, 0, 0.15, 0.35, do_nothing, [&](int s) {
+      const PooledFlux& pooled = slabs_.coarse_flux(s);
+      for (std::size_t k = 0; k < pooled.size(); ++k) {
+        flux[k].insert(flux[k].end(), pooled[k].begin(), pooled[k].end());
+      }
+      const std::vector<CellFlux>& tops = slabs_.tree(s)->tops;
+      flux.back().insert(flux.back().end(), tops.begin(), tops.end());
+      report->outliers += slabs_.left_out(s);
+    });
+    std::vector<CellFlux> tops = flux.back();
     std::sort(tops.begin(), tops.end(),
               [](const CellFlux& a, const CellFlux& b) { return a.place < b.place; });
-    std::vector<std::uint32_t> next(slabs_.size());
+    std::vector<std::uint32_t> next(static_cast<std::size_t>(slabs_.count()));
+    CoarseTree& coarse = slabs_.coarse;
     for (const CellFlux& cell : tops) {
       if (!cell.is_split) continue;
       const int slab = morton_cell(cell.place)[2];
-      coarse_.continuations.push_back({slab, next[static_cast<std::size_t>(slab)]++});
+      coarse.continuations.push_back({slab, next[static_cast<std::size_t>(slab)]++});
     }
-    coarse_.tree = analyse_flux(std::move(coarse_flux_), 0, top_);
+    coarse.tree = analyse_flux(std::move(flux), 0, slabs_.top());
     RootMean mean;
-    if (!coarse_.tree.tops.empty()) mean.add_inside(coarse_.tree.tops.front().flux);
-    coarse_.root = static_cast<float>(mean.median());
-    report->is_flipped = is_flipped_ = coarse_.root < 0.0F;
-    synthesise_part({coarse_.root}, &coarse_.tree);
-    give_values_to_slabs(tops);
+    if (!coarse.tree.tops.empty()) mean.add_inside(coarse.tree.tops.front().flux);
+    coarse.root = static_cast<float>(mean.median());
+    report->is_flipped = is_flipped_ = coarse.root < 0.0F;
+    synthesise_part({coarse.root}, &coarse.tree);
   }
 
-  void give_values_to_slabs(const std::vector<CellFlux>& tops) {
-    // The values of the slabs' first cells, by slab and along the Morton curve.
-    std::vector<std::vector<float>> values(slabs_.size());
-    std::size_t block = 0;
-    for (const CellFlux& cell : tops) {
-      float value = coarse_.root;
-      if (top_ > 0) {
-        const NodeLevel& last = coarse_.tree.levels.back();
-        while (last.places[block] != cell.place >> 3U) ++block;
-        value = last.blocks.blocks[block][cell.place & 7U];
-      }
-      values[static_cast<std::size_t>(morton_cell(cell.place)[2])].push_back(value);
-    }
-    for_slabs(0.3, 0.4, [&](std::size_t s) { synthesise_part(values[s], &trees_[s]); });
-  }
-
-  CellTree tree_around(std::size_t s, float scale) const {
-    const SlabTrees around = {s > 0 ? &trees_[s - 1] : nullptr, &trees_[s],
-                              s + 1 < trees_.size() ? &trees_[s + 1] : nullptr};
-    CellTree tree = assemble(coarse_, around, static_cast<int>(s), depth(), scale);
+  CellTree tree_around(int s, float scale) const {
+    CellTree tree = assemble(
+        slabs_.coarse, {slabs_.tree(s - 1), slabs_.tree(s), slabs_.tree(s + 1)}, s, depth(), scale);
     if (options_.smooth) smooth_leaves(&tree);
     return tree;
   }
@@ -225,24 +206,25 @@ class Reconstruction {
   float scale_of_values() {
     const float sign = is_flipped_ ? -1.0F : 1.0F;
     if (options_.isovalue != Isovalue::kMean) return sign;
-    std::vector<double> sums(slabs_.size());
-    std::vector<double> weights(slabs_.size());
-    for_slabs(0.4, 0.6, [&](std::size_t s) {
-      const CellTree tree = tree_around(s, sign);
-      const SampleLevel& finest = slabs_[s].at(depth());
-      for (std::size_t i = 0; i < finest.size(); ++i) {
-        const SampleCell& cell = finest.samples.cells[i];
-        const auto weight = static_cast<double>(cell.weight);
-        sums[s] += weight * static_cast<double>(leaf_value(tree, cell_position(cell.key)));
-        weights[s] += weight;
-      }
-    });
+    std::vector<double> sums(static_cast<std::size_t>(slabs_.count()));
     double sum = 0.0;
     double weight = 0.0;
-    for (std::size_t s = 0; s < slabs_.size(); ++s) {
-      sum += sums[s];
-      weight += weights[s];
-    }
+    for_slabs(
+        SlabStage::kValues, 1, 0.35, 0.6,
+        [&](int s) {
+          const CellTree tree = tree_around(s, sign);
+          for (const SampleCell& cell : slabs_.samples(s)->at(depth()).samples.cells) {
+            sums[static_cast<std::size_t>(s)] +=
+                static_cast<double>(cell.weight) *
+                static_cast<double>(leaf_value(tree, cell_position(cell.key)));
+          }
+        },
+        [&](int s) {
+          sum += sums[static_cast<std::size_t>(s)];
+          for (const SampleCell& cell : slabs_.samples(s)->at(depth()).samples.cells) {
+            weight += static_cast<double>(cell.weight);
+          }
+        });
     const double mean = sum / weight;
     // Normals that tell nothing leave no function to speak of.
     return mean > 1e-3 ? sign * static_cast<float>(0.5 / mean) : sign;
@@ -261,54 +243,44 @@ class Reconstruction {
   }
 
   // Of some cells of the slab that has most.
-  SampleNoise find_noise() const {
+  SampleNoise find_noise() {
     constexpr std::size_t kCells = 4096;
-    std::size_t largest = 0;
-    for (std::size_t s = 1; s < slabs_.size(); ++s) {
-      if (slabs_[s].at(depth()).size() > slabs_[largest].at(depth()).size()) largest = s;
-    }
-    const SampleLevel& level = slabs_[largest].at(depth());
-    const SampleIndex coarser = samples_around(largest, depth() - 1, 2);
+    if (depth() == slabs_.top()) return {};
+    slabs_.bring(largest_ - 1, largest_ + 2, SlabStage::kLeaves);
+    const SampleLevel& level = slabs_.samples(largest_)->at(depth());
+    const SampleIndex coarser = samples_around(largest_, depth() - 1, 2);
     const std::size_t step = std::max<std::size_t>(1, level.size() / kCells);
     std::vector<SampleCell> cells;
     for (std::size_t i = 0; i < level.size(); i += step) {
       if (level.leaf[i] == depth()) cells.push_back(level.samples.cells[i]);
     }
-    return measure_noise(cells, coarser, mean_weight_);
+    const SampleNoise noise = measure_noise(cells, coarser, slabs_.mean_weight);
+    slabs_.drop_below(slabs_.count());
+    return noise;
   }
 
   void contour(float scale, MeshSink* sink, ReconstructReport* report) {
     noise_ = find_noise();
     report->residual = noise_.distance;
     MeshJoiner joiner(grid_, attribute_count_, sink);
-    const auto width = static_cast<std::size_t>(resolve_threads(options_.threads));
-    const int side = 1 << depth();
-    const int height = side / static_cast<int>(slabs_.size());
-    std::vector<SlabMesh> parts(width);
-    for (std::size_t begin = 0; begin < slabs_.size(); begin += width) {
-      const std::size_t count = std::min(width, slabs_.size() - begin);
-      parallel_for(static_cast<std::int64_t>(count), options_.threads, Progress(),
-                   [&](std::int64_t i) {
-                     const std::size_t s = begin + static_cast<std::size_t>(i);
-                     parts[static_cast<std::size_t>(i)] = mesh_of_slab(s, scale);
-                   });
-      for (std::size_t i = 0; i < count; ++i) {
-        const bool is_last = begin + i + 1 == slabs_.size();
-        joiner.add(parts[i], is_last ? side + 1 : static_cast<int>(begin + i + 1) * height);
-        parts[i] = SlabMesh();
-      }
-      options_.progress.part(0.6, 1.0).report(static_cast<double>(begin + count) /
-                                              static_cast<double>(slabs_.size()));
-    }
+    std::vector<SlabMesh> parts(static_cast<std::size_t>(slabs_.count()));
+    for_slabs(
+        SlabStage::kValues, 1, 0.6, 1.0,
+        [&](int s) { parts[static_cast<std::size_t>(s)] = mesh_of_slab(s, scale); },
+        [&](int s) {
+          const bool is_last = s + 1 == slabs_.count();
+          SlabMesh& part = parts[static_cast<std::size_t>(s)];
+          joiner.add(part, is_last ? (1 << depth()) + 1 : (s + 1) * slabs_.height());
+          part = SlabMesh();
+        });
     report->vertices = joiner.vertices();
     report->triangles = joiner.triangles();
   }
 
-  SlabMesh mesh_of_slab(std::size_t s, float scale) const {
+  SlabMesh mesh_of_slab(int s, float scale) const {
     const int side = 1 << depth();
-    const int height = side / static_cast<int>(slabs_.size());
-    HeightRange heights = {static_cast<int>(s) * height, static_cast<int>(s + 1) * height};
-    if (s + 1 == slabs_.size()) ++heights.high;
+    HeightRange heights = {s * slabs_.height(), (s + 1) * slabs_.height()};
+    if (s + 1 == slabs_.count()) ++heights.high;
     CellTree tree = tree_around(s, scale);
     const bool are_occupancies = options_.basis == WaveletBasis::kHaar && !options_.smooth;
     if (are_occupancies) {
@@ -332,25 +304,24 @@ class Reconstruction {
   }
 
   // The samples of a depth, in the slab and next to it.
-  SampleIndex samples_around(std::size_t s, int k, int margin) const {
-    if (k < top_) {
+  SampleIndex samples_around(int s, int k, int margin) const {
+    if (k < slabs_.top()) {
       SampleIndex index(k, 0, 1 << k);
-      index.add(whole_.at(k));
+      index.add(slabs_.whole.at(k));
       index.finish();
       return index;
     }
-    const int height = 1 << (k - top_);
-    const int low = static_cast<int>(s) * height - margin;
-    SampleIndex index(k, std::max(0, low),
-                      std::min(1 << k, static_cast<int>(s + 1) * height + margin));
-    for (std::size_t t = s > 0 ? s - 1 : 0; t < std::min(s + 2, slabs_.size()); ++t) {
-      index.add(slabs_[t].at(k));
+    const int height = 1 << (k - slabs_.top());
+    SampleIndex index(k, std::max(0, s * height - margin),
+                      std::min(1 << k, (s + 1) * height + margin));
+    for (int t = s - 1; t <= s + 1; ++t) {
+      if (slabs_.samples(t) != nullptr) index.add(slabs_.samples(t)->at(k));
     }
     index.finish();
     return index;
   }
 
-  void follow_samples(std::size_t s, SlabMesh* slab) const {
+  void follow_samples(int s, SlabMesh* slab) const {
     std::vector<Vector3>& positions = slab->contour.mesh.positions;
     const std::vector<VertexPlace>& places = slab->contour.places;
     slab->attributes.resize(positions.size() * attribute_count_);
@@ -377,7 +348,7 @@ class Reconstruction {
     if (options_.trim) trim(s, slab);
   }
 
-  void trim(std::size_t s, SlabMesh* slab) const {
+  void trim(int s, SlabMesh* slab) const {
     const double limit = *options_.trim;
     const int reach = static_cast<int>(std::ceil(limit));
     const SampleIndex index = samples_around(s, depth(), reach + 2);
@@ -405,17 +376,10 @@ class Reconstruction {
   SampleGrid grid_;
   const ReconstructOptions& options_;
   std::size_t attribute_count_;
-  double mean_weight_;
-  SampleNoise noise_;
-  SampleStore* store_;
-  int top_;
-  std::vector<SampleSlab> slabs_;
-  SampleSlab whole_;
-  std::vector<std::size_t> offsets_;  // of the slabs' first cells among all
-  std::vector<FluxTree> trees_;
-  PooledFlux coarse_flux_;
-  CoarseTree coarse_;
+  Slabs slabs_;
+  int largest_ = 0;  // the slab with most cells
   bool is_flipped_ = false;
+  SampleNoise noise_;
 };
 
 }  // namespace
@@ -444,7 +408,12 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   const double mean_weight = extent.weight / static_cast<double>(extent.points - extent.dropped);
   ReconstructOptions inner = options;
   inner.progress = options.progress.part(0.4, 1.0);
-  Reconstruction(source, grid, inner, mean_weight, &store).run(sink, &report);
+  // The D4 basis needs all slabs at once.
+  const bool keeps_all =
+      options.basis == WaveletBasis::kD4 ||
+      (!store.is_spilled() && kBytesPerCell * static_cast<double>(store.size()) <=
+                                  static_cast<double>(options.memory_limit) / 2.0);
+  Reconstruction(source, grid, inner, mean_weight, keeps_all, &store).run(sink, &report);
   report.outliers /= extent.weight;
   return report;
 }

@@ -1,0 +1,124 @@
+#include "prefilter/reconstruct/slabs.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/reconstruct/plane_patches.h"
+
+namespace prefilter {
+
+Slabs::Slabs(SampleStore* store, int depth, int top, std::size_t attribute_count, bool keeps_all,
+             int threads)
+    : store_(store),
+      depth_(depth),
+      top_(top),
+      attribute_count_(attribute_count),
+      keeps_all_(keeps_all),
+      threads_(threads),
+      slots_(static_cast<std::size_t>(store->slab_count())) {}
+
+const SampleSlab* Slabs::samples(int s) const {
+  return s < 0 || s >= count() ? nullptr : &slots_[static_cast<std::size_t>(s)].samples;
+}
+
+const FluxTree* Slabs::tree(int s) const {
+  return s < 0 || s >= count() ? nullptr : &slots_[static_cast<std::size_t>(s)].tree;
+}
+
+void Slabs::set_values(int s, FluxTree tree) {
+  Slot& slot = slots_[static_cast<std::size_t>(s)];
+  slot.tree = std::move(tree);
+  slot.stage = SlabStage::kValues;
+}
+
+void Slabs::bring(int begin, int end, SlabStage stage) {
+  if (stage == SlabStage::kNone) return;
+  begin = std::max(begin, 0);
+  end = std::min(end, count());
+  // Neighbours tell which cells are met, and their patches leave through the sides.
+  if (stage == SlabStage::kMet) bring(begin - 1, end + 1, SlabStage::kLevels);
+  if (stage == SlabStage::kCoefficients) bring(begin - 1, end + 1, SlabStage::kMet);
+  bring(begin, end, static_cast<SlabStage>(static_cast<int>(stage) - 1));
+  parallel_for(end - begin, threads_, Progress(), [&](std::int64_t i) {
+    const int s = begin + static_cast<int>(i);
+    if (slots_[static_cast<std::size_t>(s)].stage < stage) advance(s, stage);
+  });
+  dropped_ = std::min(dropped_, begin);
+}
+
+void Slabs::drop_below(int end) {
+  if (keeps_all_) return;
+  for (; dropped_ < std::min(end, count()); ++dropped_) {
+    slots_[static_cast<std::size_t>(dropped_)] = Slot();
+  }
+}
+
+void Slabs::advance(int s, SlabStage stage) {
+  Slot& slot = slots_[static_cast<std::size_t>(s)];
+  switch (stage) {
+    case SlabStage::kNone:
+      break;
+    case SlabStage::kLevels:
+      slot.samples = make_sample_slab(keeps_all_ ? store_->take(s) : store_->slab(s), depth_, top_,
+                                      attribute_count_);
+      break;
+    case SlabStage::kMet:
+      find_met_cells(samples(s - 1), samples(s + 1), &slot.samples);
+      break;
+    case SlabStage::kLeaves:
+      find_leaves_of(s);
+      break;
+    case SlabStage::kCoefficients:
+      analyse(s);
+      break;
+    case SlabStage::kValues:
+      synthesise_slab(s);
+      break;
+  }
+  slot.stage = stage;
+}
+
+void Slabs::find_leaves_of(int s) {
+  SampleSlab& slab = slots_[static_cast<std::size_t>(s)].samples;
+  const auto first = whole.at(top_).leaf.begin() +
+                     static_cast<std::ptrdiff_t>(offsets[static_cast<std::size_t>(s)]);
+  slab.at(top_).leaf.assign(first, first + static_cast<std::ptrdiff_t>(slab.at(top_).size()));
+  find_leaves(mean_weight, depth_, &slab);
+}
+
+void Slabs::analyse(int s) {
+  Slot& slot = slots_[static_cast<std::size_t>(s)];
+  const auto finest_of = [&](int t) {
+    const SampleSlab* slab = samples(t);
+    return slab == nullptr ? nullptr : &slab->at(depth_);
+  };
+  PooledFlux pooled(static_cast<std::size_t>(depth_) + 1);
+  slot.left_out =
+      pool_flux(slot.samples, whole, offsets[static_cast<std::size_t>(s)], least_leaf, &pooled);
+  add_patches(finest_of(s - 1), *finest_of(s), finest_of(s + 1), depth_, s * height(),
+              (s + 1) * height(), &pooled.back());
+  slot.coarse_flux.assign(std::make_move_iterator(pooled.begin()),
+                          std::make_move_iterator(pooled.begin() + top_));
+  slot.tree = analyse_flux(std::move(pooled), top_, depth_);
+}
+
+void Slabs::synthesise_slab(int s) {
+  FluxTree& tree = slots_[static_cast<std::size_t>(s)].tree;
+  std::vector<float> values;
+  for (const CellFlux& cell : tree.tops) {
+    float value = coarse.root;
+    if (top_ > 0) {
+      const NodeLevel& last = coarse.tree.levels.back();
+      const auto found = std::lower_bound(last.places.begin(), last.places.end(), cell.place >> 3U);
+      value = last.blocks
+                  .blocks[static_cast<std::size_t>(found - last.places.begin())][cell.place & 7U];
+    }
+    values.push_back(value);
+  }
+  synthesise_part(values, &tree);
+}
+
+}  // namespace prefilter

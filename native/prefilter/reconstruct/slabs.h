@@ -1,0 +1,89 @@
+// What is made of a cloud's slabs, stage by stage, and forgotten where memory is scarce.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/reconstruct/assemble.h"
+#include "prefilter/reconstruct/flux_tree.h"
+#include "prefilter/reconstruct/sample_slab.h"
+#include "prefilter/reconstruct/sample_store.h"
+
+namespace prefilter {
+
+/// Each needs those before it; some need a neighbouring slab's, too.
+enum class SlabStage : std::uint8_t {
+  kNone,
+  kLevels,        // the samples at all depths
+  kMet,           // which cells the surface meets
+  kLeaves,        // where samples count, and for how much
+  kCoefficients,  // the slab's part of the tree
+  kValues,
+};
+
+/// The slabs of a cloud, from below. What has been made of one is kept until it is dropped, and
+/// made again, the same, when it is asked for again.
+class Slabs {
+ public:
+  /// `keeps_all`: nothing is ever dropped.
+  Slabs(SampleStore* store, int depth, int top, std::size_t attribute_count, bool keeps_all,
+        int threads);
+
+  int count() const { return static_cast<int>(slots_.size()); }
+  int depth() const { return depth_; }
+  /// The depth of cells that are as high as a slab.
+  int top() const { return top_; }
+  int height() const { return 1 << (depth_ - top_); }
+
+  /// Brings slabs from `begin` up to `end`, as far as there are such, to a stage.
+  void bring(int begin, int end, SlabStage stage);
+  /// Forgets slabs below one, where not all are kept.
+  void drop_below(int end);
+
+  /// Null where there is no such slab.
+  const SampleSlab* samples(int s) const;
+  const FluxTree* tree(int s) const;
+  /// Values that were made otherwise, as kValues.
+  void set_values(int s, FluxTree tree);
+
+  /// What a slab's coefficients leave to the levels above it, and the weight that was left out.
+  const PooledFlux& coarse_flux(int s) const {
+    return slots_[static_cast<std::size_t>(s)].coarse_flux;
+  }
+  double left_out(int s) const { return slots_[static_cast<std::size_t>(s)].left_out; }
+
+  /// For kLeaves: the levels down to `top` of all slabs together, and where a slab's cells begin
+  /// in the last of them. For kCoefficients: leaves less deep do not count. For kValues: the levels
+  /// above.
+  SampleSlab whole;
+  std::vector<std::size_t> offsets;
+  double mean_weight = 1.0;
+  int least_leaf = 0;
+  CoarseTree coarse;
+
+ private:
+  struct Slot {
+    SlabStage stage = SlabStage::kNone;
+    SampleSlab samples;
+    FluxTree tree;
+    PooledFlux coarse_flux;
+    double left_out = 0.0;
+  };
+
+  void advance(int s, SlabStage stage);
+  void find_leaves_of(int s);
+  void analyse(int s);
+  void synthesise_slab(int s);
+
+  SampleStore* store_;
+  int depth_;
+  int top_;
+  std::size_t attribute_count_;
+  bool keeps_all_;
+  int threads_;
+  int dropped_ = 0;  // slabs below this have nothing
+  std::vector<Slot> slots_;
+};
+
+}  // namespace prefilter
