@@ -89,7 +89,7 @@ py::dict to_dict(const ReconstructReport& report) {
   return found;
 }
 
-std::tuple<Array<double>, Array<std::int64_t>, Array<float>, py::dict> bound_reconstruct(
+std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_reconstruct(
     PointSource* source, const ReconstructOptions& options) {
   ArraySink sink;
   ReconstructReport report;
@@ -97,12 +97,12 @@ std::tuple<Array<double>, Array<std::int64_t>, Array<float>, py::dict> bound_rec
     const py::gil_scoped_release unlocked;
     report = reconstruct(source, options, &sink);
   }
-  const auto vertices = static_cast<py::ssize_t>(sink.positions.size());
-  const auto triangles = static_cast<py::ssize_t>(sink.triangles.size());
+  const auto vertices = static_cast<py::ssize_t>(report.vertices);
+  const auto triangles = static_cast<py::ssize_t>(report.triangles);
   const auto width = static_cast<py::ssize_t>(source->attributes().size());
-  return {to_array<double>(std::move(sink.positions), {vertices, 3}),
-          to_array<std::int64_t>(std::move(sink.triangles), {triangles, 3}),
-          to_array<float>(std::move(sink.attributes), {vertices, width}), to_dict(report)};
+  return {to_array<double>(sink.take_positions(), {vertices, 3}),
+          to_array<std::int32_t>(sink.take_triangles(), {triangles, 3}),
+          to_array<float>(sink.take_attributes(), {vertices, width}), to_dict(report)};
 }
 
 py::dict bound_reconstruct_file(PointSource* source, const std::string& target,

@@ -34,7 +34,7 @@ void gather_samples(PointSource* source, const SampleGrid& grid, const Progress&
 /// kBatchBits bits, indices.
 class PointOrder {
  public:
-  static constexpr int kBatchBits = 18;
+  static constexpr int kBatchBits = 17;
   static constexpr std::size_t kMostPoints = std::size_t{1} << kBatchBits;
 
   const std::vector<std::uint64_t>& sort(const PointBatch& batch, const SampleGrid& grid);

@@ -84,7 +84,7 @@ class Reconstruction {
   // and calls visit(s) for each, on any thread, and then join(s), in order.
   template <typename Visit, typename Join>
   void for_slabs(SlabStage stage, int margin, double from, double to, const Visit& visit,
-                 const Join& join) {
+                 const Join& join, bool is_last = false) {
     const int width = resolve_threads(options_.threads);
     const Progress part = options_.progress.part(from, to);
     for (int begin = 0; begin < slabs_.count(); begin += width) {
@@ -94,10 +94,10 @@ class Reconstruction {
                    [&](std::int64_t i) { visit(begin + static_cast<int>(i)); });
       for (int s = begin; s < end; ++s) join(s);
       // The next slabs need the levels of those two below the margin.
-      slabs_.drop_below(end - margin - 2);
+      slabs_.drop_below(end - margin - 2, is_last);
       part.report(static_cast<double>(end) / slabs_.count());
     }
-    slabs_.drop_below(slabs_.count());
+    slabs_.drop_below(slabs_.count(), is_last);
   }
   static void do_nothing(int) {}
 
@@ -255,7 +255,7 @@ class Reconstruction {
       if (level.leaf[i] == depth()) cells.push_back(level.samples.cells[i]);
     }
     const SampleNoise noise = measure_noise(cells, coarser, slabs_.mean_weight);
-    slabs_.drop_below(slabs_.count());
+    slabs_.drop_below(slabs_.count(), false);
     return noise;
   }
 
@@ -272,7 +272,8 @@ class Reconstruction {
           SlabMesh& part = parts[static_cast<std::size_t>(s)];
           joiner.add(part, is_last ? (1 << depth()) + 1 : (s + 1) * slabs_.height());
           part = SlabMesh();
-        });
+        },
+        true);
     report->vertices = joiner.vertices();
     report->triangles = joiner.triangles();
   }

@@ -46,11 +46,11 @@ void Slabs::bring(int begin, int end, SlabStage stage) {
     const int s = begin + static_cast<int>(i);
     if (slots_[static_cast<std::size_t>(s)].stage < stage) advance(s, stage);
   });
-  dropped_ = std::min(dropped_, begin);
+  if (!keeps_all_) dropped_ = std::min(dropped_, begin);
 }
 
-void Slabs::drop_below(int end) {
-  if (keeps_all_) return;
+void Slabs::drop_below(int end, bool for_good) {
+  if (keeps_all_ && !for_good) return;
   for (; dropped_ < std::min(end, count()); ++dropped_) {
     slots_[static_cast<std::size_t>(dropped_)] = Slot();
   }

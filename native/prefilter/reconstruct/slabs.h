@@ -26,7 +26,7 @@ enum class SlabStage : std::uint8_t {
 /// made again, the same, when it is asked for again.
 class Slabs {
  public:
-  /// `keeps_all`: nothing is ever dropped.
+  /// `keeps_all`: nothing is dropped before the last time that it is needed.
   Slabs(SampleStore* store, int depth, int top, std::size_t attribute_count, bool keeps_all,
         int threads);
 
@@ -38,8 +38,8 @@ class Slabs {
 
   /// Brings slabs from `begin` up to `end`, as far as there are such, to a stage.
   void bring(int begin, int end, SlabStage stage);
-  /// Forgets slabs below one, where not all are kept.
-  void drop_below(int end);
+  /// Forgets slabs below one, where not all are kept, or `for_good`.
+  void drop_below(int end, bool for_good);
 
   /// Null where there is no such slab.
   const SampleSlab* samples(int s) const;

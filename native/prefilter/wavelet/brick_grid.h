@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <unordered_map>
 #include <vector>
 
@@ -92,7 +93,7 @@ class BrickGrid {
  private:
   struct Shard {
     std::unordered_map<std::uint64_t, std::uint32_t> places;
-    std::vector<Brick> bricks;
+    std::deque<Brick> bricks;  // never moved
     std::vector<std::uint64_t> keys;
   };
 

@@ -126,45 +126,52 @@ std::vector<BrickPosition> coarser_bricks(const std::vector<BrickPosition>& bric
   return result;
 }
 
-// Calls make(window) for the windows of differences of the next depth around some bricks.
-template <typename Brick, typename Make>
-std::vector<Brick> for_windows(const Differences& finer, const std::vector<BrickPosition>& bricks,
-                               int threads, const Make& make) {
-  constexpr std::int64_t kBricksPerTask = 64;
-  std::vector<Brick> results(bricks.size());
-  parallel_ranges(
-      static_cast<std::int64_t>(bricks.size()), kBricksPerTask, threads, Progress(),
-      [&](std::int64_t begin, std::int64_t end) {
-        const auto window = std::make_unique<DifferenceWindow>();
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-          const BrickPosition& b = bricks[i];
-          finer.window<kWindow>({8 * b[0] - 2, 8 * b[1] - 2, 8 * b[2] - 2}, window.get());
-          results[i] = make(*window);
-        }
-      });
-  return results;
+// Calls make(i) for all bricks, on several threads, and then keep(i, made), in order.
+template <typename Brick, typename Make, typename Keep>
+void for_bricks(std::size_t count, int threads, const Make& make, const Keep& keep) {
+  constexpr std::size_t kAtOnce = 2048;
+  constexpr std::int64_t kPerTask = 32;
+  std::vector<Brick> made(std::min(count, kAtOnce));
+  for (std::size_t first = 0; first < count; first += kAtOnce) {
+    const std::size_t size = std::min(kAtOnce, count - first);
+    parallel_ranges(static_cast<std::int64_t>(size), kPerTask, threads, Progress(),
+                    [&](std::int64_t begin, std::int64_t end) {
+                      for (auto i = static_cast<std::size_t>(begin);
+                           i < static_cast<std::size_t>(end); ++i) {
+                        made[i] = make(first + i);
+                      }
+                    });
+    for (std::size_t i = 0; i < size; ++i) keep(first + i, made[i]);
+  }
+}
+
+// The differences around a brick of the depth before.
+std::unique_ptr<DifferenceWindow> window_around(const Differences& finer, const BrickPosition& b) {
+  auto window = std::make_unique<DifferenceWindow>();
+  finer.window<kWindow>({8 * b[0] - 2, 8 * b[1] - 2, 8 * b[2] - 2}, window.get());
+  return window;
 }
 
 void restrict_to(const Differences& finer, int threads, Differences* coarser) {
   const Filters filters = make_filters();
   const std::vector<BrickPosition> bricks = coarser_bricks(finer.positions());
-  const std::vector<Differences::Brick> found = for_windows<Differences::Brick>(
-      finer, bricks, threads,
-      [&](const DifferenceWindow& window) { return restricted(window, filters); });
-  for (std::size_t i = 0; i < bricks.size(); ++i) {
-    Differences::Brick& brick = coarser->make(bricks[i]);
-    for (std::size_t k = 0; k < brick.size(); ++k) brick[k] += found[i][k];
-  }
+  for_bricks<Differences::Brick>(
+      bricks.size(), threads,
+      [&](std::size_t i) { return restricted(*window_around(finer, bricks[i]), filters); },
+      [&](std::size_t i, const Differences::Brick& made) {
+        Differences::Brick& brick = coarser->make(bricks[i]);
+        for (std::size_t k = 0; k < brick.size(); ++k) brick[k] += made[k];
+      });
 }
 
 Details details_between(const Differences& finer, int depth, int threads) {
   const Filters filters = make_filters();
   const std::vector<BrickPosition> bricks = coarser_bricks(finer.positions());
-  const std::vector<Details::Brick> found = for_windows<Details::Brick>(
-      finer, bricks, threads,
-      [&](const DifferenceWindow& window) { return details_of(window, filters); });
   Details details(depth, kShardBits);
-  for (std::size_t i = 0; i < bricks.size(); ++i) details.make(bricks[i]) = found[i];
+  for_bricks<Details::Brick>(
+      bricks.size(), threads,
+      [&](std::size_t i) { return details_of(*window_around(finer, bricks[i]), filters); },
+      [&](std::size_t i, const Details::Brick& made) { details.make(bricks[i]) = made; });
   return details;
 }
 
@@ -301,17 +308,12 @@ std::vector<Means> transform(std::vector<Differences> differences,
   for (std::size_t k = 1; k <= depth; ++k) {
     const Details details = details_between(differences[k], static_cast<int>(k) - 1, threads);
     differences[k] = Differences(0, kShardBits);
-    std::vector<Means::Brick> found(needed[k].size());
     const Means& coarser = means.back();
-    parallel_ranges(static_cast<std::int64_t>(found.size()), 64, threads, Progress(),
-                    [&](std::int64_t begin, std::int64_t end) {
-                      for (auto i = static_cast<std::size_t>(begin);
-                           i < static_cast<std::size_t>(end); ++i) {
-                        found[i] = means_in(needed[k][i], coarser, details);
-                      }
-                    });
     Means finer(static_cast<int>(k), kShardBits);
-    for (std::size_t i = 0; i < found.size(); ++i) finer.make(needed[k][i]) = found[i];
+    for_bricks<Means::Brick>(
+        needed[k].size(), threads,
+        [&](std::size_t i) { return means_in(needed[k][i], coarser, details); },
+        [&](std::size_t i, const Means::Brick& made) { finer.make(needed[k][i]) = made; });
     means.push_back(std::move(finer));
   }
   return means;

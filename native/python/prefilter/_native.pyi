@@ -331,7 +331,7 @@ def reconstruct(
     source: PointSource, options: ReconstructOptions
 ) -> tuple[
     npt.NDArray[np.float64],
-    npt.NDArray[np.int64],
+    npt.NDArray[np.int32],
     npt.NDArray[np.float32],
     dict[str, float],
 ]: ...

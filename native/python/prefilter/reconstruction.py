@@ -22,9 +22,9 @@ from ._border.output import as_target
 from .points import estimate_normals, grid_normals, mesh_normals
 from .scan_files import ScanPoints, open_points, read_faces, read_points, read_range_grid
 
-Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int64]]
+Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
 MeshWithAttributes: TypeAlias = tuple[
-    npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.float32]
+    npt.NDArray[np.float64], npt.NDArray[np.int32], npt.NDArray[np.float32]
 ]
 
 
@@ -97,7 +97,7 @@ def reconstruct(
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
-        Positions (vertices, 3) float64 and triangles (triangles, 3) int64, counter-clockwise seen
+        Positions (vertices, 3) float64 and triangles (triangles, 3) int32, counter-clockwise seen
         from outside; with `attributes` also those of the vertices, (vertices, n) float32. Untrimmed
         the mesh is closed and two-manifold.
 
