@@ -20,10 +20,25 @@ void append(const SampleCells& from, std::size_t begin, std::size_t end,
                         at(from.attributes, end * attribute_count));
 }
 
+// How many different keys there are.
+std::size_t union_size(const std::vector<SampleCell>& a, const std::vector<SampleCell>& b) {
+  std::size_t count = 0;
+  std::size_t i = 0;
+  std::size_t j = 0;
+  for (; i < a.size() && j < b.size(); ++count) {
+    const CellKey x = a[i].key;
+    const CellKey y = b[j].key;
+    i += x <= y ? 1 : 0;
+    j += y <= x ? 1 : 0;
+  }
+  return count + (a.size() - i) + (b.size() - j);
+}
+
 SampleCells merged(const SampleCells& a, const SampleCells& b, std::size_t attribute_count) {
   SampleCells result;
-  result.cells.reserve(a.size() + b.size());
-  result.attributes.reserve((a.size() + b.size()) * attribute_count);
+  const std::size_t count = union_size(a.cells, b.cells);
+  result.cells.reserve(count);
+  result.attributes.reserve(count * attribute_count);
   std::size_t i = 0;
   std::size_t j = 0;
   while (i < a.size() && j < b.size()) {
@@ -85,8 +100,9 @@ void SampleStore::merge_last(Runs* runs) {
   runs->pop_back();
   Run& first = runs->back();
   for (const Run* run : {&first, &last}) held_ -= run->is_in_file ? 0 : run->count;
-  first.cells = first.is_in_file ? merged(read(first), read(last), attribute_count_)
-                                 : merged(first.cells, read(last), attribute_count_);
+  if (first.is_in_file) first.cells = read(first);
+  if (last.is_in_file) last.cells = read(last);
+  first.cells = merged(first.cells, last.cells, attribute_count_);
   first.is_in_file = false;
   first.count = first.cells.size();
   held_ += first.count;

@@ -20,6 +20,7 @@ using Details = BrickGrid<8>;
 using Halving = std::array<float, 7>;
 // Along the axis of a difference, and across it: of the coarser difference, and of the wavelet.
 constexpr std::size_t kWindow = 13;
+constexpr std::size_t kBricksAtOnce = 1U << 14U;
 
 struct Filters {
   Halving low{};
@@ -164,9 +165,10 @@ void restrict_to(const Differences& finer, int threads, Differences* coarser) {
       });
 }
 
-Details details_between(const Differences& finer, int depth, int threads) {
+// The details in some bricks.
+Details details_in(const std::vector<BrickPosition>& bricks, const Differences& finer, int depth,
+                   int threads) {
   const Filters filters = make_filters();
-  const std::vector<BrickPosition> bricks = coarser_bricks(finer.positions());
   Details details(depth, kShardBits);
   for_bricks<Details::Brick>(
       bricks.size(), threads,
@@ -306,14 +308,31 @@ std::vector<Means> transform(std::vector<Differences> differences,
   std::vector<Means> means;
   means.push_back(first_means(differences[0]));
   for (std::size_t k = 1; k <= depth; ++k) {
-    const Details details = details_between(differences[k], static_cast<int>(k) - 1, threads);
-    differences[k] = Differences(0, kShardBits);
     const Means& coarser = means.back();
     Means finer(static_cast<int>(k), kShardBits);
-    for_bricks<Means::Brick>(
-        needed[k].size(), threads,
-        [&](std::size_t i) { return means_in(needed[k][i], coarser, details); },
-        [&](std::size_t i, const Means::Brick& made) { finer.make(needed[k][i]) = made; });
+    // By z, some at a time: details take more memory than all else.
+    std::vector<BrickPosition>& bricks = needed[k];
+    std::sort(bricks.begin(), bricks.end(), [](const BrickPosition& a, const BrickPosition& b) {
+      return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
+    });
+    std::vector<BrickPosition> all = coarser_bricks(differences[k].positions());
+    for (std::size_t begin = 0; begin < bricks.size();) {
+      std::size_t end = std::min(begin + kBricksAtOnce, bricks.size());
+      while (end < bricks.size() && bricks[end][2] == bricks[end - 1][2]) ++end;
+      const std::int32_t low = (2 * bricks[begin][2] - 2) >> 2;
+      const std::int32_t high = (2 * bricks[end - 1][2] + 2) >> 2;
+      std::vector<BrickPosition> around;
+      for (const BrickPosition& b : all) {
+        if (b[2] >= low && b[2] <= high) around.push_back(b);
+      }
+      const Details details = details_in(around, differences[k], static_cast<int>(k) - 1, threads);
+      for_bricks<Means::Brick>(
+          end - begin, threads,
+          [&](std::size_t i) { return means_in(bricks[begin + i], coarser, details); },
+          [&](std::size_t i, const Means::Brick& made) { finer.make(bricks[begin + i]) = made; });
+      begin = end;
+    }
+    differences[k] = Differences(0, kShardBits);
     means.push_back(std::move(finer));
   }
   return means;
