@@ -51,10 +51,10 @@ HUES = np.array(
         (0.55, 0.56, 0.58),
     ]
 )
-BUNNY_DEPTH = 9
+BUNNY_DEPTH = 8
 NOISY_DEPTH, NOISY_POINTS = 8, 400_000
-UNEVEN_DEPTH, UNEVEN_POINTS = 7, 400_000  # Before they are thinned out.
-SPARSEST = 1 / 1000  # Of the densest points' density.
+UNEVEN_DEPTH, UNEVEN_POINTS = 8, 800_000  # Before they are thinned out.
+SPARSEST = 1 / 300  # Of the densest points' density.
 KINDS = {
     "Haar": {"wavelet": "haar", "smooth": False, "fit": False},
     "D4": {"wavelet": "d4", "smooth": False, "fit": False},
@@ -92,12 +92,12 @@ BUNNY_VIEWS = (
     View((-0.062, 0.0, 0.137), 0.075, -38, 8, dot=0.0026),
 )
 NOISE_VIEWS = (
-    View((0.0, 0.0, 0.0), 2.8, -20, 4, dot=0.0011),
+    View((-0.12, 0.0, 0.0), 2.9, -20, 4, dot=0.0011),
     View((-0.38, -0.8, 0.27), 0.8, -20, 4, dot=0.0022),
 )
 UNEVEN_VIEWS = (
-    View((0.0, 0.0, 0.0), 2.9, -8, 4, dot=0.0011, edge=0.0006),
-    View((0.1, -0.7, 0.2), 0.9, -8, 4, dot=0.003, edge=0.002),
+    View((-0.12, 0.0, 0.0), 2.9, -20, 4, dot=0.0011, edge=0.0006),
+    View((0.03, -0.7, -0.22), 0.8, -20, 4, dot=0.003, edge=0.002),
 )
 
 
@@ -169,11 +169,11 @@ def noisy(source: Mesh, folder: Path) -> list[Subject]:
 
 
 def uneven(source: Mesh) -> list[Subject]:
-    """Points that thin out to one side, and the triangles of their surface."""
+    """Points that thin out downwards, and the triangles of their surface."""
     random = np.random.default_rng(6)
     points, normals = sets.Model.of(Triangles(*source)).draw(UNEVEN_POINTS, random)
-    low, high = points[:, 0].min(), points[:, 0].max()
-    share = SPARSEST ** ((points[:, 0] - low) / (high - low))
+    low, high = points[:, 2].min(), points[:, 2].max()
+    share = SPARSEST ** ((high - points[:, 2]) / (high - low))
     kept = random.random(len(share)) < share
     points, normals = points[kept], normals[kept]
     made = prefilter.reconstruct(points, normals, depth=UNEVEN_DEPTH)
