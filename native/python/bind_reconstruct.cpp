@@ -29,8 +29,8 @@ WaveletBasis basis_of(const std::string& name) {
 }
 
 ReconstructOptions options_of(int depth, const std::string& wavelet, bool smooth,
-                              const std::variant<double, std::string>& isovalue, bool fit,
-                              const std::optional<double>& trim,
+                              const std::variant<double, std::string>& isovalue,
+                              bool are_sides_known, bool fit, const std::optional<double>& trim,
                               const std::optional<std::uint64_t>& memory_limit,
                               const std::string& folder, const py::object& progress, int threads) {
   ReconstructOptions options;
@@ -46,6 +46,7 @@ ReconstructOptions options_of(int depth, const std::string& wavelet, bool smooth
     options.isovalue = Isovalue::kGiven;
     options.given_isovalue = std::get<double>(isovalue);
   }
+  options.are_sides_known = are_sides_known;
   options.fit = fit;
   options.trim = trim;
   if (memory_limit) options.memory_limit = *memory_limit;
@@ -124,8 +125,9 @@ py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
 void bind_reconstruct(py::module_& m) {
   py::class_<ReconstructOptions>(m, "ReconstructOptions")
       .def(py::init(&options_of), py::arg("depth"), py::arg("wavelet"), py::arg("smooth"),
-           py::arg("isovalue"), py::arg("fit"), py::arg("trim"), py::arg("memory_limit"),
-           py::arg("folder"), py::arg("progress"), py::arg("threads"), py::keep_alive<1, 10>());
+           py::arg("isovalue"), py::arg("are_sides_known"), py::arg("fit"), py::arg("trim"),
+           py::arg("memory_limit"), py::arg("folder"), py::arg("progress"), py::arg("threads"),
+           py::keep_alive<1, 11>());
   // The arrays are to live as long as it does.
   py::class_<ArraySource, PointSource>(m, "ArrayPoints")
       .def(py::init(&array_points), py::arg("positions"), py::arg("normals"), py::arg("weights"),

@@ -73,8 +73,7 @@ class Reconstruction {
     } else {
       make_coarse(report);
     }
-    const float scale = scale_of_values();
-    contour(scale, sink, report);
+    contour(find_level(), sink, report);
   }
 
  private:
@@ -163,7 +162,7 @@ class Reconstruction {
       slabs_.set_values(s, std::move(made.trees[static_cast<std::size_t>(s)]));
     }
     slabs_.coarse = std::move(made.coarse);
-    report->is_flipped = is_flipped_ = made.is_flipped;
+    report->is_flipped = is_flipped_ = made.is_flipped && !options_.are_sides_known;
     report->outliers = made.left_out;
   }
 
@@ -192,7 +191,7 @@ class Reconstruction {
     RootMean mean;
     if (!coarse.tree.tops.empty()) mean.add_inside(coarse.tree.tops.front().flux);
     coarse.root = static_cast<float>(mean.median());
-    report->is_flipped = is_flipped_ = coarse.root < 0.0F;
+    report->is_flipped = is_flipped_ = coarse.root < 0.0F && !options_.are_sides_known;
     synthesise_part({coarse.root}, &coarse.tree);
   }
 
@@ -203,9 +202,18 @@ class Reconstruction {
     return tree;
   }
 
-  float scale_of_values() {
+  // Where the surface is: at `isovalue` of the function times `scale`.
+  struct Level {
+    float scale;
+    float isovalue;
+  };
+
+  Level find_level() {
     const float sign = is_flipped_ ? -1.0F : 1.0F;
-    if (options_.isovalue != Isovalue::kMean) return sign;
+    if (options_.isovalue == Isovalue::kHalf) return {sign, 0.5F};
+    if (options_.isovalue == Isovalue::kGiven) {
+      return {sign, static_cast<float>(options_.given_isovalue)};
+    }
     std::vector<double> sums(static_cast<std::size_t>(slabs_.count()));
     double sum = 0.0;
     double weight = 0.0;
@@ -226,8 +234,11 @@ class Reconstruction {
           }
         });
     const double mean = sum / weight;
-    // Normals that tell nothing leave no function to speak of.
-    return mean > 1e-3 ? sign * static_cast<float>(0.5 / mean) : sign;
+    // Of a closed surface the mean is off from 1/2 as the areas are; of an open one, as the mean
+    // over the root is, to which its holes leave much.
+    constexpr double kLeastOfClosed = 0.2;
+    if (options_.are_sides_known || mean < kLeastOfClosed) return {sign, static_cast<float>(mean)};
+    return {sign * static_cast<float>(0.5 / mean), 0.5F};
   }
 
   float leaf_value(const CellTree& tree, const CellPosition& at) const {
@@ -259,14 +270,14 @@ class Reconstruction {
     return noise;
   }
 
-  void contour(float scale, MeshSink* sink, ReconstructReport* report) {
+  void contour(const Level& level, MeshSink* sink, ReconstructReport* report) {
     noise_ = find_noise();
     report->residual = noise_.distance;
     MeshJoiner joiner(grid_, attribute_count_, sink);
     std::vector<SlabMesh> parts(static_cast<std::size_t>(slabs_.count()));
     for_slabs(
         SlabStage::kValues, 1, 0.6, 1.0,
-        [&](int s) { parts[static_cast<std::size_t>(s)] = mesh_of_slab(s, scale); },
+        [&](int s) { parts[static_cast<std::size_t>(s)] = mesh_of_slab(s, level); },
         [&](int s) {
           const bool is_last = s + 1 == slabs_.count();
           SlabMesh& part = parts[static_cast<std::size_t>(s)];
@@ -278,21 +289,21 @@ class Reconstruction {
     report->triangles = joiner.triangles();
   }
 
-  SlabMesh mesh_of_slab(int s, float scale) const {
+  SlabMesh mesh_of_slab(int s, const Level& level) const {
     const int side = 1 << depth();
     HeightRange heights = {s * slabs_.height(), (s + 1) * slabs_.height()};
     if (s + 1 == slabs_.count()) ++heights.high;
-    CellTree tree = tree_around(s, scale);
+    CellTree tree = tree_around(s, level.scale);
     const bool are_occupancies = options_.basis == WaveletBasis::kHaar && !options_.smooth;
-    if (are_occupancies) {
-      for (TreeLevel& level : tree.levels) {
-        for (OctantValues& block : level.blocks) {
-          for (float& value : block) value = std::clamp(value, 0.0F, 1.0F);
+    float isovalue = level.isovalue;
+    if (are_occupancies && options_.isovalue == Isovalue::kMean) {
+      for (TreeLevel& blocks : tree.levels) {
+        for (OctantValues& block : blocks.blocks) {
+          for (float& value : block) value = std::clamp(value + 0.5F - isovalue, 0.0F, 1.0F);
         }
       }
+      isovalue = 0.5F;
     }
-    const float isovalue =
-        options_.isovalue == Isovalue::kGiven ? static_cast<float>(options_.given_isovalue) : 0.5F;
     SlabMesh slab;
     slab.contour = contour_slab(
         tree, isovalue, are_occupancies ? Interpolant::kOccupancy : Interpolant::kLinear, heights);

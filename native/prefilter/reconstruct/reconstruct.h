@@ -28,9 +28,10 @@ struct ReconstructOptions {
   WaveletBasis basis = WaveletBasis::kHaar;
   bool smooth = true;  // the indicator function, over the neighbouring cells
   Isovalue isovalue = Isovalue::kMean;
-  double given_isovalue = 0.5;  // of a function that is 0 outside and 1 inside
-  bool fit = true;              // move vertices onto the surface of the points around them
-  std::optional<double> trim;   // leave out what is farther from all points than so many cells
+  double given_isovalue = 0.5;   // of a function that is 0 outside and 1 inside
+  bool are_sides_known = false;  // normals point outward for sure: towards the scanner
+  bool fit = true;               // move vertices onto the surface of the points around them
+  std::optional<double> trim;    // leave out what is farther from all points than so many cells
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  // in bytes
   std::string folder;  // for temporary files; "": the system's
   int threads = 0;     // 0: all processors

@@ -309,6 +309,7 @@ class ReconstructOptions:
         wavelet: str,
         smooth: bool,
         isovalue: float | str,
+        are_sides_known: bool,
         fit: bool,
         trim: float | None,
         memory_limit: int | None,

@@ -180,6 +180,7 @@ def reconstruct_file(
     if place.suffix.lower() != ".ply":
         raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
     points = open_points(source)
+    are_sides_known = False
     if not points.has_normals:
         read = read_points(source, progress=progress_part(progress, 0.0, 0.1))
         step = progress_part(progress, 0.1, 0.5)
@@ -191,10 +192,21 @@ def reconstruct_file(
             read.weights,
         )
         points = _with_normals(points, replace(read, weights=weights), normals)
+        are_sides_known = told is not None or read.viewpoint is not None
         progress = progress_part(progress, 0.5, 1.0)
     folder = str(place.parent)
     options = _options(
-        depth, wavelet, smooth, isovalue, fit, trim, memory_limit, folder, progress, threads
+        depth,
+        wavelet,
+        smooth,
+        isovalue,
+        fit,
+        trim,
+        memory_limit,
+        folder,
+        progress,
+        threads,
+        are_sides_known,
     )
     report = ReconstructionReport()
     _fill_in(report, _native.reconstruct_file(points, os.fsencode(place), options))
@@ -249,6 +261,7 @@ def _options(
     folder: str,
     progress: ProgressCallback | None,
     threads: int,
+    are_sides_known: bool = False,
 ) -> _native.ReconstructOptions:
     level: str | float
     if isinstance(isovalue, str):
@@ -267,6 +280,7 @@ def _options(
         as_name("wavelet", wavelet),
         bool(smooth),
         level,
+        are_sides_known,
         bool(fit),
         None if trim is None else as_number("trim", trim),
         limit,
