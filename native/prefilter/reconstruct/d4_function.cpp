@@ -297,7 +297,10 @@ D4Function make_d4_function(PointSource* source, const SampleGrid& grid, const S
   });
 
   std::vector<d4::Differences> differences;
-  for (int k = 0; k <= depth; ++k) differences.emplace_back(k, d4::kShardBits);
+  // Shards as high as slabs: those that two slabs write to are theirs.
+  constexpr int kBrickBits = 2;
+  const int shard_bits = std::max(depth - top - kBrickBits, 0);
+  for (int k = 0; k <= depth; ++k) differences.emplace_back(k, shard_bits);
   SampleAdder adder(grid, slabs, areas, &differences);
   PointBatch batch;
   const auto count = static_cast<double>(source->count().value_or(0));

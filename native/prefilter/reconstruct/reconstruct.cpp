@@ -32,7 +32,10 @@
 namespace prefilter {
 namespace {
 
-constexpr int kSlabBits = 6;  // slabs are up to 64 cells high
+// Slabs are up to 64 cells high; lower where there are many cells, so that those in memory at a
+// time are fewer. That follows from the depth alone, as the order of triangles follows from it.
+int slab_bits(int depth) { return std::min({depth, 6, std::max(16 - depth, 4)}); }
+
 constexpr int kOutlierDepths = 3;
 
 SampleGrid grid_around(const Box& box, int depth) {
@@ -61,8 +64,8 @@ class Reconstruction {
         grid_(grid),
         options_(options),
         attribute_count_(source->attributes().size()),
-        slabs_(store, grid.depth, grid.depth - std::min(kSlabBits, grid.depth), attribute_count_,
-               keeps_all, options.threads) {
+        slabs_(store, grid.depth, grid.depth - slab_bits(grid.depth), attribute_count_, keeps_all,
+               options.threads) {
     slabs_.mean_weight = mean_weight;
   }
 
@@ -413,7 +416,7 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   if (!(longest > 0.0)) throw_invalid("points: all coincide; a cloud with an extent is needed");
   const SampleGrid grid = grid_around(extent.box, options.depth);
   report.cell = grid.cell;
-  SampleStore store(options.depth, std::min(kSlabBits, options.depth), source->attributes().size(),
+  SampleStore store(options.depth, slab_bits(options.depth), source->attributes().size(),
                     options.memory_limit / 4, options.folder);
   gather_samples(source, grid, options.progress.part(0.1, 0.4), options.threads, &store);
   report.is_spilled = store.is_spilled();

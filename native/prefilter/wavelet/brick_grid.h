@@ -26,7 +26,7 @@ class BrickGrid {
   /// Shards are 2^shard_bits bricks high; points are from -2^7 to 2^depth + 2^7.
   BrickGrid(int depth, int shard_bits)
       : shard_bits_(shard_bits),
-        shards_(static_cast<std::size_t>(shard_of_z(1 << depth >> 2) + 1) + 1) {}
+        shards_(static_cast<std::size_t>((1 << depth >> 2 >> shard_bits) + 3)) {}
 
   static std::uint64_t key(const BrickPosition& b) {
     constexpr std::int32_t kOffset = 64;
@@ -44,12 +44,12 @@ class BrickGrid {
   }
 
   const Brick* find(const BrickPosition& b) const {
-    const Shard& shard = shards_[static_cast<std::size_t>(shard_of_z(b[2]))];
+    const Shard& shard = shards_[shard_of_z(b[2])];
     const auto found = shard.places.find(key(b));
     return found == shard.places.end() ? nullptr : &shard.bricks[found->second];
   }
   Brick& make(const BrickPosition& b) {
-    Shard& shard = shards_[static_cast<std::size_t>(shard_of_z(b[2]))];
+    Shard& shard = shards_[shard_of_z(b[2])];
     const auto [found, is_new] =
         shard.places.emplace(key(b), static_cast<std::uint32_t>(shard.bricks.size()));
     if (is_new) {
@@ -97,8 +97,10 @@ class BrickGrid {
     std::vector<std::uint64_t> keys;
   };
 
-  int shard_of_z(std::int32_t z) const {
-    return (z >> shard_bits_) + 1 < 0 ? 0 : (z >> shard_bits_) + 1;
+  // What lies outside of the root goes to the outermost shards.
+  std::size_t shard_of_z(std::int32_t z) const {
+    const std::int32_t last = static_cast<std::int32_t>(shards_.size()) - 1;
+    return static_cast<std::size_t>(std::clamp((z >> shard_bits_) + 1, 0, last));
   }
 
   template <std::size_t kSide>
