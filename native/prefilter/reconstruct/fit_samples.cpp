@@ -23,6 +23,8 @@ constexpr double kOpen = 0.12;
 // On smooth surfaces 1/2 is exact; at creases the samples' own planes are the better of the two.
 constexpr double kOwnPlanes = 0.65;
 constexpr int kMostCoarser = 2;
+// How many depths up samples are looked for where there are none as near: to bring spikes back.
+constexpr int kFarthest = 2;
 
 // Calls visit(cell, index, corner, mean, weight) for the cells of samples around a point.
 template <typename Visit>
@@ -168,7 +170,7 @@ void SampleFit::move(int depth, Vector3* point) const {
     std::optional<LocalSurface> surface;
     double cell = 1.0;
     // Where there are no samples as near, larger cells may have some.
-    for (const int last = std::max(1, k - kMostCoarser);; --k) {
+    for (const int last = std::max(1, k - kMostCoarser - kFarthest);; --k) {
       cell = std::ldexp(1.0, finest_ - k);
       const Vector3 p = {(*point)[0] / cell, (*point)[1] / cell, (*point)[2] / cell};
       surface = local_surface(index_of_(k), p, noise_.normal_trust);
