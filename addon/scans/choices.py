@@ -12,8 +12,12 @@ RESOLUTIONS = {
     "size": Choice("Voxel Size", "Cells of at most this size, in the units of the world"),
 }
 WAVELETS = {
-    "haar": Choice("Haar", "Fastest, and needs the least memory: for clean, dense scans"),
-    "d4": Choice("D4", "Smoother, and slower: for noisy scans, and for sparse ones"),
+    "haar": Choice("Haar", "Fastest, and needs the least memory"),
+    "d4": Choice(
+        "D4",
+        "More points count for each value: smoother where Fit to Points is off. Slower, and needs "
+        "more memory",
+    ),
 }
 ISOVALUES = {
     "auto": Choice("Automatic", "Chosen by Prefilter: the mean of the values at the points"),

@@ -363,26 +363,35 @@ class Reconstruction {
     if (options_.trim) trim(s, slab);
   }
 
+  // Marks vertices that are farther from all samples than the limit: than the means of those in a
+  // cell, which is small beside it.
   void trim(int s, SlabMesh* slab) const {
-    const double limit = *options_.trim;
+    constexpr double kMostCells = 8.0;
+    int k = depth();
+    double limit = *options_.trim;
+    // Cells of the next slabs are at hand as well, but not of those after.
+    while (k > 0 && (limit > kMostCells ||
+                     (k > slabs_.top() && std::ceil(limit) > (1 << (k - slabs_.top()))))) {
+      --k;
+      limit /= 2.0;
+    }
     const int reach = static_cast<int>(std::ceil(limit));
-    const SampleIndex index = samples_around(s, depth(), reach + 2);
-    for (const Vector3& p : slab->contour.mesh.positions) {
+    const SampleIndex index = samples_around(s, k, reach + 2);
+    const double cell_size = std::ldexp(1.0, depth() - k);
+    for (const Vector3& position : slab->contour.mesh.positions) {
+      const Vector3 p = {position[0] / cell_size, position[1] / cell_size, position[2] / cell_size};
       bool is_near = false;
-      for (int r = std::min(1, reach); !is_near; r = reach) {
-        index.for_near(p, r, [&](const SampleCells& cells, std::size_t i, const Vector3& corner) {
-          const SampleCell& cell = cells.cells[i];
-          double squared = 0.0;
-          for (std::size_t a = 0; a < 3; ++a) {
-            const double x =
-                corner[a] +
-                static_cast<double>(cell.position[a]) / static_cast<double>(cell.weight) - p[a];
-            squared += x * x;
-          }
-          is_near = is_near || squared <= limit * limit;
-        });
-        if (r == reach) break;
-      }
+      const auto look = [&](const SampleCells& cells, std::size_t i, const Vector3& corner) {
+        const SampleCell& cell = cells.cells[i];
+        double squared = 0.0;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const double x = corner[a] + static_cast<double>(cell.position[a] / cell.weight) - p[a];
+          squared += x * x;
+        }
+        is_near = is_near || squared <= limit * limit;
+      };
+      index.for_near(p, std::min(1, reach), look);
+      if (!is_near) index.for_near(p, reach, look);
       slab->is_trimmed.push_back(is_near ? 0 : 1);
     }
   }

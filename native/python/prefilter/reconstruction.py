@@ -83,7 +83,8 @@ def reconstruct(
         points: (points, 3).
         normals: (points, 3), outward, of any length. None: estimated.
         depth: 1 to 12: the longest side of the cloud is 2^depth cells long, less a margin.
-        wavelet: "haar", or "d4" for noisy points.
+        wavelet: "haar", or "d4": more points count for each value, so the function is smoother; it
+            takes about three times as long.
         smooth: The function is smoothed over neighbouring cells (section 4.3.1).
         isovalue: "auto" and "mean": the function's mean at the points. "half": 1/2. Or a number.
         fit: Vertices are moved onto the surface of the points around them.
@@ -91,7 +92,8 @@ def reconstruct(
             surface may end where the points do. None: the surface is closed.
         weights: (points,), how much each counts; 0 and up. None: all count the same.
         attributes: (points, n), carried over to the vertices: colours, for example.
-        memory_limit: In bytes, above what is passed in; beyond it temporary files are used.
+        memory_limit: In bytes, above what is passed in and returned; beyond it temporary files are
+            used. None: no limit. With "d4" the cells of the surface stay in memory all the same.
         report: Is filled in.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
