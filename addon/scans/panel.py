@@ -5,20 +5,13 @@ import bpy
 from ..bridge.points import may_be_points
 from ..core.menus import PREFILTER_MT_object
 from ..core.properties import copy
+from ..core.sidebar import OptionsPanel, SidebarPanel
 from .choices import ScanSettings
 from .operator import PREFILTER_OT_reconstruct
 
 
-class _SidebarPanel:
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Prefilter"
-    bl_context = "objectmode"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object may be a scan."""
-        return context.active_object is not None and may_be_points(context.active_object)
+class _SidebarPanel(SidebarPanel):
+    fits = staticmethod(may_be_points)
 
 
 class PREFILTER_PT_reconstruct(_SidebarPanel, bpy.types.Panel):
@@ -32,12 +25,10 @@ class PREFILTER_PT_reconstruct(_SidebarPanel, bpy.types.Panel):
         _draw_reconstruct(self.layout, context)
 
 
-class PREFILTER_PT_reconstruct_options(_SidebarPanel, bpy.types.Panel):
+class PREFILTER_PT_reconstruct_options(_SidebarPanel, OptionsPanel, bpy.types.Panel):
     """The other settings."""
 
-    bl_label = "Options"
     bl_parent_id = PREFILTER_PT_reconstruct.__name__
-    bl_options = frozenset({"DEFAULT_CLOSED"})
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""

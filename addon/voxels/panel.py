@@ -5,6 +5,7 @@ import bpy
 from ..bridge.new_meshes import is_solid
 from ..core.menus import PREFILTER_MT_object
 from ..core.properties import copy
+from ..core.sidebar import OptionsPanel, SidebarPanel
 from .choices import BooleanSettings, VoxelizeSettings
 from .operators.boolean import PREFILTER_OT_boolean
 from .operators.voxelize import PREFILTER_OT_voxelize
@@ -18,16 +19,8 @@ class _RemeshPanel:
     bl_options = frozenset({"DEFAULT_CLOSED"})
 
 
-class _SidebarPanel:
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Prefilter"
-    bl_context = "objectmode"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the active object may have an inside."""
-        return context.active_object is not None and is_solid(context.active_object)
+class _SidebarPanel(SidebarPanel):
+    fits = staticmethod(is_solid)
 
 
 class PREFILTER_PT_voxelize(_RemeshPanel, bpy.types.Panel):
@@ -63,12 +56,10 @@ class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, bpy.types.Panel):
         _draw_voxelize(self.layout, context)
 
 
-class PREFILTER_PT_voxelize_options(_SidebarPanel, bpy.types.Panel):
+class PREFILTER_PT_voxelize_options(_SidebarPanel, OptionsPanel, bpy.types.Panel):
     """The other settings of voxelizing."""
 
-    bl_label = "Options"
     bl_parent_id = PREFILTER_PT_voxelize_sidebar.__name__
-    bl_options = frozenset({"DEFAULT_CLOSED"})
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
@@ -86,12 +77,10 @@ class PREFILTER_PT_boolean_sidebar(_SidebarPanel, bpy.types.Panel):
         _draw_boolean(self.layout, context)
 
 
-class PREFILTER_PT_boolean_options(_SidebarPanel, bpy.types.Panel):
+class PREFILTER_PT_boolean_options(_SidebarPanel, OptionsPanel, bpy.types.Panel):
     """The other settings of booleans."""
 
-    bl_label = "Options"
     bl_parent_id = PREFILTER_PT_boolean_sidebar.__name__
-    bl_options = frozenset({"DEFAULT_CLOSED"})
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
