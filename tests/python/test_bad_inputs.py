@@ -9,6 +9,7 @@ import re
 import numpy as np
 import prefilter
 import pytest
+from clouds import sphere
 from scenes import random_image, soup, square
 from solids import box
 
@@ -23,6 +24,8 @@ POINTS, TRIANGLES, UVS = MESH.positions, MESH.triangles, MESH.uvs
 QUAD = np.array([(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)])
 NAN = np.nan
 BOX = box()
+CLOUD = sphere(1000)
+ONES = np.ones(1000)
 OCTREE = prefilter.voxelize(BOX.positions, BOX.triangles, depth=3)
 
 
@@ -89,6 +92,10 @@ FUNCTIONS = {
         prefilter.close_holes,
         {"positions": BOX.positions, "triangles": BOX.triangles},
     ),
+    "reconstruct": (
+        prefilter.reconstruct,
+        {"points": CLOUD.points, "normals": CLOUD.normals, "depth": 3},
+    ),
     "contour": (prefilter.contour, {"grid": np.ones((2, 2, 2))}),
     "Octree": (octree_method, {"name": "union", "other": OCTREE}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
@@ -98,6 +105,7 @@ FUNCTIONS = {
 WRAPS = "is not one of clamp, repeat, border"
 FLOATS = "float32 or float64 is needed"
 THREADS = "a whole number is needed, 0 meaning all processors"
+NEEDS_POINTS = "at least 3 are needed"
 
 ROWS = [
     (
@@ -201,6 +209,89 @@ ROWS = [
         {"faces": np.array([0])},
         ["faces: shape (1,) of int64", "(1,) of bool is needed"],
     ),
+    *(
+        ("reconstruct", {"points": CLOUD.points[:n], "normals": CLOUD.normals[:n]}, words)
+        for n, words in (
+            (0, ["points: 0, of which 0", NEEDS_POINTS]),
+            (1, ["points: 1, of which 0", NEEDS_POINTS]),
+            (2, ["points: 2, of which 0", NEEDS_POINTS]),
+        )
+    ),
+    (
+        "reconstruct",
+        {"points": CLOUD.points[:0], "normals": None},
+        ["points: none", "at least one"],
+    ),
+    (
+        "reconstruct",
+        {"points": CLOUD.points * 0 + 3},
+        ["points: all coincide", "an extent is needed"],
+    ),
+    *(
+        ("reconstruct", arguments, ["points: 1000, of which 1000 are not finite", NEEDS_POINTS])
+        for arguments in (
+            {"points": CLOUD.points * NAN},
+            {"points": CLOUD.points * 1e301},
+            {"normals": CLOUD.normals * 0},
+            {"normals": CLOUD.normals * np.inf},
+            {"weights": ONES * 0},
+        )
+    ),
+    ("reconstruct", {"points": [[1.0], [1.0, 2.0]]}, ["points: found no array", "inhomogeneous"]),
+    ("reconstruct", {"points": CLOUD.points[:, :2]}, ["points: shape (1000, 2)", "(points, 3)"]),
+    ("reconstruct", {"points": np.ones((9, 3), int)}, ["points: dtype int64", FLOATS]),
+    ("reconstruct", {"points": None}, ["points: dtype object", FLOATS]),
+    ("reconstruct", {"normals": "up"}, ["normals: dtype <U2", FLOATS]),
+    ("reconstruct", {"normals": CLOUD.normals[:9]}, ["normals: 9 rows", "1000 are needed"]),
+    *(
+        ("reconstruct", {"depth": depth}, [f"depth: {depth!r}; ", "from 1 to 12 is needed"])
+        for depth in (0, -1, 13, True, 2.5, "9", None, 10**30)
+    ),
+    ("reconstruct", {"wavelet": "d6"}, ["wavelet: 'd6' is not one of haar, d4"]),
+    ("reconstruct", {"wavelet": None}, ["wavelet: None", "a name is needed"]),
+    ("reconstruct", {"isovalue": "mode"}, ["isovalue: 'mode'", "auto, mean, half, or a number"]),
+    *(
+        ("reconstruct", {"isovalue": isovalue}, [f"isovalue: {isovalue!r}", "a number is needed"])
+        for isovalue in (True, None, [0.5])
+    ),
+    *(
+        ("reconstruct", {"isovalue": isovalue}, ["isovalue: ", "finite number of at most 1e30"])
+        for isovalue in (NAN, np.inf, -np.inf, 1e300)
+    ),
+    *(
+        ("reconstruct", {"trim": trim}, [f"trim: {trim:g}; ", "above 0 and up to 1e6"])
+        for trim in (0, -1.0, NAN, np.inf, 1e300)
+    ),
+    ("reconstruct", {"trim": True}, ["trim: True", "a number is needed"]),
+    ("reconstruct", {"weights": ONES[:9]}, ["weights: shape (9,)", "(1000,) is needed"]),
+    ("reconstruct", {"weights": ONES.astype(int)}, ["weights: dtype int64", FLOATS]),
+    *(
+        (
+            "reconstruct",
+            {"weights": changed(ONES, 7, weight)},
+            ["weights: point 7 has ", "numbers from 0 to 1e+30 are needed"],
+        )
+        for weight in (-0.5, NAN, np.inf, 1e31)
+    ),
+    ("reconstruct", {"attributes": ONES}, ["attributes: shape (1000,)", "(1000, n) is needed"]),
+    *(
+        (
+            "reconstruct",
+            {"attributes": changed(CLOUD.points, (7, 2), value)},
+            ["attributes: point 7 has ", "numbers from -1e+30 to 1e+30 are needed"],
+        )
+        for value in (NAN, -np.inf, 1e31)
+    ),
+    *(
+        ("reconstruct", {"memory_limit": limit}, [f"memory_limit: {limit!r}", "bytes from 0"])
+        for limit in (-1, 2.5, True, "1 GB")
+    ),
+    *(
+        ("reconstruct", {"threads": threads}, [f"threads: {threads!r}", THREADS])
+        for threads in (-1, 1.5, True)
+    ),
+    ("reconstruct", {"progress": 5}, ["progress: 5", "a callable of one number is needed"]),
+    ("reconstruct", {"report": {}}, ["report: {}", "a ReconstructionReport is needed, or None"]),
     ("placed", {"matrices": np.eye(3)}, ["matrices: shape (3, 3)", "(4, 4), (3, 4) or several"]),
     ("placed", {"matrices": np.empty((0, 4, 4))}, ["matrices: none", "at least one is needed"]),
     (
@@ -633,8 +724,12 @@ def test_the_other_arguments_of_the_rows_are_good(function, folder):
 
 
 def test_every_function_is_there():
-    constants = {"MAX_DEPTH", "MIPMAP_FILTERS"}
+    constants = {"MAX_DEPTH", "MIPMAP_FILTERS", "POINT_EXTENSIONS"}
     classes = {"Cancelled", "ClosedMesh", "MipmapFilter", "NearestPoints", "Surface"}
-    public = set(prefilter.__all__) - constants - classes
+    classes |= {"ReconstructionReport", "ScanPoints"}
+    # In test_normals_of_points, test_face_normals, test_scan_files and test_scan_failures.
+    elsewhere = {"estimate_normals", "file_normals", "grid_normals", "mesh_normals"}
+    elsewhere |= {"read_points", "reconstruct_file"}
+    public = set(prefilter.__all__) - constants - classes - elsewhere
     assert public <= set(FUNCTIONS)
     assert {row[0] for row in ROWS} == set(FUNCTIONS)

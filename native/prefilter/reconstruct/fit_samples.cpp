@@ -134,7 +134,7 @@ SampleNoise measure_noise(std::span<const SampleCell> cells, const SampleIndex& 
     if (samples > 1.5) {
       // Of n normals the squared length of the mean is 1 / n plus the share of the pairs.
       double squared = 0.0;
-      for (const float n : cell.normal) squared += static_cast<double>(n * n);
+      for (const float n : cell.normal) squared += static_cast<double>(n) * static_cast<double>(n);
       squared /= static_cast<double>(cell.weight) * static_cast<double>(cell.weight);
       cosines += samples * (squared - 1.0 / samples) / (1.0 - 1.0 / samples);
       pairs += samples;

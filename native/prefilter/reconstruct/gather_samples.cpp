@@ -11,6 +11,9 @@
 namespace prefilter {
 namespace {
 
+// Of which sums are finite.
+constexpr float kLargestWeight = 1e30F;
+
 float weight_of(const PointBatch& batch, std::size_t i) {
   return batch.weights.empty() ? 1.0F : batch.weights[i];
 }
@@ -22,7 +25,9 @@ float normal_scale(const PointBatch& batch, std::size_t i) {
   const auto& [x, y, z] = batch.normals[i];
   const float squared = x * x + y * y + z * z;
   const double sum = std::abs(p[0]) + std::abs(p[1]) + std::abs(p[2]);
-  if (!(sum <= kLargestCoordinate) || !(weight > 0.0F) || !std::isfinite(weight)) return 0.0F;
+  if (!(sum <= kLargestCoordinate) || !(weight > 0.0F) || !(weight <= kLargestWeight)) {
+    return 0.0F;
+  }
   if (squared > 1e-30F && squared < 1e30F) return 1.0F / std::sqrt(squared);
   const double length =
       std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));

@@ -13,6 +13,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/base/text.h"
 #include "prefilter/contour/tree_contour.h"
 #include "prefilter/reconstruct/assemble.h"
 #include "prefilter/reconstruct/d4_function.h"
@@ -406,20 +407,38 @@ class Reconstruction {
   SampleNoise noise_;
 };
 
+constexpr double kLargestIsovalue = 1e30;
+constexpr double kLargestTrim = 1e6;
+
+void check_options(const ReconstructOptions& options) {
+  check_depth(options.depth, 1, "depth");
+  if (options.isovalue == Isovalue::kGiven &&
+      !(std::abs(options.given_isovalue) <= kLargestIsovalue)) {
+    throw_invalid("isovalue: " + to_text(options.given_isovalue) +
+                  "; a finite number of at most 1e30 is needed");
+  }
+  if (options.trim && !(*options.trim > 0.0 && *options.trim <= kLargestTrim)) {
+    throw_invalid("trim: " + to_text(*options.trim) +
+                  "; a number of cells above 0 and up to 1e6 is needed, or none");
+  }
+}
+
 }  // namespace
 
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink) {
-  check_depth(options.depth, 1, "depth");
+  check_options(options);
   ReconstructReport report;
   const CloudExtent extent =
       measure_cloud(source, options.progress.part(0.0, 0.1), options.threads);
   report.points = extent.points;
   report.dropped = extent.dropped;
   if (extent.points - extent.dropped < 3) {
-    throw_invalid("points: " + std::to_string(extent.points) + ", of which " +
-                  std::to_string(extent.dropped) +
-                  " are not finite, have no normal or no weight; at least 3 are needed");
+    throw_invalid(
+        "points: " + std::to_string(extent.points) + ", of which " +
+        std::to_string(extent.dropped) +
+        " are not finite and at most 1e300, or have no normal or no weight; at least 3 are "
+        "needed");
   }
   const double longest = std::max({extent.box.size(0), extent.box.size(1), extent.box.size(2)});
   if (!(longest > 0.0)) throw_invalid("points: all coincide; a cloud with an extent is needed");

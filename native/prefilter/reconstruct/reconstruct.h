@@ -31,7 +31,8 @@ struct ReconstructOptions {
   double given_isovalue = 0.5;   // of a function that is 0 outside and 1 inside
   bool are_sides_known = false;  // normals point outward for sure: towards the scanner
   bool fit = true;               // move vertices onto the surface of the points around them
-  std::optional<double> trim;    // leave out what is farther from all points than so many cells
+  // Leave out what is farther from all points than so many cells, above 0 and up to 1e6.
+  std::optional<double> trim;
   std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max();  // in bytes
   std::string folder;  // for temporary files; "": the system's
   int threads = 0;     // 0: all processors
@@ -40,8 +41,9 @@ struct ReconstructOptions {
 
 struct ReconstructReport {
   std::size_t points = 0;
-  std::size_t dropped = 0;  // not finite, without a normal, or of no weight
-  double outliers = 0.0;    // the weight of those left out as outliers, of that of all
+  // Not finite or above 1e300, without a normal, or of a weight that is not in (0, 1e30].
+  std::size_t dropped = 0;
+  double outliers = 0.0;  // the weight of those left out as outliers, of that of all
   std::size_t vertices = 0;
   std::size_t triangles = 0;
   bool is_flipped = false;  // normals point inward, most of them: taken as the opposite

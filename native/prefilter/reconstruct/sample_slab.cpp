@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/radix_sort.h"
 
 namespace prefilter {
@@ -88,9 +89,10 @@ double share_hit(double samples_per_cell) {
 // Of the surface in a cell, in sides of the cell squared, if it is met as often as cells are on
 // average.
 double area_in(const SampleCell& cell) {
-  const auto& [x, y, z] = cell.normal;
-  const double sum = static_cast<double>(std::abs(x) + std::abs(y) + std::abs(z));
-  const double length = std::sqrt(static_cast<double>(x * x + y * y + z * z));
+  Vector3 n;
+  for (std::size_t a = 0; a < 3; ++a) n[a] = static_cast<double>(cell.normal[a]);
+  const double sum = std::abs(n[0]) + std::abs(n[1]) + std::abs(n[2]);
+  const double length = std::sqrt(dot(n, n));
   // Normals that cancel each other tell nothing: the mean over all directions.
   if (!(length > 0.2 * static_cast<double>(cell.weight))) return 1.0 / 1.5;
   return length / sum;

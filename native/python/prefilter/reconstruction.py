@@ -17,7 +17,7 @@ from ._border.arguments import (
     as_progress,
     progress_part,
 )
-from ._border.arrays import as_floats, as_threads
+from ._border.arrays import as_array, as_floats, as_threads
 from ._border.output import as_target
 from .points import estimate_normals, grid_normals, mesh_normals
 from .scan_files import ScanPoints, open_points, read_faces, read_points, read_range_grid
@@ -26,6 +26,9 @@ Mesh: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
 MeshWithAttributes: TypeAlias = tuple[
     npt.NDArray[np.float64], npt.NDArray[np.int32], npt.NDArray[np.float32]
 ]
+
+
+_LARGEST_VALUE = 1e30
 
 
 @dataclass
@@ -76,8 +79,10 @@ def reconstruct(
     """The closed surface that points with normals were taken from (chapter 4).
 
     The surface is where a function that is 1 inside and 0 outside takes an iso-value; its wavelet
-    coefficients are sums over the points (equation 4.2). Points that are not finite, have no normal
-    or no weight are left out and counted.
+    coefficients are sums over the points (equation 4.2). Points that are not finite (or are beyond
+    1e300), have no normal or no weight are left out and counted. Points on a plane or a line bound
+    nothing: the mesh is closed all the same, but may be a sheet without volume, whose triangles may
+    have no area; with `trim` it ends where the points do.
 
     Args:
         points: (points, 3).
@@ -88,10 +93,10 @@ def reconstruct(
         smooth: The function is smoothed over neighbouring cells (section 4.3.1).
         isovalue: "auto" and "mean": the function's mean at the points. "half": 1/2. Or a number.
         fit: Vertices are moved onto the surface of the points around them.
-        trim: Leaves out what is farther from all points than so many finest cells, so that the
-            surface may end where the points do. None: the surface is closed.
-        weights: (points,), how much each counts; 0 and up. None: all count the same.
-        attributes: (points, n), carried over to the vertices: colours, for example.
+        trim: Leaves out what is farther from all points than so many finest cells, above 0 and up
+            to 1e6, so that the surface may end where the points do. None: the surface is closed.
+        weights: (points,), how much each counts; 0 to 1e30. None: all count the same.
+        attributes: (points, n), carried over to the vertices: colours, for example. Up to 1e30.
         memory_limit: In bytes, above what is passed in and returned; beyond it temporary files are
             used. None: no limit. With "d4" the cells of the surface stay in memory all the same.
         report: Is filled in.
@@ -109,6 +114,8 @@ def reconstruct(
         OSError: A temporary file could not be written.
         Cancelled: `progress` returned False.
     """
+    if report is not None and not isinstance(report, ReconstructionReport):
+        raise ValueError(f"report: {report!r}; a ReconstructionReport is needed, or None")
     rows = _as_rows("points", points)
     count = len(rows)
     given: npt.NDArray[np.floating]
@@ -122,10 +129,15 @@ def reconstruct(
     values = None
     if attributes is not None:
         values = as_floats("attributes", attributes, (count, "n"), np.float32)
+        _check_values("attributes", values, -_LARGEST_VALUE)
+    counts = None
+    if weights is not None:
+        counts = as_floats("weights", weights, (count,), np.float32)
+        _check_values("weights", counts, 0.0)
     source = _native.ArrayPoints(
         rows,
         given,
-        None if weights is None else as_floats("weights", weights, (count,), np.float32),
+        counts,
         values,
         [] if values is None else [("", False)] * values.shape[1],
     )
@@ -272,7 +284,8 @@ def _options(
         level = as_number("isovalue", isovalue)
     limit = None
     if memory_limit is not None:
-        if not isinstance(memory_limit, int | np.integer) or memory_limit < 0:
+        is_count = isinstance(memory_limit, int | np.integer) and not isinstance(memory_limit, bool)
+        if not is_count or memory_limit < 0:
             raise ValueError(
                 f"memory_limit: {memory_limit!r}; a number of bytes from 0 is needed, or None"
             )
@@ -308,6 +321,17 @@ def _fill_in(report: ReconstructionReport, found: dict[str, float]) -> None:
 
 def _as_rows(name: str, array: npt.ArrayLike) -> npt.NDArray[np.floating]:
     """Rows of three, float32 or float64 as they are."""
-    found = np.asarray(array)
+    found = as_array(name, array)
     dtype = np.float32 if found.dtype == np.float32 else np.float64
     return as_floats(name, found, ("points", 3), dtype)
+
+
+def _check_values(name: str, values: npt.NDArray[np.float32], low: float) -> None:
+    """Rows, one for each point: weights or attributes, of which sums have to be finite."""
+    is_bad = ~((values >= low) & (values <= _LARGEST_VALUE))
+    if is_bad.any():
+        place = tuple(np.argwhere(is_bad)[0])
+        raise ValueError(
+            f"{name}: point {place[0]} has {values[place]}; "
+            f"numbers from {low:g} to {_LARGEST_VALUE:g} are needed"
+        )
