@@ -35,7 +35,6 @@ def main() -> None:
     options = parser.parse_args()
     command = [sys.executable, "-m", "bench.scans.sets", str(options.folder), *SETS]
     subprocess.run(command, cwd=ROOT, check=True)
-    keywords = {"wavelet": options.wavelet, "smooth": False, "fit": False}
     rows, cpu = [], {}
     for name, millions in SETS.items():
         target = options.folder / "large.ply"
@@ -43,7 +42,7 @@ def main() -> None:
             options.folder / f"{name}.ply",
             target,
             options.depth,
-            {**keywords, "memory_limit": options.limit},
+            {"wavelet": options.wavelet, "memory_limit": options.limit},
             name=name,
             threads=options.threads,
         ).measure()
