@@ -1,0 +1,166 @@
+#include "prefilter/reconstruct/reconstruct.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "contour/mesh_checks.h"
+#include "prefilter/base/error.h"
+#include "prefilter/scan/arrays.h"
+
+namespace prefilter {
+namespace {
+
+struct Cloud {
+  std::vector<Vector3> points;
+  std::vector<Vector3> normals;
+  std::vector<float> weights;
+  std::vector<float> attributes;  // one
+
+  ArraySource source() const {
+    std::vector<PointAttribute> names;
+    if (!attributes.empty()) names.push_back({"height", false});
+    return {points, normals, weights, attributes, names};
+  }
+};
+
+Cloud ball(int count) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  Cloud cloud;
+  for (int i = 0; i < count; ++i) {
+    Vector3 n = {normal(random), normal(random), normal(random)};
+    const double size = length(n);
+    for (double& x : n) x /= size;
+    cloud.points.push_back(n);
+    cloud.normals.push_back(n);
+    cloud.weights.push_back(1.0F);
+    cloud.attributes.push_back(static_cast<float>(n[2]));
+  }
+  return cloud;
+}
+
+struct Result {
+  TriangleMesh mesh;
+  std::vector<float> attributes;
+  ReconstructReport report;
+};
+
+Result surface_of(const Cloud& cloud, const ReconstructOptions& options) {
+  ArraySource source = cloud.source();
+  ArraySink sink;
+  Result result;
+  result.report = reconstruct(&source, options, &sink);
+  result.mesh = {sink.take_positions(), sink.take_triangles()};
+  result.attributes = sink.take_attributes();
+  return result;
+}
+
+TEST(Reconstruct, OfABallIsClosedAndNear) {
+  const Cloud cloud = ball(10000);
+  for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
+    for (const int depth : {1, 4, 6}) {
+      for (const bool smooth : {true, false}) {
+        ReconstructOptions options;
+        options.basis = basis;
+        options.depth = depth;
+        options.smooth = smooth;
+        options.memory_limit = smooth ? std::numeric_limits<std::uint64_t>::max() : 0;
+        options.threads = smooth ? 1 : 2;
+        const Result result = surface_of(cloud, options);
+        ASSERT_EQ(testing::fault_of(result.mesh), "");
+        if (depth == 1) continue;
+        EXPECT_NEAR(testing::volume_of(result.mesh), 4.0 / 3.0 * 3.14159265, 0.15);
+        for (std::size_t v = 0; v < result.mesh.positions.size(); ++v) {
+          const Vector3& p = result.mesh.positions[v];
+          EXPECT_NEAR(length(p), 1.0, 0.1);
+          EXPECT_NEAR(static_cast<double>(result.attributes[v]), p[2], 0.25);
+        }
+      }
+    }
+  }
+}
+
+TEST(Reconstruct, RefusesWhatIsOutOfRange) {
+  const Cloud cloud = ball(100);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto message = [&](const ReconstructOptions& options, const Cloud& points) {
+    try {
+      surface_of(points, options);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::kInvalidArgument);
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const int depth : {0, 13}) {
+    ReconstructOptions options;
+    options.depth = depth;
+    EXPECT_TRUE(message(options, cloud).starts_with("depth: " + std::to_string(depth)));
+  }
+  for (const double number : {nan, infinity, -infinity, 1e300}) {
+    ReconstructOptions options;
+    options.isovalue = Isovalue::kGiven;
+    options.given_isovalue = number;
+    EXPECT_TRUE(message(options, cloud).starts_with("isovalue: "));
+  }
+  for (const double number : {nan, infinity, 0.0, -1.0, 1e300}) {
+    ReconstructOptions options;
+    options.trim = number;
+    EXPECT_TRUE(message(options, cloud).starts_with("trim: "));
+  }
+  for (const double scale : {nan, infinity, 0.0, 1e301}) {
+    Cloud scaled = cloud;
+    for (Vector3& p : scaled.points) {
+      for (double& x : p) x *= scale;
+    }
+    EXPECT_TRUE(message({}, scaled).starts_with("points: "));
+  }
+  EXPECT_TRUE(message({}, {}).starts_with("points: 0"));
+}
+
+TEST(Reconstruct, OfPointsThatBoundNothingIsClosed) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform;
+  for (const Vector3& size :
+       {Vector3{1.0, 0.0, 0.0}, Vector3{1.0, 1.0, 0.0}, Vector3{1.0, 1.0, 1.0},
+        Vector3{1e-200, 0.0, 1e-200}, Vector3{0.0, 1e299, 1e299}}) {
+    Cloud cloud;
+    for (int i = 0; i < 500; ++i) {
+      cloud.points.push_back(
+          {size[0] * uniform(random), size[1] * uniform(random), size[2] * uniform(random)});
+      cloud.normals.push_back({uniform(random) - 0.5, uniform(random) - 0.5, 1e-30});
+    }
+    for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
+      ReconstructOptions options;
+      options.basis = basis;
+      options.depth = 6;
+      const Result result = surface_of(cloud, options);
+      for (const Vector3& p : result.mesh.positions) {
+        for (const double x : p) ASSERT_TRUE(std::isfinite(x));
+      }
+      options.trim = 2.0;
+      EXPECT_LE(surface_of(cloud, options).mesh.triangles.size(), result.mesh.triangles.size());
+    }
+  }
+}
+
+TEST(Reconstruct, CanBeStoppedAtAnyReport) {
+  const Cloud cloud = ball(3000);
+  for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
+    ReconstructOptions options;
+    options.basis = basis;
+    options.depth = 7;
+    options.threads = 1;
+    for (const double stop : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9}) {
+      options.progress = Progress([stop](double fraction) { return fraction <= stop; });
+      EXPECT_THROW(surface_of(cloud, options), Error) << stop;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace prefilter
