@@ -382,8 +382,7 @@ D4Function make_d4_function(PointSource* source, const SampleGrid& grid, const S
     }
   }
   const std::vector<d4::Means> means =
-      d4::transform(std::move(differences), std::move(needed), threads);
-  progress.part(0.5, 1.0).report(0.8);
+      d4::transform(std::move(differences), std::move(needed), progress.part(0.55, 0.9), threads);
   for (std::size_t k = 0; k < coarse.levels.size(); ++k)
     fill_values(means[k + 1], &coarse.levels[k]);
   parallel_for(slab_count, threads, progress.part(0.9, 1.0), [&](std::int64_t i) {

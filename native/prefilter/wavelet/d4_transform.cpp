@@ -129,12 +129,14 @@ std::vector<BrickPosition> coarser_bricks(const std::vector<BrickPosition>& bric
 
 // Calls make(i) for all bricks, on several threads, and then keep(i, made), in order.
 template <typename Brick, typename Make, typename Keep>
-void for_bricks(std::size_t count, int threads, const Make& make, const Keep& keep) {
-  constexpr std::size_t kAtOnce = 2048;
+void for_bricks(std::size_t count, const Progress& progress, int threads, const Make& make,
+                const Keep& keep) {
+  constexpr std::size_t kAtOnce = 1024;
   constexpr std::int64_t kPerTask = 32;
   std::vector<Brick> made(std::min(count, kAtOnce));
   for (std::size_t first = 0; first < count; first += kAtOnce) {
     const std::size_t size = std::min(kAtOnce, count - first);
+    progress.report(static_cast<double>(first) / static_cast<double>(count));
     parallel_ranges(static_cast<std::int64_t>(size), kPerTask, threads, Progress(),
                     [&](std::int64_t begin, std::int64_t end) {
                       for (auto i = static_cast<std::size_t>(begin);
@@ -153,11 +155,12 @@ std::unique_ptr<DifferenceWindow> window_around(const Differences& finer, const 
   return window;
 }
 
-void restrict_to(const Differences& finer, int threads, Differences* coarser) {
+void restrict_to(const Differences& finer, const Progress& progress, int threads,
+                 Differences* coarser) {
   const Filters filters = make_filters();
   const std::vector<BrickPosition> bricks = coarser_bricks(finer.positions());
   for_bricks<Differences::Brick>(
-      bricks.size(), threads,
+      bricks.size(), progress, threads,
       [&](std::size_t i) { return restricted(*window_around(finer, bricks[i]), filters); },
       [&](std::size_t i, const Differences::Brick& made) {
         Differences::Brick& brick = coarser->make(bricks[i]);
@@ -167,11 +170,11 @@ void restrict_to(const Differences& finer, int threads, Differences* coarser) {
 
 // The details in some bricks.
 Details details_in(const std::vector<BrickPosition>& bricks, const Differences& finer, int depth,
-                   int threads) {
+                   const Progress& progress, int threads) {
   const Filters filters = make_filters();
   Details details(depth, kShardBits);
   for_bricks<Details::Brick>(
-      bricks.size(), threads,
+      bricks.size(), progress, threads,
       [&](std::size_t i) { return details_of(*window_around(finer, bricks[i]), filters); },
       [&](std::size_t i, const Details::Brick& made) { details.make(bricks[i]) = made; });
   return details;
@@ -297,10 +300,16 @@ void add_sample(const Vector3& point, const std::array<float, 3>& area, Differen
 }
 
 std::vector<Means> transform(std::vector<Differences> differences,
-                             std::vector<std::vector<BrickPosition>> needed, int threads) {
+                             std::vector<std::vector<BrickPosition>> needed,
+                             const Progress& progress, int threads) {
   const std::size_t depth = differences.size() - 1;
+  // The finest depth takes most of the time, and its details the most of that.
+  constexpr double kRestricted = 0.2;
   for (std::size_t k = depth; k > 0; --k) {
-    restrict_to(differences[k], threads, &differences[k - 1]);
+    const bool is_finest = k == depth;
+    restrict_to(differences[k],
+                progress.part(is_finest ? 0.0 : 0.15, is_finest ? 0.15 : kRestricted), threads,
+                &differences[k - 1]);
     sort_unique(&needed[k]);
     const std::vector<BrickPosition> more = coarser_bricks(needed[k]);
     needed[k - 1].insert(needed[k - 1].end(), more.begin(), more.end());
@@ -316,6 +325,8 @@ std::vector<Means> transform(std::vector<Differences> differences,
       return std::array{a[2], a[1], a[0]} < std::array{b[2], b[1], b[0]};
     });
     std::vector<BrickPosition> all = coarser_bricks(differences[k].positions());
+    const Progress part = progress.part(k < depth ? kRestricted : 0.4, k < depth ? 0.4 : 1.0);
+    const auto count = static_cast<double>(bricks.size());
     for (std::size_t begin = 0; begin < bricks.size();) {
       std::size_t end = std::min(begin + kBricksAtOnce, bricks.size());
       while (end < bricks.size() && bricks[end][2] == bricks[end - 1][2]) ++end;
@@ -325,9 +336,13 @@ std::vector<Means> transform(std::vector<Differences> differences,
       for (const BrickPosition& b : all) {
         if (b[2] >= low && b[2] <= high) around.push_back(b);
       }
-      const Details details = details_in(around, differences[k], static_cast<int>(k) - 1, threads);
+      const double from = static_cast<double>(begin) / count;
+      const double to = static_cast<double>(end) / count;
+      const double between = from + 0.8 * (to - from);
+      const Details details = details_in(around, differences[k], static_cast<int>(k) - 1,
+                                         part.part(from, between), threads);
       for_bricks<Means::Brick>(
-          end - begin, threads,
+          end - begin, part.part(between, to), threads,
           [&](std::size_t i) { return means_in(bricks[begin + i], coarser, details); },
           [&](std::size_t i, const Means::Brick& made) { finer.make(bricks[begin + i]) = made; });
       begin = end;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
 #include "prefilter/wavelet/brick_grid.h"
 #include "prefilter/wavelet/cell_tree.h"
 
@@ -31,9 +32,10 @@ void add_sample(const Vector3& point, const std::array<float, 3>& area, Differen
 
 /// From the differences of all depths (to which coarser samples may have been added, at theirs) to
 /// the means of all depths from 0 on, at the points that `is_needed` says, and those that these
-/// depend on. `needed[k]` holds the bricks of depth k; it is extended.
+/// depend on. `needed[k]` holds the bricks of depth k; it is extended. Throws Error(kCancelled).
 std::vector<Means> transform(std::vector<Differences> differences,
-                             std::vector<std::vector<BrickPosition>> needed, int threads);
+                             std::vector<std::vector<BrickPosition>> needed,
+                             const Progress& progress, int threads);
 
 /// The function at the centres of the cells of a brick, [z][y][x]: the sum of means times phi.
 std::array<float, 64> function_at(const Means& means, const BrickPosition& brick);

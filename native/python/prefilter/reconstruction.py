@@ -197,16 +197,20 @@ def reconstruct_file(
     are_sides_known = False
     if not points.has_normals:
         read = read_points(source, progress=progress_part(progress, 0.0, 0.1))
-        step = progress_part(progress, 0.1, 0.5)
-        told = file_normals(source, read, progress=step)
+        seen = _grid_normals(source, read, progress_part(progress, 0.1, 0.2))
+        told = seen or _face_normals(source, read, progress_part(progress, 0.2, 0.3))
         normals, weights = told or (
             estimate_normals(
-                read.positions, viewpoint=read.viewpoint, progress=step, threads=threads
+                read.positions,
+                viewpoint=read.viewpoint,
+                progress=progress_part(progress, 0.3, 0.5),
+                threads=threads,
             ),
             read.weights,
         )
         points = _with_normals(points, replace(read, weights=weights), normals)
-        are_sides_known = told is not None or read.viewpoint is not None
+        # A scanner sees outsides. Faces may be inside out.
+        are_sides_known = seen is not None or (told is None and read.viewpoint is not None)
         progress = progress_part(progress, 0.5, 1.0)
     folder = str(place.parent)
     options = _options(
@@ -248,20 +252,40 @@ def file_normals(
         OSError: The file cannot be read.
         Cancelled: `progress` returned False.
     """
-    if Path(os.fsdecode(path)).suffix.lower() != ".ply":
+    return _grid_normals(path, read, progress_part(progress, 0.0, 0.7)) or _face_normals(
+        path, read, progress_part(progress, 0.7, 1.0)
+    )
+
+
+_Told: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.float32] | None]
+
+
+def _is_ply(path: str | os.PathLike[str]) -> bool:
+    return Path(os.fsdecode(path)).suffix.lower() == ".ply"
+
+
+def _grid_normals(
+    path: str | os.PathLike[str], read: ScanPoints, progress: ProgressCallback | None
+) -> _Told | None:
+    first, rest = progress_part(progress, 0.0, 0.5), progress_part(progress, 0.5, 1.0)
+    grid = read_range_grid(path, progress=first) if _is_ply(path) else None
+    if grid is None:
+        return None
+    normals, sureness = grid_normals(read.positions, grid, viewpoint=read.viewpoint, progress=rest)
+    return normals, sureness if read.weights is None else sureness * read.weights
+
+
+def _face_normals(
+    path: str | os.PathLike[str], read: ScanPoints, progress: ProgressCallback | None
+) -> _Told | None:
+    if not _is_ply(path):
         return None
     first, rest = progress_part(progress, 0.0, 0.5), progress_part(progress, 0.5, 1.0)
-    grid = read_range_grid(path, progress=first)
-    if grid is not None:
-        normals, sureness = grid_normals(
-            read.positions, grid, viewpoint=read.viewpoint, progress=rest
-        )
-        return normals, sureness if read.weights is None else sureness * read.weights
     triangles = read_faces(path, progress=first)
     # A few faces are no mesh of the points.
-    if len(np.unique(triangles)) > len(read.positions) / 2:
-        return mesh_normals(read.positions, triangles, progress=rest), read.weights
-    return None
+    if len(np.unique(triangles)) <= len(read.positions) / 2:
+        return None
+    return mesh_normals(read.positions, triangles, progress=rest), read.weights
 
 
 def _options(
