@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float32]
 
+MAGENTA = (1.0, 0.0, 1.0)
+GREEN, BLUE = (0.1, 0.8, 0.2), (0.2, 0.1, 0.9)
+
 
 def write_picture(path: Path, pixels: Array, kind: str) -> bpy.types.Image:
     """Writes pixels, row 0 at the bottom, to a file of a pixel type, and loads it."""
@@ -120,3 +123,42 @@ def pixel_means(texels: Array, size: int, *, is_encoded: bool = False) -> Array:
     if is_encoded:
         values = scenes.to_linear(values)
     return values.reshape(size, samples, size, samples, -1).mean(axis=(1, 3))
+
+
+def smooth(height: int, width: int, channels: int, *, seed: int = 3) -> Array:
+    """Returns values in [0, 1] with detail at every scale."""
+    random = np.random.default_rng(seed)
+    total = np.zeros((height, width, channels))
+    for cell in (1, 2, 4, 8, 16):
+        coarse = random.random((height // cell, width // cell, channels))
+        total += np.kron(coarse, np.ones((cell, cell, 1))) * cell**0.5
+    total -= total.min()
+    return (total / total.max()).astype(np.float32)
+
+
+def udim(tmp_path: Path, *, missing: bool = False) -> bpy.types.Image:
+    """Returns a UDIM image of two tiles, magenta but for the lower and the upper half."""
+    for number, rows, color in ((1001, slice(0, 32), GREEN), (1002, slice(32, 64), BLUE)):
+        pixels = np.zeros((64, 64, 3), np.float32)
+        pixels[:] = MAGENTA
+        pixels[rows] = color
+        if number == 1002 and missing:
+            continue
+        one = write_picture(tmp_path / f"paint.{number}.exr", pixels, "half")
+    bpy.data.images.remove(one)
+    image = bpy.data.images.load(str(tmp_path / "paint.1001.exr"))
+    image.source = "TILED"
+    if len(image.tiles) < 2:
+        image.tiles.new(1002)
+    assert [tile.number for tile in image.tiles] == [1001, 1002]
+    return image
+
+
+def packed_picture(folder: Path, name: str, pixels: Array) -> tuple[bpy.types.Image, bytes]:
+    """An image with bytes of a file that is gone, as of Blender's glTF importer."""
+    image = write_picture(folder / name, pixels, "uint8")
+    data = (folder / name).read_bytes()
+    image.pack()
+    (folder / name).unlink()
+    image.filepath = ""
+    return image, data

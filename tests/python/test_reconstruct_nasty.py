@@ -220,3 +220,20 @@ def test_threads_do_not_change_what_is_trimmed(trim):
     )
     np.testing.assert_array_equal(one[0], three[0])
     np.testing.assert_array_equal(one[1], three[1])
+
+
+@pytest.mark.parametrize("depth", [1, 2])
+def test_cells_without_neighbours_count_where_none_are_larger(depth: int) -> None:
+    """A corner of a box: too few samples to be neighbours of each other."""
+    points = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, -1.0, -1.0]])
+    positions, triangles = prefilter.reconstruct(points, points, depth=depth)
+    assert len(triangles) > 0
+    assert solids.surface_faults(positions, triangles).open_or_crowded_edges == 0
+
+
+def test_normals_that_cancel_each_other_everywhere_are_an_error() -> None:
+    cloud = sphere(3000)
+    points = np.concatenate([cloud.points, cloud.points])
+    normals = np.concatenate([cloud.normals, -cloud.normals])
+    with pytest.raises(ValueError, match="normals: they cancel each other in all cells"):
+        prefilter.reconstruct(points, normals, depth=3)

@@ -89,6 +89,14 @@ class ContourTree {
   std::uint8_t root_sides_ = kOutside;
 };
 
+/// The coordinates of a cell, in cells of its depth.
+using CellCoordinates = std::array<std::int32_t, 3>;
+
+/// Of an octant of a cell, in cells of the octant's depth.
+inline CellCoordinates octant_at(const CellCoordinates& at, int o) {
+  return {2 * at[0] + (o & 1), 2 * at[1] + ((o >> 1) & 1), 2 * at[2] + ((o >> 2) & 1)};
+}
+
 /// The cell that a face of a cell of the same depth leads to, or the leaf that holds it. Faces are
 /// numbered 2 a for the one across axis a at its low side, and 2 a + 1 for that at its high side.
 using FaceNeighbours = std::array<CellNode, 6>;

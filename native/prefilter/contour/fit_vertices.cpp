@@ -17,8 +17,6 @@ constexpr int kBrickDepth = 4;
 constexpr int kMargin = kHeightReach;
 constexpr std::int64_t kBricksPerTask = 64;
 
-using CellCoordinates = std::array<std::int32_t, 3>;
-
 // The leaves of one depth below one cell.
 struct Brick {
   CellNode cell;
@@ -31,10 +29,6 @@ struct LeafBlock {
   std::size_t block;
   CellCoordinates at;  // of its cell
 };
-
-CellCoordinates octant_at(const CellCoordinates& at, int o) {
-  return {2 * at[0] + (o & 1), 2 * at[1] + ((o >> 1) & 1), 2 * at[2] + ((o >> 2) & 1)};
-}
 
 // A brick, dense, with a margin around it.
 class BrickWindow {

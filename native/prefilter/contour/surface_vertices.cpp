@@ -11,18 +11,12 @@ namespace {
 
 constexpr int kTaskDepth = 3;
 
-using CellCoordinates = std::array<std::int32_t, 3>;
-
 // A cell that is split, with what surrounds it.
 struct Visit {
   CellNode cell;
   FaceNeighbours neighbours;
   CellCoordinates at;  // in cells of its depth
 };
-
-CellCoordinates octant_at(const CellCoordinates& at, int o) {
-  return {2 * at[0] + (o & 1), 2 * at[1] + ((o >> 1) & 1), 2 * at[2] + ((o >> 2) & 1)};
-}
 
 Visit octant_of(const ContourTree& tree, const Visit& visit, int o) {
   return {tree.octant(visit.cell, o), octant_neighbours(tree, visit.cell, visit.neighbours, o),

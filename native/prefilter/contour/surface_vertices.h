@@ -17,7 +17,7 @@ namespace prefilter {
 
 /// What tells a vertex from all others of a tree: the leaf that its pair belongs to, and the face.
 struct VertexPlace {
-  std::array<std::int32_t, 3> leaf;  // in cells of its depth
+  CellCoordinates leaf;
   std::int8_t depth;
   std::int8_t face;
 

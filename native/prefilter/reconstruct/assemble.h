@@ -21,6 +21,11 @@ struct CoarseTree {
     std::uint32_t block;
   };
   std::vector<Continuation> continuations;
+
+  /// Whether not even the root is split.
+  bool is_empty() const {
+    return tree.levels.empty() ? continuations.empty() : tree.levels.front().places.empty();
+  }
 };
 
 /// The slabs below, at and above the one; null where there is none.

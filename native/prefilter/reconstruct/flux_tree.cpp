@@ -92,7 +92,7 @@ double pool_flux(const SampleSlab& slab, const SampleSlab& whole, std::size_t of
       left_out += static_cast<double>(cell.weight);
       continue;
     }
-    if (leaf == depth) continue;
+    if (leaf == depth && finest.is_met[i] != 0) continue;
     std::size_t at = i;
     int k = depth;
     for (; k > std::max(leaf, slab.top); --k) at = slab.at(k).parents[at];

@@ -34,9 +34,10 @@ struct FluxTree {
 /// What samples give the cells of their leaves: at [k] those of depth k, in no order.
 using PooledFlux = std::vector<std::vector<CellFlux>>;
 
-/// Adds what the samples of a slab give. `whole` has the levels from depth 0 to the slab's first
-/// one, whose cells begin there at `offset`. Samples whose leaves are less deep than `least_leaf`,
-/// as those of outliers are, are left out; returns their weight.
+/// Adds what the samples of a slab give, but for those of which add_patches takes the planes.
+/// `whole` has the levels from depth 0 to the slab's first one, whose cells begin there at
+/// `offset`. Samples whose leaves are less deep than `least_leaf`, as those of outliers are, are
+/// left out; returns their weight.
 double pool_flux(const SampleSlab& slab, const SampleSlab& whole, std::size_t offset,
                  int least_leaf, PooledFlux* pooled);
 

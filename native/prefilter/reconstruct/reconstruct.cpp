@@ -77,6 +77,9 @@ class Reconstruction {
     } else {
       make_coarse(report);
     }
+    if (slabs_.coarse.is_empty()) {
+      throw_invalid("normals: they cancel each other in all cells; ones that agree are needed");
+    }
     contour(find_level(), sink, report);
   }
 

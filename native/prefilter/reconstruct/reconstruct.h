@@ -61,7 +61,8 @@ struct ReconstructReport {
 /// rounding for any order of the points.
 ///
 /// Throws Error for options out of range, fewer than 3 points that count, or points that all
-/// coincide; what the source and the sink throw; Error(kOutOfMemory); Error(kCancelled).
+/// coincide, normals that cancel each other everywhere; what the source and the sink throw;
+/// Error(kOutOfMemory); Error(kCancelled).
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink);
 

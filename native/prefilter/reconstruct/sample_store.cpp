@@ -145,16 +145,6 @@ std::size_t SampleStore::size() const {
   return cells;
 }
 
-std::size_t SampleStore::largest() const {
-  std::size_t most = 0;
-  for (const Runs& runs : slabs_) {
-    std::size_t cells = 0;
-    for (const Run& run : runs) cells += run.count;
-    most = std::max(most, cells);
-  }
-  return most;
-}
-
 SampleCells SampleStore::read(const Run& run) const {
   if (!run.is_in_file) return run.cells;
   SampleCells cells;

@@ -28,9 +28,8 @@ class SampleStore {
 
   int slab_count() const { return static_cast<int>(slabs_.size()); }
   bool is_spilled() const { return file_ != nullptr; }
-  /// Cells of all slabs, and of the largest.
+  /// Cells of all slabs.
   std::size_t size() const;
-  std::size_t largest() const;
   /// The cells of a slab.
   SampleCells slab(int index) const;
   /// The same, for the last time.

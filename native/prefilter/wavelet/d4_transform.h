@@ -31,8 +31,8 @@ inline constexpr int kShardBits = 4;  // bricks: 64 points
 void add_sample(const Vector3& point, const std::array<float, 3>& area, Differences* differences);
 
 /// From the differences of all depths (to which coarser samples may have been added, at theirs) to
-/// the means of all depths from 0 on, at the points that `is_needed` says, and those that these
-/// depend on. `needed[k]` holds the bricks of depth k; it is extended. Throws Error(kCancelled).
+/// the means of all depths from 0 on: in the bricks `needed[k]` of depth k, and in those that these
+/// depend on. Throws Error(kCancelled).
 std::vector<Means> transform(std::vector<Differences> differences,
                              std::vector<std::vector<BrickPosition>> needed,
                              const Progress& progress, int threads);

@@ -10,14 +10,13 @@ import prefilter
 import pytest
 import scenes
 from command_line import run
+from cycles_scenes import BLUE, GREEN, MAGENTA, packed_picture, smooth, udim
 
 HAS_CACHE = "use_texture_cache" in bpy.types.RenderSettings.bl_rna.properties
 needs_cache = pytest.mark.skipif(not HAS_CACHE, reason="Blender 5.2 or later is needed")
 
 LEFT = ((0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (0.0, 1.0))
 RIGHT = ((0.5, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0))
-MAGENTA = (1.0, 0.0, 1.0)
-GREEN, BLUE = (0.1, 0.8, 0.2), (0.2, 0.1, 0.9)
 
 
 @pytest.fixture
@@ -34,17 +33,6 @@ def bake():
 
 def generate():
     return bpy.ops.render.generate_texture_cache()
-
-
-def smooth(height, width, channels, *, seed=3):
-    """Returns values in [0, 1] with detail at every scale."""
-    random = np.random.default_rng(seed)
-    total = np.zeros((height, width, channels))
-    for cell in (1, 2, 4, 8, 16):
-        coarse = random.random((height // cell, width // cell, channels))
-        total += np.kron(coarse, np.ones((cell, cell, 1))) * cell**0.5
-    total -= total.min()
-    return (total / total.max()).astype(np.float32)
 
 
 def contents(folder):
@@ -400,24 +388,6 @@ def test_colour_spaces_of_a_file_have_a_cache_file_each(scene, tmp_path, capfd):
     assert "2 images (2 files), over 2 objects" in capfd.readouterr().out
 
 
-def udim(tmp_path, *, missing=False):
-    """Returns a UDIM image of two tiles, magenta but for the lower and the upper half."""
-    for number, rows, color in ((1001, slice(0, 32), GREEN), (1002, slice(32, 64), BLUE)):
-        pixels = np.zeros((64, 64, 3), np.float32)
-        pixels[:] = MAGENTA
-        pixels[rows] = color
-        if number == 1002 and missing:
-            continue
-        one = cycles.write_picture(tmp_path / f"paint.{number}.exr", pixels, "half")
-    bpy.data.images.remove(one)
-    image = bpy.data.images.load(str(tmp_path / "paint.1001.exr"))
-    image.source = "TILED"
-    if len(image.tiles) < 2:
-        image.tiles.new(1002)
-    assert [tile.number for tile in image.tiles] == [1001, 1002]
-    return image
-
-
 @needs_cache
 def test_tiles_are_weighed_by_what_lies_in_them(scene, tmp_path):
     image = udim(tmp_path)
@@ -533,65 +503,6 @@ def test_what_has_no_file_is_passed_over(scene, tmp_path, capfd):
     assert [path.name.split(".")[0] for path in cycles.cache_files(tmp_path)] == ["good"]
 
 
-def packed_picture(folder, name, pixels):
-    """An image with bytes of a file that is gone, as of Blender's glTF importer."""
-    image = cycles.write_picture(folder / name, pixels, "uint8")
-    data = (folder / name).read_bytes()
-    image.pack()
-    (folder / name).unlink()
-    image.filepath = ""
-    return image, data
-
-
-def test_packed_bytes_are_written_beside_the_blend(addon, tmp_path):
-    unpack = addon("bridge.packed").unpack
-    first, data = packed_picture(tmp_path, "leaf.png", smooth(16, 16, 4))
-    first.name, first.alpha_mode = "Leaf", "CHANNEL_PACKED"
-    first.colorspace_settings.name = "Non-Color"
-    before = scenes.pixels("Leaf")
-    with pytest.raises(OSError, match=r"'Leaf' is packed; save the \.blend file first"):
-        unpack(first)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
-    folder = tmp_path / "textures"
-    folder.mkdir()
-    (folder / "Leaf.png").write_bytes(b"of another")
-    assert unpack(first) == [folder / "Leaf.001.png"]
-    assert (folder / "Leaf.001.png").read_bytes() == data
-    assert (folder / "Leaf.png").read_bytes() == b"of another"
-    assert first.packed_file is None
-    assert first.filepath == "//textures/Leaf.001.png"
-    assert (first.alpha_mode, first.colorspace_settings.name) == ("CHANNEL_PACKED", "Non-Color")
-    np.testing.assert_array_equal(scenes.pixels("Leaf"), before)
-    # The same bytes are not written twice.
-    first.pack()
-    assert unpack(first) == [folder / "Leaf.001.png"]
-    assert sorted(path.name for path in folder.iterdir()) == ["Leaf.001.png", "Leaf.png"]
-
-
-@pytest.mark.parametrize(
-    ("ending", "kind"), [(".png", "uint8"), (".exr", "half"), (".tif", "uint8"), (".jpg", "uint8")]
-)
-def test_the_ending_says_what_was_packed(addon, tmp_path, ending, kind):
-    image = cycles.write_picture(tmp_path / f"paint{ending}", smooth(16, 16, 3), kind)
-    image.pack()
-    image.name, image.filepath = "A b.png", ""
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
-    assert addon("bridge.packed").unpack(image) == [tmp_path / "textures" / f"A_b{ending}"]
-
-
-def test_packed_tiles_are_unpacked(addon, tmp_path):
-    image = udim(tmp_path)
-    image.name = "Skin"
-    image.pack()
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
-    names = [path.name for path in addon("bridge.packed").unpack(image)]
-    assert names == ["Skin.1001.exr", "Skin.1002.exr"]
-    assert image.filepath == "//textures/Skin.<UDIM>.exr"
-    for number in (1001, 1002):
-        data = (tmp_path / "textures" / f"Skin.{number}.exr").read_bytes()
-        assert data == (tmp_path / f"paint.{number}.exr").read_bytes()
-
-
 @needs_cache
 def test_packed_images_are_unpacked_and_baked_in_one_step(scene, tmp_path, capfd):
     names = ("one", "two")
@@ -614,37 +525,6 @@ def test_packed_images_are_unpacked_and_baked_in_one_step(scene, tmp_path, capfd
         assert f"image '{name}': unpacked into '{name}.png'" in output
         assert cycles.cache_file(tmp_path / "textures", f"{name}.png").is_file()
     assert "texture cache of 2 images (2 files)" in output
-
-
-@needs_cache
-def test_what_the_panel_says_of_images(scene, tmp_path, addon, monkeypatch):
-    module = addon("mipmaps.cache_states")
-    monkeypatch.setattr(module, "_SECONDS", -1.0)
-    monkeypatch.setattr(addon("mipmaps.remembered"), "SHARE_OF_TIME", 1e9)
-    cycles.shown_on(cycles.write_picture(tmp_path / "a.png", smooth(64, 64, 3), "uint8"), name="A")
-    cycles.shown_on(cycles.write_picture(tmp_path / "b.exr", smooth(64, 64, 3), "half"), name="B")
-    flat = np.full((64, 64, 3), 0.5, np.float32)
-    cycles.shown_on(cycles.write_picture(tmp_path / "flat.png", flat, "uint8"), name="Flat")
-
-    def said():
-        scenes.depsgraph()
-        found = module.states(bpy.context)
-        return module.summary(found), {one.name: one.state for one in found}
-
-    assert said()[0] == "3 not baked"
-    generate()
-    assert said()[1] == {"a.png": "missing", "b.exr": "missing", "flat.png": "baked"}
-    bake()
-    assert said()[0] == "3 baked"
-    os.utime(tmp_path / "b.exr", (1.6e9, 1.6e9))
-    assert said() == ("2 baked, 1 stale", {"a.png": "baked", "b.exr": "stale", "flat.png": "baked"})
-    generate()
-    assert said()[1]["b.exr"] == "missing"
-    bpy.data.images["a.png"].pack()
-    bpy.context.view_layer.update()
-    made = bpy.data.images.new("Made", 4, 4)
-    cycles.shown_on(made, name="Made")
-    assert said()[0] == "1 baked, 1 not baked, 1 packed, 1 without a file"
 
 
 @needs_cache
