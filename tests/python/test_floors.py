@@ -11,7 +11,7 @@ FLOORS = (
     {"base"},
     {"color", "filters", "moments", "solve", "spatial", "surface"},
     {"scan", "texels", "wavelet"},
-    {"contour", "mipmap", "voxel"},
+    {"contour", "mipmap", "raster", "voxel"},
     {"reconstruct"},
 )
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}

@@ -1,0 +1,106 @@
+// Outlines in the plane: contours of lines, Bezier curves of any degree, and conics.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace prefilter {
+
+/// A point or a direction of the plane.
+struct Point2 {
+  double x = 0.0;
+  double y = 0.0;
+
+  friend bool operator==(const Point2&, const Point2&) = default;
+};
+
+inline Point2 operator+(const Point2& a, const Point2& b) { return {a.x + b.x, a.y + b.y}; }
+inline Point2 operator-(const Point2& a, const Point2& b) { return {a.x - b.x, a.y - b.y}; }
+inline Point2 operator*(double s, const Point2& a) { return {s * a.x, s * a.y}; }
+inline double dot(const Point2& a, const Point2& b) { return a.x * b.x + a.y * b.y; }
+/// The area of the parallelogram, positive where b lies to the left of a.
+inline double cross(const Point2& a, const Point2& b) { return a.x * b.y - a.y * b.x; }
+
+/// The affine map of a point p to origin + p.x * x_axis + p.y * y_axis.
+struct AffineMap {
+  Point2 x_axis{1.0, 0.0};
+  Point2 y_axis{0.0, 1.0};
+  Point2 origin{};
+
+  Point2 operator()(const Point2& p) const { return origin + (p.x * x_axis + p.y * y_axis); }
+};
+
+/// Which points lie inside: those of a winding number that is not zero, or that is odd.
+enum class FillRule : std::uint8_t { kNonzero, kEvenOdd };
+
+/// Contours, each a chain of segments: a Bezier curve of degree 1 or more, or a rational quadratic
+/// one. With y upwards the inside of a counter-clockwise contour is on its left.
+class Outline {
+ public:
+  static constexpr int kMostDegree = 60;
+
+  struct Segment {
+    std::uint32_t first = 0;  // its first control point; the next degree ones follow it
+    std::int32_t degree = 1;
+    double weight =
+        0.0;  // 0: polynomial. Else a conic, of the end weights 1 and this in the middle
+  };
+
+  /// Begins a contour. One without segments is a point, and fills nothing.
+  void move_to(const Point2& point);
+  void line_to(const Point2& point);
+  /// A curve from where the contour is, by the control points behind that; the last is the end.
+  void curve_to(std::span<const Point2> points);
+  void conic_to(const Point2& control, double weight, const Point2& end);
+  /// A line back to where the contour began, where it is not there yet. What follows begins a new
+  /// contour at that point, unless it is a move.
+  void close();
+  /// All contours of another one, behind its own.
+  void append(const Outline& other);
+  void reserve(std::size_t points, std::size_t segments);
+
+  bool empty() const { return segments_.empty(); }
+  std::span<const Point2> points() const { return points_; }
+  std::span<const Segment> segments() const { return segments_; }
+  std::size_t contour_count() const { return contours_.size(); }
+  /// The segments of a contour, in order: each begins at the point where the one before it ends.
+  std::span<const Segment> contour(std::size_t index) const;
+  /// Where a contour begins, and whether it was closed. An open one is filled as if a line closed
+  /// it.
+  const Point2& begin_of(std::size_t index) const { return points_[contours_[index].first_point]; }
+  bool is_closed(std::size_t index) const { return contours_[index].is_closed; }
+  /// Its degree + 1 control points.
+  std::span<const Point2> controls(const Segment& segment) const {
+    return {points_.data() + segment.first, static_cast<std::size_t>(segment.degree) + 1};
+  }
+
+  Outline transformed(const AffineMap& map) const;
+
+ private:
+  struct Contour {
+    std::uint32_t first_point = 0;
+    std::uint32_t first_segment = 0;
+    bool is_closed = false;
+  };
+  void begin_segment();
+
+  std::vector<Point2> points_;
+  std::vector<Segment> segments_;
+  std::vector<Contour> contours_;
+};
+
+/// The box of an outline's control points, which holds its curves. The low corner is above the high
+/// one where there are none.
+struct Box2 {
+  Point2 low{HUGE_VAL, HUGE_VAL};
+  Point2 high{-HUGE_VAL, -HUGE_VAL};
+
+  bool empty() const { return !(low.x <= high.x && low.y <= high.y); }
+  void include(const Point2& point);
+};
+Box2 control_box(const Outline& outline);
+
+}  // namespace prefilter

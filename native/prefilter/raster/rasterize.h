@@ -1,0 +1,54 @@
+// Shapes to images, filtered in closed form: chapter 2.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "prefilter/base/image.h"
+#include "prefilter/base/outline.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/raster/paint.h"
+
+namespace prefilter {
+
+/// What an outline encloses, painted. Coordinates are pixels; pixel (i, j) is [i, i + 1) x
+/// [j, j + 1), and row 0 is the lowest.
+struct Shape {
+  Outline outline;
+  FillRule fill_rule = FillRule::kNonzero;
+  Paint paint;
+};
+
+enum class RasterMethod : std::uint8_t {
+  kScanline,  // section 2.2
+  kWavelet,   // chapter 3: Haar coefficients; the box filter only
+};
+
+/// What becomes of several shapes at one place.
+enum class Overlap : std::uint8_t {
+  kAdd,    // their values are added
+  kCover,  // a later one covers those before it, as far as it is opaque
+};
+
+struct RasterOptions {
+  int width = 0;   // pixels
+  int height = 0;  // pixels
+  std::string filter = "box";
+  RasterMethod method = RasterMethod::kScanline;
+  Overlap overlap = Overlap::kAdd;
+  /// What shows where no shape is; none for 0.
+  std::vector<float> background;
+  int threads = 0;
+  Progress progress;
+};
+
+/// The image of all shapes, each pixel the filter's mean around its center. Throws Error for shapes
+/// of different numbers of channels, points that are not finite, a filter there is not, a size of
+/// 0 or one that memory does not hold.
+Image rasterize(std::span<const Shape> shapes, const RasterOptions& options);
+
+}  // namespace prefilter
