@@ -18,12 +18,13 @@ cache_dir=${PREFILTER_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/prefilter}
 headers_dir=$cache_dir/python-headers
 opensubdiv_dir=$cache_dir/opensubdiv-3.6.0
 squish_dir=$cache_dir/squish-1.15
+clipper2_dir=$cache_dir/clipper2-2.0.1
 log_dir=$cache_dir/logs
 
 caller_path=${PATH:-}
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin:$caller_path
 
-host_packages=(cmake ninja-build g++ libgtest-dev python3-dev pybind11-dev python3-numpy python3-pytest)
+host_packages=(ca-certificates cmake ninja-build g++ libgtest-dev python3-dev pybind11-dev python3-numpy python3-pytest)
 # Debian's Blender comes without OpenImageIO's and OpenVDB's Python modules, without fonts and without a screen.
 blender_packages=(python3-openimageio openimageio-tools python3-numpy python3-scipy python3-pytest
   python3-pil python3-openvdb fonts-dejavu-core xvfb xauth)
@@ -203,14 +204,17 @@ make_root() {
   mv "$root_dir.new" "$root_dir"
 }
 
-# fetch_source FOLDER POOL SHA256: unpacks the source of Debian's package, pool/main/POOL, in FOLDER.source.
+# fetch_source FOLDER URL SHA256: unpacks an archive in FOLDER.source; a URL without a host is a file in Debian's pool/main.
 fetch_source() {
-  local mirror new=$1.source
-  mirror=$(debian_mirror)
-  note "fetching ${2##*/} from $mirror"
+  local url=$2 new=$1.source mirror
+  if [[ $url != https://* ]]; then
+    mirror=$(debian_mirror)
+    url=${mirror%/}/pool/main/$url
+  fi
+  note "fetching $url"
   rm -rf "$new"
   mkdir -p "$new"
-  logged source.log /usr/lib/apt/apt-helper download-file "${mirror%/}/pool/main/$2" "$new/source.tar" "SHA256:$3"
+  logged source.log /usr/lib/apt/apt-helper download-file "$url" "$new/source.tar" "SHA256:$3"
   (cd "$new" && cmake -E tar xf source.tar)
 }
 
@@ -236,6 +240,19 @@ ensure_squish() {
   mkdir "$source/kept"
   mv "$source"/{LICENSE.txt,*.cpp,*.h,*.inl} "$source/kept/"
   mv "$source/kept" "$squish_dir"
+  rm -rf "$source"
+}
+
+# Clipper2 is linked in likewise. Debian 12 and 13 have none; PyPI's package pyclipr 0.1.8 brings version 2.0.1 along.
+ensure_clipper2() {
+  [[ ! -e $clipper2_dir ]] || return 0
+  local source=$clipper2_dir.source
+  fetch_source "$clipper2_dir" https://files.pythonhosted.org/packages/e3/96/c8049cfb9166c1f50d878535f2d1cdae1303e994dea7783a3f9075aa0679/pyclipr-0.1.8.tar.gz \
+    ff8360330f827dc4801a57cd18d3bc925814b6a9a05f14be1e0f8f72cc27488f
+  mkdir "$source/kept"
+  mv "$source"/pyclipr-*/external/clipper2/LICENSE "$source/kept/LICENSE.txt"
+  mv "$source"/pyclipr-*/external/clipper2/CPP/Clipper2Lib/{include,src} "$source/kept/"
+  mv "$source/kept" "$clipper2_dir"
   rm -rf "$source"
 }
 
@@ -319,6 +336,7 @@ setup_host() {
   ensure_packages "${host_packages[@]}"
   ensure_opensubdiv
   ensure_squish
+  ensure_clipper2
   unlock "$cache_dir/.lock"
 }
 
@@ -378,7 +396,8 @@ compile() {
 
 configure_release() {
   configure release "PREFILTER_PYTHON_HEADERS=$python_headers" "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" \
-    "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir" "PREFILTER_SQUISH_SOURCE=$squish_dir"
+    "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir" "PREFILTER_SQUISH_SOURCE=$squish_dir" \
+    "PREFILTER_CLIPPER2_SOURCE=$clipper2_dir"
 }
 
 # build_packages: brings the Python package of every Python up to date.
@@ -413,7 +432,8 @@ package_with() {
 # extension_zip to it. Packages must be built. FOLDER, for BLENDER_USER_RESOURCES, then has it installed and enabled.
 package_extension() {
   lock "$(build_lock release)"
-  extension_zip=$(package_with extension "${python_tags[@]/#/--tag=}" "--linked=$opensubdiv_dir" "--linked=$squish_dir" "$@")
+  extension_zip=$(package_with extension "${python_tags[@]/#/--tag=}" "--linked=$opensubdiv_dir" "--linked=$squish_dir" \
+    "--linked=$clipper2_dir" "$@")
   unlock "$(build_lock release)"
 }
 

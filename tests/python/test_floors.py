@@ -9,7 +9,7 @@ import pytest
 LIBRARY = Path(__file__).resolve().parents[2] / "native/prefilter"
 FLOORS = (
     {"base"},
-    {"color", "filters", "moments", "solve", "spatial", "surface"},
+    {"color", "filters", "moments", "outline", "solve", "spatial", "surface"},
     {"scan", "texels", "wavelet"},
     {"contour", "mipmap", "raster", "voxel"},
     {"reconstruct"},

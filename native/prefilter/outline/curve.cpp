@@ -1,0 +1,129 @@
+#include "prefilter/outline/curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prefilter {
+namespace {
+
+constexpr int kMostLines = 1 << 14;
+
+// De Casteljau's scheme: writes the control points of the part before t behind `first`, and leaves
+// those of the part after t in `points`.
+template <typename Point>
+void split(std::span<Point> points, double t, Point* first) {
+  const std::size_t count = points.size();
+  for (std::size_t level = 0; level < count; ++level) {
+    first[level] = points[0];
+    for (std::size_t i = 0; i + 1 < count - level; ++i) {
+      points[i] = (1.0 - t) * points[i] + t * points[i + 1];
+    }
+  }
+}
+
+// A conic's control point times its weight, and the weight.
+struct Weighted {
+  Point2 point;
+  double weight;
+};
+Weighted operator+(const Weighted& a, const Weighted& b) {
+  return {a.point + b.point, a.weight + b.weight};
+}
+Weighted operator*(double s, const Weighted& a) { return {s * a.point, s * a.weight}; }
+
+std::array<Weighted, 3> weighted(const Curve& conic) {
+  return {Weighted{conic.controls[0], 1.0},
+          Weighted{conic.weight * conic.controls[1], conic.weight},
+          Weighted{conic.controls[2], 1.0}};
+}
+
+// Keeps the part between two parameters.
+template <typename Point>
+void keep_part(std::span<Point> points, double from, double to) {
+  std::array<Point, Outline::kMostDegree + 1> first;
+  if (to < 1.0) {
+    split(points, to, first.data());
+    std::copy_n(first.begin(), points.size(), points.begin());
+  }
+  if (from > 0.0) split(points, from / to, first.data());
+}
+
+// Lines over equal parts of the parameter are off by a bound on the second derivative / 8.
+std::size_t line_count(const Curve& curve, double tolerance) {
+  const auto& controls = curve.controls;
+  double largest = 0.0;
+  for (std::size_t i = 0; i + 2 < controls.size(); ++i) {
+    const Point2 bend = controls[i] - 2.0 * controls[i + 1] + controls[i + 2];
+    largest = std::max(largest, std::hypot(bend.x, bend.y));
+  }
+  const double degree = curve.degree();
+  const double lines = std::ceil(std::sqrt(degree * (degree - 1.0) / 8.0 * largest / tolerance));
+  return static_cast<std::size_t>(std::clamp(lines, 1.0, static_cast<double>(kMostLines)));
+}
+
+// The curve lies within the distance of its control point from the chord, times w / (1 + w).
+void flatten_conic(const std::array<Weighted, 3>& conic, double tolerance, int depth,
+                   std::vector<Point2>* points) {
+  const Point2 begin = (1.0 / conic[0].weight) * conic[0].point;
+  const Point2 end = (1.0 / conic[2].weight) * conic[2].point;
+  const Point2 middle = (1.0 / conic[1].weight) * conic[1].point;
+  const double weight = conic[1].weight / std::sqrt(conic[0].weight * conic[2].weight);
+  const Point2 bend = middle - 0.5 * (begin + end);
+  if (depth == 0 || std::hypot(bend.x, bend.y) * weight <= tolerance * (1.0 + weight)) {
+    points->push_back(end);
+    return;
+  }
+  std::array<Weighted, 3> first;
+  std::array<Weighted, 3> second = conic;
+  split(std::span<Weighted>(second), 0.5, first.data());
+  flatten_conic(first, tolerance, depth - 1, points);
+  flatten_conic(second, tolerance, depth - 1, points);
+}
+
+}  // namespace
+
+Point2 point_at(const Curve& curve, double t) {
+  if (t == 0.0) return curve.begin();
+  if (t == 1.0) return curve.end();
+  if (curve.weight > 0.0) {
+    std::array<Weighted, 3> conic = weighted(curve);
+    for (std::size_t level = 2; level > 0; --level) {
+      for (std::size_t i = 0; i < level; ++i) conic[i] = (1.0 - t) * conic[i] + t * conic[i + 1];
+    }
+    return (1.0 / conic[0].weight) * conic[0].point;
+  }
+  std::array<Point2, Outline::kMostDegree + 1> points;
+  std::copy(curve.controls.begin(), curve.controls.end(), points.begin());
+  for (std::size_t level = curve.controls.size() - 1; level > 0; --level) {
+    for (std::size_t i = 0; i < level; ++i) points[i] = (1.0 - t) * points[i] + t * points[i + 1];
+  }
+  return points[0];
+}
+
+PartOfCurve::PartOfCurve(const Curve& curve, double from, double to)
+    : count_(curve.controls.size()), weight_(curve.weight) {
+  if (curve.weight > 0.0) {
+    std::array<Weighted, 3> conic = weighted(curve);
+    keep_part(std::span<Weighted>(conic), from, to);
+    for (std::size_t i = 0; i < 3; ++i) points_[i] = (1.0 / conic[i].weight) * conic[i].point;
+    weight_ = conic[1].weight / std::sqrt(conic[0].weight * conic[2].weight);
+    return;
+  }
+  std::copy(curve.controls.begin(), curve.controls.end(), points_.begin());
+  keep_part(std::span<Point2>(points_.data(), count_), from, to);
+}
+
+void append_flattened(const Curve& curve, double tolerance, std::vector<Point2>* points) {
+  if (curve.weight > 0.0) {
+    flatten_conic(weighted(curve), tolerance, 14, points);
+    points->back() = curve.end();
+    return;
+  }
+  const std::size_t lines = line_count(curve, tolerance);
+  for (std::size_t i = 1; i < lines; ++i) {
+    points->push_back(point_at(curve, static_cast<double>(i) / static_cast<double>(lines)));
+  }
+  points->push_back(curve.end());
+}
+
+}  // namespace prefilter
