@@ -19,12 +19,15 @@ headers_dir=$cache_dir/python-headers
 opensubdiv_dir=$cache_dir/opensubdiv-3.6.0
 squish_dir=$cache_dir/squish-1.15
 clipper2_dir=$cache_dir/clipper2-2.0.1
+# Each list has its own: checkouts may differ.
+wheels_dir=$cache_dir/wheels-$(sha256sum <"$source_dir/scripts/bundled.txt" | cut -c 1-12)
 log_dir=$cache_dir/logs
 
 caller_path=${PATH:-}
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin:$caller_path
 
-host_packages=(ca-certificates cmake ninja-build g++ libgtest-dev python3-dev pybind11-dev python3-numpy python3-pytest)
+host_packages=(ca-certificates cmake ninja-build g++ libgtest-dev python3-dev python3-pip pybind11-dev python3-numpy
+  python3-pytest)
 # Debian's Blender comes without OpenImageIO's and OpenVDB's Python modules, without fonts and without a screen.
 blender_packages=(python3-openimageio openimageio-tools python3-numpy python3-scipy python3-pytest
   python3-pil python3-openvdb fonts-dejavu-core xvfb xauth)
@@ -256,6 +259,16 @@ ensure_clipper2() {
   rm -rf "$source"
 }
 
+# ensure_wheels: fetches what the package imports and the extension brings along: pure Python, as its authors publish it.
+ensure_wheels() {
+  [[ ! -e $wheels_dir ]] || return 0
+  note "fetching the wheels of scripts/bundled.txt from PyPI"
+  rm -rf "$wheels_dir.new"
+  logged wheels.log /usr/bin/python3 -m pip download --disable-pip-version-check --no-deps --only-binary :all: \
+    --require-hashes --dest "$wheels_dir.new" --requirement "$source_dir/scripts/bundled.txt"
+  mv "$wheels_dir.new" "$wheels_dir"
+}
+
 ensure_root() {
   local stamp=$root_dir/.prefilter-packages missing packages
   read -ra packages <<<"${root_packages[$suite]}"
@@ -337,6 +350,7 @@ setup_host() {
   ensure_opensubdiv
   ensure_squish
   ensure_clipper2
+  ensure_wheels
   unlock "$cache_dir/.lock"
 }
 
@@ -397,7 +411,7 @@ compile() {
 configure_release() {
   configure release "PREFILTER_PYTHON_HEADERS=$python_headers" "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" \
     "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir" "PREFILTER_SQUISH_SOURCE=$squish_dir" \
-    "PREFILTER_CLIPPER2_SOURCE=$clipper2_dir"
+    "PREFILTER_CLIPPER2_SOURCE=$clipper2_dir" "PREFILTER_WHEELS=$wheels_dir"
 }
 
 # build_packages: brings the Python package of every Python up to date.
@@ -433,7 +447,7 @@ package_with() {
 package_extension() {
   lock "$(build_lock release)"
   extension_zip=$(package_with extension "${python_tags[@]/#/--tag=}" "--linked=$opensubdiv_dir" "--linked=$squish_dir" \
-    "--linked=$clipper2_dir" "$@")
+    "--linked=$clipper2_dir" "--wheels=$wheels_dir" "$@")
   unlock "$(build_lock release)"
 }
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Make the extension of what is built, check it, and install it.
 
-usage: packaging.py extension --tag cp313 ... [--linked SOURCE ...] [--install FOLDER] -- BLENDER...
+usage: packaging.py extension --tag cp313 ... [--linked SOURCE ...] [--wheels FOLDER]
+                    [--install FOLDER] -- BLENDER...
        packaging.py check ZIP -- BLENDER...
        packaging.py --help
 
@@ -10,11 +11,12 @@ nm and readelf (binutils).
 
 extension   Makes build/prefilter-<version>.zip of addon/ and of the packages in
             build/release/python/<tag>, where one of its parts has changed, and prints where it is.
-            The same parts give the same wheels, byte for byte.
+            The same parts give the same wheels, byte for byte. The wheels in a folder go along:
+            packages of pure Python that ours needs.
 check       Says whether the zip will load in Blender, and do no harm there: Blender accepts it, and
-            every wheel holds one module that exports its entry point only, needs no library but
-            those of glibc, and no newer glibc than the one here; and its RECORD names each of its
-            files.
+            every wheel of ours holds one module that exports its entry point only, needs no library
+            but those of glibc, and no newer glibc than the one here; all others hold none, and have
+            their license; and the RECORD of each names each of its files.
 """
 
 import argparse
@@ -46,7 +48,9 @@ Summary: Mipmaps that know the mesh
 License-Expression: GPL-3.0-or-later
 {license_files}
 Requires-Python: >=3.11
+Requires-Dist: cssselect2
 Requires-Dist: numpy
+Requires-Dist: tinycss2
 """
 
 WHEEL = """\
@@ -199,6 +203,18 @@ def make_wheel(package: Path, tag: str, version: str, linked: Iterable[Path], ta
     return wheel
 
 
+def bundled_faults(name: str, names: Sequence[str], modules: Sequence[str]) -> list[str]:
+    """Returns what is wrong with a wheel of others, by its name and those of its files."""
+    found = []
+    if modules or not name.endswith("-py3-none-any.whl"):
+        found.append("is not of pure Python")
+    if not any(
+        re.search(r"\.dist-info/(licenses/)?(LICEN[CS]E|COPYING)", entry) for entry in names
+    ):
+        found.append("holds no license")
+    return found
+
+
 def wheel_faults(name: str, wheel: bytes) -> list[str]:
     """Returns what is wrong with a wheel; nothing where it may go into Blender's process."""
     found = []
@@ -207,13 +223,15 @@ def wheel_faults(name: str, wheel: bytes) -> list[str]:
         tempfile.TemporaryDirectory() as folder,
     ):
         names = archive.namelist()
-        modules = [entry for entry in names if entry.endswith(".so")]
-        if len(modules) != 1:
-            return [f"holds {len(modules)} modules, not one"]
         records = [entry for entry in names if entry.endswith(".dist-info/RECORD")]
         recorded = archive.read(records[0]).decode() if records else ""
         if {line.split(",")[0] for line in recorded.splitlines()} != set(names):
             found.append("RECORD is missing, or does not name just its files")
+        modules = [entry for entry in names if re.search(r"\.(so|pyd|dll|dylib)(\.|$)", entry)]
+        if not name.startswith(f"{NAME}-"):
+            return found + bundled_faults(name, names, modules)
+        if len(modules) != 1:
+            return [f"holds {len(modules)} modules, not one"]
         module = archive.extract(modules[0], folder)
         exports = output("nm", "--dynamic", "--defined-only", "--format=posix", module)
         symbols = {line.split()[0] for line in exports.splitlines()}
@@ -237,10 +255,10 @@ def built_package(tag: str) -> Path:
     return BUILD / "release/python" / tag / NAME
 
 
-def fingerprint(tags: Sequence[str], linked: Sequence[Path]) -> str:
+def fingerprint(tags: Sequence[str], linked: Sequence[Path], bundled: Sequence[Path]) -> str:
     """Returns a hash of everything that goes into the extension."""
     parts = [SOURCE / "blender_manifest.toml", SOURCE / "CMakeLists.txt", Path(__file__).resolve()]
-    parts += licenses(linked).values()
+    parts += [*licenses(linked).values(), *bundled]
     for folder in (SOURCE / "addon", *map(built_package, tags)):
         parts += files_in(folder)
     whole = hashlib.sha256()
@@ -256,12 +274,21 @@ def with_wheels(manifest: str, wheels: Iterable[Path]) -> str:
     return f"{head.rstrip()}\nwheels = [{listed}]\n{bracket}{tables}"
 
 
-def make_extension(tags: Sequence[str], linked: Sequence[Path], blender: Sequence[str]) -> Path:
-    """Makes the zip, where one of its parts has changed; returns where it is."""
+def make_extension(
+    tags: Sequence[str], linked: Sequence[Path], bundled: Sequence[Path], blender: Sequence[str]
+) -> Path:
+    """Makes the zip, where one of its parts has changed; returns where it is.
+
+    Args:
+        tags: The Pythons whose packages go in.
+        linked: Source folders of linked libraries.
+        bundled: Wheels of others that go along as they are.
+        blender: The command that starts Blender.
+    """
     version = project_version()
     target = BUILD / f"{NAME}-{version}.zip"
     stamp = BUILD / ".packaged"
-    mark = fingerprint(tags, linked)
+    mark = fingerprint(tags, linked, bundled)
     if target.exists() and stamp.exists() and stamp.read_text() == mark:
         return target
     note("packaging the extension")
@@ -273,6 +300,7 @@ def make_extension(tags: Sequence[str], linked: Sequence[Path], blender: Sequenc
     wheels = [
         make_wheel(built_package(tag), tag, version, linked, stage / "wheels") for tag in tags
     ]
+    wheels += [Path(shutil.copy(wheel, stage / "wheels")) for wheel in bundled]
     manifest = (SOURCE / "blender_manifest.toml").read_text()
     (stage / "blender_manifest.toml").write_text(with_wheels(manifest, wheels))
     made = target.with_suffix(".new.zip")
@@ -305,8 +333,10 @@ def install(extension: Path, resources: Path, blender: Sequence[str]) -> None:
 def check(extension: Path, blender: Sequence[str]) -> bool:
     """Says what is wrong with a zip and its wheels; returns whether nothing is."""
     with zipfile.ZipFile(extension) as archive:
-        wheels = [name for name in archive.namelist() if name.endswith(".whl")]
-        found = {Path(name).name: wheel_faults(name, archive.read(name)) for name in wheels}
+        wheels = [Path(name) for name in archive.namelist() if name.endswith(".whl")]
+        found = {
+            path.name: wheel_faults(path.name, archive.read(path.as_posix())) for path in wheels
+        }
     for name, faults in found.items():
         print(f"{name}: {'; '.join(faults) or 'fine'}")
     if not wheels:
@@ -319,7 +349,7 @@ def check(extension: Path, blender: Sequence[str]) -> bool:
 def parse(words: Sequence[str]) -> argparse.Namespace:
     """Reads the command line; what follows `--` is `blender`."""
     parser = argparse.ArgumentParser(
-        usage="\n".join(__doc__.splitlines()[2:5]).removeprefix("usage: "),
+        usage="\n".join(__doc__.splitlines()[2:6]).removeprefix("usage: "),
         description=__doc__.partition("\n\n")[2].partition("\n\n")[2],
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -327,6 +357,7 @@ def parse(words: Sequence[str]) -> argparse.Namespace:
     extension = commands.add_parser("extension")
     extension.add_argument("--tag", action="append", required=True, dest="tags")
     extension.add_argument("--linked", type=Path, action="append", default=[])
+    extension.add_argument("--wheels", type=Path)
     extension.add_argument("--install", type=Path)
     commands.add_parser("check").add_argument("zip", type=Path)
     own, blender = list(words), []
@@ -346,7 +377,8 @@ def main() -> int:
     try:
         if options.command == "check":
             return 0 if check(options.zip, options.blender) else 1
-        made = make_extension(options.tags, options.linked, options.blender)
+        bundled = sorted(options.wheels.glob("*.whl")) if options.wheels else []
+        made = make_extension(options.tags, options.linked, bundled, options.blender)
         if options.install is not None:
             install(made, options.install.absolute(), options.blender)
         print(made)

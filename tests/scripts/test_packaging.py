@@ -86,6 +86,39 @@ def test_faults_of_wheels_are_found(package: Path, tmp_path: Path) -> None:
     assert "libssl" in found
 
 
+def test_faults_of_wheels_of_others_are_found() -> None:
+    def faults(name: str, *files: str) -> list[str]:
+        target = io.BytesIO()
+        with zipfile.ZipFile(target, "w") as archive:
+            for file in (*files, "css-1.0.dist-info/RECORD"):
+                archive.writestr(file, "")
+            listed = "".join(f"{file},,\n" for file in archive.namelist())
+        target = io.BytesIO()
+        with zipfile.ZipFile(target, "w") as archive:
+            for file in files:
+                archive.writestr(file, "")
+            archive.writestr("css-1.0.dist-info/RECORD", listed)
+        return packaging.wheel_faults(name, target.getvalue())
+
+    license_text = "css-1.0.dist-info/licenses/LICENSE"
+    pure = "css-1.0-py3-none-any.whl"
+    assert faults(pure, "css/__init__.py", license_text) == []
+    assert faults(pure, "css/__init__.py") == ["holds no license"]
+    for module in ("css/fast.so", "css/fast.pyd", "css/.libs/libfast.so.2"):
+        assert faults(pure, module, license_text) == ["is not of pure Python"]
+    linux = "css-1.0-cp311-cp311-manylinux_2_17_x86_64.whl"
+    assert faults(linux, "css/__init__.py", license_text) == ["is not of pure Python"]
+
+
+def test_the_wheels_to_bundle_are_those_that_the_package_needs() -> None:
+    listed = (packaging.SOURCE / "scripts/bundled.txt").read_text()
+    needed = [
+        line.split()[1] for line in packaging.METADATA.splitlines() if "Requires-Dist" in line
+    ]
+    for name in needed:
+        assert name == "numpy" or f"\n{name}==" in listed
+
+
 def test_the_manifest_lists_the_wheels_before_its_tables() -> None:
     manifest = 'id = "x"\n\n[permissions]\nfiles = "Write"\n'
     wheels = [Path("a/one.whl"), Path("a/two.whl")]
