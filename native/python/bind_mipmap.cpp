@@ -126,6 +126,19 @@ Array<float> bound_texel_weights(const std::vector<const Surface*>& surfaces, in
   return to_array(std::move(weights));
 }
 
+Array<float> bound_fill_transparent(const Array<float>& array, const WrapNames& wrap,
+                                    const py::object& progress, int threads) {
+  const ImageView image = view_of(array);
+  const WrapModes modes = wrap_modes(wrap);
+  const Progress reporter = to_progress(progress);
+  Image filled;
+  {
+    const py::gil_scoped_release unlocked;
+    filled = fill_transparent(image, modes, reporter, threads);
+  }
+  return to_array(std::move(filled));
+}
+
 Array<float> bound_fill_unused(const Array<float>& array,
                                const std::vector<const Surface*>& surfaces, const WrapNames& wrap,
                                const py::object& progress, int threads) {
@@ -171,6 +184,8 @@ void bind_mipmap(py::module_& m) {
         py::arg("wrap"), py::arg("progress"));
   m.def("texel_weights", &bound_texel_weights, py::arg("surfaces"), py::arg("width"),
         py::arg("height"), py::arg("wrap"), py::arg("progress"), py::arg("threads"));
+  m.def("fill_transparent", &bound_fill_transparent, py::arg("image"), py::arg("wrap"),
+        py::arg("progress"), py::arg("threads"));
   m.def("fill_unused", &bound_fill_unused, py::arg("image"), py::arg("surfaces"), py::arg("wrap"),
         py::arg("progress"), py::arg("threads"));
 }

@@ -77,6 +77,7 @@ FUNCTIONS = {
     "keep_coverage": (prefilter.keep_coverage, {"levels": [RGBA], "surface": SURFACE}),
     "texel_weights": (prefilter.texel_weights, {"surface": SURFACE, "width": 4, "height": 4}),
     "fill_unused": (prefilter.fill_unused, {"image": IMAGE, "surface": SURFACE}),
+    "fill_transparent": (prefilter.fill_transparent, {"image": RGBA}),
     "write_dds": (prefilter.write_dds, {"path": "out.dds", "levels": [RGBA]}),
     "write_ktx2": (prefilter.write_ktx2, {"path": "out.ktx2", "levels": [RGBA]}),
     "voxelize": (
@@ -520,6 +521,13 @@ ROWS = [
         {"image": np.zeros((4, 4, 5), np.float32)},
         ["image: 5 channels", "1 to 4 are allowed"],
     ),
+    (
+        "fill_transparent",
+        {"image": np.zeros((4, 4, 1), np.float32)},
+        ["image: 1 channels", "2 to 4 are allowed", "alpha"],
+    ),
+    ("fill_transparent", {"image": BYTES}, ["image: dtype uint8", FLOATS]),
+    ("fill_transparent", {"wrap": "mirror"}, ["wrap: ", "mirror"]),
     ("fill_unused", {"image": BYTES}, ["image: dtype uint8", FLOATS]),
     ("fill_unused", {"surface": None}, ["surface: none was given", "at least one is needed"]),
     (

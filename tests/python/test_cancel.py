@@ -95,6 +95,9 @@ WORK = {
     "texel_weights": lambda **options: prefilter.texel_weights(
         SURFACE, 1024, 1024, threads=1, **options
     ),
+    "fill_transparent": lambda **options: prefilter.fill_transparent(
+        np.where(RGBA < 0.5, np.float32(0.0), RGBA), threads=1, **options
+    ),
     "fill_unused": lambda **options: prefilter.fill_unused(IMAGE, SURFACE, threads=1, **options),
     "subdivision": lambda **options: prefilter.Surface.from_subdivision(
         POSITIONS,

@@ -60,6 +60,26 @@ def test_fill_changes_nothing_where_all_is_used() -> None:
     np.testing.assert_array_equal(prefilter.fill_unused(image, scenes.square().surface), image)
 
 
+def test_colors_flow_to_where_alpha_is_0() -> None:
+    image = np.full((9, 8, 4), np.nan, np.float32)
+    image[..., 3] = 0.0
+    image[2:5, :3] = (0.2, 0.4, 0.6, 1.0)
+    image[5:7, :3] = (0.3, 0.5, 0.7, 0.25)
+    image[0, 7, 3] = np.nan
+    filled = prefilter.fill_transparent(image)
+    kept = image[..., 3] > 0
+    np.testing.assert_array_equal(filled[kept], image[kept])
+    np.testing.assert_array_equal(filled[..., 3], image[..., 3])
+    assert (filled[..., :3] >= np.float32([0.2, 0.4, 0.6]) - 1e-6).all()
+    assert (filled[..., :3] <= np.float32([0.3, 0.5, 0.7]) + 1e-6).all()
+
+
+def test_a_transparent_image_stays_as_it_is() -> None:
+    image = np.random.default_rng(5).random((5, 4, 2), np.float32)
+    image[..., 1] = 0.0
+    np.testing.assert_array_equal(prefilter.fill_transparent(image), image)
+
+
 @pytest.mark.parametrize("threads", [1, 2, 5])
 def test_results_do_not_depend_on_threads(threads: int) -> None:
     surface = scenes.random_soup(5, 40).surface

@@ -47,4 +47,22 @@ Image fill_unused(const ImageView& image, const std::vector<const Surface*>& sur
   return filled;
 }
 
+Image fill_transparent(const ImageView& image, WrapModes wrap, const Progress& progress,
+                       int threads) {
+  if (image.channels < 2 || image.channels > kMaxChannels) {
+    throw_invalid("image: " + std::to_string(image.channels) +
+                  " channels; 2 to 4 are allowed, the last one is alpha");
+  }
+  const int colors = image.channels - 1;
+  Image filled(image);
+  std::vector<float> weights(image.texel_count());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const float alpha = filled.data[i * image.channels + colors];
+    // A NaN is no weight.
+    weights[i] = alpha > 0.0F ? std::min(alpha, 1.0F) : 0.0F;
+  }
+  fill_holes(weights, wrap, colors, progress, threads, &filled);
+  return filled;
+}
+
 }  // namespace prefilter

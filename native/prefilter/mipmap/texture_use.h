@@ -17,6 +17,11 @@ namespace prefilter {
 Image texel_weights(const std::vector<const Surface*>& surfaces, int width, int height,
                     WrapModes wrap, const Progress& progress, int threads);
 
+/// The image with the colors of texels whose alpha, the last of 2 to 4 channels, is 0 or less
+/// filled from what is around (push-pull), weighted by alpha. Throws Error for other channels.
+Image fill_transparent(const ImageView& image, WrapModes wrap, const Progress& progress,
+                       int threads);
+
 /// The image with the texels that no bilinear lookup on the surfaces reads filled from what is
 /// around those that some does (push-pull), out to the image's edge. Throws Error as texel_weights.
 Image fill_unused(const ImageView& image, const std::vector<const Surface*>& surfaces,

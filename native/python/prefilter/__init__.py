@@ -17,7 +17,7 @@ from .points import estimate_normals, grid_normals, mesh_normals
 from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .surface import Surface
-from .texture_use import fill_unused, texel_weights
+from .texture_use import fill_transparent, fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
 from .version import VERSION
 from .voxel import MAX_DEPTH, ClosedMesh, Octree, close_holes, cube_around, voxelize
@@ -41,6 +41,7 @@ __all__ = [
     "cube_around",
     "estimate_normals",
     "file_normals",
+    "fill_transparent",
     "fill_unused",
     "grid_normals",
     "keep_coverage",

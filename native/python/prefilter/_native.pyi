@@ -178,6 +178,12 @@ def texel_weights(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float32]: ...
+def fill_transparent(
+    image: npt.NDArray[np.float32],
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
 def fill_unused(
     image: npt.NDArray[np.float32],
     surfaces: Sequence[Surface],

@@ -83,3 +83,34 @@ def fill_unused(
         as_progress(progress),
         as_threads(threads),
     )
+
+
+def fill_transparent(
+    image: npt.ArrayLike,
+    *,
+    wrap: Wrap = "clamp",
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[np.float32]:
+    """The image with colors where alpha is 0, which flow in from around (push-pull).
+
+    Lookups between texels then do not mix in what is hidden, which darkens the edges of cut-outs.
+
+    Args:
+        image: (height, width, 2 to 4 channels), the last of which is straight alpha. Colors where
+            it is 0 or less are not read. Those near alpha count by it.
+        wrap: As for `mipmaps`.
+        progress: As for `mipmaps`.
+        threads: As for `mipmaps`.
+
+    Returns:
+        The image, float32; alpha, and colors where it is above 0, are as they were. An image that
+        is transparent everywhere stays as it is.
+
+    Raises:
+        ValueError: An argument is out of range.
+        Cancelled: The progress callback returned False.
+    """
+    return _native.fill_transparent(
+        as_image("image", image), as_wrap(wrap), as_progress(progress), as_threads(threads)
+    )
