@@ -92,13 +92,13 @@ std::vector<Array<double>> bound_contour_outlines(const Array<float>& grid,
                                                   const py::object& progress) {
   const ContourOptions options = contour_options(interpolant, isovalue, false, progress, 1);
   const PlaneView view{grid.data(), sides_of<2>(grid)};
-  std::vector<Outline> outlines;
+  std::vector<OutlinePoints> outlines;
   {
     const py::gil_scoped_release unlocked;
     outlines = contour_outlines(view, {origin, spacing}, options);
   }
   std::vector<Array<double>> arrays;
-  for (Outline& outline : outlines) {
+  for (OutlinePoints& outline : outlines) {
     const auto points = static_cast<py::ssize_t>(outline.size());
     arrays.push_back(to_array<double>(std::move(outline), {points, 2}));
   }

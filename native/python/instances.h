@@ -9,6 +9,8 @@
 #include <string>
 #include <utility>
 
+#include "prefilter/base/outline.h"
+#include "prefilter/raster/paint.h"
 #include "prefilter/reconstruct/reconstruct.h"
 #include "prefilter/scan/point_source.h"
 #include "prefilter/spatial/nearest.h"
@@ -44,6 +46,14 @@ class pybind11::detail::type_caster<prefilter::NearestPoints>
 template <>
 class pybind11::detail::type_caster<prefilter::Octree>
     : public prefilter::python::InstanceCaster<prefilter::Octree> {};
+
+template <>
+class pybind11::detail::type_caster<prefilter::Outline>
+    : public prefilter::python::InstanceCaster<prefilter::Outline> {};
+
+template <>
+class pybind11::detail::type_caster<prefilter::Paint>
+    : public prefilter::python::InstanceCaster<prefilter::Paint> {};
 
 template <>
 class pybind11::detail::type_caster<prefilter::PointSource>

@@ -17,6 +17,7 @@ void bind_contour(py::module_& m);
 void bind_cutout(py::module_& m);
 void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
+void bind_raster(py::module_& m);
 void bind_reconstruct(py::module_& m);
 void bind_scan(py::module_& m);
 void bind_spatial(py::module_& m);
@@ -118,4 +119,5 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_voxel(m);
   prefilter::python::bind_contour(m);
   prefilter::python::bind_reconstruct(m);
+  prefilter::python::bind_raster(m);
 }

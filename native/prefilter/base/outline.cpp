@@ -70,7 +70,7 @@ std::span<const Outline::Segment> Outline::contour(std::size_t index) const {
   return std::span(segments_).subspan(first, last - first);
 }
 
-Outline Outline::transformed(const AffineMap& map) const {
+Outline Outline::transformed(const AffineMap2& map) const {
   Outline result = *this;
   std::transform(points_.begin(), points_.end(), result.points_.begin(), map);
   return result;

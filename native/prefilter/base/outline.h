@@ -25,12 +25,14 @@ inline double dot(const Point2& a, const Point2& b) { return a.x * b.x + a.y * b
 inline double cross(const Point2& a, const Point2& b) { return a.x * b.y - a.y * b.x; }
 
 /// The affine map of a point p to origin + p.x * x_axis + p.y * y_axis.
-struct AffineMap {
+struct AffineMap2 {
   Point2 x_axis{1.0, 0.0};
   Point2 y_axis{0.0, 1.0};
   Point2 origin{};
 
-  Point2 operator()(const Point2& p) const { return origin + (p.x * x_axis + p.y * y_axis); }
+  Point2 operator()(const Point2& p) const { return origin + linear(p); }
+  /// Of a direction.
+  Point2 linear(const Point2& p) const { return p.x * x_axis + p.y * y_axis; }
 };
 
 /// Which points lie inside: those of a winding number that is not zero, or that is odd.
@@ -77,7 +79,7 @@ class Outline {
     return {points_.data() + segment.first, static_cast<std::size_t>(segment.degree) + 1};
   }
 
-  Outline transformed(const AffineMap& map) const;
+  Outline transformed(const AffineMap2& map) const;
 
  private:
   struct Contour {

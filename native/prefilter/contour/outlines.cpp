@@ -28,10 +28,10 @@ class Outliner {
     }
   }
 
-  std::vector<Outline> take() {
-    std::vector<Outline> lines;
+  std::vector<OutlinePoints> take() {
+    std::vector<OutlinePoints> lines;
     for (std::size_t start = 0; start < nexts_.size(); ++start) {
-      Outline line;
+      OutlinePoints line;
       for (std::int64_t at = static_cast<std::int64_t>(start); nexts_[at] >= 0;) {
         line.push_back(point(at));
         at = std::exchange(nexts_[static_cast<std::size_t>(at)], -1);
@@ -95,8 +95,8 @@ class Outliner {
 };
 }  // namespace
 
-std::vector<Outline> contour_outlines(const PlaneView& samples, const PlaneFrame& frame,
-                                      const ContourOptions& options) {
+std::vector<OutlinePoints> contour_outlines(const PlaneView& samples, const PlaneFrame& frame,
+                                            const ContourOptions& options) {
   check_sides(samples.size);
   Box whole{{}, {1.0, 1.0, 1.0}};
   for (int a = 0; a < 2; ++a) {

@@ -27,12 +27,12 @@ struct PlaneFrame {
 };
 
 /// The last point is joined to the first; the inside is to the left.
-using Outline = std::vector<std::array<double, 2>>;
+using OutlinePoints = std::vector<std::array<double, 2>>;
 
 /// The outlines of what is inside. "occupancy" and "plane" are the same here: exact for straight
 /// edges. Of the options, `clean_up` and `threads` do nothing. Throws Error where a side is out of
 /// range, a sample is not a number, or the frame's cells have no area; Error(kCancelled).
-std::vector<Outline> contour_outlines(const PlaneView& samples, const PlaneFrame& frame,
-                                      const ContourOptions& options);
+std::vector<OutlinePoints> contour_outlines(const PlaneView& samples, const PlaneFrame& frame,
+                                            const ContourOptions& options);
 
 }  // namespace prefilter

@@ -41,7 +41,10 @@ struct Paint {
   Point2 end;
   double start_radius = 0.0;
   double end_radius = 0.0;
-  AffineMap to_shape;
+  AffineMap2 to_shape;
+
+  /// For a shape that is moved by a map, of rank 2.
+  Paint transformed(const AffineMap2& map) const;
 };
 
 }  // namespace prefilter

@@ -16,6 +16,7 @@ from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
 from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
+from .shapes import RASTER_FILTERS, Shape, rasterize
 from .surface import Surface
 from .texture_use import fill_transparent, fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
@@ -28,6 +29,7 @@ __all__ = [
     "MAX_DEPTH",
     "MIPMAP_FILTERS",
     "POINT_EXTENSIONS",
+    "RASTER_FILTERS",
     "Cancelled",
     "ClosedMesh",
     "MipmapFilter",
@@ -35,6 +37,7 @@ __all__ = [
     "Octree",
     "ReconstructionReport",
     "ScanPoints",
+    "Shape",
     "Surface",
     "close_holes",
     "contour",
@@ -50,6 +53,7 @@ __all__ = [
     "mipmaps",
     "nearest_points",
     "normal_mipmaps",
+    "rasterize",
     "read_points",
     "reconstruct",
     "reconstruct_file",

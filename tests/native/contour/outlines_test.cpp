@@ -27,7 +27,8 @@ TEST(ContourOutlines, OutlinesAreClosedAndExactForHalfPlanes) {
         values.push_back(static_cast<float>(testing::share_below(x, y, a, b, c)));
       }
     }
-    const std::vector<Outline> lines = contour_outlines({values.data(), {kSize, kSize}}, {}, {});
+    const std::vector<OutlinePoints> lines =
+        contour_outlines({values.data(), {kSize, kSize}}, {}, {});
     ASSERT_EQ(lines.size(), 1U);
     double area = 0.0;
     for (std::size_t i = 0; i < lines[0].size(); ++i) {
@@ -54,7 +55,7 @@ TEST(ContourOutlines, LieWhereTheCellsAre) {
   const std::vector<float> one = {1.0F};
   const double far = 1e7;
   const double tiny = 1e-3;
-  const std::vector<Outline> lines =
+  const std::vector<OutlinePoints> lines =
       contour_outlines({one.data(), {1, 1}}, {{far, -far}, {tiny, 2.0 * tiny}}, ContourOptions());
   ASSERT_EQ(lines.size(), 1U);
   double area = 0.0;

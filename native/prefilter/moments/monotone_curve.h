@@ -1,0 +1,86 @@
+// Curves cut where they turn: pieces along which x and y each only rise or only fall.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "prefilter/base/outline.h"
+
+namespace prefilter {
+
+/// The kinds of curves that have formulas of their own.
+enum class CurveKind : std::uint8_t { kLine, kQuadratic, kCubic, kConic, kBezier };
+
+/// A curve over t in [0, 1].
+struct Curve {
+  CurveKind kind = CurveKind::kLine;
+  /// Of lines, quadratics and cubics, by powers of t; of conics, the numerator's.
+  std::array<Point2, 4> powers{};
+  /// Of conics, by powers of t.
+  std::array<double, 3> denominator{1.0, 0.0, 0.0};
+  /// Of Bezier curves of degree 4 and above; someone else's.
+  std::span<const Point2> controls;
+
+  Curve() = default;
+  Curve(std::span<const Point2> controls_, double weight);
+
+  Point2 at(double t) const;
+  /// By t.
+  Point2 derivative(double t) const;
+};
+
+/// From t_begin to t_end along a curve neither x nor y turns.
+struct MonotoneCurve {
+  Curve curve;
+  double t_begin = 0.0;
+  double t_end = 1.0;
+  Point2 begin;
+  Point2 end;
+};
+
+/// Most places where a curve turns along one axis or the other.
+inline constexpr int kMostTurns = 2 * Outline::kMostDegree;
+
+/// Where a curve turns, rising, inside of (0, 1); returns how many places.
+int turning_points(const Curve& curve, std::span<const Point2> controls,
+                   std::array<double, kMostTurns>* turns);
+
+/// Whether a segment is cut from its end to its begin. Of two shapes that share an edge, each holds
+/// it the other way round: cut from the same end, it adds to one, to the last bit, what it takes
+/// from the other.
+bool is_cut_backwards(std::span<const Point2> controls);
+
+/// Calls use(const MonotoneCurve&, bool backwards) for the pieces of a segment, given by its
+/// control points, in the order in which they are cut.
+template <typename Use>
+void for_monotone_pieces(std::span<const Point2> controls, double weight, const Use& use) {
+  const bool backwards = is_cut_backwards(controls);
+  std::array<Point2, Outline::kMostDegree + 1> turned;
+  if (backwards) {
+    std::reverse_copy(controls.begin(), controls.end(), turned.begin());
+    controls = {turned.data(), controls.size()};
+  }
+  MonotoneCurve piece;
+  piece.curve = Curve(controls, weight);
+  piece.begin = controls.front();
+  std::array<double, kMostTurns> turns;
+  const int count = turning_points(piece.curve, controls, &turns);
+  for (int i = 0; i < count; ++i) {
+    piece.t_end = turns[i];
+    piece.end = piece.curve.at(turns[i]);
+    use(piece, backwards);
+    piece.t_begin = piece.t_end;
+    piece.begin = piece.end;
+  }
+  piece.t_end = 1.0;
+  piece.end = controls.back();
+  use(piece, backwards);
+}
+
+/// Where a piece passes a value of x (axis 0) or y (axis 1) between `low` and its end; the piece
+/// is on either side of it at these two.
+double crossing(const MonotoneCurve& piece, int axis, double value, double low);
+
+}  // namespace prefilter

@@ -1,0 +1,81 @@
+// The segments of outlines in coordinates of cells, found again by the rows they pass.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "prefilter/base/outline.h"
+#include "prefilter/moments/monotone_curve.h"
+#include "prefilter/raster/cell_filter.h"
+
+namespace prefilter {
+
+/// Outlines whose coverage is added up, as segments in runs that are close together.
+class EdgeList {
+ public:
+  /// An outline that is kept elsewhere. Open contours are closed by a line.
+  void add(const Outline& outline);
+
+  bool empty() const { return runs_.empty(); }
+  /// The rows of pixels that hold all of it.
+  double low() const { return low_; }
+  double high() const { return high_; }
+
+  /// Calls use(const MonotoneCurve&, bool backwards) for the pieces, in coordinates of cells, of
+  /// the segments that may pass between two rows of cells.
+  template <typename Use>
+  void for_pieces_between(int first_row, int end_row, const CellFilter& filter,
+                          const Use& use) const;
+
+ private:
+  struct Run {
+    const Outline* outline = nullptr;
+    std::size_t first = 0;
+    std::size_t end = 0;
+    double low = 0.0;
+    double high = 0.0;
+  };
+  struct Line {
+    Point2 begin;
+    Point2 end;
+  };
+  static constexpr std::size_t kRunLength = 64;
+
+  std::vector<Run> runs_;
+  std::vector<Line> closing_;
+  double low_ = HUGE_VAL;
+  double high_ = -HUGE_VAL;
+};
+
+template <typename Use>
+void EdgeList::for_pieces_between(int first_row, int end_row, const CellFilter& filter,
+                                  const Use& use) const {
+  const double low = filter.to_pixel(first_row);
+  const double high = filter.to_pixel(end_row);
+  std::array<Point2, Outline::kMostDegree + 1> cells;
+  const auto use_segment = [&](std::span<const Point2> controls, double weight) {
+    double segment_low = HUGE_VAL;
+    double segment_high = -HUGE_VAL;
+    for (std::size_t i = 0; i < controls.size(); ++i) {
+      segment_low = std::min(segment_low, controls[i].y);
+      segment_high = std::max(segment_high, controls[i].y);
+      cells[i] = {filter.to_cell(controls[i].x), filter.to_cell(controls[i].y)};
+    }
+    if (segment_high < low || segment_low > high) return;
+    for_monotone_pieces({cells.data(), controls.size()}, weight, use);
+  };
+  for (const Run& run : runs_) {
+    if (run.high < low || run.low > high) continue;
+    for (std::size_t i = run.first; i < run.end; ++i) {
+      const Outline::Segment& segment = run.outline->segments()[i];
+      use_segment(run.outline->controls(segment), segment.weight);
+    }
+  }
+  for (const Line& line : closing_) {
+    const std::array<Point2, 2> controls = {line.begin, line.end};
+    use_segment(controls, 0.0);
+  }
+}
+
+}  // namespace prefilter

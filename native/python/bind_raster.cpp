@@ -1,0 +1,196 @@
+#include <pybind11/stl.h>
+
+#include <array>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "convert.h"
+#include "instances.h"
+#include "prefilter/base/error.h"
+#include "prefilter/raster/cell_filter.h"
+#include "prefilter/raster/rasterize.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+namespace {
+
+Point2 point_of(const std::array<double, 2>& pair) { return {pair[0], pair[1]}; }
+
+// The points of an array of shape (points, 2).
+std::span<const Point2> points_of(const Array<double>& points) {
+  static_assert(sizeof(Point2) == 2 * sizeof(double));
+  return {reinterpret_cast<const Point2*>(points.data()),
+          static_cast<std::size_t>(points.shape(0))};
+}
+
+// Rows of a map: where x and y go, and the origin.
+AffineMap2 map_of(const std::array<double, 6>& matrix) {
+  return {{matrix[0], matrix[3]}, {matrix[1], matrix[4]}, {matrix[2], matrix[5]}};
+}
+
+// A contour of segments that each take `degree` points, from the first point on.
+void add_contour(Outline* outline, const Array<double>& points, int degree) {
+  const std::span<const Point2> all = points_of(points);
+  outline->reserve(all.size() + 1, all.size() / degree + 1);
+  outline->move_to(all.front());
+  for (std::size_t i = 1; i < all.size(); i += degree) outline->curve_to(all.subspan(i, degree));
+  outline->close();
+}
+
+ChannelValues values_of(const std::vector<double>& values) {
+  ChannelValues out{};
+  std::copy(values.begin(), values.end(), out.begin());
+  return out;
+}
+
+Paint linear_paint(const std::vector<double>& constant, const std::vector<double>& along_x,
+                   const std::vector<double>& along_y) {
+  Paint paint;
+  paint.channels = static_cast<int>(constant.size());
+  paint.constant = values_of(constant);
+  paint.along_x = values_of(along_x);
+  paint.along_y = values_of(along_y);
+  const ChannelValues none{};
+  const bool is_constant = paint.along_x == none && paint.along_y == none;
+  paint.kind = is_constant ? Paint::Kind::kConstant : Paint::Kind::kLinear;
+  return paint;
+}
+
+Spread spread_of(const std::string& name) {
+  if (name == "pad") return Spread::kPad;
+  if (name == "repeat") return Spread::kRepeat;
+  if (name == "reflect") return Spread::kReflect;
+  throw_invalid("spread: '" + name + "' is not one of pad, repeat, reflect");
+}
+
+Paint stops_paint(bool is_radial, const std::array<double, 2>& start, double start_radius,
+                  const std::array<double, 2>& end, double end_radius,
+                  const std::vector<std::pair<double, std::vector<double>>>& stops,
+                  const std::string& spread, const std::array<double, 6>& matrix) {
+  Paint paint;
+  paint.kind = is_radial ? Paint::Kind::kRadialStops : Paint::Kind::kLinearStops;
+  paint.channels = static_cast<int>(stops.front().second.size());
+  for (const auto& [offset, value] : stops) paint.stops.push_back({offset, values_of(value)});
+  paint.spread = spread_of(spread);
+  paint.start = point_of(start);
+  paint.end = point_of(end);
+  paint.start_radius = start_radius;
+  paint.end_radius = end_radius;
+  paint.to_shape = map_of(matrix);
+  return paint;
+}
+
+RasterMethod method_of(const std::string& name) {
+  if (name == "scanline") return RasterMethod::kScanline;
+  if (name == "wavelet") return RasterMethod::kWavelet;
+  throw_invalid("method: '" + name + "' is not one of scanline, wavelet");
+}
+
+Overlap overlap_of(const std::string& name) {
+  if (name == "add") return Overlap::kAdd;
+  if (name == "cover") return Overlap::kCover;
+  throw_invalid("overlap: '" + name + "' is not one of add, cover");
+}
+
+FillRule fill_rule_of(const std::string& name) {
+  if (name == "nonzero") return FillRule::kNonzero;
+  if (name == "evenodd") return FillRule::kEvenOdd;
+  throw_invalid("fill_rule: '" + name + "' is not one of nonzero, evenodd");
+}
+
+Array<float> bound_rasterize(
+    const std::vector<std::tuple<const Outline*, std::string, Paint>>& drawn, int width, int height,
+    const std::string& filter, const std::string& method, const std::string& overlap,
+    const std::vector<float>& background, const py::object& progress, int threads) {
+  RasterOptions options;
+  options.width = width;
+  options.height = height;
+  options.filter = filter;
+  options.method = method_of(method);
+  options.overlap = overlap_of(overlap);
+  options.background = background;
+  options.threads = threads;
+  options.progress = to_progress(progress);
+  std::vector<Shape> shapes;
+  for (const auto& [outline, fill_rule, paint] : drawn) {
+    shapes.push_back({*outline, fill_rule_of(fill_rule), paint});
+  }
+  Image image;
+  {
+    const py::gil_scoped_release unlocked;
+    image = rasterize(shapes, options);
+  }
+  return to_array(std::move(image));
+}
+
+py::object bound_bounds(const Outline& outline) {
+  const Box2 box = control_box(outline);
+  if (outline.empty()) return py::none();
+  return py::make_tuple(py::make_tuple(box.low.x, box.low.y),
+                        py::make_tuple(box.high.x, box.high.y));
+}
+
+}  // namespace
+
+void bind_raster(py::module_& m) {
+  py::class_<Outline>(m, "Outline")
+      .def(py::init<>())
+      .def(
+          "move_to",
+          [](Outline& outline, double x, double y) {
+            outline.move_to({x, y});
+          },
+          py::arg("x"), py::arg("y"))
+      .def(
+          "curve_to",
+          [](Outline& outline, const Array<double>& points) {
+            outline.curve_to(points_of(points));
+          },
+          py::arg("points"))
+      .def(
+          "line_to",
+          [](Outline& outline, double x, double y) {
+            outline.line_to({x, y});
+          },
+          py::arg("x"), py::arg("y"))
+      .def(
+          "conic_to",
+          [](Outline& outline, double x1, double y1, double weight, double x2, double y2) {
+            outline.conic_to({x1, y1}, weight, {x2, y2});
+          },
+          py::arg("x1"), py::arg("y1"), py::arg("weight"), py::arg("x2"), py::arg("y2"))
+      .def("close", &Outline::close)
+      .def("add_contour", &add_contour, py::arg("points"), py::arg("degree"))
+      .def(
+          "transformed",
+          [](const Outline& outline, const std::array<double, 6>& matrix) {
+            return outline.transformed(map_of(matrix));
+          },
+          py::arg("matrix"))
+      .def("copy", [](const Outline& outline) { return Outline(outline); })
+      .def("bounds", &bound_bounds)
+      .def_property_readonly("contour_count", &Outline::contour_count);
+  py::class_<Paint>(m, "Paint")
+      .def(py::init(&linear_paint), py::arg("constant"), py::arg("along_x"), py::arg("along_y"))
+      .def(py::init(&stops_paint), py::arg("is_radial"), py::arg("start"), py::arg("start_radius"),
+           py::arg("end"), py::arg("end_radius"), py::arg("stops"), py::arg("spread"),
+           py::arg("matrix"))
+      .def(
+          "transformed",
+          [](const Paint& paint, const std::array<double, 6>& matrix) {
+            return paint.transformed(map_of(matrix));
+          },
+          py::arg("matrix"));
+  m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("width"), py::arg("height"),
+        py::arg("filter"), py::arg("method"), py::arg("overlap"), py::arg("background"),
+        py::arg("progress"), py::arg("threads"));
+  m.def("raster_filters", [] {
+    const auto names = raster_filters();
+    return std::vector<std::string>(names.begin(), names.end());
+  });
+}
+
+}  // namespace prefilter::python
