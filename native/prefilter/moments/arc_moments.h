@@ -29,7 +29,7 @@ struct ArcMoments {
   Integers across{};
 
   void add_line(Point2 begin, Point2 end, int sign);
-  void add_curve(const Curve& curve, const CellArc& arc, Point2 center, int sign);
+  void add_curve(const ParametricCurve& curve, const CellArc& arc, Point2 center, int sign);
   void add_across(double begin, double end, int sign);
   bool is_zero() const;
 
@@ -158,7 +158,8 @@ void ArcMoments<N>::add_line(Point2 begin, Point2 end, int sign) {
 }
 
 template <int N>
-void ArcMoments<N>::add_curve(const Curve& curve, const CellArc& arc, Point2 center, int sign) {
+void ArcMoments<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, Point2 center,
+                              int sign) {
   constexpr int kPoints = N < 5 ? N + 4 : 9;
   const auto& rule = internal::gauss_rule<kPoints>();
   std::array<Floats, N + 1> sums{};

@@ -69,7 +69,7 @@ void sign_changes(std::vector<double> values, double low, double high,
 
 }  // namespace
 
-Curve::Curve(std::span<const Point2> controls_, double weight) {
+ParametricCurve::ParametricCurve(std::span<const Point2> controls_, double weight) {
   const std::size_t degree = controls_.size() - 1;
   const Point2& p0 = controls_[0];
   const Point2& p1 = controls_[1];
@@ -97,7 +97,7 @@ Curve::Curve(std::span<const Point2> controls_, double weight) {
   }
 }
 
-Point2 Curve::at(double t) const {
+Point2 ParametricCurve::at(double t) const {
   if (kind == CurveKind::kBezier) {
     Point2 point;
     Point2 slope;
@@ -109,7 +109,7 @@ Point2 Curve::at(double t) const {
   return (1.0 / (denominator[0] + t * (denominator[1] + t * denominator[2]))) * sum;
 }
 
-Point2 Curve::derivative(double t) const {
+Point2 ParametricCurve::derivative(double t) const {
   if (kind == CurveKind::kBezier) {
     Point2 point;
     Point2 slope;
@@ -123,7 +123,7 @@ Point2 Curve::derivative(double t) const {
   return (1.0 / below) * (slope - below_slope * at(t));
 }
 
-int turning_points(const Curve& curve, std::span<const Point2> controls,
+int turning_points(const ParametricCurve& curve, std::span<const Point2> controls,
                    std::array<double, kMostTurns>* turns) {
   int count = 0;
   const auto& p = curve.powers;
@@ -173,7 +173,7 @@ bool is_cut_backwards(std::span<const Point2> controls) {
 }
 
 double crossing(const MonotoneCurve& piece, int axis, double value, double low) {
-  const Curve& curve = piece.curve;
+  const ParametricCurve& curve = piece.curve;
   double high = piece.t_end;
   const bool rises = component(piece.end, axis) > component(piece.begin, axis);
   const double at_low = component(curve.at(low), axis) - value;

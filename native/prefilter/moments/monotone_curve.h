@@ -14,7 +14,7 @@ namespace prefilter {
 enum class CurveKind : std::uint8_t { kLine, kQuadratic, kCubic, kConic, kBezier };
 
 /// A curve over t in [0, 1].
-struct Curve {
+struct ParametricCurve {
   CurveKind kind = CurveKind::kLine;
   /// Of lines, quadratics and cubics, by powers of t; of conics, the numerator's.
   std::array<Point2, 4> powers{};
@@ -23,8 +23,8 @@ struct Curve {
   /// Of Bezier curves of degree 4 and above; someone else's.
   std::span<const Point2> controls;
 
-  Curve() = default;
-  Curve(std::span<const Point2> controls_, double weight);
+  ParametricCurve() = default;
+  ParametricCurve(std::span<const Point2> controls_, double weight);
 
   Point2 at(double t) const;
   /// By t.
@@ -33,7 +33,7 @@ struct Curve {
 
 /// From t_begin to t_end along a curve neither x nor y turns.
 struct MonotoneCurve {
-  Curve curve;
+  ParametricCurve curve;
   double t_begin = 0.0;
   double t_end = 1.0;
   Point2 begin;
@@ -44,7 +44,7 @@ struct MonotoneCurve {
 inline constexpr int kMostTurns = 2 * Outline::kMostDegree;
 
 /// Where a curve turns, rising, inside of (0, 1); returns how many places.
-int turning_points(const Curve& curve, std::span<const Point2> controls,
+int turning_points(const ParametricCurve& curve, std::span<const Point2> controls,
                    std::array<double, kMostTurns>* turns);
 
 /// Whether a segment is cut from its end to its begin. Of two shapes that share an edge, each holds
@@ -63,7 +63,7 @@ void for_monotone_pieces(std::span<const Point2> controls, double weight, const 
     controls = {turned.data(), controls.size()};
   }
   MonotoneCurve piece;
-  piece.curve = Curve(controls, weight);
+  piece.curve = ParametricCurve(controls, weight);
   piece.begin = controls.front();
   std::array<double, kMostTurns> turns;
   const int count = turning_points(piece.curve, controls, &turns);
