@@ -2,10 +2,19 @@
 
 #include <algorithm>
 #include <atomic>
+#include <string>
 
+#include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 
 namespace prefilter {
+
+void check_channels(const ImageView& image, const char* name) {
+  if (image.channels < 1 || image.channels > kMaxChannels) {
+    throw_invalid(std::string(name) + ": " + std::to_string(image.channels) +
+                  " channels; 1 to 4 are allowed");
+  }
+}
 
 bool all_filterable(const ImageView& image, const Progress& progress, int threads) {
   const std::size_t row_values = image.value_count() / static_cast<std::size_t>(image.height);

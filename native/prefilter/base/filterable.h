@@ -1,4 +1,4 @@
-// Which values can be filtered.
+// What can be filtered.
 #pragma once
 
 #include <cmath>
@@ -7,6 +7,9 @@
 #include "prefilter/base/progress.h"
 
 namespace prefilter {
+
+/// Throws Error unless the image, called `name`, has 1 to 4 channels.
+void check_channels(const ImageView& image, const char* name = "image");
 
 /// Weighted sums over whole images of values up to this large do not overflow.
 inline constexpr float kLargestValue = 1e30F;

@@ -140,8 +140,9 @@ const Kernel& box_kernel() {
   return box;
 }
 
-Taps downsampling_taps(const Kernel& kernel, double scale, int target) {
-  const double centre = (target + 0.5) * scale;
+Taps resampling_taps(const Kernel& kernel, double ratio, int target) {
+  const double centre = (target + 0.5) * ratio;
+  const double scale = kernel.degree() == 0 ? ratio : std::max(1.0, ratio);
   const double reach = kernel.radius() * scale;
   std::vector<double> values;
   Taps taps;

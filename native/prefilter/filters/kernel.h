@@ -1,5 +1,4 @@
-// Filter kernels in one dimension: even functions, piecewise polynomials, of integral 1, in units
-// of the target's texels.
+// Filter kernels in one dimension: even functions, piecewise polynomials, of integral 1.
 #pragma once
 
 #include <array>
@@ -67,8 +66,10 @@ struct Taps {
   std::vector<double> weights;  // sum to 1
 };
 
-/// Taps of target texel `target` where a target texel is as wide as `scale` source texels, 1 or
-/// more: the kernel at the source texels' centres; where it jumps, its integral over each of them.
-Taps downsampling_taps(const Kernel& kernel, double scale, int target);
+/// Taps of target texel `target` where a target texel is as wide as `ratio` source texels. The
+/// kernel, in units of the wider ones of the two, is taken at the source texels' centres. Where it
+/// jumps it is in units of target texels, and integrated over each source texel: the box gives the
+/// mean over the target texel's square, also where that is smaller than a source texel.
+Taps resampling_taps(const Kernel& kernel, double ratio, int target);
 
 }  // namespace prefilter

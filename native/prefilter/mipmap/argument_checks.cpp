@@ -8,13 +8,6 @@
 
 namespace prefilter {
 
-void check_channels(const ImageView& image, const char* name) {
-  if (image.channels < 1 || image.channels > kMaxChannels) {
-    throw_invalid(std::string(name) + ": " + std::to_string(image.channels) +
-                  " channels; 1 to 4 are allowed");
-  }
-}
-
 void check_surface_area(const std::vector<const Surface*>& surfaces) {
   double area = 0.0;
   for (const Surface* surface : surfaces) area += surface->total_area();

@@ -3,14 +3,10 @@
 
 #include <vector>
 
-#include "prefilter/base/image.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
-
-/// Unless the image, called `name`, has 1 to 4 channels.
-void check_channels(const ImageView& image, const char* name = "image");
 
 /// Unless the surfaces have a positive, finite area in all.
 void check_surface_area(const std::vector<const Surface*>& surfaces);

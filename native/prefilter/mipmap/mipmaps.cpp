@@ -7,16 +7,18 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/filterable.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
 #include "prefilter/color/transfer.h"
+#include "prefilter/filters/filtered_image.h"
 #include "prefilter/filters/push_pull.h"
 #include "prefilter/mipmap/argument_checks.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/encoded_fit.h"
-#include "prefilter/mipmap/filtered_image.h"
 #include "prefilter/mipmap/pam_box.h"
 #include "prefilter/mipmap/seam_links.h"
 #include "prefilter/mipmap/texture_space.h"
@@ -39,6 +41,10 @@ Reads reads_of(const MipmapFilter& filter) {
   return is_fit(filter) ? Reads::kLookedUp : Reads::kWeighted;
 }
 
+std::optional<int> alpha_channel(int channels, bool premultiplied) {
+  return channels == 4 && !premultiplied ? std::optional(3) : std::nullopt;
+}
+
 class Builder {
  public:
   Builder(const TexelSource& source, const std::vector<const Surface*>& surfaces,
@@ -52,7 +58,7 @@ class Builder {
                                         : full_level_count(source.width, source.height)),
         covered_(find_covered()),
         image_(source, [this] { return read_texels(); },
-               {.straight_alpha = !options.premultiplied,
+               {.alpha = alpha_channel(source.channels, options.premultiplied),
                 .needs_floats = needs_floats(),
                 .name = options.image_name,
                 .threads = options.threads,

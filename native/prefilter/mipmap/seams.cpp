@@ -4,6 +4,7 @@
 #include <string>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/filterable.h"
 #include "prefilter/mipmap/argument_checks.h"
 #include "prefilter/mipmap/seam_links.h"
 

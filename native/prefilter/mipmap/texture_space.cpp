@@ -1,8 +1,8 @@
 #include "prefilter/mipmap/texture_space.h"
 
 #include "prefilter/base/parallel.h"
-#include "prefilter/filters/downsample.h"
 #include "prefilter/filters/push_pull.h"
+#include "prefilter/filters/separable.h"
 #include "prefilter/texels/levels.h"
 
 namespace prefilter {
@@ -14,8 +14,8 @@ constexpr float kLeastWeight = 0.1F;
 
 Image filter_level(const ImageView& image, int level, const Kernel& kernel, WrapModes wrap,
                    const Progress& progress, int threads) {
-  return downsample(image, level_size(image.width, level), level_size(image.height, level), kernel,
-                    wrap, progress, threads);
+  return filter_separably(image, level_size(image.width, level), level_size(image.height, level),
+                          kernel, wrap, progress, threads);
 }
 
 Image filter_covered_level(const ImageView& image, const std::vector<unsigned char>& covered,
@@ -37,7 +37,8 @@ Image filter_covered_level(const ImageView& image, const std::vector<unsigned ch
   const int width = level_size(image.width, level);
   const int height = level_size(image.height, level);
   const auto reduce = [&](const Image& source, const Kernel& with, double from, double to) {
-    return downsample(source.view(), width, height, with, wrap, progress.part(from, to), threads);
+    return filter_separably(source.view(), width, height, with, wrap, progress.part(from, to),
+                            threads);
   };
   Image sums = reduce(masked, kernel, 0.1, 0.4);
   Image weights = reduce(mask, kernel, 0.4, 0.5);

@@ -156,10 +156,10 @@ TEST(Kernels, HaveNames) {
   EXPECT_EQ(find_kernel("sinc"), nullptr);
 }
 
-TEST(DownsamplingTaps, AreTheKernelAndSymmetric) {
+TEST(ResamplingTaps, AreTheKernelAndSymmetric) {
   for (const Kernel& kernel : kernels()) {
     for (const int factor : {1, 2, 3, 4, 16, 64}) {
-      const Taps taps = downsampling_taps(kernel, factor, 0);
+      const Taps taps = resampling_taps(kernel, factor, 0);
       const std::size_t count = taps.weights.size();
       // Symmetric about the middle of the first target texel.
       EXPECT_EQ(2 * taps.first + static_cast<int>(count), factor);
@@ -174,15 +174,15 @@ TEST(DownsamplingTaps, AreTheKernelAndSymmetric) {
   }
 }
 
-TEST(DownsamplingTaps, OfABoxAreItsTexels) {
-  const Taps taps = downsampling_taps(box_kernel(), 4, 0);
+TEST(ResamplingTaps, OfABoxAreItsTexels) {
+  const Taps taps = resampling_taps(box_kernel(), 4, 0);
   EXPECT_EQ(taps.first, 0);
   EXPECT_EQ(taps.weights, (std::vector<double>{0.25, 0.25, 0.25, 0.25}));
 }
 
-TEST(DownsamplingTaps, OfABoxAreWhatItCovers) {
+TEST(ResamplingTaps, OfABoxAreWhatItCovers) {
   // 7 texels to 3: the middle one covers [7/3, 14/3].
-  const Taps taps = downsampling_taps(box_kernel(), 7.0 / 3.0, 1);
+  const Taps taps = resampling_taps(box_kernel(), 7.0 / 3.0, 1);
   EXPECT_EQ(taps.first, 2);
   ASSERT_EQ(taps.weights.size(), 3U);
   EXPECT_NEAR(taps.weights[0], 2.0 / 7.0, 1e-14);
@@ -190,10 +190,10 @@ TEST(DownsamplingTaps, OfABoxAreWhatItCovers) {
   EXPECT_NEAR(taps.weights[2], 2.0 / 7.0, 1e-14);
 }
 
-TEST(DownsamplingTaps, ShiftByWholeTexelsWhereTheScaleIsWhole) {
+TEST(ResamplingTaps, ShiftByWholeTexelsWhereTheScaleIsWhole) {
   for (const Kernel& kernel : kernels()) {
-    const Taps first = downsampling_taps(kernel, 3, 0);
-    const Taps fifth = downsampling_taps(kernel, 3, 4);
+    const Taps first = resampling_taps(kernel, 3, 0);
+    const Taps fifth = resampling_taps(kernel, 3, 4);
     EXPECT_EQ(fifth.first, first.first + 12);
     ASSERT_EQ(fifth.weights.size(), first.weights.size());
     for (std::size_t i = 0; i < first.weights.size(); ++i) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "prefilter/base/image.h"
@@ -19,8 +20,9 @@ class FilteredImage {
   using FindRead = std::function<std::vector<unsigned char>()>;
 
   struct Options {
-    // Whether the fourth of four channels is coverage that the others are not multiplied by yet.
-    bool straight_alpha = false;
+    // The channel, the last of two to four, that is coverage and which the others are not
+    // multiplied by yet; none where every channel is filtered as it stands.
+    std::optional<int> alpha;
     // Whether bytes have to be floats, also where alpha plays no part.
     bool needs_floats = true;
     const char* name = "image";  // what errors call it
@@ -58,6 +60,7 @@ class FilteredImage {
 
   const TexelSource& source_;
   ImageView floats_;
+  int alpha_;  // the channel, where there is one
   Image copy_;
   bool is_multiplied_ = false;
   std::array<ValueRange, 3> colours_{};  // of texels with alpha, before they are multiplied by it

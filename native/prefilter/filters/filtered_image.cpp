@@ -1,6 +1,7 @@
-#include "prefilter/mipmap/filtered_image.h"
+#include "prefilter/filters/filtered_image.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <string>
 
@@ -13,12 +14,12 @@
 namespace prefilter {
 namespace {
 
-bool is_opaque(const TexelSource& bytes) {
+bool is_opaque(const TexelSource& bytes, int alpha) {
   constexpr std::uint8_t kOpaque = 255;
   for (int y = 0; y < bytes.height; ++y) {
     const std::uint8_t* texel = bytes.byte_texel(0, y);
-    for (int x = 0; x < bytes.width; ++x, texel += 4) {
-      if (texel[3] != kOpaque) return false;
+    for (int x = 0; x < bytes.width; ++x, texel += bytes.channels) {
+      if (texel[alpha] != kOpaque) return false;
     }
   }
   return true;
@@ -32,10 +33,10 @@ ValueRange widened(const ValueRange& a, const ValueRange& b) {
 
 FilteredImage::FilteredImage(const TexelSource& source, const FindRead& find_read,
                              const Options& options)
-    : source_(source), floats_(source.floats()) {
-  const bool has_alpha = options.straight_alpha && source.channels == 4;
+    : source_(source), floats_(source.floats()), alpha_(options.alpha.value_or(0)) {
+  assert(!options.alpha || *options.alpha == source.channels - 1);
   if (source.has_bytes()) {
-    if (!options.needs_floats && (!has_alpha || is_opaque(source))) {
+    if (!options.needs_floats && (!options.alpha || is_opaque(source, alpha_))) {
       floats_ = {nullptr, source.width, source.height, source.channels};
       return;
     }
@@ -43,7 +44,7 @@ FilteredImage::FilteredImage(const TexelSource& source, const FindRead& find_rea
   } else {
     check(find_read, options);
   }
-  if (has_alpha) multiply_by_alpha(find_read, options);
+  if (options.alpha) multiply_by_alpha(find_read, options);
 }
 
 void FilteredImage::make_floats(const Options& options) {
@@ -79,7 +80,9 @@ void FilteredImage::check(const FindRead& find_read, const Options& options) {
 }
 
 void FilteredImage::multiply_by_alpha(const FindRead& find_read, const Options& options) {
-  const auto opaque = [this](std::size_t i) { return floats_.data[4 * i + 3] == 1.0F; };
+  const auto opaque = [this](std::size_t i) {
+    return floats_.data[i * static_cast<std::size_t>(floats_.channels) + alpha_] == 1.0F;
+  };
   std::size_t i = 0;
   while (i < floats_.texel_count() && opaque(i)) ++i;
   if (i == floats_.texel_count()) return;
@@ -97,19 +100,20 @@ void FilteredImage::multiply_by_alpha(const FindRead& find_read, const Options& 
                [&](std::int64_t row) {
                  float* texel = copy.texel(0, static_cast<int>(row));
                  const unsigned char* texel_read = read.data() + row * copy.width;
-                 for (int x = 0; x < copy.width; ++x, texel += 4) {
-                   texel[3] = std::clamp(texel[3], 0.0F, 1.0F);
-                   for (int c = 0; c < 3; ++c) {
+                 for (int x = 0; x < copy.width; ++x, texel += copy.channels) {
+                   const float alpha = std::clamp(texel[alpha_], 0.0F, 1.0F);
+                   texel[alpha_] = alpha;
+                   for (int c = 0; c < alpha_; ++c) {
                      ValueRange& seen = rows[row][c];
-                     if (texel[3] > 0.0F && texel_read[x] != 0)
+                     if (alpha > 0.0F && texel_read[x] != 0)
                        seen = widened(seen, {texel[c], texel[c]});
-                     texel[c] *= texel[3];
+                     texel[c] *= alpha;
                    }
                  }
                });
   colours_.fill(kNothing);
   for (const std::array<ValueRange, 3>& row : rows) {
-    for (int c = 0; c < 3; ++c) colours_[c] = widened(colours_[c], row[c]);
+    for (int c = 0; c < alpha_; ++c) colours_[c] = widened(colours_[c], row[c]);
   }
   for (ValueRange& own : colours_) {
     if (!(own.low <= own.high)) own = {0.0F, 0.0F};
@@ -126,7 +130,7 @@ Image& FilteredImage::own_copy() {
 
 ValueRange FilteredImage::solved_range(int channel, ValueRange bounds) const {
   if (!is_multiplied_) return bounds;
-  if (channel == 3) return {0.0F, 1.0F};
+  if (channel == alpha_) return {0.0F, 1.0F};
   const ValueRange& own = colours_[channel];
   return {std::clamp(own.low, bounds.low, bounds.high),
           std::clamp(own.high, bounds.low, bounds.high)};
@@ -141,17 +145,17 @@ void FilteredImage::divide_by_alpha(WrapModes wrap, const Progress& progress, in
   parallel_for(level->height, threads, progress.part(0.0, 0.5), [&](std::int64_t row) {
     float* texel = level->texel(0, static_cast<int>(row));
     float* weight = weights.data() + row * level->width;
-    for (int x = 0; x < level->width; ++x, texel += 4) {
-      const float alpha = texel[3];
+    for (int x = 0; x < level->width; ++x, texel += level->channels) {
+      const float alpha = texel[alpha_];
       weight[x] = alpha > kLeastAlpha ? alpha : 0.0F;
-      for (int c = 0; c < 3; ++c) {
+      for (int c = 0; c < alpha_; ++c) {
         const float colour = weight[x] > 0.0F ? texel[c] / alpha : 0.0F;
         texel[c] = std::min(std::max(colour, colours_[c].low), colours_[c].high);
       }
-      texel[3] = std::clamp(alpha, 0.0F, 1.0F);
+      texel[alpha_] = std::clamp(alpha, 0.0F, 1.0F);
     }
   });
-  fill_holes(weights, wrap, 3, progress.part(0.5, 1.0), threads, level);
+  fill_holes(weights, wrap, alpha_, progress.part(0.5, 1.0), threads, level);
 }
 
 }  // namespace prefilter
