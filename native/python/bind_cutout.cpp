@@ -15,11 +15,11 @@ void bind_cutout(py::module_& m) {
   m.def(
       "keep_coverage",
       [](const std::vector<Array<float>>& levels, const std::vector<const Surface*>& surfaces,
-         double threshold, const std::pair<std::string, std::string>& wrap, bool premultiplied,
-         const py::object& progress, int threads) {
+         double threshold, const WrapNames& wrap, bool premultiplied, const py::object& progress,
+         int threads) {
         CoverageOptions options;
         options.threshold = threshold;
-        options.wrap = {wrap_mode(wrap.first), wrap_mode(wrap.second)};
+        options.wrap = wrap_modes(wrap);
         options.premultiplied = premultiplied;
         options.threads = threads;
         options.progress = to_progress(progress);

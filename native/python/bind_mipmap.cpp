@@ -17,12 +17,6 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-using WrapNames = std::pair<std::string, std::string>;
-
-WrapModes wrap_modes(const WrapNames& names) {
-  return {wrap_mode(names.first), wrap_mode(names.second)};
-}
-
 Reader reader_of(const std::string& name) {
   if (name == "linear") return Reader::kLinear;
   if (name == "srgb-after") return Reader::kSrgbAfter;

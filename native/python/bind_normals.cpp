@@ -16,11 +16,10 @@ void bind_normals(py::module_& m) {
       "normal_mipmaps",
       [](const Array<float>& normals, const std::optional<Array<float>>& roughness,
          const std::vector<const Surface*>& surfaces, const std::string& filter,
-         const std::pair<std::string, std::string>& wrap, bool encoded, int levels,
-         const py::object& progress, int threads) {
+         const WrapNames& wrap, bool encoded, int levels, const py::object& progress, int threads) {
         NormalMipmapOptions options;
         options.filter = mipmap_filter(filter);
-        options.wrap = {wrap_mode(wrap.first), wrap_mode(wrap.second)};
+        options.wrap = wrap_modes(wrap);
         options.encoded = encoded;
         options.levels = levels;
         options.threads = threads;

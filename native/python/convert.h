@@ -53,8 +53,9 @@ Array<T> to_array(std::vector<Value> values, std::vector<pybind11::ssize_t> shap
   return Array<T>(std::move(shape), reinterpret_cast<const T*>(held.data()), capsule);
 }
 
-/// The wrap mode of a public name.
-Wrap wrap_mode(const std::string& name);
+/// Wrap modes along u and v by their public names.
+using WrapNames = std::pair<std::string, std::string>;
+WrapModes wrap_modes(const WrapNames& names);
 
 /// Whether the interpreter is going away: it then ends any thread that asks for its lock.
 bool is_finalizing();

@@ -19,6 +19,7 @@ void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
 void bind_raster(py::module_& m);
 void bind_reconstruct(py::module_& m);
+void bind_resize(py::module_& m);
 void bind_scan(py::module_& m);
 void bind_spatial(py::module_& m);
 void bind_surface(py::module_& m);
@@ -49,11 +50,14 @@ std::vector<Array<float>> to_arrays(std::vector<Image> images) {
   return arrays;
 }
 
-Wrap wrap_mode(const std::string& name) {
-  if (name == "clamp") return Wrap::kClamp;
-  if (name == "repeat") return Wrap::kRepeat;
-  if (name == "border") return Wrap::kBorder;
-  throw_invalid("wrap: '" + name + "' is not one of clamp, repeat, border");
+WrapModes wrap_modes(const WrapNames& names) {
+  const auto mode = [](const std::string& name) {
+    if (name == "clamp") return Wrap::kClamp;
+    if (name == "repeat") return Wrap::kRepeat;
+    if (name == "border") return Wrap::kBorder;
+    throw_invalid("wrap: '" + name + "' is not one of clamp, repeat, border");
+  };
+  return {mode(names.first), mode(names.second)};
 }
 
 bool is_finalizing() {
@@ -120,4 +124,5 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_contour(m);
   prefilter::python::bind_reconstruct(m);
   prefilter::python::bind_raster(m);
+  prefilter::python::bind_resize(m);
 }

@@ -15,6 +15,7 @@ from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
 from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
+from .resizing import RESIZE_FILTERS, resize
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .shapes import RASTER_FILTERS, Shape, rasterize
 from .surface import Surface
@@ -30,6 +31,7 @@ __all__ = [
     "MIPMAP_FILTERS",
     "POINT_EXTENSIONS",
     "RASTER_FILTERS",
+    "RESIZE_FILTERS",
     "Cancelled",
     "ClosedMesh",
     "MipmapFilter",
@@ -57,6 +59,7 @@ __all__ = [
     "read_points",
     "reconstruct",
     "reconstruct_file",
+    "resize",
     "seam_contrast",
     "texel_weights",
     "to_linear",

@@ -140,6 +140,18 @@ def subdivide(
 ) -> Surface: ...
 def decode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
 def encode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
+def resize_filters() -> list[str]: ...
+def resize(
+    image: npt.NDArray[np.float32],
+    width: int,
+    height: int,
+    filter: str,
+    constrained: bool,
+    wrap: tuple[str, str],
+    premultiplied: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
 def compress_blocks(
     rgba: npt.NDArray[np.uint8],
     format: str,

@@ -1,0 +1,35 @@
+// What an image is resized with.
+#pragma once
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "prefilter/filters/kernel.h"
+
+namespace prefilter {
+
+/// "radial2" and "radial3": a WindowedJinc of that radius.
+struct RadialFilter {
+  int radius;
+  bool operator==(const RadialFilter&) const = default;
+};
+
+/// "least-squares": the texels that come closest to the image once they are enlarged bilinearly.
+struct BilinearFit {
+  bool operator==(const BilinearFit&) const = default;
+};
+
+/// A kernel along each axis, or one of these.
+using ResizeFilter = std::variant<const Kernel*, RadialFilter, BilinearFit>;
+
+/// All there are: every kernel, and the others.
+std::vector<ResizeFilter> resize_filters();
+
+/// The public name, such as "lanczos3".
+std::string name_of(const ResizeFilter& filter);
+
+/// The filter of a public name. Throws Error for any other, naming all.
+ResizeFilter resize_filter(const std::string& name);
+
+}  // namespace prefilter
