@@ -23,6 +23,7 @@ SAME_IN_ANY_PYTHON = {
     "test_normals_of_points.py",
     "test_places.py",
     "test_reader.py",
+    "test_resize.py",
     "test_scan_files.py",
     "test_scan_formats.py",
     "test_seams.py",

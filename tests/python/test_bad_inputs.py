@@ -99,6 +99,7 @@ FUNCTIONS = {
     ),
     "contour": (prefilter.contour, {"grid": np.ones((2, 2, 2))}),
     "Octree": (octree_method, {"name": "union", "other": OCTREE}),
+    "resize": (prefilter.resize, {"image": IMAGE, "width": 5, "height": 7}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
 }
@@ -536,6 +537,31 @@ ROWS = [
         ["surface: none of it lies inside of the image"],
     ),
     *(
+        ("resize", arguments, words)
+        for arguments, words in (
+            ({"image": BYTES}, ["image: dtype uint8", FLOATS]),
+            ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
+            ({"image": np.zeros((0, 4, 3))}, ["image: shape (0, 4, 3)", "at least one"]),
+            ({"image": np.zeros((4, 4, 5))}, ["image: 5 channels", "1 to 4 are allowed"]),
+            ({"image": changed(IMAGE, (2, 3, 1), NAN)}, ["image: the texel in row 2, column 3"]),
+            ({"image": changed(RGBA, (2, 3, 3), np.inf)}, ["image: ", "inf in channel 3"]),
+            ({"image": IMAGE * 1e31}, ["image: the texel", "at most 1e30"]),
+            ({"width": 0}, ["width: 0", "from 1 to 1048576"]),
+            ({"height": -3}, ["height: -3", "from 1 to 1048576"]),
+            ({"height": 2**20 + 1}, ["height: 1048577", "from 1 to 1048576"]),
+            ({"width": 2.0}, ["width: 2.0", "a whole number"]),
+            ({"width": True}, ["width: True", "a whole number"]),
+            ({"height": NAN}, ["height: nan", "a whole number"]),
+            ({"height": 10**30}, ["height: 1000", "a whole number"]),
+            ({"filter": "cubic"}, ["filter: 'cubic' is not one of box, tent", "least-squares"]),
+            ({"filter": None}, ["filter: None", "a name is needed"]),
+            ({"wrap": "mirror"}, ["wrap: 'mirror'", WRAPS]),
+            ({"wrap": ("clamp",)}, ["wrap: ('clamp',)", "a pair"]),
+            ({"progress": 1}, ["progress: 1", "a callable"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+        )
+    ),
+    *(
         ("to_linear", arguments, words)
         for arguments, words in (
             ({"image": BYTES}, ["image: dtype uint8", FLOATS]),
@@ -725,6 +751,12 @@ def test_a_grid_that_would_not_fit_is_refused_before_it_is_made():
         deep.dense(12)
 
 
+@pytest.mark.parametrize("filter", ["box", "radial3", "least-squares"])
+def test_an_image_that_would_not_fit_is_refused_before_it_is_made(filter):
+    with pytest.raises(MemoryError, match="width, height: an image of 1048576 x 1048576 texels"):
+        prefilter.resize(IMAGE, 2**20, 2**20, filter=filter)
+
+
 @pytest.mark.parametrize("function", [name for name, (_, good) in FUNCTIONS.items() if good])
 def test_the_other_arguments_of_the_rows_are_good(function, folder):
     call, good = FUNCTIONS[function]
@@ -732,7 +764,7 @@ def test_the_other_arguments_of_the_rows_are_good(function, folder):
 
 
 def test_every_function_is_there():
-    constants = {"MAX_DEPTH", "MIPMAP_FILTERS", "POINT_EXTENSIONS"}
+    constants = {"MAX_DEPTH", "MIPMAP_FILTERS", "POINT_EXTENSIONS", "RESIZE_FILTERS"}
     classes = {"Cancelled", "ClosedMesh", "MipmapFilter", "NearestPoints", "Surface"}
     classes |= {"ReconstructionReport", "ScanPoints"}
     # In test_normals_of_points, test_face_normals, test_scan_files and test_scan_failures.

@@ -99,6 +99,19 @@ WORK = {
         np.where(RGBA < 0.5, np.float32(0.0), RGBA), threads=1, **options
     ),
     "fill_unused": lambda **options: prefilter.fill_unused(IMAGE, SURFACE, threads=1, **options),
+    **{
+        f"resize, {filter}": lambda filter=filter, **options: prefilter.resize(
+            RGBA, 300, 700, filter=filter, threads=1, **options
+        )
+        for filter in ("lanczos3", "radial3", "least-squares")
+    },
+    # One texel of many taps.
+    **{
+        f"resize to 1 x 1, {filter}": lambda filter=filter, **options: prefilter.resize(
+            IMAGE, 1, 1, filter=filter, threads=1, **options
+        )
+        for filter in ("lanczos3", "radial3")
+    },
     "subdivision": lambda **options: prefilter.Surface.from_subdivision(
         POSITIONS,
         np.full(len(QUADS), 4),

@@ -1,0 +1,370 @@
+"""Resizing, against dense sums of the filters' closed forms and dense least squares."""
+
+from itertools import product
+
+import numpy as np
+import prefilter
+import pytest
+from scipy.optimize import lsq_linear
+from scipy.special import j1
+
+WRAPS = ("clamp", "repeat", "border")
+SIZES = [(12, 9, 5, 4), (8, 8, 4, 2), (6, 5, 1, 3), (7, 4, 17, 9), (5, 16, 9, 3), (4, 6, 4, 13)]
+
+
+def image_of(width, height, channels=1, seed=0):
+    return np.random.default_rng(seed).random((height, width, channels)).astype(np.float32)
+
+
+def mitchell(x):
+    x = abs(x)
+    near = (7 * x**3 - 12 * x**2 + 16 / 3) / 6
+    far = (-7 / 3 * x**3 + 12 * x**2 - 20 * x + 32 / 3) / 6
+    return np.where(x < 1, near, np.where(x < 2, far, 0.0))
+
+
+def bspline2(x):
+    x = abs(x)
+    return np.where(x < 0.5, 0.75 - x**2, np.where(x < 1.5, (1.5 - x) ** 2 / 2, 0.0))
+
+
+def lanczos(radius):
+    return lambda x: np.where(abs(x) < radius, np.sinc(x) * np.sinc(x / radius), 0.0)
+
+
+# The kernel, and how far its polynomials may be from it.
+KERNELS = {
+    "tent": (lambda x: np.maximum(0.0, 1 - abs(x)), 1e-7),
+    "bspline2": (bspline2, 1e-7),
+    "mitchell": (mitchell, 1e-7),
+    "lanczos2": (lanczos(2), 1e-5),
+    "lanczos3": (lanczos(3), 1e-5),
+    "gaussian": (lambda x: np.where(abs(x) < 2, np.exp(-np.pi * x**2), 0.0), 3e-5),
+}
+
+
+def folded(weights, reach, size, wrap):
+    """The weights of texels -reach ... size + reach as those of the image's own."""
+    result = np.zeros((len(weights), size))
+    for i in range(-reach, size + reach):
+        if wrap == "clamp":
+            result[:, min(max(i, 0), size - 1)] += weights[:, i + reach]
+        elif wrap == "repeat" or 0 <= i < size:
+            result[:, i % size] += weights[:, i + reach]
+    return result
+
+
+def axis_weights(filter, size, target, wrap):
+    if size == target:
+        return np.eye(size)
+    ratio = size / target
+    reach = 4 * int(np.ceil(max(ratio, 1)))
+    texel = np.arange(-reach, size + reach)
+    centre = (np.arange(target)[:, None] + 0.5) * ratio
+    if filter == "box":
+        low = np.maximum(texel, centre - ratio / 2)
+        weights = np.maximum(0.0, np.minimum(texel + 1, centre + ratio / 2) - low)
+    else:
+        weights = KERNELS[filter][0]((texel + 0.5 - centre) / max(1.0, ratio))
+    return folded(weights / weights.sum(axis=1, keepdims=True), reach, size, wrap)
+
+
+@pytest.mark.parametrize("filter", ["box", *KERNELS])
+def test_kernels_are_their_closed_forms(filter):
+    tolerance = 2e-7 + (KERNELS[filter][1] if filter in KERNELS else 0.0)
+    for k, (width, height, new_width, new_height) in enumerate(SIZES):
+        image = image_of(width, height, 1 + k % 4)
+        for wrap in product(WRAPS, WRAPS):
+            along_x = axis_weights(filter, width, new_width, wrap[0])
+            along_y = axis_weights(filter, height, new_height, wrap[1])
+            expected = np.einsum("jy,ix,yxc->jic", along_y, along_x, image.astype(float))
+            found = prefilter.resize(
+                image, new_width, new_height, filter=filter, wrap=wrap, premultiplied=True
+            )
+            assert found.dtype == np.float32
+            np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance)
+
+
+def jinc(r, radius):
+    r = np.maximum(r, 1e-9)
+    return np.where(r < radius, j1(np.pi * r) / (np.pi * r) * np.sinc(r / radius), 0.0)
+
+
+@pytest.mark.parametrize("radius", [2, 3])
+def test_radial_filters_are_windowed_jincs(radius):
+    for k, (width, height, new_width, new_height) in enumerate(SIZES):
+        image = image_of(width, height, 1 + k % 4)
+        scale_x, scale_y = width / new_width, height / new_height
+        unit_x, unit_y = max(1, scale_x), max(1, scale_y)
+        reach_x, reach_y = int(4 * unit_x) + 1, int(4 * unit_y) + 1
+        for wrap in WRAPS:
+            expected = np.zeros((new_height, new_width, image.shape[2]))
+            for j, i in np.ndindex(new_height, new_width):
+                x = (np.arange(-reach_x, width + reach_x) + 0.5 - (i + 0.5) * scale_x) / unit_x
+                y = (np.arange(-reach_y, height + reach_y) + 0.5 - (j + 0.5) * scale_y) / unit_y
+                weights = jinc(np.hypot(x, y[:, None]), radius)
+                weights /= weights.sum()
+                weights = folded(weights, reach_x, width, wrap)
+                weights = folded(weights.T, reach_y, height, wrap).T
+                expected[j, i] = np.einsum("yx,yxc->c", weights, image)
+            found = prefilter.resize(
+                image,
+                new_width,
+                new_height,
+                filter=f"radial{radius}",
+                wrap=wrap,
+                premultiplied=True,
+            )
+            np.testing.assert_allclose(found, expected, rtol=0, atol=3e-7)
+
+
+def tents(texels, target, wrap):
+    """Integrals along one axis, of products of tents and of tents over texels: both exact.
+
+    Between texels' edges and tents' corners all is polynomial, and Gauss' two points do.
+    """
+    corners = np.concatenate([np.arange(texels + 1) / texels, (np.arange(target) + 0.5) / target])
+    edges = np.unique(corners)
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    place = (middle[:, None] + half[:, None] * np.array([-1, 1]) / np.sqrt(3)).ravel()
+    weights = half.repeat(2)
+    values = np.zeros((len(place), target))
+    for k in range(-1, target + 1):
+        tent = np.maximum(0.0, 1 - abs(place * target - (k + 0.5)))
+        if wrap == "clamp":
+            values[:, min(max(k, 0), target - 1)] += tent
+        elif wrap == "repeat" or 0 <= k < target:
+            values[:, k % target] += tent
+    over_texels = np.zeros((texels, target))
+    np.add.at(over_texels, (place * texels).astype(int), weights[:, None] * values)
+    return values.T @ (weights[:, None] * values), over_texels
+
+
+def closest(image, width, height, wrap, bounds):
+    """Dense least squares."""
+    products_x, texels_x = tents(image.shape[1], width, wrap)
+    products_y, texels_y = tents(image.shape[0], height, wrap)
+    root = np.linalg.cholesky(np.kron(products_y, products_x))
+    result = np.empty((height, width, image.shape[2]))
+    for c in range(image.shape[2]):
+        right = (texels_y.T @ image[..., c] @ texels_x).ravel()
+        solved = lsq_linear(root.T, np.linalg.solve(root, right), bounds, "bvls")
+        result[..., c] = solved.x.reshape(height, width)
+    return result
+
+
+@pytest.mark.parametrize("wrap", WRAPS)
+@pytest.mark.parametrize("constrained", [False, True])
+def test_least_squares_are_dense_least_squares(wrap, constrained):
+    beyond = 0
+    for k, (width, height, new_width, new_height) in enumerate(SIZES):
+        # Black and white: what fits best is out of bounds.
+        image = image_of(width, height, 1 + k % 2).round()
+        bounds = (0.0, 1.0) if constrained else (-np.inf, np.inf)
+        expected = closest(image.astype(float), new_width, new_height, wrap, bounds)
+        found = prefilter.resize(
+            image,
+            new_width,
+            new_height,
+            filter="least-squares",
+            wrap=wrap,
+            constrained=constrained,
+            premultiplied=True,
+        )
+        beyond += np.sum((found < 0) | (found > 1))
+        np.testing.assert_allclose(found, expected, rtol=0, atol=5e-6)
+    assert (beyond == 0) == constrained
+
+
+def enlarged(image, width, height):
+    return prefilter.resize(image, width, height, filter="tent")
+
+
+def test_constrained_least_squares_beat_the_other_filters_within_the_bounds():
+    """Figure 1.8, in numbers: the error after bilinear enlargement, of an image of edges."""
+    y, x = np.mgrid[:96, :96] / 96
+    image = ((np.hypot(x - 0.4, y - 0.5) < 0.3) | (np.sin(60 * x * y) > 0.5)).astype(np.float32)
+    image = image[..., None]
+
+    def error(**options):
+        small = prefilter.resize(image, 24, 24, constrained=True, **options)
+        large = enlarged(small, 960, 960)
+        return np.sqrt(np.mean((large - prefilter.resize(image, 960, 960, filter="box")) ** 2))
+
+    best = error(filter="least-squares")
+    for filter in set(prefilter.RESIZE_FILTERS) - {"least-squares"}:
+        assert best < error(filter=filter), filter
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+def test_constants_stay_to_the_last_bit(filter):
+    for channels, value in ((1, 0.1), (2, 0.7), (3, -3.3e7), (4, 1e-20)):
+        image = np.full((9, 13, channels), value, np.float32)
+        for wrap, (width, height) in product(("clamp", "repeat"), ((5, 3), (29, 31), (40, 1))):
+            found = prefilter.resize(
+                image, width, height, filter=filter, wrap=wrap, premultiplied=True
+            )
+            assert np.all(found == np.float32(value))
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_an_image_of_the_same_size_stays(filter, channels):
+    image = image_of(7, 5, channels) * 3 - 1
+    found = prefilter.resize(image, 7, 5, filter=filter)
+    np.testing.assert_array_equal(found, image)
+    assert not np.shares_memory(found, image)
+    clipped = prefilter.resize(image, 7, 5, filter=filter, constrained=True)
+    np.testing.assert_array_equal(clipped, image.clip(0, 1))
+
+
+@pytest.mark.parametrize("filter", ["box", *KERNELS])
+def test_an_axis_whose_size_stays_is_left_alone(filter):
+    row = image_of(9, 1, 3)
+    image = np.broadcast_to(row, (6, 9, 3))
+    found = prefilter.resize(image, 4, 6, filter=filter)
+    np.testing.assert_array_equal(found, np.repeat(found[:1], 6, axis=0))
+    np.testing.assert_array_equal(found[:1], prefilter.resize(row, 4, 1, filter=filter))
+
+
+def test_box_is_the_mean_and_squares_stay_squares():
+    image = image_of(12, 8, 3)
+    means = image.astype(float).reshape(4, 2, 4, 3, 3).mean(axis=(1, 3))
+    np.testing.assert_allclose(prefilter.resize(image, 4, 4, filter="box"), means, atol=1e-7)
+    large = prefilter.resize(image, 36, 16, filter="box")
+    np.testing.assert_array_equal(large, image.repeat(2, axis=0).repeat(3, axis=1))
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+def test_a_mirrored_image_gives_a_mirrored_result(filter):
+    image = image_of(11, 8, 2)
+    for width, height in ((4, 3), (18, 20)):
+        found = prefilter.resize(image, width, height, filter=filter, premultiplied=True)
+        for flip in (np.fliplr, np.flipud):
+            mirrored = prefilter.resize(
+                flip(image), width, height, filter=filter, premultiplied=True
+            )
+            np.testing.assert_allclose(mirrored, flip(found), rtol=0, atol=4e-6)
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+def test_a_tiled_image_can_be_shifted(filter):
+    image = image_of(12, 9, 1)
+    found = prefilter.resize(image, 4, 3, filter=filter, wrap="repeat")
+    shifted = prefilter.resize(
+        np.roll(image, (6, 3), axis=(0, 1)), 4, 3, filter=filter, wrap="repeat"
+    )
+    np.testing.assert_allclose(shifted, np.roll(found, (2, 1), axis=(0, 1)), rtol=0, atol=4e-6)
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+@pytest.mark.parametrize("colors", [1, 3])
+def test_colors_without_alpha_do_not_bleed(filter, colors):
+    image = np.zeros((16, 16, colors + 1), np.float32)
+    image[..., :colors] = 1.0  # seen nowhere but in the middle, where it is 0.25
+    image[4:12, 4:12, :colors] = 0.25
+    image[4:12, 4:12, -1] = 1.0
+    for size in (7, 37):
+        found = prefilter.resize(image, size, size, filter=filter)
+        np.testing.assert_allclose(found[..., :colors], 0.25, rtol=0, atol=1e-6)
+        assert found[..., -1].min() >= 0
+        assert found[..., -1].max() <= 1
+        assert np.ptp(found[..., -1]) > 0.9
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+@pytest.mark.parametrize("colors", [1, 3])
+def test_colors_count_by_their_alpha(filter, colors):
+    image = 0.4 + 0.2 * image_of(60, 64, colors + 1)
+    image[0, :2, :-1] = [[-1], [2]]  # so that no limit of colors is near anywhere else
+    multiplied = image * image[..., -1:]
+    multiplied[..., -1] = image[..., -1]
+    for width, height in ((30, 27), (83, 90)):
+        found = prefilter.resize(image, width, height, filter=filter)
+        plain = prefilter.resize(multiplied, width, height, filter=filter, premultiplied=True)
+        plain[..., :-1] /= plain[..., -1:]
+        away = np.s_[height // 2 :, width // 2 :]
+        np.testing.assert_allclose(found[away], plain[away], rtol=0, atol=4e-6)
+        assert found[..., :-1].min() >= -1
+        assert found[..., :-1].max() <= 2
+
+
+def test_an_opaque_image_is_filtered_like_any_other():
+    image = image_of(16, 12, 4) * 4 - 1
+    image[..., 3] = 1
+    for filter in prefilter.RESIZE_FILTERS:
+        found = prefilter.resize(image, 7, 5, filter=filter)
+        colors = prefilter.resize(image[..., :3], 7, 5, filter=filter)
+        np.testing.assert_array_equal(found[..., :3], colors)
+        np.testing.assert_array_equal(found[..., 3], 1)
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+def test_constrained_values_stay_in_bounds(filter):
+    image = image_of(40, 30, 4).round()
+    for premultiplied, (width, height) in product((False, True), ((9, 8), (70, 50))):
+        found = prefilter.resize(
+            image, width, height, filter=filter, constrained=True, premultiplied=premultiplied
+        )
+        assert found.min() >= 0
+        assert found.max() <= 1
+    if filter != "least-squares":
+        free = prefilter.resize(image, 9, 8, filter=filter, premultiplied=True)
+        clipped = prefilter.resize(image, 9, 8, filter=filter, premultiplied=True, constrained=True)
+        np.testing.assert_array_equal(clipped, free.clip(0, 1))
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+def test_results_do_not_depend_on_threads(filter):
+    image = image_of(150, 131, 4)
+    for width, height in ((71, 67), (190, 33)):
+        one, two, seven = (
+            prefilter.resize(image, width, height, filter=filter, threads=threads)
+            for threads in (1, 2, 7)
+        )
+        np.testing.assert_array_equal(one, two)
+        np.testing.assert_array_equal(one, seven)
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+def test_progress_rises_to_one(filter):
+    seen = []
+    prefilter.resize(image_of(300, 200, 4), 170, 130, filter=filter, progress=seen.append)
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+    with pytest.raises(prefilter.Cancelled):
+        prefilter.resize(image_of(9, 9), 4, 4, filter=filter, progress=lambda f: False)
+
+
+@pytest.mark.parametrize("filter", prefilter.RESIZE_FILTERS)
+@pytest.mark.parametrize("wrap", WRAPS)
+def test_extreme_sizes(filter, wrap):
+    dot = np.full((1, 1, 1), 0.5, np.float32)
+    large = prefilter.resize(dot, 33, 20, filter=filter, wrap=wrap)
+    assert large.shape == (20, 33, 1)
+    assert np.isfinite(large).all()
+    line = image_of(3000, 1)
+    one = prefilter.resize(line, 1, 1, filter=filter, wrap=wrap)
+    assert one.shape == (1, 1, 1)
+    assert np.isfinite(one).all()
+    if wrap == "repeat":
+        np.testing.assert_allclose(one, line.mean(), rtol=0, atol=2e-3)
+    tall = prefilter.resize(line, 2, 500, filter=filter, wrap=wrap)
+    assert tall.shape == (500, 2, 1)
+    assert np.isfinite(tall).all()
+
+
+def test_large_values_do_not_overflow():
+    image = np.full((8, 8, 1), 1e30, np.float32)
+    image[::2] = -1e30
+    for filter in prefilter.RESIZE_FILTERS:
+        assert np.isfinite(prefilter.resize(image, 5, 11, filter=filter)).all(), filter
+
+
+def test_float64_and_views_are_read_alike():
+    image = image_of(20, 18, 3)
+    expected = prefilter.resize(image[::2, ::-1], 6, 5)
+    np.testing.assert_array_equal(prefilter.resize(image.astype(float)[::2, ::-1], 6, 5), expected)
+    np.testing.assert_array_equal(
+        prefilter.resize(image[::2, ::-1].copy(order="F"), np.int64(6), 5), expected
+    )
