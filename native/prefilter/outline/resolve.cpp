@@ -1,11 +1,58 @@
 #include "prefilter/outline/resolve.h"
 
+#include <array>
+
+#include "prefilter/outline/arrangement.h"
 #include "prefilter/outline/polygon_clipper.h"
 
 namespace prefilter {
+namespace {
+
+bool is_filled(int winding, FillRule rule) {
+  return rule == FillRule::kNonzero ? winding != 0 : winding % 2 != 0;
+}
+
+enum class Outcome : std::uint8_t { kAsItIs, kTraced, kUnclear };
+
+Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision, Outline* result) {
+  const std::array<const Outline*, 1> outlines = {&outline};
+  Arrangement arrangement(outlines, precision);
+  if (!arrangement.cut()) return Outcome::kUnclear;
+  std::vector<BoundaryChain> boundary;
+  boundary.reserve(arrangement.chain_count());
+  bool all_forward = true;
+  const auto visitor = [&](std::uint32_t chain, std::span<const int> right,
+                           std::span<const int> left) {
+    const bool is_left = is_filled(left[0], rule);
+    const bool is_right = is_filled(right[0], rule);
+    all_forward = all_forward && is_left && !is_right;
+    if (is_left != is_right) boundary.push_back({chain, is_right});
+  };
+  arrangement.visit(0, arrangement.chain_count(), visitor);
+  if (arrangement.all_whole() && all_forward) return Outcome::kAsItIs;
+  return arrangement.trace(boundary, result) ? Outcome::kTraced : Outcome::kUnclear;
+}
+
+}  // namespace
+
+std::optional<Outline> resolved(const Outline& outline, FillRule rule, double tolerance) {
+  for (const double precision : kPrecisions) {
+    Outline result;
+    switch (resolve_exactly(outline, rule, precision, &result)) {
+      case Outcome::kAsItIs:
+        return std::nullopt;
+      case Outcome::kTraced:
+        return result;
+      case Outcome::kUnclear:
+        break;
+    }
+  }
+  return combine_polygons(flattened(outline, tolerance), rule, {}, rule, SetOperation::kUnion);
+}
 
 Outline resolve(const Outline& outline, FillRule rule, double tolerance) {
-  return combine_polygons(flattened(outline, tolerance), rule, {}, rule, SetOperation::kUnion);
+  std::optional<Outline> result = resolved(outline, rule, tolerance);
+  return result ? std::move(*result) : outline;
 }
 
 }  // namespace prefilter

@@ -1,6 +1,8 @@
 // Outlines whose contours overlap, made into the boundary of what they fill.
 #pragma once
 
+#include <optional>
+
 #include "prefilter/base/outline.h"
 
 namespace prefilter {
@@ -12,9 +14,16 @@ inline constexpr double kOutlineTolerance = 1e-3;
 /// themselves, with the inside on the left. Every point inside has the winding number 1, every
 /// point outside 0.
 ///
-/// A contour that meets no other one is kept as it is, control point by control point, reversed, or
-/// left out, as the rule says. Coordinates must be finite. `tolerance`, above 0, is in the
-/// outline's units.
+/// Curves stay the same curves: a contour that meets no other one is kept as it is, control point
+/// by control point, reversed, or left out, as the rule says, and those that cross are cut where
+/// they do. Only where rounding leaves no way to tell what crosses what, all curves are replaced by
+/// lines, off by `tolerance` at the most. That is above 0, in the outline's units. Coordinates must
+/// be finite.
 Outline resolve(const Outline& outline, FillRule rule, double tolerance = kOutlineTolerance);
+
+/// The same, but nothing where that would be the outline itself: it is resolved as it is, but for
+/// open contours, which are filled as if they were closed, and contours that are points.
+std::optional<Outline> resolved(const Outline& outline, FillRule rule,
+                                double tolerance = kOutlineTolerance);
 
 }  // namespace prefilter

@@ -1,0 +1,329 @@
+#include "prefilter/outline/arrangement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+#include <unordered_map>
+
+namespace prefilter {
+namespace {
+
+double extent(const Box2& box) {
+  if (box.empty()) return 0.0;
+  return std::max(box.high.x - box.low.x, box.high.y - box.low.y);
+}
+
+// The spacing of numbers as large as a box's coordinates.
+double rounding(const Box2& box) {
+  if (box.empty()) return 0.0;
+  const double largest = std::max(
+      {std::fabs(box.low.x), std::fabs(box.low.y), std::fabs(box.high.x), std::fabs(box.high.y)});
+  return std::ldexp(largest, -52);
+}
+
+std::uint32_t root_of(std::vector<std::uint32_t>* parents, std::uint32_t index) {
+  while ((*parents)[index] != index) {
+    (*parents)[index] = (*parents)[(*parents)[index]];
+    index = (*parents)[index];
+  }
+  return index;
+}
+
+void join(std::vector<std::uint32_t>* parents, std::uint32_t a, std::uint32_t b) {
+  const std::uint32_t first = root_of(parents, a);
+  const std::uint32_t second = root_of(parents, b);
+  (*parents)[std::max(first, second)] = std::min(first, second);
+}
+
+}  // namespace
+
+// A point of a contour where it meets another.
+struct Arrangement::Site {
+  PieceId place;
+  double parameter = 0.0;
+  Point2 point;
+  bool is_joint = false;
+};
+
+Arrangement::Arrangement(std::span<const Outline* const> outlines, double precision)
+    : contours_(outlines),
+      tree_(contours_),
+      layers_(outlines.size()),
+      precision_(std::max(precision * extent(contours_.box()), 8.0 * rounding(contours_.box()))) {}
+
+CurvePiece Arrangement::curve_piece(const MonotonePiece& piece, std::uint32_t contour) const {
+  return {contours_.curve(contours_.contours()[contour], piece), piece.from, piece.to,
+          piece.controls};
+}
+
+Arrangement::Site Arrangement::site_at(const PieceId& id, const MonotonePiece& piece,
+                                       double parameter, const Point2& point) const {
+  const auto& contour = contours_.contours()[id.contour];
+  if (parameter == piece.from) return {id, parameter, piece.controls.front(), true};
+  if (parameter == piece.to) {
+    const PieceId next = {id.contour, id.piece + 1 == contour.pieces ? 0 : id.piece + 1};
+    return {next, contours_.piece(contour, next.piece).from, piece.controls.back(), true};
+  }
+  return {id, parameter, point, false};
+}
+
+// Whether `b` begins where `a` ends, in the same contour.
+bool Arrangement::follows(const PieceId& a, const PieceId& b) const {
+  return a.contour == b.contour &&
+         (a.piece + 1 == b.piece ||
+          (b.piece == 0 && a.piece + 1 == contours_.contours()[a.contour].pieces));
+}
+
+// The two sites of a meeting stand one behind the other.
+bool Arrangement::collect_sites(std::vector<Site>* sites) const {
+  std::vector<std::pair<PieceId, PieceId>> pairs;
+  tree_.append_pairs(&pairs);
+  std::vector<Meeting> meetings;
+  for (auto [a, b] : pairs) {
+    if (!follows(a, b) && follows(b, a)) std::swap(a, b);
+    const MonotonePiece first_piece = contours_.piece(contours_.contours()[a.contour], a.piece);
+    const MonotonePiece second_piece = contours_.piece(contours_.contours()[b.contour], b.piece);
+    const CurvePiece first = curve_piece(first_piece, a.contour);
+    const CurvePiece second = curve_piece(second_piece, b.contour);
+    if (follows(a, b) ? are_apart_but_for_joint(first, second) : are_apart(first, second)) continue;
+    meetings.clear();
+    if (!append_meetings(first, second, precision_, &meetings)) return false;
+    for (const Meeting& meeting : meetings) {
+      sites->push_back(site_at(a, first_piece, meeting.a, meeting.point));
+      sites->push_back(site_at(b, second_piece, meeting.b, meeting.point));
+    }
+  }
+  return true;
+}
+
+// Sites that are near each other become one vertex.
+void Arrangement::merge_sites(std::vector<Site>* sites) {
+  std::vector<std::uint32_t> parents(sites->size());
+  std::iota(parents.begin(), parents.end(), 0u);
+  for (std::uint32_t i = 0; i < parents.size(); i += 2) join(&parents, i, i + 1);
+
+  struct PlaceHash {
+    std::size_t operator()(const std::pair<std::int64_t, std::int64_t>& place) const {
+      return static_cast<std::size_t>(place.first) * 0x9e3779b97f4a7c15u ^
+             static_cast<std::size_t>(place.second) * 0xc2b2ae3d27d4eb4fu;
+    }
+  };
+  std::unordered_map<std::pair<std::int64_t, std::int64_t>, std::uint32_t, PlaceHash> places;
+  const auto place_of = [&](const Point2& point) {
+    const Point2 off = point - contours_.box().low;
+    return std::pair{static_cast<std::int64_t>(std::floor(off.x / precision_)),
+                     static_cast<std::int64_t>(std::floor(off.y / precision_))};
+  };
+  for (std::uint32_t i = 0; i < sites->size(); ++i) {
+    const Point2& point = (*sites)[i].point;
+    const auto place = place_of(point);
+    const auto [found, is_new] = places.try_emplace(place, i);
+    if (!is_new) {
+      join(&parents, found->second, i);
+      continue;
+    }
+    for (std::int64_t x = -1; x <= 1; ++x) {
+      for (std::int64_t y = -1; y <= 1; ++y) {
+        const auto near = places.find({place.first + x, place.second + y});
+        if (near == places.end()) continue;
+        const Point2 off = (*sites)[near->second].point - point;
+        if (std::hypot(off.x, off.y) <= precision_) join(&parents, near->second, i);
+      }
+    }
+  }
+
+  // A vertex is where one of its joints is, if it has any, so that this stays in its place.
+  std::vector<std::uint32_t> order(sites->size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto key = [&](std::uint32_t i) {
+    const Site& site = (*sites)[i];
+    return std::tuple(root_of(&parents, i), !site.is_joint, site.point.x, site.point.y);
+  };
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Site& site = (*sites)[order[i]];
+    if (i == 0 || root_of(&parents, order[i]) != root_of(&parents, order[i - 1])) {
+      vertices_.push_back(site.point);
+    }
+    cuts_.push_back({site.place, site.parameter, static_cast<std::uint32_t>(vertices_.size()) - 1});
+  }
+}
+
+bool Arrangement::cut() {
+  std::vector<Site> sites;
+  if (!collect_sites(&sites)) return false;
+  merge_sites(&sites);
+  std::sort(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
+    return std::tie(a.place, a.parameter, a.vertex) < std::tie(b.place, b.parameter, b.vertex);
+  });
+  const auto last = std::unique(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
+    return a.place == b.place && a.parameter == b.parameter && a.vertex == b.vertex;
+  });
+  cuts_.erase(last, cuts_.end());
+  make_chains();
+  group_chains();
+  return true;
+}
+
+void Arrangement::make_chains() {
+  std::uint32_t cut = 0;
+  const auto cut_count = static_cast<std::uint32_t>(cuts_.size());
+  for (std::uint32_t c = 0; c < contours_.contours().size(); ++c) {
+    const std::uint32_t first = cut;
+    while (cut < cut_count && cuts_[cut].place.contour == c) ++cut;
+    if (cut == first) {
+      chains_.push_back({c, OutlineChain::kNone, OutlineChain::kNone});
+      continue;
+    }
+    for (std::uint32_t i = first; i < cut; ++i) {
+      const OutlineChain chain = {c, i, i + 1 < cut ? i + 1 : first};
+      if (!is_negligible(chain)) chains_.push_back(chain);
+    }
+  }
+}
+
+// Shorter than what counts as one point, though it may have ends of its own.
+bool Arrangement::is_negligible(const OutlineChain& chain) const {
+  if (cuts_[chain.begin_cut].vertex != cuts_[chain.end_cut].vertex) return false;
+  const Point2& vertex = vertices_[cuts_[chain.begin_cut].vertex];
+  bool is_small = true;
+  visit_parts(chain, [&](const Part& part) {
+    const CurvePiece piece = curve_piece(part.piece, chain.contour);
+    for (const double t : {part.from, part.to}) {
+      const Point2 off = point_at(piece.curve, t) - vertex;
+      is_small = is_small && std::hypot(off.x, off.y) <= 8.0 * precision_;
+    }
+    return is_small;
+  });
+  return is_small;
+}
+
+std::optional<Arrangement::Part> Arrangement::only_part(const OutlineChain& chain) const {
+  std::optional<Part> found;
+  bool one = true;
+  visit_parts(chain, [&](const Part& part) {
+    one = !found;
+    found = part;
+    return one;
+  });
+  if (!one) found.reset();
+  return found;
+}
+
+void Arrangement::group_chains() {
+  struct Entry {
+    std::uint32_t low;
+    std::uint32_t high;
+    std::uint32_t chain;
+  };
+  group_of_.assign(chains_.size(), OutlineChain::kNone);
+  std::vector<Entry> entries;
+  for (std::uint32_t i = 0; i < chains_.size(); ++i) {
+    if (chains_[i].begin_cut == OutlineChain::kNone) continue;
+    const std::uint32_t a = cuts_[chains_[i].begin_cut].vertex;
+    const std::uint32_t b = cuts_[chains_[i].end_cut].vertex;
+    if (a != b) entries.push_back({std::min(a, b), std::max(a, b), i});
+  }
+  std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+    return std::tie(a.low, a.high, a.chain) < std::tie(b.low, b.high, b.chain);
+  });
+  const auto piece_of = [&](const Entry& entry, const Part& part,
+                            std::array<Point2, 2>* ends) -> CurvePiece {
+    const OutlineChain& chain = chains_[entry.chain];
+    const MonotonePiece& piece = part.piece;
+    CurvePiece result = curve_piece(piece, chain.contour);
+    *ends = {point_at(result.curve, part.from), point_at(result.curve, part.to)};
+    result.from = part.from;
+    result.to = part.to;
+    result.controls = *ends;
+    return result;
+  };
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    for (std::size_t j = i + 1; j < entries.size() && entries[j].low == entries[i].low &&
+                                entries[j].high == entries[i].high;
+         ++j) {
+      if (group_of_[entries[j].chain] != OutlineChain::kNone) continue;
+      const auto first = only_part(chains_[entries[i].chain]);
+      const auto second = only_part(chains_[entries[j].chain]);
+      if (!first || !second) continue;
+      std::array<Point2, 2> first_ends;
+      std::array<Point2, 2> second_ends;
+      const CurvePiece a = piece_of(entries[i], *first, &first_ends);
+      const CurvePiece b = piece_of(entries[j], *second, &second_ends);
+      if (!coincide(a, b, 8.0 * precision_)) continue;
+      std::uint32_t& group = group_of_[entries[i].chain];
+      if (group == OutlineChain::kNone) {
+        group = static_cast<std::uint32_t>(groups_.size());
+        groups_.push_back({entries[i].chain});
+      }
+      group_of_[entries[j].chain] = group;
+      groups_[group].push_back(entries[j].chain);
+    }
+  }
+}
+
+void Arrangement::visit(std::size_t first, std::size_t last, const Visitor& visitor) const {
+  constexpr int kMostLooked = 32;
+  std::vector<int> near_side(layers_);
+  std::vector<int> far_side(layers_);
+  std::vector<PieceId> excluded;
+  for (std::size_t i = first; i < last; ++i) {
+    const OutlineChain& chain = chains_[i];
+    const std::uint32_t group = group_of_[i];
+    if (group != OutlineChain::kNone && groups_[group].front() != i) continue;
+
+    // The part that reaches farthest across one axis tells best.
+    std::optional<Part> best;
+    Point2 best_step{};
+    double best_reach = -1.0;
+    int looked = 0;
+    visit_parts(chain, [&](const Part& part) {
+      const Curve curve = contours_.curve(contours_.contours()[chain.contour], part.piece);
+      const Point2 step = point_at(curve, part.to) - point_at(curve, part.from);
+      const double reach = std::max(std::fabs(step.x), std::fabs(step.y));
+      if (reach > best_reach) {
+        best = part;
+        best_step = step;
+        best_reach = reach;
+      }
+      return ++looked < kMostLooked;
+    });
+    if (!best) continue;
+    const Curve curve = contours_.curve(contours_.contours()[chain.contour], best->piece);
+    const Point2 point = point_at(curve, 0.5 * (best->from + best->to));
+    const RayAxis axis =
+        std::fabs(best_step.y) >= std::fabs(best_step.x) ? RayAxis::kX : RayAxis::kY;
+    const auto sign_of = [axis](const Point2& step) {
+      return axis == RayAxis::kX ? (step.y > 0.0 ? 1 : -1) : (step.x < 0.0 ? 1 : -1);
+    };
+
+    excluded.assign(1, {chain.contour, best->piece_index});
+    std::fill(near_side.begin(), near_side.end(), 0);
+    if (group != OutlineChain::kNone) {
+      for (std::size_t m = 1; m < groups_[group].size(); ++m) {
+        const OutlineChain& member = chains_[groups_[group][m]];
+        excluded.push_back({member.contour, only_part(member)->piece_index});
+      }
+    }
+    tree_.add_windings(point, axis, excluded, near_side);
+    far_side = near_side;
+    far_side[contours_.contours()[chain.contour].layer] += sign_of(best_step);
+    if (group != OutlineChain::kNone) {
+      const std::uint32_t begin = cuts_[chain.begin_cut].vertex;
+      for (std::size_t m = 1; m < groups_[group].size(); ++m) {
+        const OutlineChain& member = chains_[groups_[group][m]];
+        const bool along = cuts_[member.begin_cut].vertex == begin;
+        far_side[contours_.contours()[member.contour].layer] +=
+            along ? sign_of(best_step) : -sign_of(best_step);
+      }
+    }
+    // The ray starts on the side of +x, or of +y.
+    const bool near_is_right = axis == RayAxis::kX ? best_step.y > 0.0 : best_step.x < 0.0;
+    visitor(static_cast<std::uint32_t>(i), near_is_right ? near_side : far_side,
+            near_is_right ? far_side : near_side);
+  }
+}
+
+}  // namespace prefilter

@@ -1,0 +1,464 @@
+#include "prefilter/outline/meetings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace prefilter {
+namespace {
+
+constexpr int kMostSteps = 20000;
+
+double length(const Point2& p) { return std::hypot(p.x, p.y); }
+double distance(const Point2& a, const Point2& b) { return length(a - b); }
+
+struct Range {
+  double low = HUGE_VAL;
+  double high = -HUGE_VAL;
+};
+
+// The signed distances of points from a line, times the length of its direction.
+Range offsets(std::span<const Point2> points, const Point2& origin, const Point2& direction) {
+  Range range;
+  for (const Point2& point : points) {
+    const double offset = cross(direction, point - origin);
+    range.low = std::min(range.low, offset);
+    range.high = std::max(range.high, offset);
+  }
+  return range;
+}
+
+bool boxes_meet(std::span<const Point2> a, std::span<const Point2> b) {
+  Box2 first;
+  Box2 second;
+  for (const Point2& point : a) first.include(point);
+  for (const Point2& point : b) second.include(point);
+  return first.low.x <= second.high.x && second.low.x <= first.high.x &&
+         first.low.y <= second.high.y && second.low.y <= first.high.y;
+}
+
+// Whether the line through the ends of `a` has both hulls on different sides.
+bool chord_separates(std::span<const Point2> a, std::span<const Point2> b) {
+  const Point2 direction = a.back() - a.front();
+  const Range own = offsets(a, a.front(), direction);
+  const Range other = offsets(b, a.front(), direction);
+  return other.low > own.high || other.high < own.low;
+}
+
+bool hulls_apart(std::span<const Point2> a, std::span<const Point2> b) {
+  return chord_separates(a, b) || chord_separates(b, a);
+}
+
+// A part of a curve with its control points, halved again and again.
+class Cell {
+ public:
+  explicit Cell(const CurvePiece& piece)
+      : from_(piece.from), to_(piece.to), count_(piece.controls.size()) {
+    const Curve& curve = piece.curve;
+    std::copy(piece.controls.begin(), piece.controls.end(), points_.begin());
+    if (curve.weight > 0.0) {
+      is_conic_ = true;
+      weights_ = {1.0, curve.weight, 1.0};
+      if (from_ > 0.0 || to_ < 1.0) {
+        // Of the whole conic in homogeneous coordinates, the blossom at both parameters.
+        const double w = curve.weight;
+        const auto blossom = [w](double s, double t) {
+          return (1.0 - s) * (1.0 - t) + ((1.0 - s) * t + s * (1.0 - t)) * w + s * t;
+        };
+        weights_ = {blossom(from_, from_), blossom(from_, to_), blossom(to_, to_)};
+      }
+    }
+  }
+
+  std::span<const Point2> points() const { return {points_.data(), count_}; }
+  const Point2& begin() const { return points_[0]; }
+  const Point2& end() const { return points_[count_ - 1]; }
+  double from() const { return from_; }
+  double to() const { return to_; }
+  double middle() const { return 0.5 * (from_ + to_); }
+  double size() const {
+    const Point2 chord = end() - begin();
+    return std::max(std::fabs(chord.x), std::fabs(chord.y));
+  }
+  bool is_line() const { return count_ == 2; }
+  /// How far the control points are off the chord.
+  double thickness() const {
+    if (is_line()) return 0.0;
+    const Point2 chord = end() - begin();
+    const Range range = offsets(points(), begin(), chord);
+    return std::max(range.high, -range.low) / length(chord);
+  }
+
+  std::array<Cell, 2> halves() const {
+    std::array<Cell, 2> parts = {*this, *this};
+    auto& [first, second] = parts;
+    first.to_ = second.from_ = middle();
+    if (is_conic_) {
+      split_conic(&first, &second);
+      return parts;
+    }
+    for (std::size_t level = 0; level < count_; ++level) {
+      first.points_[level] = second.points_[0];
+      for (std::size_t i = 0; i + 1 < count_ - level; ++i) {
+        second.points_[i] = 0.5 * (second.points_[i] + second.points_[i + 1]);
+      }
+    }
+    return parts;
+  }
+
+ private:
+  void split_conic(Cell* first, Cell* second) const {
+    const double left = weights_[0] + weights_[1];
+    const double right = weights_[1] + weights_[2];
+    const double whole = left + right;
+    first->points_[1] = (weights_[0] / left) * points_[0] + (weights_[1] / left) * points_[1];
+    second->points_[1] = (weights_[1] / right) * points_[1] + (weights_[2] / right) * points_[2];
+    first->points_[2] = second->points_[0] =
+        (left / whole) * first->points_[1] + (right / whole) * second->points_[1];
+    first->weights_ = {weights_[0], 0.5 * left, 0.25 * whole};
+    second->weights_ = {0.25 * whole, 0.5 * right, weights_[2]};
+  }
+
+  double from_;
+  double to_;
+  std::size_t count_;
+  bool is_conic_ = false;
+  std::array<double, 3> weights_{};
+  std::array<Point2, Outline::kMostDegree + 1> points_;
+};
+
+bool cells_apart(const Cell& a, const Cell& b, int depth) {
+  if (!boxes_meet(a.points(), b.points()) || hulls_apart(a.points(), b.points())) return true;
+  if (depth == 0 || (a.is_line() && b.is_line())) return false;
+  const bool halve_a = !a.is_line() && (b.is_line() || a.size() >= b.size());
+  for (const Cell& half : (halve_a ? a : b).halves()) {
+    if (!(halve_a ? cells_apart(half, b, depth - 1) : cells_apart(a, half, depth - 1))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Whether a line through the end of `a`, where `b` begins, has them on different sides.
+bool joint_separates(std::span<const Point2> a, std::span<const Point2> b) {
+  const Point2& joint = b.front();
+  const Point2 back = a.front() - joint;
+  const Point2 ahead = b.back() - joint;
+  const Point2 direction = (1.0 / length(ahead)) * ahead - (1.0 / length(back)) * back;
+  for (std::size_t i = 0; i + 1 < a.size(); ++i) {
+    const Point2 step = a[i] - joint;
+    if (!(step == Point2{}) && dot(step, direction) >= 0.0) return false;
+  }
+  for (std::size_t i = 1; i < b.size(); ++i) {
+    const Point2 step = b[i] - joint;
+    if (!(step == Point2{}) && dot(step, direction) <= 0.0) return false;
+  }
+  return true;
+}
+
+bool cells_apart_but_for_joint(const Cell& a, const Cell& b, int depth) {
+  if (a.begin() == b.end() || a.begin() == a.end() || b.begin() == b.end()) return false;
+  if (joint_separates(a.points(), b.points())) return true;
+  if (depth == 0) return false;
+  const auto [a_far, a_near] = a.halves();
+  const auto [b_near, b_far] = b.halves();
+  return cells_apart(a_far, b, 8) && cells_apart(a_near, b_far, 8) &&
+         cells_apart_but_for_joint(a_near, b_near, depth - 1);
+}
+
+// Directions that a cell's tangents lie between: those of its steps from control point to control
+// point, as it is monotone all within a quarter turn.
+struct Cone {
+  Point2 right;
+  Point2 left;
+};
+
+bool cone_of(const Cell& cell, Cone* cone) {
+  const Point2 chord = cell.end() - cell.begin();
+  cone->right = cone->left = chord;
+  for (std::size_t i = 0; i + 1 < cell.points().size(); ++i) {
+    const Point2 step = cell.points()[i + 1] - cell.points()[i];
+    if (step == Point2{}) continue;
+    if (dot(step, chord) <= 0.0) return false;
+    if (cross(cone->right, step) < 0.0) cone->right = step;
+    if (cross(cone->left, step) > 0.0) cone->left = step;
+  }
+  return true;
+}
+
+// Whether no tangent of one cell is parallel to one of the other: then they meet once at the most.
+bool are_transversal(const Cell& a, const Cell& b) {
+  Cone first;
+  Cone second;
+  if (!cone_of(a, &first) || !cone_of(b, &second)) return false;
+  const std::array<double, 4> turns = {
+      cross(first.right, second.right), cross(first.right, second.left),
+      cross(first.left, second.right), cross(first.left, second.left)};
+  return *std::min_element(turns.begin(), turns.end()) > 0.0 ||
+         *std::max_element(turns.begin(), turns.end()) < 0.0;
+}
+
+class MeetingFinder {
+ public:
+  MeetingFinder(const CurvePiece& a, const CurvePiece& b, double precision,
+                std::vector<Meeting>* meetings)
+      : a_(a), b_(b), precision_(precision), meetings_(meetings) {}
+
+  bool find() {
+    append_ends();
+    if (runs_along()) return true;
+    if (a_.curve.degree() == 1 && b_.curve.degree() == 1) {
+      intersect_lines(Cell(a_), Cell(b_));
+      return true;
+    }
+    return search(Cell(a_), Cell(b_));
+  }
+
+ private:
+  // Ends of one on the other; ends that are (almost) the same belong together.
+  void append_ends() {
+    for (const double s : {a_.from, a_.to}) {
+      const Point2& end = s == a_.from ? a_.begin() : a_.end();
+      const double t = parameter_near(b_, end, precision_);
+      if (t >= 0.0) meetings_->push_back({s, t, end});
+    }
+    for (const double t : {b_.from, b_.to}) {
+      const Point2& end = t == b_.from ? b_.begin() : b_.end();
+      const double s = parameter_near(a_, end, precision_);
+      if (s > a_.from && s < a_.to) meetings_->push_back({s, t, end});
+    }
+  }
+
+  // Two monotone pieces that run along each other somewhere do so from an end to an end.
+  bool runs_along() const {
+    const auto meetings = std::span(*meetings_).subspan(first_);
+    for (std::size_t i = 0; i + 1 < meetings.size(); ++i) {
+      for (std::size_t j = i + 1; j < meetings.size(); ++j) {
+        const Meeting& first = meetings[i];
+        const Meeting& second = meetings[j];
+        if (distance(first.point, second.point) <= 4.0 * precision_) continue;
+        int close = 0;
+        for (const double share : {0.15, 0.35, 0.5, 0.7, 0.9}) {
+          const Point2 point = point_at(a_.curve, (1.0 - share) * first.a + share * second.a);
+          close += parameter_near(b_, point, 4.0 * precision_) >= 0.0 ? 1 : 0;
+        }
+        if (close == 5) return true;
+      }
+    }
+    return false;
+  }
+
+  void append(double s, double t, const Point2& point) { meetings_->push_back({s, t, point}); }
+
+  bool search(const Cell& a, const Cell& b) {
+    if (++steps_ > kMostSteps) return false;
+    if (!boxes_meet(a.points(), b.points()) || hulls_apart(a.points(), b.points())) return true;
+    const double small = 0.25 * precision_;
+    if (a.size() <= small || b.size() <= small) {
+      append_small(a, b);
+      return true;
+    }
+    if (are_transversal(a, b)) {
+      switch (converge(a, b)) {
+        case Outcome::kMeet:
+        case Outcome::kMiss:
+          return true;
+        case Outcome::kUnknown:
+          break;
+      }
+    } else if (a.thickness() <= small && b.thickness() <= small) {
+      intersect_lines(a, b);
+      return true;
+    }
+    const bool halve_a = !a.is_line() && (b.is_line() || a.size() >= b.size());
+    for (const Cell& half : (halve_a ? a : b).halves()) {
+      if (!(halve_a ? search(half, b) : search(a, half))) return false;
+    }
+    return true;
+  }
+
+  // One of the cells is as good as a point.
+  void append_small(const Cell& a, const Cell& b) {
+    if (a.size() <= b.size()) {
+      const double t = parameter_near(b_, a.begin(), precision_);
+      if (t >= 0.0) append(a.from(), t, a.begin());
+    } else {
+      const double s = parameter_near(a_, b.begin(), precision_);
+      if (s >= 0.0) append(s, b.from(), b.begin());
+    }
+  }
+
+  enum class Outcome : std::uint8_t { kMeet, kMiss, kUnknown };
+
+  // Newton's iteration for the one point where two cells may meet.
+  Outcome converge(const Cell& a, const Cell& b) {
+    double s = a.middle();
+    double t = b.middle();
+    for (int i = 0; i < 12; ++i) {
+      const Point2 at_a = point_at(a_.curve, s);
+      const Point2 off = point_at(b_.curve, t) - at_a;
+      const Point2 along_a = derivative(a_.curve, s);
+      const Point2 along_b = derivative(b_.curve, t);
+      const double turn = cross(along_a, along_b);
+      if (turn == 0.0) return Outcome::kUnknown;
+      const double step_s = cross(off, along_b) / turn;
+      const double step_t = cross(off, along_a) / turn;
+      s += step_s;
+      t += step_t;
+      const double slack_a = 0.5 * (a.to() - a.from());
+      const double slack_b = 0.5 * (b.to() - b.from());
+      if (!(s > a.from() - slack_a && s < a.to() + slack_a && t > b.from() - slack_b &&
+            t < b.to() + slack_b)) {
+        return Outcome::kUnknown;
+      }
+      s = std::clamp(s, 0.0, 1.0);
+      t = std::clamp(t, 0.0, 1.0);
+      if (std::fabs(step_s) + std::fabs(step_t) > 1e-13) continue;
+      if (distance(point_at(a_.curve, s), point_at(b_.curve, t)) > 0.25 * precision_) {
+        return Outcome::kUnknown;
+      }
+      // What is just beyond a cell's end is found from both sides, and once as an end of the whole.
+      constexpr double kSlack = 1e-12;
+      if (s < a.from() - kSlack || s > a.to() + kSlack || t < b.from() - kSlack ||
+          t > b.to() + kSlack) {
+        return Outcome::kMiss;
+      }
+      append(s, t, point_at(a_.curve, s));
+      return Outcome::kMeet;
+    }
+    return Outcome::kUnknown;
+  }
+
+  static Point2 derivative(const Curve& curve, double t) {
+    if (curve.degree() == 1) return curve.end() - curve.begin();
+    if (curve.weight > 0.0) {
+      const auto& p = curve.controls;
+      const double u = 1.0 - t;
+      const double w = curve.weight;
+      const double whole = u * u + 2.0 * t * u * w + t * t;
+      const Point2 numerator = (2.0 * u * u * w) * (p[1] - p[0]) + (2.0 * t * u) * (p[2] - p[0]) +
+                               (2.0 * t * t * w) * (p[2] - p[1]);
+      return (1.0 / (whole * whole)) * numerator;
+    }
+    std::array<Point2, Outline::kMostDegree + 1> steps;
+    const auto degree = static_cast<std::size_t>(curve.degree());
+    for (std::size_t i = 0; i < degree; ++i) {
+      steps[i] = curve.controls[i + 1] - curve.controls[i];
+    }
+    for (std::size_t level = degree - 1; level > 0; --level) {
+      for (std::size_t i = 0; i < level; ++i) {
+        steps[i] = (1.0 - t) * steps[i] + t * steps[i + 1];
+      }
+    }
+    return static_cast<double>(degree) * steps[0];
+  }
+
+  // Cells that are as good as lines.
+  void intersect_lines(const Cell& a, const Cell& b) {
+    const Point2 along_a = a.end() - a.begin();
+    const Point2 along_b = b.end() - b.begin();
+    const double begin_of_b = cross(along_a, b.begin() - a.begin());
+    const double end_of_b = cross(along_a, b.end() - a.begin());
+    const double begin_of_a = cross(along_b, a.begin() - b.begin());
+    const double end_of_a = cross(along_b, a.end() - b.begin());
+    if (std::max(std::fabs(begin_of_b), std::fabs(end_of_b)) <= precision_ * length(along_a) ||
+        std::max(std::fabs(begin_of_a), std::fabs(end_of_a)) <= precision_ * length(along_b)) {
+      append_overlap(a, b);
+      return;
+    }
+    if ((begin_of_b > 0.0) == (end_of_b > 0.0) || (begin_of_a > 0.0) == (end_of_a > 0.0)) return;
+    const double s = begin_of_a / (begin_of_a - end_of_a);
+    const double t = begin_of_b / (begin_of_b - end_of_b);
+    append((1.0 - s) * a.from() + s * a.to(), (1.0 - t) * b.from() + t * b.to(),
+           (1.0 - s) * a.begin() + s * a.end());
+  }
+
+  // Cells along each other: where the part that both have begins and ends.
+  void append_overlap(const Cell& a, const Cell& b) {
+    const auto share_of = [](const Cell& cell, const Point2& point) {
+      const Point2 chord = cell.end() - cell.begin();
+      return dot(point - cell.begin(), chord) / dot(chord, chord);
+    };
+    for (const bool at_end : {false, true}) {
+      const double t = share_of(b, at_end ? a.end() : a.begin());
+      if (t >= 0.0 && t <= 1.0) {
+        append(at_end ? a.to() : a.from(), (1.0 - t) * b.from() + t * b.to(),
+               at_end ? a.end() : a.begin());
+      }
+      const double s = share_of(a, at_end ? b.end() : b.begin());
+      if (s >= 0.0 && s <= 1.0) {
+        append((1.0 - s) * a.from() + s * a.to(), at_end ? b.to() : b.from(),
+               at_end ? b.end() : b.begin());
+      }
+    }
+  }
+
+  const CurvePiece& a_;
+  const CurvePiece& b_;
+  double precision_;
+  std::vector<Meeting>* meetings_;
+  std::size_t first_ = meetings_->size();
+  int steps_ = 0;
+};
+
+}  // namespace
+
+bool are_apart(const CurvePiece& a, const CurvePiece& b) {
+  if (!boxes_meet(a.controls, b.controls) || hulls_apart(a.controls, b.controls)) return true;
+  if (a.curve.degree() == 1 && b.curve.degree() == 1) return false;
+  return cells_apart(Cell(a), Cell(b), 12);
+}
+
+bool are_apart_but_for_joint(const CurvePiece& a, const CurvePiece& b) {
+  if (a.begin() == b.end()) return false;
+  if (joint_separates(a.controls, b.controls)) return true;
+  if (a.curve.degree() == 1 && b.curve.degree() == 1) return false;
+  return cells_apart_but_for_joint(Cell(a), Cell(b), 12);
+}
+
+bool append_meetings(const CurvePiece& a, const CurvePiece& b, double precision,
+                     std::vector<Meeting>* meetings) {
+  return MeetingFinder(a, b, precision, meetings).find();
+}
+
+double parameter_near(const CurvePiece& piece, const Point2& point, double precision) {
+  if (distance(point, piece.begin()) <= precision) return piece.from;
+  if (distance(point, piece.end()) <= precision) return piece.to;
+  const Point2 chord = piece.end() - piece.begin();
+  const Range range = offsets(piece.controls, piece.begin(), chord);
+  const double offset = cross(chord, point - piece.begin());
+  const double margin = precision * length(chord);
+  if (offset < range.low - margin || offset > range.high + margin) return -1.0;
+  const double along = dot(chord, point - piece.begin());
+  if (along < -margin || along > dot(chord, chord) + margin) return -1.0;
+  if (piece.curve.degree() == 1) {
+    const double share = std::clamp(along / dot(chord, chord), 0.0, 1.0);
+    const double t = (1.0 - share) * piece.from + share * piece.to;
+    return distance(point_at(piece.curve, t), point) <= precision ? t : -1.0;
+  }
+  // Where one coordinate is the point's, the other tells how near the piece comes: surely within
+  // the precision for the one of the two that changes faster there.
+  for (const auto axis : {&Point2::x, &Point2::y}) {
+    const bool rises = chord.*axis > 0.0;
+    double low = piece.from;
+    double high = piece.to;
+    double t = 0.5 * (low + high);
+    while (t > low && t < high) {
+      ((point_at(piece.curve, t).*axis < point.*axis) == rises ? low : high) = t;
+      t = 0.5 * (low + high);
+    }
+    if (distance(point_at(piece.curve, t), point) <= precision) return t;
+  }
+  return -1.0;
+}
+
+bool coincide(const CurvePiece& a, const CurvePiece& b, double precision) {
+  if (a.curve.degree() == 1 && b.curve.degree() == 1) return true;
+  for (const double share : {0.2, 0.5, 0.75}) {
+    const Point2 point = point_at(a.curve, (1.0 - share) * a.from + share * a.to);
+    if (parameter_near(b, point, precision) < 0.0) return false;
+  }
+  return true;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,268 @@
+#include "prefilter/outline/run_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prefilter {
+namespace {
+
+constexpr std::uint32_t kLeafRuns = 4;
+
+using Pairs = std::vector<std::pair<PieceId, PieceId>>;
+
+Box2 box_of(const Point2& a, const Point2& b) {
+  return {{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
+}
+
+bool meet(const Box2& a, const Box2& b) {
+  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
+}
+
+Box2 unite(const Box2& a, const Box2& b) {
+  return {{std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y)},
+          {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y)}};
+}
+
+// Spreads 16 bits to the even places of 32.
+std::uint32_t spread(std::uint32_t bits) {
+  bits = (bits | bits << 8) & 0x00ff00ffu;
+  bits = (bits | bits << 4) & 0x0f0f0f0fu;
+  bits = (bits | bits << 2) & 0x33333333u;
+  return (bits | bits << 1) & 0x55555555u;
+}
+
+// Part of a run: joints [first, last].
+struct Span {
+  const MonotoneRun* run;
+  std::uint32_t first;
+  std::uint32_t last;
+
+  Box2 box() const { return box_of(run->joints[first], run->joints[last]); }
+  bool is_piece() const { return last - first == 1; }
+  PieceId id() const { return {run->contour, run->first_piece + first}; }
+  std::pair<Span, Span> halves() const {
+    const std::uint32_t middle = first + (last - first) / 2;
+    return {{run, first, middle}, {run, middle, last}};
+  }
+};
+
+void append_span_pairs(const Span& a, const Span& b, Pairs* pairs) {
+  if (!meet(a.box(), b.box())) return;
+  if (a.is_piece() && b.is_piece()) {
+    pairs->emplace_back(a.id(), b.id());
+  } else if (a.last - a.first >= b.last - b.first) {
+    const auto [low, high] = a.halves();
+    append_span_pairs(low, b, pairs);
+    append_span_pairs(high, b, pairs);
+  } else {
+    const auto [low, high] = b.halves();
+    append_span_pairs(a, low, pairs);
+    append_span_pairs(a, high, pairs);
+  }
+}
+
+void append_run_pairs(const MonotoneRun& a, const MonotoneRun& b, Pairs* pairs) {
+  append_span_pairs({&a, 0, a.pieces}, {&b, 0, b.pieces}, pairs);
+}
+
+template <RayAxis axis>
+double along(const Point2& point) {
+  return axis == RayAxis::kX ? point.x : point.y;
+}
+template <RayAxis axis>
+double across(const Point2& point) {
+  return axis == RayAxis::kX ? point.y : point.x;
+}
+
+// Where a monotone piece is at `level` across the axis.
+template <RayAxis axis>
+double along_at(const Curve& curve, double from, double to, const Point2& begin, const Point2& end,
+                double level) {
+  const double rise = across<axis>(end) - across<axis>(begin);
+  if (curve.degree() == 1) {
+    const double t = (level - across<axis>(begin)) / rise;
+    return (1.0 - t) * along<axis>(begin) + t * along<axis>(end);
+  }
+  // Regula falsi in the Illinois way; bisection where that is slow.
+  double low = across<axis>(begin) - level;
+  double high = across<axis>(end) - level;
+  Point2 point = begin;
+  const double close = 1e-15 * std::max(std::fabs(low), std::fabs(high));
+  for (int i = 0; i < 60 && from < to; ++i) {
+    double t = i % 3 == 2 ? 0.5 * (from + to) : from + (to - from) * (low / (low - high));
+    if (!(t > from && t < to)) t = 0.5 * (from + to);
+    point = point_at(curve, t);
+    const double value = across<axis>(point) - level;
+    if (std::fabs(value) <= close || t <= from || t >= to) break;
+    if ((value < 0.0) == (low < 0.0)) {
+      from = t;
+      low = value;
+    } else {
+      to = t;
+      high = value;
+    }
+  }
+  return along<axis>(point);
+}
+
+}  // namespace
+
+RunTree::RunTree(const MonotoneContours& contours) : contours_(contours) {
+  const auto runs = contours.runs();
+  if (runs.empty()) return;
+  const Box2& whole = contours.box();
+  const Point2 size = whole.high - whole.low;
+  const double scale_x = size.x > 0.0 ? 65535.0 / size.x : 0.0;
+  const double scale_y = size.y > 0.0 ? 65535.0 / size.y : 0.0;
+  std::vector<std::uint64_t> keys;
+  keys.reserve(contours.contours().size());
+  for (std::size_t c = 0; c < contours.contours().size(); ++c) {
+    const auto& contour = contours.contours()[c];
+    Box2 box;
+    for (std::uint32_t r = 0; r < contour.runs; ++r) {
+      box.include(runs[contour.first_run + r].begin());
+    }
+    const Point2 center = 0.5 * (box.low + box.high) - whole.low;
+    const std::uint32_t key = spread(static_cast<std::uint32_t>(center.x * scale_x)) |
+                              spread(static_cast<std::uint32_t>(center.y * scale_y)) << 1;
+    keys.push_back(static_cast<std::uint64_t>(key) << 32 | c);
+  }
+  std::sort(keys.begin(), keys.end());
+  order_.reserve(runs.size());
+  for (const std::uint64_t key : keys) {
+    const auto& contour = contours.contours()[key & UINT32_MAX];
+    for (std::uint32_t r = 0; r < contour.runs; ++r) order_.push_back(contour.first_run + r);
+  }
+  nodes_.reserve(runs.size());
+  build(0, static_cast<std::uint32_t>(order_.size()));
+}
+
+std::uint32_t RunTree::build(std::uint32_t first, std::uint32_t count) {
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  Node node;
+  node.first = first;
+  node.count = count;
+  if (count <= kLeafRuns) {
+    for (std::uint32_t i = first; i < first + count; ++i) {
+      const MonotoneRun& run = contours_.runs()[order_[i]];
+      node.box = unite(node.box, box_of(run.begin(), run.end()));
+    }
+  } else {
+    const std::uint32_t half = (count + 1) / 2;
+    const std::uint32_t first_child = build(first, half);
+    node.second_child = build(first + half, count - half);
+    node.box = unite(nodes_[first_child].box, nodes_[node.second_child].box);
+  }
+  nodes_[index] = node;
+  return index;
+}
+
+void RunTree::append_pairs(Pairs* pairs) const {
+  if (!nodes_.empty()) pairs_within(0, pairs);
+}
+
+void RunTree::pairs_within(std::uint32_t index, Pairs* pairs) const {
+  const Node& node = nodes_[index];
+  if (node.second_child != 0) {
+    pairs_within(index + 1, pairs);
+    pairs_within(node.second_child, pairs);
+    pairs_between(index + 1, node.second_child, pairs);
+    return;
+  }
+  for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+    for (std::uint32_t j = i + 1; j < node.first + node.count; ++j) {
+      append_run_pairs(contours_.runs()[order_[i]], contours_.runs()[order_[j]], pairs);
+    }
+  }
+}
+
+void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, Pairs* pairs) const {
+  const Node& first = nodes_[a];
+  const Node& second = nodes_[b];
+  if (!meet(first.box, second.box)) return;
+  if (first.second_child == 0 && second.second_child == 0) {
+    for (std::uint32_t i = first.first; i < first.first + first.count; ++i) {
+      for (std::uint32_t j = second.first; j < second.first + second.count; ++j) {
+        append_run_pairs(contours_.runs()[order_[i]], contours_.runs()[order_[j]], pairs);
+      }
+    }
+  } else if (second.second_child == 0 || (first.second_child != 0 && first.count >= second.count)) {
+    pairs_between(a + 1, b, pairs);
+    pairs_between(first.second_child, b, pairs);
+  } else {
+    pairs_between(a, b + 1, pairs);
+    pairs_between(a, second.second_child, pairs);
+  }
+}
+
+void RunTree::add_windings(const Point2& point, RayAxis axis, std::span<const PieceId> excluded,
+                           std::span<int> windings) const {
+  if (nodes_.empty()) return;
+  if (axis == RayAxis::kX) {
+    add_on_ray<RayAxis::kX>(point, excluded, windings);
+  } else {
+    add_on_ray<RayAxis::kY>(point, excluded, windings);
+  }
+}
+
+template <RayAxis axis>
+void RunTree::add_on_ray(const Point2& point, std::span<const PieceId> excluded,
+                         std::span<int> windings) const {
+  std::array<std::uint32_t, 64> stack;
+  std::size_t height = 0;
+  stack[height++] = 0;
+  while (height > 0) {
+    const std::uint32_t index = stack[--height];
+    const Node& node = nodes_[index];
+    if (across<axis>(point) < across<axis>(node.box.low) ||
+        across<axis>(point) >= across<axis>(node.box.high) ||
+        along<axis>(point) > along<axis>(node.box.high)) {
+      continue;
+    }
+    if (node.second_child != 0) {
+      stack[height++] = node.second_child;
+      stack[height++] = index + 1;
+      continue;
+    }
+    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+      const MonotoneRun& run = contours_.runs()[order_[i]];
+      windings[contours_.contours()[run.contour].layer] += run_winding<axis>(run, point, excluded);
+    }
+  }
+}
+
+// A piece counts from its lower end, and up to but without its upper one.
+template <RayAxis axis>
+int RunTree::run_winding(const MonotoneRun& run, const Point2& point,
+                         std::span<const PieceId> excluded) const {
+  const double level = across<axis>(point);
+  const bool rises = across<axis>(run.end()) > across<axis>(run.begin());
+  const Point2& lower = rises ? run.begin() : run.end();
+  const Point2& upper = rises ? run.end() : run.begin();
+  if (level < across<axis>(lower) || level >= across<axis>(upper)) return 0;
+  if (along<axis>(point) > std::max(along<axis>(run.begin()), along<axis>(run.end()))) return 0;
+  // Seen along +y, what goes to -x turns around the point counter-clockwise.
+  const int sign = (rises ? 1 : -1) * (axis == RayAxis::kX ? 1 : -1);
+
+  const Point2* joints = run.joints;
+  const Point2* found =
+      rises ? std::partition_point(joints, joints + run.pieces + 1,
+                                   [&](const Point2& p) { return across<axis>(p) <= level; })
+            : std::partition_point(joints, joints + run.pieces + 1,
+                                   [&](const Point2& p) { return across<axis>(p) > level; });
+  const auto index = static_cast<std::uint32_t>(found - joints) - 1;
+  const Point2& begin = joints[index];
+  const Point2& end = joints[index + 1];
+  const PieceId id = {run.contour, run.first_piece + index};
+  if (std::find(excluded.begin(), excluded.end(), id) != excluded.end()) return 0;
+  if (along<axis>(point) < std::min(along<axis>(begin), along<axis>(end))) return sign;
+  if (along<axis>(point) > std::max(along<axis>(begin), along<axis>(end))) return 0;
+  const auto& contour = contours_.contours()[run.contour];
+  const MonotonePiece piece = contours_.piece(contour, id.piece);
+  const Curve curve = contours_.curve(contour, piece);
+  const double at = along_at<axis>(curve, piece.from, piece.to, begin, end, level);
+  return at > along<axis>(point) ? sign : 0;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,62 @@
+// A tree of boxes over monotone runs: which of their pieces may meet, and which lie beside a point.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prefilter/outline/monotone_contours.h"
+
+namespace prefilter {
+
+/// A piece, by the numbers of its contour and of itself in that.
+struct PieceId {
+  std::uint32_t contour = 0;
+  std::uint32_t piece = 0;
+
+  friend auto operator<=>(const PieceId&, const PieceId&) = default;
+};
+
+/// The direction of a ray.
+enum class RayAxis : std::uint8_t { kX, kY };
+
+class RunTree {
+ public:
+  /// The contours must outlive it.
+  explicit RunTree(const MonotoneContours& contours);
+
+  /// Appends pairs of pieces whose boxes meet, each pair once. Neighbors along a run cannot meet
+  /// elsewhere than at their joint, and are left out.
+  void append_pairs(std::vector<std::pair<PieceId, PieceId>>* pairs) const;
+
+  /// Adds to `windings`, one for each layer, what the pieces on the ray from a point upward in x,
+  /// or in y, contribute to the winding numbers at that point. `excluded` are left out: those that
+  /// the point lies on.
+  void add_windings(const Point2& point, RayAxis axis, std::span<const PieceId> excluded,
+                    std::span<int> windings) const;
+
+ private:
+  struct Node {
+    Box2 box;
+    std::uint32_t first = 0;  // of the runs in order
+    std::uint32_t count = 0;
+    std::uint32_t second_child = 0;  // 0: a leaf; the first child is the node behind this one
+  };
+
+  std::uint32_t build(std::uint32_t first, std::uint32_t count);
+  void pairs_within(std::uint32_t node, std::vector<std::pair<PieceId, PieceId>>* pairs) const;
+  void pairs_between(std::uint32_t a, std::uint32_t b,
+                     std::vector<std::pair<PieceId, PieceId>>* pairs) const;
+  template <RayAxis axis>
+  void add_on_ray(const Point2& point, std::span<const PieceId> excluded,
+                  std::span<int> windings) const;
+  template <RayAxis axis>
+  int run_winding(const MonotoneRun& run, const Point2& point,
+                  std::span<const PieceId> excluded) const;
+
+  const MonotoneContours& contours_;
+  std::vector<std::uint32_t> order_;  // runs, those near each other in a row
+  std::vector<Node> nodes_;
+};
+
+}  // namespace prefilter
