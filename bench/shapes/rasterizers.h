@@ -1,0 +1,50 @@
+// What is measured, each behind one interface: our own rasterizer and others, one file a peer.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/shapes/patterns.h"
+
+namespace prefilter::bench {
+
+/// A pattern in a rasterizer's own form, and an image to draw it into. One thread.
+class Drawing {
+ public:
+  virtual ~Drawing() = default;
+
+  /// Makes the rasterizer's own path of the pattern, instead of the one there is.
+  virtual void build() = 0;
+  /// Makes the image empty; not in the clock.
+  virtual void clear() = 0;
+  /// Draws the path into the image.
+  virtual void draw() = 0;
+  /// How much of each pixel the image has as covered, 0 to 1, rows from y = 0 on.
+  virtual std::vector<float> coverage() const = 0;
+};
+
+struct Rasterizer {
+  std::string name;
+  /// Whether curves can be told how near to follow.
+  bool has_tolerance;
+  /// Makes a drawing, with its path. `fineness` divides the rasterizer's own tolerance of curves.
+  /// Empty where it cannot draw the pattern.
+  std::function<std::unique_ptr<Drawing>(const Pattern&, double fineness)> open;
+};
+
+Rasterizer agg_rasterizer();
+Rasterizer packed_agg_rasterizer();
+Rasterizer cairo_rasterizer();
+Rasterizer freetype_rasterizer();
+Rasterizer blend2d_rasterizer();
+Rasterizer skia_rasterizer();
+Rasterizer vello_cpu_rasterizer();
+Rasterizer tiny_skia_rasterizer();
+
+/// 8-bit coverage as `Drawing` has it.
+std::vector<float> from_bytes(const std::vector<std::uint8_t>& bytes);
+
+}  // namespace prefilter::bench
