@@ -161,19 +161,31 @@ std::vector<Pattern> patterns(const std::vector<std::string>& names) {
   return made;
 }
 
-std::vector<Path> abutting_quads() {
+Pattern abutting_quads() {
   constexpr int kSize = 64, kQuads = 64;
-  const auto inside = [](int edge) { return edge > 0 && edge < kQuads ? 1.0 : 0.0; };
-  std::vector<Path> quads(kQuads);
+  const auto lean = [](int edge) { return edge > 0 && edge < kQuads ? 1.0 : 0.0; };
+  Pattern pattern{"abutting", kSize, kSize, {}, false, 1};
   for (int quad = 0; quad < kQuads; ++quad) {
-    Path& path = quads[quad];
-    path.move_to(quad, 0.0);
-    path.line_to(quad + 1, 0.0);
-    path.line_to(quad + 1 + inside(quad + 1), kSize);
-    path.line_to(quad + inside(quad), kSize);
-    path.close();
+    pattern.path.move_to(quad, 0.0);
+    pattern.path.line_to(quad + 1, 0.0);
+    pattern.path.line_to(quad + 1 + lean(quad + 1), kSize);
+    pattern.path.line_to(quad + lean(quad), kSize);
+    pattern.path.close();
   }
-  return quads;
+  return pattern;
+}
+
+std::vector<Path> contours(const Path& path) {
+  std::vector<Path> found;
+  const double* p = path.points.data();
+  for (const Verb verb : path.verbs) {
+    if (verb == Verb::kMove) found.emplace_back();
+    found.back().verbs.push_back(verb);
+    const int count = 2 * point_count(verb);
+    found.back().points.insert(found.back().points.end(), p, p + count);
+    p += count;
+  }
+  return found;
 }
 
 }  // namespace prefilter::bench

@@ -54,6 +54,9 @@ std::vector<Pattern> patterns(const std::vector<std::string>& names = {});
 
 /// 64 quads side by side that together are the whole image of 64 x 64 pixels; the edges that they
 /// share lean over by a pixel, so that they are in the middle of pixels at half of the height.
-std::vector<Path> abutting_quads();
+Pattern abutting_quads();
+
+/// Each contour of a path as a path.
+std::vector<Path> contours(const Path& path);
 
 }  // namespace prefilter::bench

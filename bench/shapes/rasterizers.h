@@ -16,11 +16,11 @@ class Drawing {
  public:
   virtual ~Drawing() = default;
 
-  /// Makes the rasterizer's own path of the pattern, instead of the one there is.
+  /// Makes the rasterizer's own path of the pattern as it is now, instead of the one there is.
   virtual void build() = 0;
   /// Makes the image empty; not in the clock.
   virtual void clear() = 0;
-  /// Draws the path into the image.
+  /// Draws the path over what the image holds.
   virtual void draw() = 0;
   /// How much of each pixel the image has as covered, 0 to 1, rows from y = 0 on.
   virtual std::vector<float> coverage() const = 0;
@@ -34,6 +34,13 @@ struct Rasterizer {
   /// Empty where it cannot draw the pattern.
   std::function<std::unique_ptr<Drawing>(const Pattern&, double fineness)> open;
 };
+
+/// Prefilter with the box filter.
+Rasterizer our_rasterizer();
+/// Prefilter with each of its filters, by their names, and with its other method.
+std::vector<Rasterizer> our_rasterizers();
+/// Coverage of a pattern's contours, each a shape of its own, added by Prefilter.
+std::vector<float> our_sum(const Pattern& pattern);
 
 Rasterizer agg_rasterizer();
 Rasterizer packed_agg_rasterizer();

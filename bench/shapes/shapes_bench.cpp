@@ -1,6 +1,10 @@
 // Times of rasterizers on the same patterns, interleaved, and how far they are from the truth.
 //
-// usage: shapes_bench [--rounds N] [--rasterizers NAME,...] [PATTERN...]
+// usage: shapes_bench [--rounds N] [--rasterizers NAME,...] [--filters | --seams] [PATTERN...]
+//
+// --filters compares Prefilter's own filters instead. --seams draws 64 abutting quads one after
+// another, and prints each rasterizer and the lowest value of the image, of 255.
+//
 // Prints a line for each rasterizer and setting of each pattern, with tabs in between: pattern,
 // rasterizer, fineness (what its own tolerance of curves is divided by), minimum and median time
 // [us], minimum with its path built anew [us], memory that the first drawing adds [MiB], largest
@@ -10,9 +14,9 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
 #include <sstream>
+#include <string_view>
 
 #include "bench/peak_memory.h"
 #include "bench/shapes/rasterizers.h"
@@ -33,7 +37,7 @@ constexpr double kByte = 1.0 / 255.0;
 constexpr double kFinest = 4096;
 constexpr double kSecondsPerPattern = 20.0;
 
-std::vector<Rasterizer> rasterizers() {
+std::vector<Rasterizer> peers() {
   return {
 #ifdef SHAPES_AGG
       agg_rasterizer(),       packed_agg_rasterizer(),
@@ -137,13 +141,10 @@ void print(const std::string& pattern, const Entry& one) {
   std::fflush(stdout);
 }
 
-void compare(const Pattern& pattern, const std::vector<std::string>& names, int rounds) {
+void compare(const Pattern& pattern, const std::vector<Rasterizer>& compared, int rounds) {
   const std::vector<double> truth = true_coverage(pattern);
   std::vector<Entry> entries;
-  for (const Rasterizer& rasterizer : rasterizers()) {
-    if (!names.empty() && std::find(names.begin(), names.end(), rasterizer.name) == names.end()) {
-      continue;
-    }
+  for (const Rasterizer& rasterizer : compared) {
     try {
       entries.push_back(entry(rasterizer, pattern, 1.0, truth));
       if (!entries.back().drawing) {
@@ -160,20 +161,56 @@ void compare(const Pattern& pattern, const std::vector<std::string>& names, int 
   for (const Entry& one : entries) print(pattern.name, one);
 }
 
+void print_seam(const std::string& name, const std::vector<float>& coverage) {
+  std::printf("%s\t%.2f\n", name.c_str(),
+              255 * *std::min_element(coverage.begin(), coverage.end()));
+}
+
+void print_seams(const std::vector<Rasterizer>& compared) {
+  for (const Rasterizer& rasterizer : compared) {
+    Pattern pattern = abutting_quads();
+    const std::vector<Path> quads = contours(pattern.path);
+    const auto drawing = rasterizer.open(pattern, 1.0);
+    drawing->clear();
+    for (const Path& quad : quads) {
+      pattern.path = quad;
+      drawing->build();
+      drawing->draw();
+    }
+    print_seam(rasterizer.name, drawing->coverage());
+  }
+}
+
 int main(int count, char** words) {
   int rounds = 200;
+  bool filters = false, seams = false;
   std::vector<std::string> names, subjects;
   for (int word = 1; word < count; ++word) {
-    if (std::strcmp(words[word], "--rounds") == 0 && word + 1 < count) {
+    const std::string_view option = words[word];
+    if (option == "--rounds" && word + 1 < count) {
       rounds = std::max(1, std::atoi(words[++word]));
-    } else if (std::strcmp(words[word], "--rasterizers") == 0 && word + 1 < count) {
+    } else if (option == "--rasterizers" && word + 1 < count) {
       std::istringstream list(words[++word]);
       for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+    } else if (option == "--filters") {
+      filters = true;
+    } else if (option == "--seams") {
+      seams = true;
     } else {
-      subjects.emplace_back(words[word]);
+      subjects.emplace_back(option);
     }
   }
-  for (const Pattern& pattern : patterns(subjects)) compare(pattern, names, rounds);
+  std::vector<Rasterizer> compared = filters ? our_rasterizers() : peers();
+  if (!filters && !seams) compared.insert(compared.begin(), our_rasterizer());
+  std::erase_if(compared, [&](const Rasterizer& rasterizer) {
+    return !names.empty() && std::find(names.begin(), names.end(), rasterizer.name) == names.end();
+  });
+  if (seams) {
+    print_seam("Prefilter", our_sum(abutting_quads()));
+    print_seams(compared);
+    return 0;
+  }
+  for (const Pattern& pattern : patterns(subjects)) compare(pattern, compared, rounds);
   return 0;
 }
 

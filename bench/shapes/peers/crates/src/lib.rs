@@ -15,9 +15,9 @@ trait Drawing {
 }
 
 /// See `Path` in patterns.h.
-struct Path {
-    verbs: Vec<u8>,
-    points: Vec<f64>,
+struct Path<'a> {
+    verbs: &'a [u8],
+    points: &'a [f64],
 }
 
 /// What takes a path's parts, in the order that they have.
@@ -29,10 +29,10 @@ trait Sink {
     fn close(&mut self);
 }
 
-impl Path {
+impl Path<'_> {
     fn replay(&self, sink: &mut impl Sink) {
-        let mut rest = &self.points[..];
-        for verb in &self.verbs {
+        let mut rest = self.points;
+        for verb in self.verbs {
             let (p, after) = rest.split_at([2, 2, 4, 6, 0][usize::from(*verb)]);
             rest = after;
             match verb {
@@ -47,44 +47,37 @@ impl Path {
 }
 
 pub struct Opened {
-    path: Path,
     size: usize,
     drawing: Box<dyn Drawing>,
 }
 
-/// # Safety
-/// The pointers have as many values as said.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn shapes_crate_open(
-    which: c_int,
-    width: c_int,
-    height: c_int,
+pub extern "C" fn shapes_crate_open(which: c_int, width: c_int, height: c_int) -> *mut Opened {
+    let drawing: Box<dyn Drawing> = match which {
+        0 => Box::new(vello_cpu_peer::VelloDrawing::new(width as u16, height as u16)),
+        _ => Box::new(tiny_skia_peer::TinyDrawing::new(width as u32, height as u32)),
+    };
+    let size = width as usize * height as usize;
+    Box::into_raw(Box::new(Opened { size, drawing }))
+}
+
+/// # Safety
+/// The drawing is open, and the pointers have as many values as said.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn shapes_crate_build(
+    opened: *mut Opened,
     verbs: *const u8,
     verb_count: usize,
     points: *const f64,
     value_count: usize,
-) -> *mut Opened {
+) {
     let path = unsafe {
         Path {
-            verbs: std::slice::from_raw_parts(verbs, verb_count).to_vec(),
-            points: std::slice::from_raw_parts(points, value_count).to_vec(),
+            verbs: std::slice::from_raw_parts(verbs, verb_count),
+            points: std::slice::from_raw_parts(points, value_count),
         }
     };
-    let mut drawing: Box<dyn Drawing> = match which {
-        0 => Box::new(vello_cpu_peer::VelloDrawing::new(width as u16, height as u16)),
-        _ => Box::new(tiny_skia_peer::TinyDrawing::new(width as u32, height as u32)),
-    };
-    drawing.build(&path);
-    let size = width as usize * height as usize;
-    Box::into_raw(Box::new(Opened { path, size, drawing }))
-}
-
-/// # Safety
-/// The drawing is open.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn shapes_crate_build(opened: *mut Opened) {
-    let opened = unsafe { &mut *opened };
-    opened.drawing.build(&opened.path);
+    unsafe { &mut *opened }.drawing.build(&path);
 }
 
 /// # Safety

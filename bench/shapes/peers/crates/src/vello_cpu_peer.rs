@@ -1,10 +1,9 @@
-//! vello_cpu, RGBA of 8 bits, the only image that it has. It writes all pixels, so that none has to
-//! be cleared before.
+//! vello_cpu, RGBA of 8 bits, the only image that it has.
 
 use crate::{Drawing, Path, Sink};
 use vello_cpu::color::palette::css;
 use vello_cpu::kurbo::BezPath;
-use vello_cpu::{Pixmap, RenderContext, Resources};
+use vello_cpu::{Pixmap, RasterizerSettings, RenderContext, Resources, TargetInit};
 
 pub struct VelloDrawing {
     path: BezPath,
@@ -48,14 +47,17 @@ impl Drawing for VelloDrawing {
         path.replay(&mut self.path);
     }
 
-    fn clear(&mut self) {}
+    fn clear(&mut self) {
+        self.pixmap.data_as_u8_slice_mut().fill(0);
+    }
 
     fn draw(&mut self) {
         self.context.reset();
         self.context.set_paint(css::WHITE);
         self.context.fill_path(&self.path);
         self.context.flush();
-        self.context.render(&mut self.pixmap, &mut self.resources);
+        let settings = RasterizerSettings { target_init: TargetInit::SrcOver, ..Default::default() };
+        self.context.render_with(&mut self.pixmap, &mut self.resources, settings);
     }
 
     fn coverage(&self, bytes: &mut [u8]) {
