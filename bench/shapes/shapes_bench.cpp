@@ -75,9 +75,20 @@ struct Entry {
   std::vector<double> times{}, times_with_path{};
 };
 
+/// Empty where the rasterizer cannot draw the pattern, or is not installed.
+std::unique_ptr<Drawing> opened(const Rasterizer& rasterizer, const Pattern& pattern,
+                                double fineness) {
+  try {
+    return rasterizer.open(pattern, fineness);
+  } catch (const std::exception& failed) {
+    std::fprintf(stderr, "%s: %s\n", rasterizer.name.c_str(), failed.what());
+    return nullptr;
+  }
+}
+
 Entry entry(const Rasterizer& rasterizer, const Pattern& pattern, double fineness,
             const std::vector<double>& truth) {
-  Entry made{rasterizer.name, fineness, rasterizer.open(pattern, fineness), 0.0, {}};
+  Entry made{rasterizer.name, fineness, opened(rasterizer, pattern, fineness), 0.0, {}};
   if (!made.drawing) return made;
   made.drawing->clear();
   const PeakMemory memory;
@@ -145,17 +156,12 @@ void compare(const Pattern& pattern, const std::vector<Rasterizer>& compared, in
   const std::vector<double> truth = true_coverage(pattern);
   std::vector<Entry> entries;
   for (const Rasterizer& rasterizer : compared) {
-    try {
-      entries.push_back(entry(rasterizer, pattern, 1.0, truth));
-      if (!entries.back().drawing) {
-        entries.pop_back();
-      } else if (pattern.curved && rasterizer.has_tolerance) {
-        Entry exact = exact_entry(rasterizer, pattern, truth);
-        if (exact.fineness != 1.0) entries.push_back(std::move(exact));
-      }
-    } catch (const std::exception& failed) {
-      std::fprintf(stderr, "%s: %s\n", rasterizer.name.c_str(), failed.what());
-    }
+    Entry own = entry(rasterizer, pattern, 1.0, truth);
+    if (!own.drawing) continue;
+    entries.push_back(std::move(own));
+    if (!pattern.curved || !rasterizer.has_tolerance) continue;
+    Entry exact = exact_entry(rasterizer, pattern, truth);
+    if (exact.fineness != 1.0) entries.push_back(std::move(exact));
   }
   measure(entries, rounds);
   for (const Entry& one : entries) print(pattern.name, one);
@@ -170,7 +176,8 @@ void print_seams(const std::vector<Rasterizer>& compared) {
   for (const Rasterizer& rasterizer : compared) {
     Pattern pattern = abutting_quads();
     const std::vector<Path> quads = contours(pattern.path);
-    const auto drawing = rasterizer.open(pattern, 1.0);
+    const auto drawing = opened(rasterizer, pattern, 1.0);
+    if (!drawing) continue;
     drawing->clear();
     for (const Path& quad : quads) {
       pattern.path = quad;

@@ -1,0 +1,1 @@
+"""Shapes to images: time, memory and error beside other rasterizers."""
