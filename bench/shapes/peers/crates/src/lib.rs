@@ -54,8 +54,14 @@ pub struct Opened {
 #[unsafe(no_mangle)]
 pub extern "C" fn shapes_crate_open(which: c_int, width: c_int, height: c_int) -> *mut Opened {
     let drawing: Box<dyn Drawing> = match which {
-        0 => Box::new(vello_cpu_peer::VelloDrawing::new(width as u16, height as u16)),
-        _ => Box::new(tiny_skia_peer::TinyDrawing::new(width as u32, height as u32)),
+        0 => Box::new(vello_cpu_peer::VelloDrawing::new(
+            width as u16,
+            height as u16,
+        )),
+        _ => Box::new(tiny_skia_peer::TinyDrawing::new(
+            width as u32,
+            height as u32,
+        )),
     };
     let size = width as usize * height as usize;
     Box::into_raw(Box::new(Opened { size, drawing }))
@@ -99,7 +105,9 @@ pub unsafe extern "C" fn shapes_crate_draw(opened: *mut Opened) {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn shapes_crate_coverage(opened: *const Opened, bytes: *mut u8) {
     let opened = unsafe { &*opened };
-    opened.drawing.coverage(unsafe { std::slice::from_raw_parts_mut(bytes, opened.size) });
+    opened
+        .drawing
+        .coverage(unsafe { std::slice::from_raw_parts_mut(bytes, opened.size) });
 }
 
 /// # Safety

@@ -10,7 +10,10 @@ pub struct TinyDrawing {
 
 impl TinyDrawing {
     pub fn new(width: u32, height: u32) -> Self {
-        Self { path: None, mask: Mask::new(width, height).unwrap() }
+        Self {
+            path: None,
+            mask: Mask::new(width, height).unwrap(),
+        }
     }
 }
 
@@ -24,7 +27,8 @@ impl Sink for Builder {
         self.0.line_to(p[0] as f32, p[1] as f32);
     }
     fn quadratic_to(&mut self, p: &[f64]) {
-        self.0.quad_to(p[0] as f32, p[1] as f32, p[2] as f32, p[3] as f32);
+        self.0
+            .quad_to(p[0] as f32, p[1] as f32, p[2] as f32, p[3] as f32);
     }
     fn cubic_to(&mut self, p: &[f64]) {
         let [x1, y1, x2, y2, x3, y3] = std::array::from_fn(|i| p[i] as f32);
@@ -48,7 +52,8 @@ impl Drawing for TinyDrawing {
 
     fn draw(&mut self) {
         let path = self.path.as_ref().unwrap();
-        self.mask.fill_path(path, FillRule::Winding, true, Transform::identity());
+        self.mask
+            .fill_path(path, FillRule::Winding, true, Transform::identity());
     }
 
     fn coverage(&self, bytes: &mut [u8]) {

@@ -56,8 +56,12 @@ impl Drawing for VelloDrawing {
         self.context.set_paint(css::WHITE);
         self.context.fill_path(&self.path);
         self.context.flush();
-        let settings = RasterizerSettings { target_init: TargetInit::SrcOver, ..Default::default() };
-        self.context.render_with(&mut self.pixmap, &mut self.resources, settings);
+        let settings = RasterizerSettings {
+            target_init: TargetInit::SrcOver,
+            ..Default::default()
+        };
+        self.context
+            .render_with(&mut self.pixmap, &mut self.resources, settings);
     }
 
     fn coverage(&self, bytes: &mut [u8]) {
