@@ -39,12 +39,19 @@ struct ArcMoments {
   void add_inside(const std::array<Floats, N + 1>& sums, int sign);
 };
 
-/// The mean of y^b over [-1/2, 1/2].
+/// The mean of y^b over [-1/2, 1/2]: its integral over a cell.
 constexpr double mean_power(int b) {
   if (b % 2 != 0) return 0.0;
   double mean = 1.0 / (b + 1);
   for (int i = 0; i < b; ++i) mean *= 0.5;
   return mean;
+}
+
+/// x^(a + 1) / (a + 1) at a cell's high end.
+constexpr double at_high_end(int a) {
+  double power = 1.0;
+  for (int i = 0; i <= a; ++i) power *= 0.5;
+  return power / (a + 1);
 }
 
 namespace internal {

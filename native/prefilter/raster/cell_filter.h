@@ -26,8 +26,17 @@ struct CellFilter {
   std::vector<double> table;
 
   int first_cell(int pixel) const { return cells_per_pixel * pixel + first; }
+  /// The pixels that weigh a cell: from the first to the last.
+  int first_pixel_over(int cell) const { return floor_division(cell - first - taps) + 1; }
+  int last_pixel_over(int cell) const { return floor_division(cell - first); }
   double to_cell(double coordinate) const { return coordinate * cells_per_pixel + shift; }
   double to_pixel(double cell) const { return (cell - shift) / cells_per_pixel; }
+
+ private:
+  int floor_division(int cells) const {
+    return cells >= 0 ? cells / cells_per_pixel
+                      : -((cells_per_pixel - 1 - cells) / cells_per_pixel);
+  }
 };
 
 /// The names of all filters of shapes.

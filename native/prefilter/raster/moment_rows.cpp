@@ -12,14 +12,6 @@ constexpr double kMomentUnit = 1.0 / (1 << kMomentBits);
 // Of a run's weights: times moments they make coverage.
 constexpr int kWeightBits = kCoverageBits - kMomentBits;
 
-// The integral of x^a over a cell.
-double cell_integral(int a) { return a == 0 ? 1.0 : mean_power(a); }
-
-// The integral of x^a from its low end to the end of the cell, that of x^(a + 1) / (a + 1) there.
-double at_high_end(int a) { return std::pow(0.5, a + 1) / (a + 1); }
-
-int floor_div(int a, int b) { return a >= 0 ? a / b : -((b - 1 - a) / b); }
-
 }  // namespace
 
 template <int N>
@@ -42,7 +34,7 @@ MomentRows<N>::MomentRows(const CellFilter& filter, int width) : filter_(filter)
       const double* along = filter.along.data() + tap * count;
       along_y_.push_back(by_basis([&](int b) { return along[b]; }));
       double integral = 0.0;
-      for (int a = 0; a < count; ++a) integral += along[a] * cell_integral(a);
+      for (int a = 0; a < count; ++a) integral += along[a] * mean_power(a);
       integrals_before_.push_back(integrals_before_.back() + integral);
     }
     integrals_before_.back() = 1.0;
@@ -55,7 +47,7 @@ MomentRows<N>::MomentRows(const CellFilter& filter, int width) : filter_(filter)
         const double* piece = filter.table.data() + (oy * taps + ox) * count * count;
         for (int a = 0; a < count; ++a) {
           table_.push_back(by_basis([&](int b) { return piece[b * count + a]; }));
-          before += table_.back() * cell_integral(a);
+          before += table_.back() * mean_power(a);
         }
         table_before_.push_back(before);
       }
@@ -75,51 +67,6 @@ MomentRows<N>::MomentRows(const CellFilter& filter, int width) : filter_(filter)
 }
 
 template <int N>
-void MomentRows<N>::begin_band(int first_row, int end_row) {
-  first_row_ = first_row;
-  end_row_ = end_row;
-  window_ = {filter_.first_cell(0), filter_.first_cell(width_ - 1) + filter_.taps,
-             filter_.first_cell(first_row), filter_.first_cell(end_row - 1) + filter_.taps};
-  blocks_ = (window_.end_column - window_.first_column) / kBlock + 1;
-  const std::size_t rows = window_.end_row - window_.first_row;
-  slots_.resize(rows * blocks_ * kBlock);
-  is_touched_.resize(rows * blocks_);
-  cells_.clear();
-}
-
-template <int N>
-auto MomentRows<N>::cell(int column, int row) -> Moments& {
-  const std::size_t x = column - window_.first_column;
-  const std::size_t y = row - window_.first_row;
-  std::int32_t& slot = slots_[y * blocks_ * kBlock + x];
-  if (slot == 0) {
-    is_touched_[y * blocks_ + x / kBlock] = 1;
-    cells_.emplace_back();
-    slot = static_cast<std::int32_t>(cells_.size());
-  }
-  return cells_[slot - 1];
-}
-
-template <int N>
-void MomentRows<N>::add(const MonotoneCurve& piece, int sign) {
-  const auto in_cell = [&](int column, int row, const CellArc& arc) {
-    const Point2 center{column + 0.5, row + 0.5};
-    Moments& moments = cell(column, row);
-    if (piece.curve.kind == CurveKind::kLine) {
-      moments.add_line(arc.begin - center, arc.end - center, sign);
-    } else {
-      moments.add_curve(piece.curve, arc, center, sign);
-    }
-  };
-  const auto left_of_window = [&](int row, double y_begin, double y_end) {
-    const double x = -0.5;
-    cell(window_.first_column, row)
-        .add_line({x, y_begin - (row + 0.5)}, {x, y_end - (row + 0.5)}, sign);
-  };
-  cut_to_cells(piece, window_, in_cell, left_of_window);
-}
-
-template <int N>
 std::int64_t MomentRows<N>::run_value(int tap, const Longs& across) const {
   return (run_weights_[tap] * across).sum();
 }
@@ -130,59 +77,33 @@ int MomentRows<N>::taps_before(int pixel, int column) const {
 }
 
 template <int N>
-void MomentRows<N>::flush(CoverageRows* rows) {
-  for (int row = window_.first_row; row < window_.end_row; ++row) flush_row(row, rows);
-  cells_.clear();
-}
-
-// The columns of a row that arcs touch and leave something in.
-template <int N>
-void MomentRows<N>::take_columns(int row) {
-  columns_.clear();
-  std::uint8_t* touched =
-      is_touched_.data() + static_cast<std::size_t>(row - window_.first_row) * blocks_;
-  const std::int32_t* slots =
-      slots_.data() + static_cast<std::size_t>(row - window_.first_row) * blocks_ * kBlock;
-  for (int block = 0; block < blocks_; ++block) {
-    if (touched[block] == 0) continue;
-    touched[block] = 0;
-    for (int x = block * kBlock; x < (block + 1) * kBlock; ++x) {
-      if (slots[x] != 0 && !cells_[slots[x] - 1].is_zero()) {
-        columns_.push_back(window_.first_column + x);
-      }
+void MomentRows<N>::add_coverage(const MomentCells<N>& cells, int first_row, int end_row,
+                                 CoverageRows* rows) {
+  first_row_ = first_row;
+  end_row_ = end_row;
+  for (int row = cells.window().first_row; row < cells.window().end_row; ++row) {
+    cells.columns_of(row, &columns_);
+    Longs across{};
+    // What lies between two cells whose pixels do not meet is a run.
+    for (std::size_t begin = 0; begin < columns_.size();) {
+      std::size_t end = begin + 1;
+      while (end < columns_.size() && columns_[end] < columns_[end - 1] + filter_.taps) ++end;
+      add_span(cells, row, std::span(columns_).subspan(begin, end - begin), &across, rows);
+      begin = end;
     }
   }
 }
 
 template <int N>
-void MomentRows<N>::flush_row(int row, CoverageRows* rows) {
-  take_columns(row);
-  Longs across{};
-  // What lies between two cells whose pixels do not meet is a run.
-  for (std::size_t begin = 0; begin < columns_.size();) {
-    std::size_t end = begin + 1;
-    while (end < columns_.size() && columns_[end] < columns_[end - 1] + filter_.taps) ++end;
-    flush_span(row, std::span(columns_).subspan(begin, end - begin), &across, rows);
-    begin = end;
-  }
-  std::int32_t* slots =
-      slots_.data() + static_cast<std::size_t>(row - window_.first_row) * blocks_ * kBlock;
-  std::memset(slots, 0, static_cast<std::size_t>(blocks_) * kBlock * sizeof(std::int32_t));
-}
-
-template <int N>
-void MomentRows<N>::flush_span(int row, std::span<const int> columns, Longs* across,
-                               CoverageRows* rows) {
+void MomentRows<N>::add_span(const MomentCells<N>& cells, int row, std::span<const int> columns,
+                             Longs* across, CoverageRows* rows) {
   const int taps = filter_.taps;
-  const int per_pixel = filter_.cells_per_pixel;
   const int count = filter_.degree + 1;
-  const int first_tap_cell = filter_.first;
   const int first_column = columns.front();
   const int last_column = columns.back();
   // The pixels that weigh some cell of the span.
-  const int first_pixel =
-      std::max(0, floor_div(first_column - first_tap_cell - taps, per_pixel) + 1);
-  const int end_pixel = std::min(width_, floor_div(last_column - first_tap_cell, per_pixel) + 1);
+  const int first_pixel = std::max(0, filter_.first_pixel_over(first_column));
+  const int end_pixel = std::min(width_, filter_.last_pixel_over(last_column) + 1);
   const int pixels = std::max(0, end_pixel - first_pixel);
   const Longs across_before = *across;
 
@@ -197,8 +118,8 @@ void MomentRows<N>::flush_span(int row, std::span<const int> columns, Longs* acr
   // Cells [from, to) that are alike.
   const auto add_alike = [&](int from, int to, const Longs& integers) {
     const Doubles moments = in_units(integers);
-    const int begin = std::max(first_pixel, floor_div(from - first_tap_cell - taps, per_pixel) + 1);
-    const int end = std::min(end_pixel, floor_div(to - 1 - first_tap_cell, per_pixel) + 1);
+    const int begin = std::max(first_pixel, filter_.first_pixel_over(from));
+    const int end = std::min(end_pixel, filter_.last_pixel_over(to - 1) + 1);
     for (int pixel = begin; pixel < end; ++pixel) {
       const int low = taps_before(pixel, from);
       const int high = taps_before(pixel, to);
@@ -214,9 +135,8 @@ void MomentRows<N>::flush_span(int row, std::span<const int> columns, Longs* acr
     }
   };
   const auto add_cell = [&](int column, const std::array<Doubles, N + 1>& moments) {
-    const int begin =
-        std::max(first_pixel, floor_div(column - first_tap_cell - taps, per_pixel) + 1);
-    const int end = std::min(end_pixel, floor_div(column - first_tap_cell, per_pixel) + 1);
+    const int begin = std::max(first_pixel, filter_.first_pixel_over(column));
+    const int end = std::min(end_pixel, filter_.last_pixel_over(column) + 1);
     for (int pixel = begin; pixel < end; ++pixel) {
       const int ox = column - filter_.first_cell(pixel);
       if (filter_.is_separable) {
@@ -240,16 +160,14 @@ void MomentRows<N>::flush_span(int row, std::span<const int> columns, Longs* acr
   int next = first_column;
   for (const int column : columns) {
     if (column > next) add_alike(next, column, *across);
-    const std::size_t place = static_cast<std::size_t>(row - window_.first_row) * blocks_ * kBlock +
-                              (column - window_.first_column);
-    const Moments& cell = cells_[slots_[place] - 1];
+    const ArcMoments<N>& cell = cells.at(column, row);
     const Longs cell_across = cell.across.template as<std::int64_t>();
     const Doubles own = in_units(cell_across);
     const Doubles before = in_units(*across);
     std::array<Doubles, N + 1> moments;
     for (int a = 0; a < count; ++a) {
       moments[a] = own * at_high_end(a) - in_units(cell.inside[a].template as<std::int64_t>()) +
-                   before * cell_integral(a);
+                   before * mean_power(a);
     }
     add_cell(column, moments);
     *across += cell_across;
@@ -259,8 +177,8 @@ void MomentRows<N>::flush_span(int row, std::span<const int> columns, Longs* acr
 
   // The rows of pixels that weigh this row of cells.
   constexpr double kScale = std::int64_t{1} << kCoverageBits;
-  const int begin_y = std::max(first_row_, floor_div(row - first_tap_cell - taps, per_pixel) + 1);
-  const int end_y = std::min(end_row_, floor_div(row - first_tap_cell, per_pixel) + 1);
+  const int begin_y = std::max(first_row_, filter_.first_pixel_over(row));
+  const int end_y = std::min(end_row_, filter_.last_pixel_over(row) + 1);
   for (int y = begin_y; y < end_y; ++y) {
     const int tap = row - filter_.first_cell(y);
     std::int64_t last = run_value(tap, across_before);

@@ -1,6 +1,82 @@
 #include "prefilter/raster/paint.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace prefilter {
+namespace {
+
+// The offset of a point of a gradient between two circles: the largest one of which the circle, the
+// radius not below 0, passes through it. Where there is none, behind the last stop.
+double radial_offset(const Paint& paint, const Point2& p) {
+  const Point2 axis = paint.end - paint.start;
+  const Point2 to_point = p - paint.start;
+  const double growth = paint.end_radius - paint.start_radius;
+  // |to_point - s axis| = start_radius + s growth.
+  const double a = dot(axis, axis) - growth * growth;
+  const double b = dot(to_point, axis) + paint.start_radius * growth;
+  const double c = dot(to_point, to_point) - paint.start_radius * paint.start_radius;
+  constexpr double kBehind = 1e300;
+  const auto is_allowed = [&](double s) { return paint.start_radius + s * growth >= 0.0; };
+  if (std::abs(a) <= 1e-12 * growth * growth) {
+    const double s = c / (2.0 * b);
+    return std::isfinite(s) && is_allowed(s) ? s : kBehind;
+  }
+  const double discriminant = b * b - a * c;
+  if (!(discriminant >= 0.0)) return kBehind;
+  const double root = std::sqrt(discriminant);
+  // Without cancelling: one root by the sum of equal signs, the other by their product c / a.
+  const double q = b + std::copysign(root, b);
+  const double first = q / a;
+  const double second = q == 0.0 ? first : c / q;
+  const double high = std::max(first, second);
+  const double low = std::min(first, second);
+  if (is_allowed(high)) return high;
+  return is_allowed(low) ? low : kBehind;
+}
+
+double spread_offset(Spread spread, double offset) {
+  if (spread == Spread::kPad) return std::clamp(offset, 0.0, 1.0);
+  if (!(std::abs(offset) < 1e15)) return 1.0;
+  if (spread == Spread::kRepeat) return offset - std::floor(offset);
+  const double twice = offset - 2.0 * std::floor(0.5 * offset);
+  return twice > 1.0 ? 2.0 - twice : twice;
+}
+
+ChannelValues value_of_stops(const std::vector<GradientStop>& stops, double offset) {
+  const auto after =
+      std::upper_bound(stops.begin(), stops.end(), offset,
+                       [](double value, const GradientStop& stop) { return value < stop.offset; });
+  if (after == stops.begin()) return stops.front().value;
+  if (after == stops.end()) return stops.back().value;
+  const GradientStop& before = *(after - 1);
+  const double share = (offset - before.offset) / (after->offset - before.offset);
+  ChannelValues value;
+  for (std::size_t c = 0; c < value.size(); ++c) {
+    value[c] = before.value[c] + share * (after->value[c] - before.value[c]);
+  }
+  return value;
+}
+
+}  // namespace
+
+ChannelValues Paint::at(const Point2& point) const {
+  if (kind == Kind::kConstant || kind == Kind::kLinear) {
+    ChannelValues value;
+    for (std::size_t c = 0; c < value.size(); ++c) {
+      value[c] = constant[c] + point.x * along_x[c] + point.y * along_y[c];
+    }
+    return value;
+  }
+  const Point2 from_origin = point - to_shape.origin;
+  const double determinant = cross(to_shape.x_axis, to_shape.y_axis);
+  const Point2 p{cross(from_origin, to_shape.y_axis) / determinant,
+                 cross(to_shape.x_axis, from_origin) / determinant};
+  const Point2 axis = end - start;
+  const double offset =
+      kind == Kind::kRadialStops ? radial_offset(*this, p) : dot(p - start, axis) / dot(axis, axis);
+  return value_of_stops(stops, spread_offset(spread, offset));
+}
 
 Paint Paint::transformed(const AffineMap2& map) const {
   Paint moved = *this;

@@ -43,6 +43,9 @@ struct Paint {
   double end_radius = 0.0;
   AffineMap2 to_shape;
 
+  /// The value at a point of the shape.
+  ChannelValues at(const Point2& point) const;
+
   /// For a shape that is moved by a map, of rank 2.
   Paint transformed(const AffineMap2& map) const;
 };

@@ -14,29 +14,16 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
 #include "prefilter/raster/coverage_rows.h"
-#include "prefilter/raster/edge_list.h"
+#include "prefilter/raster/local_color.h"
 #include "prefilter/raster/moment_rows.h"
+#include "prefilter/raster/painted_rows.h"
+#include "prefilter/raster/raster_layers.h"
 
 namespace prefilter {
 namespace {
 
 // Pixels are counted by int, and a coordinate in them has 2^-20 behind the point left.
 constexpr double kLargestPixel = 1e9;
-
-// Most shapes whose arcs are added up in the same whole numbers.
-constexpr int kMostShapesTogether = 16;
-
-// Shapes of one color, the segments of which are added up together: what they share then cancels.
-struct Layer {
-  EdgeList edges;
-  ChannelValues color{};
-};
-
-struct Job {
-  std::vector<Layer> layers;
-  ChannelValues background{};
-  int channels = 1;
-};
 
 void check_options(std::span<const Shape> shapes, const RasterOptions& options) {
   if (options.width < 1 || options.height < 1) {
@@ -62,91 +49,112 @@ void check_options(std::span<const Shape> shapes, const RasterOptions& options) 
   }
 }
 
-Job make_job(std::span<const Shape> shapes, const RasterOptions& options) {
-  Job job;
-  if (!shapes.empty()) job.channels = shapes.front().paint.channels;
-  for (std::size_t c = 0; c < options.background.size(); ++c) {
-    job.background[c] = options.background[c];
-  }
-  int together = 0;
-  for (const Shape& shape : shapes) {
-    if (shape.outline.empty()) continue;
-    const bool is_alike = !job.layers.empty() && job.layers.back().color == shape.paint.constant;
-    if (!is_alike || together == kMostShapesTogether) {
-      job.layers.emplace_back();
-      job.layers.back().color = shape.paint.constant;
-      together = 0;
-    }
-    job.layers.back().edges.add(shape.outline);
-    ++together;
-  }
-  return job;
-}
+// For shapes of which the color changes.
+template <int M>
+struct Painted {
+  Painted(const CellFilter& filter, int width) : rows(filter, width) {}
 
-// What one thread makes bands with.
+  MomentCells<M> cells;
+  PaintedRows<M> rows;
+};
+
+// Makes a band of rows.
 template <int N>
 class BandMaker {
  public:
-  BandMaker(const Job& job, const CellFilter& filter, Image* image)
-      : job_(job), filter_(filter), image_(image), moments_(filter, image->width) {}
+  BandMaker(const RasterLayers& job, const CellFilter& filter, Image* image)
+      : job_(job), filter_(filter), image_(image) {}
 
   void make(int first_row, int end_row) {
+    first_row_ = first_row;
+    end_row_ = end_row;
     const int channels = job_.channels;
     const std::size_t row_values = static_cast<std::size_t>(image_->width) * channels;
     values_.resize(row_values * (end_row - first_row));
     for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = job_.background[i % channels];
-    rows_.reset(image_->width, end_row - first_row);
-    moments_.begin_band(first_row, end_row);
-    const int first_cell = filter_.first_cell(first_row);
-    const int end_cell = filter_.first_cell(end_row - 1) + filter_.taps;
-    for (const Layer& layer : job_.layers) {
-      if (filter_.to_cell(layer.edges.high()) < first_cell) continue;
-      if (filter_.to_cell(layer.edges.low()) > end_cell) continue;
-      layer.edges.for_pieces_between(first_cell, end_cell, filter_,
-                                     [&](const MonotoneCurve& piece, bool backwards) {
-                                       moments_.add(piece, backwards ? 1 : -1);
-                                     });
-      moments_.flush(&rows_);
-      add_layer(layer, end_row - first_row);
+    for (const RasterLayer& layer : job_.layers) {
+      if (filter_.to_cell(layer.edges.high()) < filter_.first_cell(first_row)) continue;
+      if (filter_.to_cell(layer.edges.low()) > filter_.first_cell(end_row - 1) + filter_.taps) {
+        continue;
+      }
+      switch (layer.paint.kind) {
+        case Paint::Kind::kConstant:
+          add_constant(layer);
+          break;
+        case Paint::Kind::kLinear:
+          add_painted(layer, &linear_);
+          break;
+        default:
+          add_painted(layer, &radial_);
+          break;
+      }
     }
-    float* out = image_->texel(0, first_row);
-    std::transform(values_.begin(), values_.end(), out,
+    std::transform(values_.begin(), values_.end(), image_->texel(0, first_row),
                    [](double value) { return static_cast<float>(value); });
   }
 
  private:
-  void add_layer(const Layer& layer, int rows) {
+  template <int M>
+  void add_edges(const RasterLayer& layer, MomentCells<M>* cells) const {
+    layer.edges.for_pieces_between(
+        cells->window().first_row, cells->window().end_row, filter_,
+        [&](const MonotoneCurve& piece, bool backwards) { cells->add(piece, backwards ? 1 : -1); });
+  }
+
+  void add_constant(const RasterLayer& layer) {
+    if (moments_ == nullptr) {
+      moments_ = std::make_unique<MomentRows<N>>(filter_, image_->width);
+      cells_.begin_band(filter_, image_->width, first_row_, end_row_);
+      rows_.reset(image_->width, end_row_ - first_row_);
+    }
+    add_edges(layer, &cells_);
+    moments_->add_coverage(cells_, first_row_, end_row_, &rows_);
+    cells_.clear();
     const int channels = job_.channels;
-    for (int row = 0; row < rows; ++row) {
+    const ChannelValues& color = layer.paint.constant;
+    for (int row = 0; row < end_row_ - first_row_; ++row) {
       if (!rows_.is_changed(row)) continue;
       double* out = values_.data() + static_cast<std::size_t>(row) * image_->width * channels;
-      rows_.take(
-          row,
-          [&](int x, double coverage) {
-            for (int c = 0; c < channels; ++c) out[x * channels + c] += coverage * layer.color[c];
-          },
-          [&](int begin, int end, double coverage) {
-            for (int x = begin; x < end; ++x) {
-              for (int c = 0; c < channels; ++c) out[x * channels + c] += coverage * layer.color[c];
-            }
-          });
+      const auto add = [&](int x, double coverage) {
+        for (int c = 0; c < channels; ++c) out[x * channels + c] += coverage * color[c];
+      };
+      rows_.take(row, add, [&](int begin, int end, double coverage) {
+        for (int x = begin; x < end; ++x) add(x, coverage);
+      });
     }
   }
 
-  const Job& job_;
+  template <int M>
+  void add_painted(const RasterLayer& layer, std::unique_ptr<Painted<M>>* painted) {
+    if (*painted == nullptr) {
+      *painted = std::make_unique<Painted<M>>(filter_, image_->width);
+      (*painted)->cells.begin_band(filter_, image_->width, first_row_, end_row_);
+    }
+    auto& [cells, rows] = **painted;
+    add_edges(layer, &cells);
+    rows.add_values(cells, LocalColor(layer.paint, filter_), first_row_, end_row_, values_.data());
+    cells.clear();
+  }
+
+  const RasterLayers& job_;
   const CellFilter& filter_;
   Image* image_;
-  MomentRows<N> moments_;
+  int first_row_ = 0;
+  int end_row_ = 0;
+  MomentCells<N> cells_;
+  std::unique_ptr<MomentRows<N>> moments_;
+  std::unique_ptr<Painted<N + 1>> linear_;
+  std::unique_ptr<Painted<N + 2>> radial_;
   CoverageRows rows_;
   std::vector<double> values_;
 };
 
 template <int N>
-void make_bands(const Job& job, const CellFilter& filter, const RasterOptions& options,
+void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterOptions& options,
                 Image* image) {
   constexpr int kBandValues = 1 << 17;
   const int rows = std::clamp(kBandValues / (options.width * job.channels), 16, 256);
-  parallel_ranges(options.height, rows, options.threads, options.progress,
+  parallel_ranges(options.height, rows, options.threads, options.progress.part(0.2, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
                     BandMaker<N> maker(job, filter, image);
                     maker.make(static_cast<int>(begin), static_cast<int>(end));
@@ -165,7 +173,7 @@ Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
     }
     throw_invalid("filter: '" + options.filter + "' is not one of " + names);
   }
-  const Job job = make_job(shapes, options);
+  const RasterLayers job = make_layers(shapes, options);
   Image image(options.width, options.height, job.channels);
   switch (filter->degree) {
     case 0:

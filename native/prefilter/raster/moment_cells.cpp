@@ -1,0 +1,81 @@
+#include "prefilter/raster/moment_cells.h"
+
+#include <algorithm>
+
+namespace prefilter {
+
+template <int N>
+void MomentCells<N>::begin_band(const CellFilter& filter, int width, int first_row, int end_row) {
+  window_ = {filter.first_cell(0), filter.first_cell(width - 1) + filter.taps,
+             filter.first_cell(first_row), filter.first_cell(end_row - 1) + filter.taps};
+  blocks_ = (window_.end_column - window_.first_column) / kBlock + 1;
+  const std::size_t rows = window_.end_row - window_.first_row;
+  slots_.assign(rows * blocks_ * kBlock, 0);
+  is_touched_.assign(rows * blocks_, 0);
+  cells_.clear();
+}
+
+template <int N>
+auto MomentCells<N>::cell(int column, int row) -> Moments& {
+  std::int32_t& slot = slots_[place(column, row)];
+  if (slot == 0) {
+    is_touched_[place(column, row) / kBlock] = 1;
+    cells_.emplace_back();
+    slot = static_cast<std::int32_t>(cells_.size());
+  }
+  return cells_[slot - 1];
+}
+
+template <int N>
+void MomentCells<N>::add(const MonotoneCurve& piece, int sign) {
+  const auto in_cell = [&](int column, int row, const CellArc& arc) {
+    const Point2 center{column + 0.5, row + 0.5};
+    Moments& moments = cell(column, row);
+    if (piece.curve.kind == CurveKind::kLine) {
+      moments.add_line(arc.begin - center, arc.end - center, sign);
+    } else {
+      moments.add_curve(piece.curve, arc, center, sign);
+    }
+  };
+  const auto left_of_window = [&](int row, double y_begin, double y_end) {
+    const double x = -0.5;
+    cell(window_.first_column, row)
+        .add_line({x, y_begin - (row + 0.5)}, {x, y_end - (row + 0.5)}, sign);
+  };
+  cut_to_cells(piece, window_, in_cell, left_of_window);
+}
+
+template <int N>
+void MomentCells<N>::columns_of(int row, std::vector<int>* columns) const {
+  columns->clear();
+  const std::size_t first = place(window_.first_column, row);
+  for (int block = 0; block < blocks_; ++block) {
+    if (is_touched_[first / kBlock + block] == 0) continue;
+    for (int x = block * kBlock; x < (block + 1) * kBlock; ++x) {
+      const std::int32_t slot = slots_[first + x];
+      if (slot != 0 && !cells_[slot - 1].is_zero()) columns->push_back(window_.first_column + x);
+    }
+  }
+}
+
+template <int N>
+void MomentCells<N>::clear() {
+  for (std::size_t block = 0; block < is_touched_.size(); ++block) {
+    if (is_touched_[block] == 0) continue;
+    is_touched_[block] = 0;
+    std::fill_n(slots_.begin() + static_cast<std::ptrdiff_t>(block * kBlock), kBlock, 0);
+  }
+  cells_.clear();
+}
+
+template class MomentCells<0>;
+template class MomentCells<1>;
+template class MomentCells<2>;
+template class MomentCells<3>;
+template class MomentCells<4>;
+template class MomentCells<5>;
+template class MomentCells<7>;
+template class MomentCells<8>;
+template class MomentCells<9>;
+
+}  // namespace prefilter

@@ -1,0 +1,60 @@
+// The cells of a band of rows that arcs touch, and the moments of what those leave in them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/moments/arc_moments.h"
+#include "prefilter/raster/cell_filter.h"
+
+namespace prefilter {
+
+/// Cells are made where an arc comes; a grid of their places finds them again. N is the degree of
+/// the moments along each axis.
+template <int N>
+class MomentCells {
+ public:
+  using Moments = ArcMoments<N>;
+
+  /// The cells under the pixels of the rows [first_row, end_row) of images of a width.
+  void begin_band(const CellFilter& filter, int width, int first_row, int end_row);
+  const GridWindow& window() const { return window_; }
+
+  /// Adds a piece, in coordinates of cells; the region on its right counts `sign` times.
+  void add(const MonotoneCurve& piece, int sign);
+
+  /// The columns of a row in which arcs leave something, rising.
+  void columns_of(int row, std::vector<int>* columns) const;
+  /// One of those.
+  const Moments& at(int column, int row) const { return cells_[slots_[place(column, row)] - 1]; }
+
+  /// Forgets the cells, of which each row's columns were asked for.
+  void clear();
+
+ private:
+  static constexpr int kBlock = 16;
+
+  std::size_t place(int column, int row) const {
+    return static_cast<std::size_t>(row - window_.first_row) * blocks_ * kBlock +
+           (column - window_.first_column);
+  }
+  Moments& cell(int column, int row);
+
+  GridWindow window_;
+  int blocks_ = 0;
+  std::vector<std::int32_t> slots_;  // one more than the place in cells_, or 0
+  std::vector<std::uint8_t> is_touched_;
+  std::vector<Moments> cells_;
+};
+
+extern template class MomentCells<0>;
+extern template class MomentCells<1>;
+extern template class MomentCells<2>;
+extern template class MomentCells<3>;
+extern template class MomentCells<4>;
+extern template class MomentCells<5>;
+extern template class MomentCells<7>;
+extern template class MomentCells<8>;
+extern template class MomentCells<9>;
+
+}  // namespace prefilter

@@ -1,0 +1,50 @@
+// The values of pixels under a shape whose color changes from place to place.
+#pragma once
+
+#include <vector>
+
+#include "prefilter/raster/cell_filter.h"
+#include "prefilter/raster/local_color.h"
+#include "prefilter/raster/moment_cells.h"
+
+namespace prefilter {
+
+/// Weighs cells by a filter times a color, which is a polynomial on each cell: exact for linear
+/// colors. N is the filter's degree and the color's together.
+template <int N>
+class PaintedRows {
+ public:
+  /// For images of a width. The filter must outlive this.
+  PaintedRows(const CellFilter& filter, int width);
+
+  /// Adds to `values`, those of the pixel rows [first_row, end_row), the color of what lies in
+  /// the cells.
+  void add_values(const MomentCells<N>& cells, const LocalColor& color, int first_row, int end_row,
+                  double* values);
+
+ private:
+  using Moments = std::array<std::array<double, N + 1>, N + 1>;  // of x^a y^b, at [a][b]
+
+  void add_cell(int column, int row, const Moments& moments, const LocalColor& color);
+  void add_full_cells(int begin, int end, int row, double share, const LocalColor& color);
+  template <typename Use>
+  void for_pixels_over(int column, int row, const Use& use) const;
+
+  const CellFilter& filter_;
+  int width_;
+  int first_row_ = 0;
+  int end_row_ = 0;
+  double* values_ = nullptr;
+  std::vector<int> columns_;
+  std::vector<ColorPowers> full_;  // of taps (oy, ox): the integrals of the color's powers
+};
+
+extern template class PaintedRows<1>;
+extern template class PaintedRows<2>;
+extern template class PaintedRows<3>;
+extern template class PaintedRows<4>;
+extern template class PaintedRows<5>;
+extern template class PaintedRows<8>;
+extern template class PaintedRows<9>;
+
+}  // namespace prefilter

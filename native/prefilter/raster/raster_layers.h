@@ -1,0 +1,31 @@
+// Shapes made ready: outlines that wind once round what they fill, colors that only have to be
+// added.
+#pragma once
+
+#include <deque>
+#include <span>
+#include <vector>
+
+#include "prefilter/raster/edge_list.h"
+#include "prefilter/raster/rasterize.h"
+
+namespace prefilter {
+
+/// Outlines of one paint. Constant ones of several shapes are summed up together: what they share
+/// then cancels.
+struct RasterLayer {
+  EdgeList edges;
+  Paint paint;  // of any kind but kLinearStops
+};
+
+struct RasterLayers {
+  std::vector<RasterLayer> layers;
+  ChannelValues background{};
+  int channels = 1;
+  std::deque<Outline> outlines;  // what the edges are of
+};
+
+/// The sum of all layers and the background is the image. The shapes must outlive it.
+RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& options);
+
+}  // namespace prefilter
