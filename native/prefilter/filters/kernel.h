@@ -29,7 +29,8 @@ class Kernel {
   /// texels or half texels.
   std::span<const Piece> pieces() const { return pieces_; }
   double piece_width() const { return piece_width_; }
-  /// The highest of the pieces' degrees. Kernels of degree 0 jump, all others are continuous.
+  /// The highest of the pieces' degrees. Kernels of degree 0 jump; all others are continuous, but
+  /// for a step of 3.5e-6 where "gaussian" ends.
   int degree() const { return degree_; }
 
   /// The kernel at x; 0 outside of its support.

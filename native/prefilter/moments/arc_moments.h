@@ -12,7 +12,8 @@ namespace prefilter {
 
 /// Sums over the arcs in a cell, in fractions of 2^-kMomentBits. Whole numbers add up to the same
 /// in any order; the arcs of an edge that two shapes share cancel; and what a closed contour leaves
-/// behind its last arc is 0.
+/// behind its last arc is 0. They are added modulo 2^32: only what comes out needs to fit, which is
+/// up to 32 windings.
 inline constexpr int kMomentBits = 26;
 
 /// Coordinates in a cell run from -1/2 to 1/2 around its center. Along y moments are those of
@@ -21,12 +22,12 @@ template <int N>
 struct ArcMoments {
   static constexpr int kLanes = N < 4 ? 4 : N < 8 ? 8 : 16;
   using Floats = LaneArray<float, kLanes>;
-  using Integers = LaneArray<std::int32_t, kLanes>;
+  using Integers = LaneArray<std::uint32_t, kLanes>;
 
-  /// The integral of x^(a + 1) / (a + 1) P_b(y) dy, at [a][b].
-  std::array<Integers, N + 1> inside{};
+  /// The integral of x^(a + 1) / (a + 1) P_b(y) dy.
+  std::int32_t inside(int a, int b) const { return static_cast<std::int32_t>(inside_[a][b]); }
   /// The integral of P_b(y) dy.
-  Integers across{};
+  std::int32_t across(int b) const { return static_cast<std::int32_t>(across_[b]); }
 
   void add_line(Point2 begin, Point2 end, int sign);
   void add_curve(const ParametricCurve& curve, const CellArc& arc, Point2 center, int sign);
@@ -37,6 +38,9 @@ struct ArcMoments {
   static Floats lane_powers(float y);
   static Integers antiderivative(double y);
   void add_inside(const std::array<Floats, N + 1>& sums, int sign);
+
+  std::array<Integers, N + 1> inside_{};
+  Integers across_{};
 };
 
 /// The mean of y^b over [-1/2, 1/2]: its integral over a cell.
@@ -108,13 +112,13 @@ template <int N>
 auto ArcMoments<N>::antiderivative(double y) -> Integers {
   Integers values{};
   constexpr double kScale = 1 << kMomentBits;
-  values[0] = static_cast<std::int32_t>(std::lrint(y * kScale));
+  values[0] = static_cast<std::uint32_t>(std::lrint(y * kScale));
   double power = y;
   double half = 0.5;
   for (int b = 1; b <= N; ++b) {
     // y^(b + 1) - (1/2)^(b + 1) for odd b, y (y^b - (1/2)^b) for even b.
     const double value = b % 2 == 1 ? power * y - half * 0.5 : (power - half) * y;
-    values[b] = static_cast<std::int32_t>(std::lrint(value / (b + 1) * kScale));
+    values[b] = static_cast<std::uint32_t>(std::lrint(value / (b + 1) * kScale));
     power *= y;
     half *= 0.5;
   }
@@ -123,19 +127,24 @@ auto ArcMoments<N>::antiderivative(double y) -> Integers {
 
 template <int N>
 void ArcMoments<N>::add_across(double begin, double end, int sign) {
-  if (std::abs(begin) == 0.5 && std::abs(end) == 0.5) {
-    across[0] += end > begin ? sign * (1 << kMomentBits) : -sign * (1 << kMomentBits);
+  if (std::abs(begin) == 0.5 && begin == -end) {
+    across_[0] += static_cast<std::uint32_t>(end > begin ? sign : -sign) << kMomentBits;
     return;
   }
-  across += (antiderivative(end) - antiderivative(begin)) * sign;
+  across_ += (antiderivative(end) - antiderivative(begin)) * static_cast<std::uint32_t>(sign);
 }
 
 template <int N>
 void ArcMoments<N>::add_inside(const std::array<Floats, N + 1>& sums, int sign) {
   constexpr float kScale = 1 << kMomentBits;
   for (int a = 0; a <= N; ++a) {
-    inside[a] +=
-        (sums[a] * (kScale / static_cast<float>(a + 1))).template as<std::int32_t>() * sign;
+    const Floats scaled = sums[a] * (kScale / static_cast<float>(a + 1));
+    for (int b = 0; b < kLanes; ++b) {
+      // To the nearest, halves away from 0: as far from it for an edge and for its reverse.
+      const float half = scaled[b] < 0.0F ? -0.5F : 0.5F;
+      inside_[a][b] +=
+          static_cast<std::uint32_t>(static_cast<std::int32_t>(scaled[b] + half) * sign);
+    }
   }
 }
 
@@ -170,15 +179,19 @@ void ArcMoments<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, 
   constexpr int kPoints = N < 5 ? N + 4 : 9;
   const auto& rule = internal::gauss_rule<kPoints>();
   std::array<Floats, N + 1> sums{};
-  // Where an arc is bent, so many powers of t do not do: it is halved.
+  // Where an arc is bent, or of a high degree, so many powers of t do not do: it is halved.
   int parts = 1;
+  if (curve.kind == CurveKind::kBezier) {
+    const double turns = static_cast<double>(curve.controls.size()) * (arc.t_end - arc.t_begin);
+    while (parts < turns) parts *= 2;
+  }
   const auto bend = [&](double t_begin, double t_end) {
     const Point2 a = curve.at(t_begin);
     const Point2 c = curve.at(t_end);
     const Point2 off = curve.at(0.5 * (t_begin + t_end)) - 0.5 * (a + c);
     return std::abs(off.x) + std::abs(off.y);
   };
-  constexpr int kMostParts = 64;
+  constexpr int kMostParts = 256;
   constexpr double kMostBend = 0.06;
   while (parts < kMostParts) {
     const double step = (arc.t_end - arc.t_begin) / parts;
@@ -211,8 +224,8 @@ void ArcMoments<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, 
 
 template <int N>
 bool ArcMoments<N>::is_zero() const {
-  Integers any = across;
-  for (const Integers& row : inside) {
+  Integers any = across_;
+  for (const Integers& row : inside_) {
     for (int b = 0; b < kLanes; ++b) any[b] |= row[b];
   }
   for (int b = 0; b < kLanes; ++b) {

@@ -172,6 +172,15 @@ bool is_cut_backwards(std::span<const Point2> controls) {
   return false;
 }
 
+double internal::halve_conic(std::span<const Point2> controls, double weight,
+                             std::array<Point2, 5>* halves) {
+  const double scale = 1.0 / (1.0 + weight);
+  const Point2 left = scale * (controls[0] + weight * controls[1]);
+  const Point2 right = scale * (weight * controls[1] + controls[2]);
+  *halves = {controls[0], left, 0.5 * (left + right), right, controls[2]};
+  return std::sqrt(0.5 * (1.0 + weight));
+}
+
 double crossing(const MonotoneCurve& piece, int axis, double value, double low) {
   const ParametricCurve& curve = piece.curve;
   double high = piece.t_end;

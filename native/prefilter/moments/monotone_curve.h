@@ -52,6 +52,44 @@ int turning_points(const ParametricCurve& curve, std::span<const Point2> control
 /// from the other.
 bool is_cut_backwards(std::span<const Point2> controls);
 
+namespace internal {
+
+/// A conic between weights of 1 as two of them, halved at t = 1/2: control points one after
+/// another, of which they share the middle. Returns the weight of both.
+double halve_conic(std::span<const Point2> controls, double weight, std::array<Point2, 5>* halves);
+
+/// Halves make a weight the closer to 1 the more often. Outside of this range the speed along a
+/// conic changes too much for quadrature.
+constexpr bool is_even(double weight) { return weight == 0.0 || (weight > 0.6 && weight < 1.5); }
+
+template <typename Use>
+void for_monotone_parts(std::span<const Point2> controls, double weight, const Use& use) {
+  if (!is_even(weight)) {
+    std::array<Point2, 5> halves;
+    const double half_weight = halve_conic(controls, weight, &halves);
+    for_monotone_parts(std::span<const Point2>(halves).first(3), half_weight, use);
+    for_monotone_parts(std::span<const Point2>(halves).last(3), half_weight, use);
+    return;
+  }
+  MonotoneCurve piece;
+  piece.curve = ParametricCurve(controls, weight);
+  piece.begin = controls.front();
+  std::array<double, kMostTurns> turns;
+  const int count = turning_points(piece.curve, controls, &turns);
+  for (int i = 0; i < count; ++i) {
+    piece.t_end = turns[i];
+    piece.end = piece.curve.at(turns[i]);
+    use(piece);
+    piece.t_begin = piece.t_end;
+    piece.begin = piece.end;
+  }
+  piece.t_end = 1.0;
+  piece.end = controls.back();
+  use(piece);
+}
+
+}  // namespace internal
+
 /// Calls use(const MonotoneCurve&, bool backwards) for the pieces of a segment, given by its
 /// control points, in the order in which they are cut.
 template <typename Use>
@@ -62,23 +100,9 @@ void for_monotone_pieces(std::span<const Point2> controls, double weight, const 
     std::reverse_copy(controls.begin(), controls.end(), turned.begin());
     controls = {turned.data(), controls.size()};
   }
-  MonotoneCurve piece;
-  piece.curve = ParametricCurve(controls, weight);
-  piece.begin = controls.front();
-  std::array<double, kMostTurns> turns;
-  const int count = turning_points(piece.curve, controls, &turns);
-  for (int i = 0; i < count; ++i) {
-    piece.t_end = turns[i];
-    piece.end = piece.curve.at(turns[i]);
-    use(piece, backwards);
-    piece.t_begin = piece.t_end;
-    piece.begin = piece.end;
-  }
-  piece.t_end = 1.0;
-  piece.end = controls.back();
-  use(piece, backwards);
+  const auto use_turned = [&](const MonotoneCurve& piece) { use(piece, backwards); };
+  internal::for_monotone_parts(controls, weight, use_turned);
 }
-
 /// Where a piece passes a value of x (axis 0) or y (axis 1) between `low` and its end; the piece
 /// is on either side of it at these two.
 double crossing(const MonotoneCurve& piece, int axis, double value, double low);

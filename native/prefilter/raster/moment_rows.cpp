@@ -161,13 +161,15 @@ void MomentRows<N>::add_span(const MomentCells<N>& cells, int row, std::span<con
   for (const int column : columns) {
     if (column > next) add_alike(next, column, *across);
     const ArcMoments<N>& cell = cells.at(column, row);
-    const Longs cell_across = cell.across.template as<std::int64_t>();
+    Longs cell_across{};
+    for (int b = 0; b <= N; ++b) cell_across[b] = cell.across(b);
     const Doubles own = in_units(cell_across);
     const Doubles before = in_units(*across);
     std::array<Doubles, N + 1> moments;
     for (int a = 0; a < count; ++a) {
-      moments[a] = own * at_high_end(a) - in_units(cell.inside[a].template as<std::int64_t>()) +
-                   before * mean_power(a);
+      Longs inside{};
+      for (int b = 0; b <= N; ++b) inside[b] = cell.inside(a, b);
+      moments[a] = own * at_high_end(a) - in_units(inside) + before * mean_power(a);
     }
     add_cell(column, moments);
     *across += cell_across;

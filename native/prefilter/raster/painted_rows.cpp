@@ -119,11 +119,10 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
   first_row_ = first_row;
   end_row_ = end_row;
   values_ = values;
-  using Across = LaneArray<std::int64_t, ArcMoments<N>::kLanes>;
   const int end_column = cells.window().end_column;
   for (int row = cells.window().first_row; row < cells.window().end_row; ++row) {
     cells.columns_of(row, &columns_);
-    Across across{};
+    std::array<std::int64_t, N + 1> across{};
     // By powers of y, from P_b.
     const auto in_powers = [](std::array<double, N + 1> by_basis) {
       for (int b = 1; b <= N; ++b) by_basis[b] += mean_power(b) * by_basis[0];
@@ -153,13 +152,13 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
       for (int a = 0; a <= N; ++a) {
         std::array<double, N + 1> line;
         for (int b = 0; b <= N; ++b) {
-          line[b] = kMomentUnit * (at_high_end(a) * cell.across[b] - cell.inside[a][b] +
+          line[b] = kMomentUnit * (at_high_end(a) * cell.across(b) - cell.inside(a, b) +
                                    mean_power(a) * static_cast<double>(across[b]));
         }
         moments[a] = in_powers(line);
       }
       add_cell(column, row, moments, color);
-      across += cell.across.template as<std::int64_t>();
+      for (int b = 0; b <= N; ++b) across[b] += cell.across(b);
       add_alike(column + 1, i + 1 < columns_.size() ? columns_[i + 1] : end_column);
     }
   }
