@@ -7,6 +7,7 @@ and what is allowed.
 """
 
 from ._native import Cancelled
+from ._svg.warnings import SvgWarning
 from .color import to_linear, to_srgb
 from .contours import contour
 from .cutout import keep_coverage
@@ -19,6 +20,7 @@ from .resizing import RESIZE_FILTERS, resize
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .shapes import RASTER_FILTERS, Shape, rasterize
 from .surface import Surface
+from .svg import SvgDrawing, read_svg
 from .texture_use import fill_transparent, fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
 from .version import VERSION
@@ -41,6 +43,8 @@ __all__ = [
     "ScanPoints",
     "Shape",
     "Surface",
+    "SvgDrawing",
+    "SvgWarning",
     "close_holes",
     "contour",
     "cube_around",
@@ -57,6 +61,7 @@ __all__ = [
     "normal_mipmaps",
     "rasterize",
     "read_points",
+    "read_svg",
     "reconstruct",
     "reconstruct_file",
     "resize",

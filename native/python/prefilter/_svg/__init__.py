@@ -1,0 +1,1 @@
+"""What reading SVG takes: XML by expat, style sheets and values by tinycss2 and cssselect2."""

@@ -1,0 +1,54 @@
+"""Lengths of attributes in the units of the drawing."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from .document import SvgElement
+from .values import Length, UnknownUnitError, as_length
+from .warnings import Warnings
+
+_ALONG_X = frozenset(("x", "x1", "x2", "cx", "fx", "rx", "width"))
+_ALONG_Y = frozenset(("y", "y1", "y2", "cy", "fy", "ry", "height"))
+
+
+@dataclass(frozen=True, slots=True)
+class Units:
+    """What percentages and the units of fonts are relative to.
+
+    Attributes:
+        width: Of the viewport.
+        height: Likewise.
+        font_size: Of the element.
+    """
+
+    width: float
+    height: float
+    font_size: float
+
+    def pixels(self, length: Length, name: str) -> float:
+        """A length that is the value of an attribute or property of that name."""
+        if name in _ALONG_X:
+            whole = self.width
+        elif name in _ALONG_Y:
+            whole = self.height
+        else:
+            whole = math.sqrt((self.width * self.width + self.height * self.height) / 2.0)
+        return length.pixels(whole, self.font_size)
+
+
+def read_length(
+    element: SvgElement, values: Mapping[str, str], name: str, warnings: Warnings
+) -> Length | None:
+    """The length that is among the values of an element; None where there is none, or `auto`."""
+    text = values.get(name)
+    if text is None or text == "auto":
+        return None
+    try:
+        length = as_length(text)
+    except UnknownUnitError as error:
+        warnings.unsupported(f"unit '{error}'", "ignored", element.line)
+        return None
+    if length is None:
+        warnings.broken(f"{name} '{text[:40]}'", "ignored", element.line)
+    return length

@@ -1,0 +1,315 @@
+"""Which properties an element has: by attributes, style sheets, its style, and its parent."""
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from functools import lru_cache
+from typing import Any
+
+import cssselect2
+import tinycss2
+
+from .document import Document, SvgElement
+from .values import (
+    BLACK,
+    Color,
+    Length,
+    Paint,
+    UnknownUnitError,
+    as_color,
+    as_length,
+    as_lengths,
+    as_number,
+    as_paint,
+)
+from .warnings import Warnings
+
+_DEFAULT_FONT_SIZE = 16.0
+_BLACK, _NOTHING = Paint(BLACK), Paint(None)
+_ZERO, _ONE = Length(0.0), Length(1.0)
+_FONT_SIZES = {
+    "xx-small": 9.6,
+    "x-small": 12.0,
+    "small": 13.333,
+    "medium": 16.0,
+    "large": 19.2,
+    "x-large": 24.0,
+    "xx-large": 32.0,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Style:
+    """The properties of an element that count here."""
+
+    # Those of the parent, where an element says nothing.
+    color: Color = BLACK
+    fill: Paint = _BLACK
+    fill_opacity: float = 1.0
+    fill_rule: str = "nonzero"
+    font_size: float = _DEFAULT_FONT_SIZE
+    paint_order: str = "normal"
+    stroke: Paint = _NOTHING
+    stroke_opacity: float = 1.0
+    stroke_width: Length = _ONE
+    stroke_linecap: str = "butt"
+    stroke_linejoin: str = "miter"
+    stroke_miterlimit: float = 4.0
+    stroke_dasharray: tuple[Length, ...] = ()
+    stroke_dashoffset: Length = _ZERO
+    visibility: str = "visible"
+    # Those of the element itself.
+    opacity: float = 1.0
+    stop_color: Color | str = BLACK
+    stop_opacity: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not math.isfinite(self.font_size):
+            object.__setattr__(self, "font_size", _DEFAULT_FONT_SIZE)
+
+
+_OWN = ("opacity", "stop_color", "stop_opacity")
+
+
+def _one_of(*names: str) -> Callable[[str], str | None]:
+    return lambda text: text.lower() if text.lower() in names else None
+
+
+def _share(text: str) -> float | None:
+    value = as_number(text)
+    return None if value is None else min(max(value, 0.0), 1.0)
+
+
+def _positive_length(text: str) -> Length | None:
+    length = as_length(text)
+    return length if length and length.value >= 0.0 else None
+
+
+def _dashes(text: str) -> tuple[Length, ...] | None:
+    if text.lower() == "none":
+        return ()
+    found = as_lengths(text)
+    return None if found is None or any(length.value < 0.0 for length in found) else found
+
+
+def _miter_limit(text: str) -> float | None:
+    value = as_number(text)
+    return value if value is not None and value >= 1.0 else None
+
+
+_PARSERS: dict[str, Callable[[str], Any]] = {
+    "color": as_color,
+    "fill": as_paint,
+    "fill-opacity": _share,
+    "fill-rule": _one_of("nonzero", "evenodd"),
+    "paint-order": lambda text: text.lower(),
+    "stroke": as_paint,
+    "stroke-opacity": _share,
+    "stroke-width": _positive_length,
+    "stroke-linecap": _one_of("butt", "round", "square"),
+    "stroke-linejoin": _one_of("miter", "round", "bevel", "miter-clip", "arcs"),
+    "stroke-miterlimit": _miter_limit,
+    "stroke-dasharray": _dashes,
+    "stroke-dashoffset": as_length,
+    "visibility": _one_of("visible", "hidden", "collapse"),
+    "opacity": _share,
+    "stop-color": as_color,
+    "stop-opacity": _share,
+}
+_FIELDS = {name: name.replace("-", "_") for name in (*_PARSERS, "font-size")}
+
+# What draws in another way than it would here, with the values that do nothing.
+_UNSUPPORTED = {
+    "clip-path": ("none",),
+    "filter": ("none",),
+    "mask": ("none",),
+    "marker": ("none",),
+    "marker-start": ("none",),
+    "marker-mid": ("none",),
+    "marker-end": ("none",),
+    "mix-blend-mode": ("normal",),
+    "transform-origin": ("0", "0 0", "0px 0px"),
+    "vector-effect": ("none",),
+}
+# Attributes that are properties too, so that style sheets may set them.
+_GEOMETRY = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "transform", "display")
+_PROPERTIES = frozenset((*_PARSERS, *_UNSUPPORTED, *_GEOMETRY, "font-size"))
+
+
+class StyleSheets:
+    """The style sheets of a document, and what its elements declare."""
+
+    def __init__(
+        self, document: Document, warnings: Warnings, tell: Callable[[float], None]
+    ) -> None:
+        self._warnings = warnings
+        self._styles: dict[SvgElement, Style] = {}
+        self._declared: dict[SvgElement, dict[str, str]] = {}
+        if document.foreign_style:
+            warnings.unsupported("xml-stylesheet", "ignored", document.foreign_style)
+        matcher = cssselect2.Matcher()
+        is_styled = False
+        for element in document.root.iter("style"):
+            assert isinstance(element, SvgElement)
+            if element.get("type", "text/css").strip().lower() in ("text/css", ""):
+                is_styled = self._add_rules(matcher, element) or is_styled
+        wrapper = cssselect2.ElementWrapper.from_xml_root(document.root)
+        if not is_styled:
+            matcher = None
+        for index, each in enumerate(wrapper.iter_subtree() if is_styled else document.root.iter()):
+            if index % 500 == 0:
+                tell(index / document.count)
+            if matcher is None:
+                self._declared[each] = self._declarations(each, ())
+            else:
+                rules = [match[3] for match in matcher.match(each) if match[2] is None]
+                self._declared[each.etree_element] = self._declarations(each.etree_element, rules)
+
+    def declared(self, element: SvgElement) -> Mapping[str, str]:
+        """The values of properties and attributes, as they stand in the file."""
+        return self._declared[element]
+
+    def style(self, element: SvgElement) -> Style:
+        """The properties of an element where it stands."""
+        line: list[SvgElement] = []
+        at: SvgElement | None = element
+        while at is not None and at not in self._styles:
+            line.append(at)
+            at = at.parent
+        style = self._styles[at] if at is not None else Style()
+        for each in reversed(line):
+            style = self._styles[each] = self.style_below(each, style)
+        return style
+
+    def style_below(self, element: SvgElement, parent: Style) -> Style:
+        """The properties of an element in a place where its parent has those given."""
+        changed: dict[str, Any] = {}
+        declared = self._declared[element]
+        if "font-size" in declared:
+            changed["font_size"] = self._font_size(declared["font-size"], parent, element)
+        for name in declared.keys() & _PARSERS.keys():
+            field, text = _FIELDS[name], declared[name]
+            value = getattr(parent, field) if text == "inherit" else _parsed(name, text)
+            if value is not None and not (name == "color" and value == "current"):
+                changed[field] = value
+        for name in _OWN:
+            if name not in changed and getattr(parent, name) != _INITIAL[name]:
+                changed[name] = _INITIAL[name]
+        return replace(parent, **changed) if changed else parent
+
+    def _font_size(self, text: str, parent: Style, element: SvgElement) -> float:
+        if text.lower() in _FONT_SIZES:
+            return _FONT_SIZES[text.lower()]
+        try:
+            length = as_length(text)
+        except UnknownUnitError as error:
+            self._warnings.unsupported(f"unit '{error}'", "ignored", element.line)
+            length = None
+        if length is None or length.value < 0.0:
+            return parent.font_size
+        return length.pixels(parent.font_size, parent.font_size)
+
+    def _declarations(self, element: SvgElement, rules: Any) -> dict[str, str]:
+        """By attributes, then by rules, then by the style; then those that are important."""
+        found = {name: value.strip() for name, value in element.attrib.items()}
+        own = _parsed_declarations(found.pop("style")) if "style" in found else ()
+        if not rules and not own:
+            self._report(element, found)
+            return found
+        for important in (False, True):
+            for declarations in (*rules, own):
+                for name, value, is_important in declarations:
+                    if is_important != important:
+                        continue
+                    if name in _PROPERTIES and self._is_valid(name, value, element):
+                        found[name] = value
+        self._report(element, found)
+        return found
+
+    def _is_valid(self, name: str, value: str, element: SvgElement) -> bool:
+        if name not in _PARSERS or value == "inherit":
+            return True
+        return _parsed(name, value) is not None
+
+    def _report(self, element: SvgElement, found: Mapping[str, str]) -> None:
+        for name in found.keys() & _UNSUPPORTED.keys():
+            if found[name].lower() not in _UNSUPPORTED[name]:
+                self._warnings.unsupported(name, "ignored", element.line)
+        for name in found.keys() & _PARSERS.keys():
+            if found[name] == "inherit" or _parsed(name, found[name]) is not None:
+                continue
+            unit = _unknown_unit(name, found[name])
+            if unit:
+                self._warnings.unsupported(f"unit '{unit}'", "ignored", element.line)
+            else:
+                self._warnings.broken(f"{name} '{found[name][:40]}'", "ignored", element.line)
+
+    def _add_rules(self, matcher: cssselect2.Matcher, element: SvgElement) -> bool:
+        """Adds the rules of a style sheet; returns whether there are any."""
+        has_rules = False
+        for rule in tinycss2.parse_stylesheet(element.text or "", True, True):
+            line = element.line + getattr(rule, "source_line", 1) - 1
+            if rule.type == "at-rule":
+                if rule.lower_at_keyword not in ("charset", "font-face", "keyframes", "namespace"):
+                    self._warnings.unsupported(f"@{rule.lower_at_keyword}", "ignored", line)
+            elif rule.type == "error":
+                self._warnings.broken("style sheet", f"ignored a rule: {rule.message}", line)
+            elif _takes_long(rule.prelude):
+                selector = tinycss2.serialize(rule.prelude).strip()
+                self._warnings.unsupported(f"selector '{selector[:40]}'", "ignored", line)
+            else:
+                try:
+                    selectors = cssselect2.compile_selector_list(rule.prelude)
+                except cssselect2.SelectorError as error:
+                    self._warnings.broken("style sheet", f"ignored a rule: {error}", line)
+                    continue
+                declarations = tuple(_declarations_in(rule.content))
+                for selector in selectors:
+                    matcher.add_selector(selector, declarations)
+                has_rules = True
+        return has_rules
+
+
+_INITIAL = {field.name: field.default for field in fields(Style)}
+
+
+def _takes_long(prelude: list[Any]) -> bool:
+    """Whether a selector looks at all siblings or descendants of each element."""
+    for before, token in zip([None, *prelude], prelude, strict=False):
+        if token == "~":
+            return True
+        if before == ":" and token.type == "ident" and token.lower_value.endswith("-of-type"):
+            return True
+        if token.type == "function" and token.lower_name not in ("not", "is", "where"):
+            return True
+        if token.type == "function" and _takes_long(token.arguments):
+            return True
+    return False
+
+
+@lru_cache(maxsize=4096)
+def _parsed(name: str, text: str) -> Any:
+    """The value of a property; None where the text is none."""
+    try:
+        return _PARSERS[name](text)
+    except UnknownUnitError:
+        return None
+
+
+def _unknown_unit(name: str, text: str) -> str:
+    try:
+        _PARSERS[name](text)
+    except UnknownUnitError as error:
+        return str(error)
+    return ""
+
+
+@lru_cache(maxsize=4096)
+def _parsed_declarations(text: str) -> tuple[tuple[str, str, bool], ...]:
+    return tuple(_declarations_in(text))
+
+
+def _declarations_in(content: Any) -> Iterator[tuple[str, str, bool]]:
+    for node in tinycss2.parse_blocks_contents(content, True, True):
+        if node.type == "declaration":
+            yield node.lower_name, tinycss2.serialize(node.value).strip(), node.important

@@ -1,0 +1,47 @@
+"""Drawings for tests, and images of them."""
+
+import numpy as np
+import prefilter
+
+SIZE = 100
+
+
+def svg(body, attributes='viewBox="0 0 100 100"'):
+    names = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
+    return f"<svg {names} {attributes}>{body}</svg>"
+
+
+def read(body, attributes='viewBox="0 0 100 100"', **options):
+    return prefilter.read_svg(svg(body, attributes), **options)
+
+
+def image(shapes, width=SIZE, height=SIZE):
+    return prefilter.rasterize(shapes, width, height, overlap="cover")
+
+
+def drawn(body, light="srgb", size=SIZE):
+    """A drawing of 100 x 100 units as an image whose row 0 is at the top, without warnings."""
+    drawing = read(body, light=light)
+    assert drawing.warnings == ()
+    return image(drawing.shapes_for(size, size), size, size)[::-1]
+
+
+def outline(draw, rule="nonzero"):
+    """A green shape drawn by hand in units with y downwards, likewise as an image."""
+    shape = prefilter.Shape(fill_rule=rule, color=(0.0, 128 / 255, 0.0, 1.0))
+    draw(shape)
+    return image([shape.transformed([[1, 0, 0], [0, -1, SIZE]])])[::-1]
+
+
+def polygon(*points):
+    return outline(lambda shape: shape.add_polygon(np.array(points, np.float64)))
+
+
+def box_of(drawing, index=0, size=SIZE):
+    """Left, top, right, bottom of a shape at a size, with y downwards."""
+    (left, low), (right, high) = drawing.shapes_for(size, size)[index].bounds
+    return left, size - high, right, size - low
+
+
+def same(one, other):
+    np.testing.assert_allclose(one, other, atol=1e-6)

@@ -1,0 +1,276 @@
+"""Files of SVG: what is told of, what is refused."""
+
+import gzip
+import math
+import zlib
+
+import numpy as np
+import prefilter
+import pytest
+from drawings import SIZE, image, read, same, svg
+
+
+@pytest.mark.parametrize(
+    ("body", "name"),
+    [
+        ("<text>A</text>", "<text>"),
+        ('<image href="a.png"/>', "<image>"),
+        ("<foreignObject/>", "<foreignObject>"),
+        ('<rect width="9" height="9" filter="url(#f)"/>', "filter"),
+        ('<g style="mask:url(#m)"/>', "mask"),
+        ('<g clip-path="url(#c)"/>', "clip-path"),
+        ("<style>g{mix-blend-mode:multiply}</style><g/>", "mix-blend-mode"),
+        ('<path d="M 0 0 H 9" marker-end="url(#m)"/>', "marker-end"),
+        ('<pattern id="p"/><rect width="9" height="9" fill="url(#p)"/>', "<pattern> as paint"),
+        ('<rect width="9vw" height="9"/>', "unit 'vw'"),
+        ('<path d="M 0 0 H 9" stroke="red" stroke-linejoin="arcs"/>', "stroke-linejoin 'arcs'"),
+        ("<style>@import url(a.css);</style>", "@import"),
+        ("<style>rect ~ rect{fill:red}</style>", "selector 'rect ~ rect'"),
+        (
+            '<g opacity="0.5"><rect width="9" height="9"/><rect width="9" height="9"/></g>',
+            "opacity of a group",
+        ),
+    ],
+)
+def test_what_is_not_supported(body, name):
+    (warning,) = read("\n" + body).warnings
+    assert (warning.kind, warning.name, warning.line, warning.count) == ("unsupported", name, 2, 1)
+    assert name in str(warning)
+    assert "line 2" in str(warning)
+
+
+@pytest.mark.parametrize(
+    ("body", "name"),
+    [
+        ('<rect width="9" height="9" fill="#12"/>', "fill '#12'"),
+        ('<rect width="9 9" height="9"/>', "width '9 9'"),
+        ('<rect width="9" height="9" transform="turn(3)"/>', "transform"),
+        ('<polygon points="1 2 3 4 5"/>', "points"),
+        ('<use href="#none"/>', "<use>"),
+        ('<g id="a"><use href="#a"/></g>', "<use>"),
+        ('<rect width="9" height="9" fill="url(#none)"/>', "url(#none)"),
+        ('<rect width="1e300" height="9"/>', "<rect>"),
+        ('<rect width="9" height="9" stroke="red" stroke-width="1e300"/>', "<rect>"),
+        (
+            '<rect width="9" height="9" stroke="red" stroke-dasharray="1e-9"/>',
+            "stroke-dasharray",
+        ),
+        ("<style>rect{fill:red</style><style>rect}{fill:red}</style>", "style sheet"),
+    ],
+)
+def test_what_is_broken(body, name):
+    (warning,) = read(body).warnings
+    assert (warning.kind, warning.name) == ("broken", name)
+
+
+def test_what_needs_no_word():
+    body = (
+        '<title>T</title><desc/><metadata><a xmlns="x"/></metadata><defs><text/></defs><g/>'
+        '<x:y xmlns:x="z"/><script/><symbol><text/></symbol><g opacity="0.5">'
+        '<rect width="9" height="9"/><rect x="20" width="9" height="9"/></g>'
+        '<switch><rect requiredExtensions="z" width="9" height="9"/>'
+        '<rect systemLanguage="en-GB" width="9" height="9"/><rect width="9" height="9"/></switch>'
+    )
+    drawing = read(body)
+    assert drawing.warnings == ()
+    assert len(drawing.shapes) == 3
+
+
+def test_the_same_warnings_are_counted():
+    (warning,) = read("<text/>\n<text/>\n<text/>").warnings
+    assert (warning.count, warning.line) == (3, 1)
+    assert "3 times" in str(warning)
+
+
+def test_where_a_drawing_may_come_from(tmp_path):
+    markup = svg('<rect width="9" height="9"/>')
+    (tmp_path / "a.svg").write_text(markup)
+    (tmp_path / "a.svgz").write_bytes(gzip.compress(markup.encode()))
+    declared = '<?xml version="1.0" encoding="{}"?>' + svg('<rect id="\xe9" width="9" height="9"/>')
+    sources = [
+        markup,
+        "\ufeff  " + markup,
+        markup.encode(),
+        markup.encode("utf-16"),
+        tmp_path / "a.svg",
+    ]
+    sources += [str(tmp_path / "a.svg"), tmp_path / "a.svgz", bytearray(markup.encode())]
+    sources += [declared.format(name).encode(name) for name in ("utf-8", "latin-1", "cp1252")]
+    sources += [declared.format("utf-16"), markup.replace("xmlns=", "xmlns:a=")]
+    for source in sources:
+        drawing = prefilter.read_svg(source)
+        assert (drawing.width, drawing.height, drawing.light) == (100, 100, "linear")
+        assert len(drawing.shapes) == 1
+
+
+def test_the_same_shapes_every_time():
+    drawing = read('<circle cx="50" cy="50" r="40"/>')
+    first, second = drawing.shapes, drawing.shapes
+    assert first is not second
+    same(image(first), image(second))
+    same(image(drawing.shapes_for(50, 50), 50, 50), image(drawing.shapes_for(50, 50), 50, 50))
+
+
+def nested(count):
+    return "<g>" * count + '<rect width="9" height="9"/>' + "</g>" * count
+
+
+def bomb():
+    """Ten times ten times ... rectangles."""
+    tens = [
+        f'<g id="g{k}">' + f'<use href="#g{k - 1}"/>' * 10 + "</g>"
+        if k
+        else '<g id="g0"><rect/></g>'
+        for k in range(12)
+    ]
+    return svg("".join(tens))
+
+
+LAUGHS = '<!DOCTYPE svg [<!ENTITY a "ha"><!ENTITY b "&a;&a;">]>' + svg("<title>&b;</title>")
+LONG = f'<!DOCTYPE svg [<!ENTITY a "{"x" * 60000}">]>' + svg("&a;" * 60000)
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [
+        (b"", "source is empty"),
+        (b" \n", "source is empty"),
+        ("<", "source, line 1, column 1: unclosed token"),
+        ("<svg>\n<g></svg>", "source, line 2, column 6: mismatched tag"),
+        (svg("<title>\xe9</title>").encode("latin-1"), "not well-formed"),
+        ("<html/>", "no SVG drawing: found <html>"),
+        ('<g xmlns="http://www.w3.org/2000/svg"/>', "found <g>"),
+        (b"\x89PNG\r\n\x1a\n", "not well-formed"),
+        (b'<?xml version="1.0" encoding="Shift_JIS"?><svg/>', "its encoding cannot be read"),
+        (b'<?xml version="1.0" encoding="nonsense"?><svg/>', "its encoding cannot be read"),
+        ('<svg><use xlink:href="#a"/></svg>', "unbound prefix"),
+        (svg("", 'width="0" height="9"'), "width '0'; a drawing needs a positive one"),
+        (svg("", 'height="-1"'), "height '-1'"),
+        (svg(nested(300)), "nested more than 256 deep"),
+        (LAUGHS, "the entity 'b' would make the file too large"),
+        (LONG, "the entity 'a' would make the file too large"),
+        (gzip.compress(svg("").encode())[:-9], "compressed, and ends early"),
+        (b"\x1f\x8bnonsense", "compressed, and damaged"),
+        (svg(f'<g style="fill:{"(" * 9000}"/>'), "nested too deeply"),
+        (3, "source: 3; a path, markup, or bytes are needed"),
+    ],
+)
+def test_files_that_are_refused(source, words):
+    with pytest.raises(ValueError, match="source") as caught:
+        prefilter.read_svg(source)
+    assert words in str(caught.value)
+
+
+def test_a_file_that_is_refused_is_named(tmp_path):
+    path = tmp_path / "broken.svg"
+    path.write_text("<svg>\n\n<")
+    with pytest.raises(ValueError, match=r"broken\.svg', line 3, column 1"):
+        prefilter.read_svg(path)
+    with pytest.raises(FileNotFoundError):
+        prefilter.read_svg(tmp_path / "none.svg")
+    with pytest.raises(IsADirectoryError):
+        prefilter.read_svg(tmp_path)
+
+
+def test_what_would_take_no_end_is_stopped():
+    packed = zlib.compressobj(9, zlib.DEFLATED, 31)
+    spaces = b" " * (1 << 24)
+    large = b"".join(packed.compress(spaces) for _ in range(17)) + packed.flush()
+    with pytest.raises(ValueError, match="more than 256 MiB when unpacked"):
+        prefilter.read_svg(large)
+
+
+def test_repeated_uses_are_limited(monkeypatch):
+    from prefilter._svg import drawing
+
+    monkeypatch.setattr(drawing, "MOST_USED", 1000)
+    with pytest.raises(ValueError, match="<use> repeats more than 1000 elements"):
+        prefilter.read_svg(bomb())
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        nested(250),
+        '<g id="a"><use href="#b"/></g><g id="b"><use href="#a"/></g>',
+        '<linearGradient id="a" href="#b"/><linearGradient id="b" href="#a"/>'
+        '<rect width="9" height="9" fill="url(#a)"/>',
+        "".join(f'<linearGradient id="g{k}" href="#g{k + 1}"/>' for k in range(2000))
+        + '<rect width="9" height="9" fill="url(#g0)"/>',
+        '<path d="M 1e308 1e308 l 1e308 1e308 -1e308 0 z"/><circle r="1e200"/>',
+        '<g transform="scale(1e200)"><rect transform="scale(1e200)" width="9" height="9"/></g>',
+        '<rect width="inf" height="nan"/><rect width="9" height="9" fill="hsl(1e999,9%,9%)"/>',
+        f'<path d="M 0 0 L {"9" * 100_000} 1"/>',
+        f'<path d="M 0 0 {" " * 100_000}{"," * 100_000}"/>',
+        f'<rect width="1{" " * 100_000}z" height="1"/>',
+        f'<path d="M 0 0 A 1 1 0 0 0 {" " * 100_000}"/>',
+        f'<rect width="9" height="9" fill="{"(" * 20_000}"/>',
+        f"<style>{':not(' * 2000}</style><rect/>",
+        f"<style>rect{{{'{' * 2000}</style><rect/>",
+        "<style>rect:nth-of-type(3){fill:red}</style>" + "<rect/>" * 2000,
+        '<rect width="9" height="9" style=";;:red;}{fill:blue"/>',
+    ],
+)
+def test_odd_drawings_are_read(body):
+    for shape in read(body).shapes_for(SIZE, SIZE):
+        assert np.isfinite(shape.bounds).all()
+
+
+def test_entities_of_drawing_programs_are_read():
+    doctype = (
+        '<!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "http://www.w3.org/svg11.dtd" '
+        '[<!ENTITY ns "http://www.w3.org/2000/svg"><!ENTITY other SYSTEM "file:///etc/hostname">]>'
+    )
+    body = '<title>&other;</title><rect width="9" height="9"/>'
+    drawing = prefilter.read_svg(f'{doctype}<svg xmlns="&ns;" viewBox="0 0 9 9">{body}</svg>')
+    assert len(drawing.shapes) == 1
+
+
+def test_garbled_files_are_read_or_refused():
+    random = np.random.default_rng(5)
+    good = svg(
+        "<style>#a .b{fill:url(#g) blue;color:red}</style>"
+        '<radialGradient id="g" fx="20%"><stop offset="0.2" stop-color="#123"/>'
+        '<stop offset="70%" stop-opacity=".5"/></radialGradient>'
+        '<g id="a" transform="rotate(30)"><path class="b" d="M1 2a3 4 5 0 1 6 7z"/></g>'
+    )
+    letters = np.frombuffer(b'<>"0123456789.eE-+ ()#%;:,zaMQ', np.uint8)
+    for _ in range(200):
+        data = np.frombuffer(good.encode(), np.uint8).copy()
+        places = random.integers(150, len(data), random.integers(1, 9))
+        data[places] = random.choice(letters, len(places))
+        try:
+            prefilter.read_svg(data.tobytes()).shapes_for(16, 16)
+        except ValueError as error:
+            assert str(error).startswith("source")  # noqa: PT017
+
+
+def test_bad_arguments():
+    with pytest.raises(ValueError, match="light: 'both' is not one of linear, srgb"):
+        read("", light="both")
+    with pytest.raises(ValueError, match="progress"):
+        read("", progress=3)
+    drawing = read("")
+    for name, size in (
+        ("width", (0, 9)),
+        ("height", (9, -1)),
+        ("width", (math.nan, 9)),
+        ("height", (9, 1e9)),
+    ):
+        with pytest.raises(ValueError, match=f"{name}: .* a positive number of pixels is needed"):
+            drawing.shapes_for(*size)
+
+
+def test_progress_and_cancelling():
+    body = '<rect width="9" height="9"/>' * 3000
+    told = []
+    drawing = read(body, progress=told.append)
+    assert told == sorted(told)
+    assert len(told) > 5
+    assert told[0] >= 0.0
+    assert told[-1] <= 1.0
+    for limit in (0.1, 0.4, 0.9):
+        with pytest.raises(prefilter.Cancelled):
+            read(body, progress=lambda share, limit=limit: share < limit)
+    with pytest.raises(prefilter.Cancelled):
+        drawing.shapes_for(SIZE, SIZE, progress=lambda _: False)
