@@ -87,22 +87,28 @@ def holds_integers(path: str) -> bool:
     return kind not in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
 
 
-def write_picture(path: Path, pixels: NDArray[Any], color_space: str) -> None:
-    """Writes integers as a picture file, just as they are; a fourth channel is straight alpha.
+def write_picture(
+    path: Path, pixels: NDArray[Any], color_space: str, *, pixel_type: str = ""
+) -> None:
+    """Writes values as a picture file, just as they are.
+
+    A fourth channel is straight alpha of integers, and associated alpha of floats.
 
     Args:
         path: The file, whose ending says its kind; replaced where it exists.
-        pixels: (h, w, c) array of uint8 or uint16, rows from the top.
+        pixels: (h, w, c) array of uint8, uint16 or float32, rows from the top.
         color_space: What to say in `oiio:ColorSpace`.
+        pixel_type: "half" for 16-bit floats; the type of the array if empty.
 
     Raises:
         OSError: The file cannot be written.
     """
     oiio = module()
     height, width, channels = pixels.shape
-    spec = oiio.ImageSpec(width, height, channels, str(pixels.dtype))
+    spec = oiio.ImageSpec(width, height, channels, pixel_type or str(pixels.dtype))
     spec.attribute("oiio:ColorSpace", color_space)
-    spec.attribute("oiio:UnassociatedAlpha", 1)
+    if pixels.dtype.kind == "u":
+        spec.attribute("oiio:UnassociatedAlpha", 1)
     output = oiio.ImageOutput.create(str(path))
     if output is None:
         raise OSError(f"file '{path}': {oiio.geterror()}")
