@@ -8,6 +8,7 @@ from .core.registration import registration
 
 SUBJECTS = (
     "mipmaps",
+    "resampling",
     "scans",
     "voxels",
 )

@@ -57,7 +57,8 @@ class Commands:
         parser = argparse.ArgumentParser(
             prog=_PROGRAM,
             description=(
-                "Filters images for the surfaces that use them; makes meshes of voxels and scans."
+                "Filters images for the surfaces that use them, and resizes them; makes meshes of "
+                "voxels and scans."
             ),
         )
         commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)

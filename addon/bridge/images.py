@@ -112,6 +112,27 @@ def find(name: str) -> bpy.types.Image:
     return image
 
 
+def load(argument: str, path: str, *, is_data: bool) -> bpy.types.Image:
+    """Loads a picture file; an image that the .blend file has of it stays as it is there.
+
+    Args:
+        argument: What the path is called in messages.
+        path: The file.
+        is_data: Whether its values are no colors.
+
+    Raises:
+        OSError: It cannot be loaded.
+    """
+    before = set(bpy.data.images)
+    try:
+        image = bpy.data.images.load(os.path.abspath(path), check_existing=True)
+    except RuntimeError as error:
+        raise OSError(f"{argument}: cannot load '{path}': {str(error).strip()}") from error
+    if is_data and image not in before:
+        image.colorspace_settings.is_data = True
+    return image
+
+
 def read(image: bpy.types.Image) -> Picture:
     """Copies an image datablock's pixels.
 

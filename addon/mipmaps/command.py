@@ -298,7 +298,7 @@ def _images(
             print(line)
         return chosen, False
     if name not in bpy.data.images and os.path.isfile(name):
-        return [_loaded("--image", name, is_data=content in {"normal", "data"})], True
+        return [images.load("--image", name, is_data=content in {"normal", "data"})], True
     return [images.find(name)], False
 
 
@@ -306,16 +306,4 @@ def _roughness_name(name: str) -> str:
     """Returns the name of the image; a picture file is loaded as data."""
     if not name or name in bpy.data.images or not os.path.isfile(name):
         return name
-    return _loaded("--roughness", name, is_data=True).name
-
-
-def _loaded(option: str, path: str, *, is_data: bool) -> bpy.types.Image:
-    """Loads a picture file; one that the .blend file uses already stays as it is there."""
-    before = set(bpy.data.images)
-    try:
-        image = bpy.data.images.load(os.path.abspath(path), check_existing=True)
-    except RuntimeError as error:
-        raise OSError(f"{option}: cannot load '{path}': {str(error).strip()}") from error
-    if is_data and image not in before:
-        image.colorspace_settings.is_data = True
-    return image
+    return images.load("--roughness", name, is_data=True).name

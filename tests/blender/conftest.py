@@ -31,6 +31,7 @@ SAME_IN_ANY_BLENDER = {
     "mipmaps/test_seams.py",
     "mipmaps/view/test_canvas.py",
     "mipmaps/view/test_errors.py",
+    "resampling/test_resize_commands.py",
     "scans/test_scan_commands.py",
     "voxels/test_voxel_commands.py",
 }

@@ -27,6 +27,7 @@ def defaults(function):
         ("mipmaps.choices.Settings", prefilter.keep_coverage, 2),
         ("scans.choices.ScanSettings", prefilter.reconstruct, 8),
         ("scans.choices.ScanSettings", prefilter.reconstruct_file, 8),
+        ("resampling.choices.ResizeSettings", prefilter.resize, 3),
         ("voxels.choices.VoxelSettings", prefilter.voxelize, 2),
         ("voxels.choices.VoxelSettings", prefilter.Octree.contour, 3),
     ],

@@ -79,7 +79,10 @@ def test_every_operator_is_found():
     [
         ("VIEW3D_MT_object_convert", ["reconstruct"]),
         ("VIEW3D_MT_object", ["mip", "voxel", "boolean", "reconstruct", "texture cache"]),
-        ("IMAGE_MT_image", ["mip", "texel", "preview", "plot", "weights", "fill", "texture cache"]),
+        (
+            "IMAGE_MT_image",
+            ["mip", "texel", "preview", "plot", "weights", "fill", "texture cache", "resize"],
+        ),
     ],
 )
 def test_words_that_users_search_for(menu, words):

@@ -7,12 +7,12 @@ import numpy as np
 import prefilter
 from bpy.props import BoolProperty, StringProperty
 
-from ...bridge import derived, images
+from ...bridge import derived, editors, images
 from ...bridge.images import FloatArray
 from ...core.jobs import Progress
 from ...core.operator import Compute
 from ..bake import Bake
-from .source import ImageOperator, read_source, show_in_editor
+from .source import ImageOperator, read_source
 
 
 class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
@@ -50,7 +50,7 @@ class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
         filled = derived.write_picture(picture, "filled", result, like_source=True)
         if self.use_in_place:
             images.find(picture.name).user_remap(filled)
-        show_in_editor(context, filled)
+        editors.show(context, filled)
         changed = float(np.any(result != picture.stored, axis=2).mean())
         return f"Filled {changed:.1%} of the texels in '{filled.name}'"
 

@@ -3,12 +3,12 @@
 import bpy
 from bpy.props import StringProperty
 
-from ...bridge import derived
+from ...bridge import derived, editors
 from ...core.operator import Compute
 from ...core.properties import single_property
 from .. import choices
 from ..view import errors, figure
-from .source import ImageOperator, read_source, show_in_editor
+from .source import ImageOperator, read_source
 
 
 class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
@@ -43,5 +43,5 @@ class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
         picture = self._source.picture
         plot = derived.write_picture(picture, "error", figure.draw(result))
         table = derived.write_text(picture, "error.csv", result.table())
-        show_in_editor(context, plot)
+        editors.show(context, plot)
         return f"{result.summary()}; plotted in '{plot.name}', values in text '{table.name}'"

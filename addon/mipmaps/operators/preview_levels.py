@@ -3,12 +3,12 @@
 import bpy
 from bpy.props import StringProperty
 
-from ...bridge import images
+from ...bridge import editors, images
 from ...core.operator import Compute
 from ...core.properties import single_property
 from .. import choices
 from ..view import preview
-from .source import ImageOperator, read_source, show_in_editor
+from .source import ImageOperator, read_source
 
 
 class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
@@ -53,7 +53,7 @@ class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
     def finish(self, context: bpy.types.Context, result: preview.Preview) -> str:
         """Has the editors draw the levels."""
         preview.keep(result)
-        show_in_editor(context, images.find(self._name))
+        editors.show(context, images.find(self._name))
         context.window_manager.prefilter_view.use_preview = True
         preview.redraw()
         return f"Computed levels 0 to {result.last_level}"

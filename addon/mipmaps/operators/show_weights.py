@@ -6,12 +6,12 @@ import bpy
 import prefilter
 from bpy.props import StringProperty
 
-from ...bridge import derived
+from ...bridge import derived, editors
 from ...core.jobs import Progress
 from ...core.operator import Compute
 from ..bake import Bake
 from ..view import weights
-from .source import ImageOperator, read_source, show_in_editor
+from .source import ImageOperator, read_source
 
 
 class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
@@ -40,7 +40,7 @@ class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
     def finish(self, context: bpy.types.Context, result: weights.Weights) -> str:
         """Writes the picture."""
         made = derived.write_picture(self._source.picture, "weights", result.picture)
-        show_in_editor(context, made)
+        editors.show(context, made)
         return f"{result.used_share:.1%} of the texels hold some of the surface; see '{made.name}'"
 
 

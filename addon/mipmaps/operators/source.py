@@ -97,12 +97,6 @@ def read_source(
     return source
 
 
-def show_in_editor(context: bpy.types.Context, image: bpy.types.Image) -> None:
-    """Shows an image in the editor that the operator was called from."""
-    if context.area is not None and context.area.type == "IMAGE_EDITOR":
-        context.space_data.image = image
-
-
 def _image_of(obj: bpy.types.Object | None) -> bpy.types.Image | None:
     """Returns the base color of an object's active material, or its only image."""
     material = obj.active_material if obj is not None else None

@@ -1,0 +1,9 @@
+"""The editors that images are shown in."""
+
+import bpy
+
+
+def show(context: bpy.types.Context, image: bpy.types.Image) -> None:
+    """Shows an image in the editor that the operator was called from."""
+    if context.area is not None and context.area.type == "IMAGE_EDITOR":
+        context.space_data.image = image

@@ -1,0 +1,7 @@
+"""The operators on images, one a file."""
+
+import bpy
+
+from .resize_image import PREFILTER_OT_resize_image
+
+register, unregister = bpy.utils.register_classes_factory((PREFILTER_OT_resize_image,))

@@ -1,0 +1,41 @@
+"""Panel, menu, redo and the modal operator of resizing, in a window that nobody sees."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+SESSION = Path(__file__).with_name("resize_session.py")
+
+
+@pytest.fixture(scope="module")
+def found(in_window, tmp_path_factory):
+    result = tmp_path_factory.mktemp("resize") / "result.json"
+    in_window(SESSION, result)
+    return json.loads(result.read_text())
+
+
+def test_panel(found):
+    assert not found["polls_without_image"]
+    assert found["tab"] == "Prefilter"
+
+
+def test_works_in_the_background(found):
+    assert found["started"] == ["RUNNING_MODAL"]
+    assert "press Esc to cancel" in found["refused_while_running"]
+    assert found["shown"] == "Paint.32x21"
+
+
+def test_redo(found):
+    assert found["filter"] != "box"
+    assert found["after_redo"] == ["Paint", "Paint.32x21"]
+    assert found["shown_after_redo"] == "Paint.32x21"
+
+
+def test_undo(found):
+    assert found["undone"] == ["Paint"]
+
+
+def test_esc(found):
+    assert found["works"]
+    assert found["cancelled"] == ["Big", "Paint"]
