@@ -9,6 +9,8 @@ import prefilter
 import pytest
 from drawings import SIZE, image, read, same, svg
 
+CLIP = "<clipPath id='c' transform='scale(2)'><rect x='5' width='15' height='50'/></clipPath>"
+
 
 @pytest.mark.parametrize(
     ("body", "name"),
@@ -18,7 +20,9 @@ from drawings import SIZE, image, read, same, svg
         ("<foreignObject/>", "<foreignObject>"),
         ('<rect width="9" height="9" filter="url(#f)"/>', "filter"),
         ('<g style="mask:url(#m)"/>', "mask"),
-        ('<g clip-path="url(#c)"/>', "clip-path"),
+        (f"{CLIP}<circle r='9' clip-path='url(#c)' cx='38'/>", "clip-path"),
+        (f"{CLIP}<g clip-path='url(#c)'><rect x='40' width='9' height='9'/></g>", "clip-path"),
+        ("<svg width='5' height='5'><rect width='9' height='9'/></svg>", "overflow"),
         ("<style>g{mix-blend-mode:multiply}</style><g/>", "mix-blend-mode"),
         ('<path d="M 0 0 H 9" marker-end="url(#m)"/>', "marker-end"),
         ('<pattern id="p"/><rect width="9" height="9" fill="url(#p)"/>', "<pattern> as paint"),
@@ -47,6 +51,7 @@ def test_what_is_not_supported(body, name):
         ('<rect width="9" height="9" transform="turn(3)"/>', "transform"),
         ('<polygon points="1 2 3 4 5"/>', "points"),
         ('<use href="#none"/>', "<use>"),
+        ('<g clip-path="url(#none)"/>', "clip-path"),
         ('<g id="a"><use href="#a"/></g>', "<use>"),
         ('<rect width="9" height="9" fill="url(#none)"/>', "url(#none)"),
         ('<rect width="1e300" height="9"/>', "<rect>"),
@@ -74,6 +79,25 @@ def test_what_needs_no_word():
     drawing = read(body)
     assert drawing.warnings == ()
     assert len(drawing.shapes) == 3
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        f"{CLIP}<rect clip-path='url(#c)' x='10' width='30' height='200'/>",
+        f"{CLIP}<g clip-path='url(#c)'><circle cx='25' cy='20' r='15'/></g>",
+        f"{CLIP}<g clip-path='none'><rect width='99' height='9'/></g>",
+        "<rect id='r' width='200' height='200'/><clipPath id='c'><use href='#r'/></clipPath>"
+        "<g transform='rotate(90) translate(0 -100)' clip-path='url(#c)'>"
+        "<rect y='3' width='9' height='9'/></g>",
+        "<clipPath id='c'><path d='M0 0H100V100H0Z'/></clipPath><g clip-path='url(#c)'>"
+        "<circle cx='-5' r='400'/></g>",
+        "<svg width='5' height='5'><rect width='5' height='5'/></svg>",
+        "<svg width='5' height='5' overflow='visible'><rect width='9' height='9'/></svg>",
+    ],
+)
+def test_nothing_is_said_of_clip_paths_that_cut_nothing_off(body):
+    assert read(body).warnings == ()
 
 
 def test_the_same_warnings_are_counted():

@@ -95,8 +95,8 @@ def read_svg(
 ) -> SvgDrawing:
     """Reads a drawing: its paths and basic shapes, with solid colors, gradients and strokes.
 
-    Text, images, patterns, markers, filters, masks and clip paths are left out or ignored, and
-    told of in the `warnings` of the result. Arcs, circles and ellipses stay exact.
+    Text, images and patterns are left out, markers, filters, masks and clip paths ignored; the
+    `warnings` of the result tell of them. Arcs, circles and ellipses stay exact.
 
     Args:
         source: The path of a file, plain (.svg) or compressed (.svgz); or markup, as text that

@@ -137,7 +137,10 @@ def read_document(
     elif isinstance(source, bytes | bytearray | memoryview):
         data, name = bytes(source), "source"
     elif isinstance(source, str | os.PathLike):
-        path = as_path(source)
+        try:
+            path = as_path(source)
+        except ValueError as error:
+            raise ValueError(f"source{str(error).removeprefix('path')}") from None
         name = f"'{path}'"
         with open(path, "rb") as file:
             data = file.read()

@@ -9,16 +9,18 @@ import numpy as np
 from ..shapes import Shape
 from .basic_shapes import BASIC_SHAPES, read_shape
 from .document import Document, SvgElement
+from .groups import Box, Groups, carried
 from .lengths import Units, read_length
 from .outline import Outline
 from .paint_servers import GRADIENTS, Colors, Gradient, PaintServers
-from .styles import Style, StyleSheets
+from .styles import UNSUPPORTED, Style, StyleSheets
 from .values import (
     IDENTITY,
     Color,
     Length,
     Matrix,
     Paint,
+    as_paint,
     as_transform,
     determinant,
     multiplied,
@@ -31,7 +33,6 @@ _MOST_DASHES = 100_000
 # In widths or heights of the drawing. No shape may be more than 1e9 pixels away.
 _LARGEST = 1e5
 _SMALLEST_DETERMINANT = 1e-40
-_MOST_COMPARED = 200
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")
 _GROUPS = ("g", "a", "svg", "switch")
@@ -111,7 +112,7 @@ class _Context:
         matrix: From its parent's units to those of the drawing.
         viewport: Width and height of the nearest viewport, in its units.
         opacity: Of all groups around it.
-        groups: Those of them that are not opaque, by number.
+        groups: Those of them that are seen as one, by number.
         uses: The elements that `use` has brought here.
     """
 
@@ -150,11 +151,13 @@ class Drawing:
         self._sheets = StyleSheets(document, warnings, lambda share: tell(0.5 * share))
         self._servers = PaintServers(document, self._sheets, colors, warnings)
         self._outlines: dict[tuple[SvgElement, Units], Outline | None] = {}
-        self._translucent: list[tuple[SvgElement, list[tuple[float, float, float, float]]]] = []
         self.painted: list[Painted] = []
         self._read_size()
+        view = self._view
+        box = (view.x, view.y, view.x + view.width, view.y + view.height)
+        self._groups = Groups(box, warnings)
         self._draw()
-        self._check_groups()
+        self._groups.check()
 
     def placement(self, width: float, height: float) -> Matrix:
         """From the drawing's units to pixels of an image, with y upwards."""
@@ -229,8 +232,12 @@ class Drawing:
         if abs(determinant(context.matrix)) < _SMALLEST_DETERMINANT or context.opacity == 0.0:
             return
         if style.opacity < 1.0:
-            context = replace(context, groups=(*context.groups, len(self._translucent)))
-            self._translucent.append((element, []))
+            number = self._groups.add_translucent(element)
+            context = replace(context, groups=(*context.groups, number))
+        context = self._clipped(element, declared, context)
+        for name in declared.keys() & UNSUPPORTED.keys():
+            if declared[name].lower() not in UNSUPPORTED[name]:
+                self._warnings.unsupported(name, "ignored", element.line)
         if tag in BASIC_SHAPES:
             self._paint(element, context)
             return
@@ -243,6 +250,52 @@ class Drawing:
                 return
             context = inner
         yield from ((child, context) for child in self._children(element))
+
+    def _clipped(
+        self, element: SvgElement, declared: Mapping[str, str], context: _Context
+    ) -> _Context:
+        """The context within a clip path, if the element has one."""
+        text = declared.get("clip-path", "none")
+        if text.lower() == "none":
+            return context
+        paint = as_paint(text)
+        path = self._document.ids.get(paint.server[1:]) if paint and paint.server else None
+        region = None
+        if path is None and paint and paint.server.startswith("#"):
+            self._warnings.broken("clip-path", "ignored", element.line)
+            return context
+        if path is not None and path.tag == "clipPath":
+            region = self._region(path, context)
+        number = self._groups.add_clipped(element, "clip-path", region)
+        return replace(context, groups=(*context.groups, number))
+
+    def _region(self, path: SvgElement, context: _Context) -> Box | None:
+        """The box that a clip path is; None where it is something else."""
+        shapes = [child for child in path if child.tag not in _NOT_DRAWN]
+        target = shapes[0] if len(shapes) == 1 else None
+        matrix: Matrix | None = context.matrix
+        for each in (path, target):
+            if isinstance(each, SvgElement) and matrix is not None:
+                declared = self._sheets.declared(each)
+                own = as_transform(declared.get("transform", ""))
+                matrix = multiplied(matrix, own) if own else None
+        if isinstance(target, SvgElement) and target.tag == "use":
+            if "x" in target.attrib or "y" in target.attrib:
+                return None
+            target = self._document.ids.get(target.href)
+            if target is not None and "transform" in self._sheets.declared(target):
+                return None
+        if not isinstance(target, SvgElement) or target.tag not in BASIC_SHAPES or matrix is None:
+            return None
+        if path.get("clipPathUnits", "userSpaceOnUse") != "userSpaceOnUse":
+            return None
+        declared = self._sheets.declared(target)
+        is_upright = matrix[1] == matrix[2] == 0.0 or matrix[0] == matrix[3] == 0.0
+        outline = read_shape(target, declared, context.units, self._warnings)
+        if outline is None or not is_upright or not outline.is_box() or "clip-path" in declared:
+            return None
+        box = outline.bounds()
+        return carried(box, matrix) if box else None
 
     def _children(self, element: SvgElement) -> Iterator[SvgElement]:
         for child in element:
@@ -307,12 +360,17 @@ class Drawing:
             return None
         matrix = (1.0, 0.0, 0.0, 1.0, x, y)
         viewport = (width, height)
+        groups = context.groups
+        if declared.get("overflow", "hidden") not in ("visible", "auto"):
+            region = carried((x, y, x + width, y + height), context.matrix)
+            groups = (*groups, self._groups.add_clipped(element, "overflow", region))
         view = as_view_box(declared.get("viewBox"))
         if view is not None:
             fitted = placed(view, declared.get("preserveAspectRatio", ""), width, height)
             matrix = multiplied(matrix, fitted)
             viewport = (view.width, view.height)
-        return replace(context, matrix=multiplied(context.matrix, matrix), viewport=viewport)
+        matrix = multiplied(context.matrix, matrix)
+        return replace(context, matrix=matrix, viewport=viewport, groups=groups)
 
     def _paint(self, element: SvgElement, context: _Context) -> None:
         style = context.style
@@ -346,15 +404,15 @@ class Drawing:
             return
         rule = context.style.fill_rule
         painted = Painted(outline, rule, context.matrix, resolved, stroke)
-        box = outline.bounds()
-        assert box is not None
+        bounds = outline.bounds()
+        assert bounds is not None
         margin = 0.0
         if stroke is not None:
             longest = stroke.miter_limit if stroke.join == "miter" else 1.0
             margin = 0.5 * stroke.width * max(longest, math.sqrt(2.0))
-        left, top, right, bottom = box
-        corners = ((left - margin, top - margin), (right + margin, bottom + margin))
-        box = _carried(corners, context.matrix)
+        left, top, right, bottom = bounds
+        box = (left - margin, top - margin, right + margin, bottom + margin)
+        box = carried(box, context.matrix)
         if not all(
             abs(value) < _LARGEST * max(self._view.width, self._view.height) for value in box
         ):
@@ -363,8 +421,7 @@ class Drawing:
             )
             return
         self.painted.append(painted)
-        for number in context.groups:
-            self._translucent[number][1].append(box)
+        self._groups.put(context.groups, box)
 
     def _resolved(
         self, element: SvgElement, context: _Context, outline: Outline, paint: Paint, opacity: float
@@ -427,16 +484,6 @@ class Drawing:
         length = read_length(element, declared, name, self._warnings)
         return units.pixels(default if length is None else length, name)
 
-    def _check_groups(self) -> None:
-        """Tells of translucent groups whose parts lie on each other: they would show through."""
-        for element, boxes in self._translucent:
-            if len(boxes) > _MOST_COMPARED or any(
-                _meet(box, other) for k, box in enumerate(boxes) for other in boxes[:k]
-            ):
-                self._warnings.unsupported(
-                    "opacity of a group", "applied to each of its shapes", element.line
-                )
-
 
 def _ancestors(element: SvgElement) -> Iterator[SvgElement]:
     at: SvgElement | None = element
@@ -448,20 +495,3 @@ def _ancestors(element: SvgElement) -> Iterator[SvgElement]:
 def _paint_order(text: str) -> tuple[str, str]:
     named = [name for name in text.split() if name in ("fill", "stroke")]
     return ("stroke", "fill") if named[:1] == ["stroke"] else ("fill", "stroke")
-
-
-def _carried(
-    corners: tuple[tuple[float, float], tuple[float, float]], matrix: Matrix
-) -> tuple[float, float, float, float]:
-    a, b, c, d, e, f = matrix
-    points = [
-        (a * x + c * y + e, b * x + d * y + f)
-        for x in (corners[0][0], corners[1][0])
-        for y in (corners[0][1], corners[1][1])
-    ]
-    xs, ys = zip(*points, strict=True)
-    return min(xs), min(ys), max(xs), max(ys)
-
-
-def _meet(one: tuple[float, float, float, float], other: tuple[float, float, float, float]) -> bool:
-    return one[0] < other[2] and other[0] < one[2] and one[1] < other[3] and other[1] < one[3]

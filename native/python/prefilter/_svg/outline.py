@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Iterator
+from itertools import pairwise
 
 from ..shapes import Shape
 from .values import NUMBER, leading_numbers
@@ -142,6 +143,19 @@ class Outline:
             return None
         xs, ys = zip(*points, strict=True)
         return min(xs), min(ys), max(xs), max(ys)
+
+    def is_box(self) -> bool:
+        """Whether it is one upright rectangle."""
+        kinds = "".join(kind for kind, _ in self.segments)
+        bounds = self.bounds()
+        if bounds is None or not re.fullmatch("MLLLL?Z?", kinds):
+            return False
+        points = [numbers for _, numbers in self.segments if numbers]
+        if len(points) == 5 and points[4] != points[0]:
+            return False
+        turns = {(bool(a[0] - b[0]), bool(a[1] - b[1])) for a, b in pairwise(points[:4])}
+        corners = {(x, y) for x in bounds[::2] for y in bounds[1::2]}
+        return set(points[:4]) == corners and turns == {(True, False), (False, True)}
 
     def length(self) -> float:
         """How long it is at most: as long as the lines from control point to control point."""

@@ -119,8 +119,7 @@ _PARSERS: dict[str, Callable[[str], Any]] = {
 _FIELDS = {name: name.replace("-", "_") for name in (*_PARSERS, "font-size")}
 
 # What draws in another way than it would here, with the values that do nothing.
-_UNSUPPORTED = {
-    "clip-path": ("none",),
+UNSUPPORTED = {
     "filter": ("none",),
     "mask": ("none",),
     "marker": ("none",),
@@ -132,8 +131,9 @@ _UNSUPPORTED = {
     "vector-effect": ("none",),
 }
 # Attributes that are properties too, so that style sheets may set them.
-_GEOMETRY = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height", "transform", "display")
-_PROPERTIES = frozenset((*_PARSERS, *_UNSUPPORTED, *_GEOMETRY, "font-size"))
+_OTHER: tuple[str, ...] = ("x", "y", "cx", "cy", "r", "rx", "ry", "width", "height")
+_OTHER += ("clip-path", "display", "overflow", "transform")
+_PROPERTIES = frozenset((*_PARSERS, *UNSUPPORTED, *_OTHER, "font-size"))
 
 
 class StyleSheets:
@@ -232,9 +232,6 @@ class StyleSheets:
         return _parsed(name, value) is not None
 
     def _report(self, element: SvgElement, found: Mapping[str, str]) -> None:
-        for name in found.keys() & _UNSUPPORTED.keys():
-            if found[name].lower() not in _UNSUPPORTED[name]:
-                self._warnings.unsupported(name, "ignored", element.line)
         for name in found.keys() & _PARSERS.keys():
             if found[name] == "inherit" or _parsed(name, found[name]) is not None:
                 continue

@@ -275,5 +275,9 @@ def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
 
 
 def _rotation(angle: float) -> Matrix:
+    # Quarters of a turn are exact, so that upright edges stay upright.
+    quarters, rest = divmod(angle, 90.0)
     cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    if rest == 0.0:
+        cos, sin = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarters) % 4]
     return (cos, sin, -sin, cos, 0.0, 0.0)
