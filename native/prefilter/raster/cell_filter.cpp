@@ -1,11 +1,10 @@
 #include "prefilter/raster/cell_filter.h"
 
+#include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
-#include <numbers>
-#include <string>
 
+#include "prefilter/base/gauss_rule.h"
 #include "prefilter/filters/windowed_jinc.h"
 
 namespace prefilter {
@@ -41,57 +40,76 @@ CellFilter of_kernel(const Kernel& kernel) {
   return filter;
 }
 
-// The pieces interpolate at Chebyshev's extreme points along both axes, so that neighbours agree
-// along the edge they share; the whole is scaled to an integral of 1.
+// Legendre's polynomials of degrees 0 to N - 1 on [-1/2, 1/2], by powers, with squares of
+// integral 1.
+template <int N>
+std::array<std::array<double, N>, N> legendre_powers() {
+  std::array<std::array<double, N>, N> powers{};
+  powers[0][0] = 1.0;
+  powers[1][1] = 2.0;
+  for (int n = 2; n < N; ++n) {
+    for (int k = 0; k < n; ++k) {
+      powers[n][k + 1] += 2.0 * (2 * n - 1) * powers[n - 1][k] / n;
+      powers[n][k] -= (n - 1.0) * powers[n - 2][k] / n;
+    }
+  }
+  for (int n = 0; n < N; ++n) {
+    for (double& power : powers[n]) power *= std::sqrt(2.0 * n + 1.0);
+  }
+  return powers;
+}
+
+// Each piece is the nearest polynomial in the mean square: where the circle at which the filter
+// ends passes a cell, one that interpolates would have another integral.
 CellFilter of_radial(double radius) {
-  constexpr int kDegree = Kernel::kMostDegree;
-  constexpr int kCount = kDegree + 1;
+  constexpr int kCount = Kernel::kMostDegree + 1;
+  constexpr int kParts = 8;  // of a cell along each axis, with four points each
+  const WindowedJinc jinc(radius);
   CellFilter filter;
   filter.is_separable = false;
   filter.taps = static_cast<int>(2.0 * radius);
-  filter.degree = kDegree;
+  filter.degree = Kernel::kMostDegree;
   filter.shift = 0.5;
   filter.first = 1 - filter.taps / 2;
-  // The powers' coefficients of the polynomials that are 1 at one node and 0 at all others.
-  std::array<double, kCount> nodes;
-  for (int k = 0; k < kCount; ++k) {
-    nodes[k] = -0.5 * std::cos(std::numbers::pi * k / kDegree);
+  const auto legendre = legendre_powers<kCount>();
+  const GaussRule<4>& rule = gauss_rule<4>();
+  std::array<double, 4 * kParts> points;
+  std::array<double, 4 * kParts> weights;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = (static_cast<double>(i / 4) + rule.nodes[i % 4]) / kParts - 0.5;
+    weights[i] = rule.weights[i % 4] / kParts;
   }
-  std::array<std::array<double, kCount>, kCount> basis{};
-  for (int k = 0; k < kCount; ++k) {
-    basis[k][0] = 1.0;
-    int degree = 0;
-    for (int other = 0; other < kCount; ++other) {
-      if (other == k) continue;
-      ++degree;
-      const double scale = 1.0 / (nodes[k] - nodes[other]);
-      for (int power = degree; power >= 0; --power) {
-        const double below = power > 0 ? basis[k][power - 1] : 0.0;
-        basis[k][power] = scale * (below - nodes[other] * basis[k][power]);
-      }
+  std::array<std::array<double, 4 * kParts>, kCount> basis{};
+  for (int n = 0; n < kCount; ++n) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (int k = kCount - 1; k >= 0; --k) basis[n][i] = basis[n][i] * points[i] + legendre[n][k];
     }
   }
-  const WindowedJinc jinc(radius);
   filter.table.assign(static_cast<std::size_t>(filter.taps * filter.taps) * kCount * kCount, 0.0);
   double integral = 0.0;
   double* piece = filter.table.data();
   for (int oy = 0; oy < filter.taps; ++oy) {
     for (int ox = 0; ox < filter.taps; ++ox, piece += kCount * kCount) {
-      for (int ky = 0; ky < kCount; ++ky) {
-        for (int kx = 0; kx < kCount; ++kx) {
-          const double x = ox + 0.5 - radius + nodes[kx];
-          const double y = oy + 0.5 - radius + nodes[ky];
-          const double value = jinc(std::hypot(x, y));
-          for (int b = 0; b < kCount; ++b) {
-            for (int a = 0; a < kCount; ++a) {
-              piece[b * kCount + a] += value * basis[kx][a] * basis[ky][b];
-            }
-          }
+      std::array<std::array<double, kCount>, kCount> means{};  // times the basis, at [ny][nx]
+      for (std::size_t j = 0; j < points.size(); ++j) {
+        std::array<double, kCount> row{};
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          const double value = weights[i] * jinc(std::hypot(ox + 0.5 - radius + points[i],
+                                                            oy + 0.5 - radius + points[j]));
+          for (int n = 0; n < kCount; ++n) row[n] += value * basis[n][i];
+        }
+        for (int ny = 0; ny < kCount; ++ny) {
+          for (int nx = 0; nx < kCount; ++nx) means[ny][nx] += weights[j] * basis[ny][j] * row[nx];
         }
       }
-      for (int b = 0; b < kCount; b += 2) {
-        for (int a = 0; a < kCount; a += 2) {
-          integral += piece[b * kCount + a] * std::pow(0.5, a + b) / ((a + 1) * (b + 1));
+      integral += means[0][0];
+      for (int ny = 0; ny < kCount; ++ny) {
+        for (int nx = 0; nx < kCount; ++nx) {
+          for (int b = 0; b <= ny; ++b) {
+            for (int a = 0; a <= nx; ++a) {
+              piece[b * kCount + a] += means[ny][nx] * legendre[ny][b] * legendre[nx][a];
+            }
+          }
         }
       }
     }
@@ -100,43 +118,34 @@ CellFilter of_radial(double radius) {
   return filter;
 }
 
-struct Named {
-  std::string_view name;
-  CellFilter filter;
-};
-
-const std::array<Named, 9>& all_filters() {
-  static const std::array<Named, 9> filters = [] {
-    std::array<Named, 9> all{};
-    std::size_t count = 0;
-    for (const std::string_view name :
-         {"box", "tent", "bspline2", "mitchell", "lanczos2", "lanczos3", "gaussian"}) {
-      all[count++] = {name, of_kernel(*find_kernel(name))};
-    }
-    all[count++] = {"radial2", of_radial(2.0)};
-    all[count++] = {"radial3", of_radial(3.0)};
-    assert(count == all.size());
-    return all;
-  }();
-  return filters;
-}
+constexpr std::array<std::string_view, 9> kNames = {"box",      "tent",     "bspline2",
+                                                    "mitchell", "lanczos2", "lanczos3",
+                                                    "gaussian", "radial2",  "radial3"};
 
 }  // namespace
 
-std::span<const std::string_view> raster_filters() {
-  static const auto names = [] {
-    std::vector<std::string_view> all;
-    for (const Named& named : all_filters()) all.push_back(named.name);
-    return all;
-  }();
-  return names;
-}
+std::span<const std::string_view> raster_filters() { return kNames; }
 
 const CellFilter* find_cell_filter(std::string_view name) {
-  for (const Named& named : all_filters()) {
-    if (named.name == name) return &named.filter;
+  if (name == "radial2") {
+    static const CellFilter filter = of_radial(2.0);
+    return &filter;
   }
-  return nullptr;
+  if (name == "radial3") {
+    static const CellFilter filter = of_radial(3.0);
+    return &filter;
+  }
+  static const std::vector<CellFilter> filters = [] {
+    std::vector<CellFilter> all;
+    for (const std::string_view each : kNames) {
+      const Kernel* kernel = find_kernel(each);
+      if (kernel != nullptr) all.push_back(of_kernel(*kernel));
+    }
+    return all;
+  }();
+  const auto found = std::find(kNames.begin(), kNames.end(), name);
+  // The radial ones are the last.
+  return found == kNames.end() ? nullptr : &filters[found - kNames.begin()];
 }
 
 }  // namespace prefilter

@@ -16,31 +16,31 @@ void MomentCells<N>::begin_band(const CellFilter& filter, int width, int first_r
 }
 
 template <int N>
-auto MomentCells<N>::cell(int column, int row) -> Moments& {
-  std::int32_t& slot = slots_[place(column, row)];
+std::int32_t MomentCells<N>::cell(int column, int row) {
+  std::int32_t& slot = slots_[slot_place(column, row)];
   if (slot == 0) {
-    is_touched_[place(column, row) / kBlock] = 1;
+    is_touched_[slot_place(column, row) / kBlock] = 1;
     cells_.emplace_back();
     slot = static_cast<std::int32_t>(cells_.size());
   }
-  return cells_[slot - 1];
+  return slot - 1;
 }
 
 template <int N>
 void MomentCells<N>::add(const MonotoneCurve& piece, int sign) {
   const auto in_cell = [&](int column, int row, const CellArc& arc) {
     const Point2 center{column + 0.5, row + 0.5};
-    Moments& moments = cell(column, row);
+    const std::int32_t place = cell(column, row);
     if (piece.curve.kind == CurveKind::kLine) {
-      moments.add_line(arc.begin - center, arc.end - center, sign);
+      batch_.add_line(arc.begin - center, arc.end - center, sign, place, &cells_);
     } else {
-      moments.add_curve(piece.curve, arc, center, sign);
+      batch_.add_curve(piece.curve, arc, center, sign, place, &cells_);
     }
   };
   const auto left_of_window = [&](int row, double y_begin, double y_end) {
-    const double x = -0.5;
-    cell(window_.first_column, row)
-        .add_line({x, y_begin - (row + 0.5)}, {x, y_end - (row + 0.5)}, sign);
+    const double center = row + 0.5;
+    batch_.add_line({-0.5, y_begin - center}, {-0.5, y_end - center}, sign,
+                    cell(window_.first_column, row), &cells_);
   };
   cut_to_cells(piece, window_, in_cell, left_of_window);
 }
@@ -48,7 +48,7 @@ void MomentCells<N>::add(const MonotoneCurve& piece, int sign) {
 template <int N>
 void MomentCells<N>::columns_of(int row, std::vector<int>* columns) const {
   columns->clear();
-  const std::size_t first = place(window_.first_column, row);
+  const std::size_t first = slot_place(window_.first_column, row);
   for (int block = 0; block < blocks_; ++block) {
     if (is_touched_[first / kBlock + block] == 0) continue;
     for (int x = block * kBlock; x < (block + 1) * kBlock; ++x) {

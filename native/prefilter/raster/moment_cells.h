@@ -23,10 +23,15 @@ class MomentCells {
   /// Adds a piece, in coordinates of cells; the region on its right counts `sign` times.
   void add(const MonotoneCurve& piece, int sign);
 
+  /// Call this when all are added, before the cells are asked for.
+  void finish() { batch_.flush(&cells_); }
+
   /// The columns of a row in which arcs leave something, rising.
   void columns_of(int row, std::vector<int>* columns) const;
   /// One of those.
-  const Moments& at(int column, int row) const { return cells_[slots_[place(column, row)] - 1]; }
+  const Moments& at(int column, int row) const {
+    return cells_[slots_[slot_place(column, row)] - 1];
+  }
 
   /// Forgets the cells, of which each row's columns were asked for.
   void clear();
@@ -34,17 +39,19 @@ class MomentCells {
  private:
   static constexpr int kBlock = 16;
 
-  std::size_t place(int column, int row) const {
+  std::size_t slot_place(int column, int row) const {
     return static_cast<std::size_t>(row - window_.first_row) * blocks_ * kBlock +
            (column - window_.first_column);
   }
-  Moments& cell(int column, int row);
+  // The place in cells_ of a cell, made where there is none yet.
+  std::int32_t cell(int column, int row);
 
   GridWindow window_;
   int blocks_ = 0;
   std::vector<std::int32_t> slots_;  // one more than the place in cells_, or 0
   std::vector<std::uint8_t> is_touched_;
   std::vector<Moments> cells_;
+  ArcBatch<N> batch_;
 };
 
 extern template class MomentCells<0>;

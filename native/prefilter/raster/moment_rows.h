@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/base/lane_array.h"
 #include "prefilter/raster/cell_filter.h"
 #include "prefilter/raster/coverage_rows.h"
 #include "prefilter/raster/moment_cells.h"
@@ -24,7 +25,7 @@ class MomentRows {
   void add_coverage(const MomentCells<N>& cells, int first_row, int end_row, CoverageRows* rows);
 
  private:
-  static constexpr int kLanes = ArcMoments<N>::kLanes;
+  static constexpr int kLanes = N < 4 ? 4 : 8;
   using Doubles = LaneArray<double, kLanes>;
   using Longs = LaneArray<std::int64_t, kLanes>;
 

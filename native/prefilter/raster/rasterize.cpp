@@ -99,6 +99,7 @@ class BandMaker {
     layer.edges.for_pieces_between(
         cells->window().first_row, cells->window().end_row, filter_,
         [&](const MonotoneCurve& piece, bool backwards) { cells->add(piece, backwards ? 1 : -1); });
+    cells->finish();
   }
 
   void add_constant(const RasterLayer& layer) {

@@ -1,0 +1,180 @@
+#include "prefilter/moments/arc_moments.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "prefilter/base/gauss_rule.h"
+#include "prefilter/base/lanes.h"
+
+namespace prefilter {
+namespace {
+
+using IntegerLanes [[gnu::vector_size(sizeof(Lanes))]] = std::int32_t;
+
+// To the nearest, halves away from 0: as far from it for an edge and for its reverse.
+inline IntegerLanes rounded(Lanes values) {
+  return __builtin_convertvector(values < 0.0F ? values - 0.5F : values + 0.5F, IntegerLanes);
+}
+
+// Towards 0 of what has this much, of [0, 1), added to its size. Where that is as good as random,
+// sums of arcs much smaller than the unit are right on average.
+inline IntegerLanes rounded(Lanes values, Lanes share) {
+  return __builtin_convertvector(values < 0.0F ? values - share : values + share, IntegerLanes);
+}
+
+// As good as random, and the same for an edge and for its reverse, which are cut alike.
+inline Lanes share_of(Lanes x, Lanes y) {
+  using Bits [[gnu::vector_size(sizeof(Lanes))]] = std::uint32_t;
+  Bits bits = std::bit_cast<Bits>(x) * 0x9E3779B1U ^ std::bit_cast<Bits>(y) * 0x85EBCA77U;
+  bits ^= bits >> 15;
+  bits *= 0xC2B2AE3DU;
+  return __builtin_convertvector(std::bit_cast<IntegerLanes>(bits >> 8), Lanes) * 0x1p-24F;
+}
+
+constexpr float kScale = 1 << kMomentBits;
+
+// Of P_b, 0 at both ends of a row for b above 0: y^(b + 1) - (1/2)^(b + 1) for odd b,
+// y (y^b - (1/2)^b) for even b, over b + 1.
+template <std::size_t kCount>
+void antiderivatives(Lanes y, std::array<IntegerLanes, kCount>* values) {
+  (*values)[0] = rounded(y * kScale);
+  Lanes power = y;
+  float half = 0.5F;
+  for (std::size_t b = 1; b < kCount; ++b) {
+    const Lanes value = b % 2 == 1 ? power * y - half * 0.5F : (power - half) * y;
+    (*values)[b] = rounded(value * (kScale / static_cast<float>(b + 1)));
+    power *= y;
+    half *= 0.5F;
+  }
+}
+
+}  // namespace
+
+template <int N>
+void ArcBatch<N>::flush(Cells* cells) {
+  // x^(a + 1) P_b has degree 2 N + 1 at the most along a line: this is exact up to N = 4, and
+  // beyond the highest powers, of less than 1/2, are off by less than 1e-8.
+  constexpr int kPoints = N < 5 ? N + 1 : 6;
+  const auto& rule = gauss_rule<kPoints>();
+  const Lanes dx = x1_ - x0_;
+  const Lanes dy = y1_ - y0_;
+  const Lanes weight = dy * signs_;
+  Lanes sums[kCount * kCount] = {};
+  for (int k = 0; k < kPoints; ++k) {
+    const auto t = static_cast<float>(rule.nodes[k]);
+    const Lanes x = x0_ + dx * t;
+    const Lanes y = y0_ + dy * t;
+    Lanes powers[kCount];
+    Lanes power = weight * static_cast<float>(rule.weights[k]) * x;
+    const Lanes first = power;
+    for (int b = 0; b < kCount; ++b) {
+      powers[b] = b > 0 ? power - first * static_cast<float>(mean_power(b)) : power;
+      power *= y;
+    }
+    for (int a = 0; a < kCount; ++a) {
+      for (int b = 0; b < kCount; ++b) {
+        sums[a * kCount + b] += powers[b];
+        powers[b] *= x;
+      }
+    }
+  }
+  std::array<IntegerLanes, kCount> before;
+  std::array<IntegerLanes, kCount> across;
+  antiderivatives(y0_, &before);
+  antiderivatives(y1_, &across);
+  const IntegerLanes signs = rounded(signs_);
+  for (int b = 0; b < kCount; ++b) across[b] = (across[b] - before[b]) * signs;
+  const Lanes share = share_of(x1_, y1_);
+  IntegerLanes inside[kCount * kCount];
+  for (int a = 0; a < kCount; ++a) {
+    for (int b = 0; b < kCount; ++b) {
+      inside[a * kCount + b] =
+          rounded(sums[a * kCount + b] * (kScale / static_cast<float>(a + 1)), share);
+    }
+  }
+  for (int i = 0; i < size_; ++i) {
+    ArcMoments<N>& cell = (*cells)[places_[i]];
+    for (int j = 0; j < kCount * kCount; ++j) {
+      cell.inside_bits[j] += static_cast<std::uint32_t>(inside[j][i]);
+    }
+    for (int b = 0; b < kCount; ++b) {
+      cell.across_bits[b] += static_cast<std::uint32_t>(across[b][i]);
+    }
+  }
+  size_ = 0;
+}
+
+template <int N>
+void ArcBatch<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, Point2 center,
+                            int sign, std::int32_t place, Cells* cells) {
+  constexpr int kPoints = N < 5 ? N + 4 : 9;
+  const auto& rule = gauss_rule<kPoints>();
+  std::array<float, kCount * kCount> sums{};
+  // Where an arc is bent, or of a high degree, so many powers of t do not do: it is halved.
+  int parts = curve.kind == CurveKind::kConic ? 2 : 1;
+  if (curve.kind == CurveKind::kBezier) {
+    const double turns = static_cast<double>(curve.controls.size()) * (arc.t_end - arc.t_begin);
+    while (parts < turns) parts *= 2;
+  }
+  const auto bend = [&](double t_begin, double t_end) {
+    const Point2 a = curve.at(t_begin);
+    const Point2 c = curve.at(t_end);
+    const Point2 off = curve.at(0.5 * (t_begin + t_end)) - 0.5 * (a + c);
+    return std::abs(off.x) + std::abs(off.y);
+  };
+  constexpr int kMostParts = 256;
+  constexpr double kMostBend = 0.06;
+  while (parts < kMostParts) {
+    const double step = (arc.t_end - arc.t_begin) / parts;
+    double most = 0.0;
+    for (int part = 0; part < parts; ++part) {
+      most = std::max(most, bend(arc.t_begin + part * step, arc.t_begin + (part + 1) * step));
+    }
+    if (most < kMostBend) break;
+    parts *= 2;
+  }
+  const double step = (arc.t_end - arc.t_begin) / parts;
+  for (int part = 0; part < parts; ++part) {
+    const double from = arc.t_begin + part * step;
+    for (int k = 0; k < kPoints; ++k) {
+      const double t = from + rule.nodes[k] * step;
+      const Point2 at = curve.at(t) - center;
+      const auto x = static_cast<float>(at.x);
+      const auto y = static_cast<float>(at.y);
+      auto factor = static_cast<float>(rule.weights[k] * step * curve.derivative(t).y);
+      std::array<float, kCount> powers;
+      float power = 1.0F;
+      for (int b = 0; b < kCount; ++b) {
+        powers[b] = power - (b > 0 ? static_cast<float>(mean_power(b)) : 0.0F);
+        power *= y;
+      }
+      for (int a = 0; a < kCount; ++a) {
+        factor *= x;
+        for (int b = 0; b < kCount; ++b) sums[a * kCount + b] += factor * powers[b];
+      }
+    }
+  }
+  // The lane has no extent along x and stands for what is across alone; what that adds inside is
+  // x^(a + 1) / (a + 1) at 0, which is nothing.
+  ArcMoments<N>& cell = (*cells)[place];
+  for (int a = 0; a < kCount; ++a) {
+    for (int b = 0; b < kCount; ++b) {
+      const float scaled = sums[a * kCount + b] * (kScale / static_cast<float>(a + 1));
+      const auto whole = static_cast<std::int32_t>(scaled + std::copysign(0.5F, scaled));
+      cell.inside_bits[a * kCount + b] += static_cast<std::uint32_t>(whole * sign);
+    }
+  }
+  add({0.0, arc.begin.y - center.y}, {0.0, arc.end.y - center.y}, sign, place, cells);
+}
+
+template class ArcBatch<0>;
+template class ArcBatch<1>;
+template class ArcBatch<2>;
+template class ArcBatch<3>;
+template class ArcBatch<4>;
+template class ArcBatch<5>;
+template class ArcBatch<7>;
+template class ArcBatch<8>;
+template class ArcBatch<9>;
+
+}  // namespace prefilter
