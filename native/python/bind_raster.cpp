@@ -40,6 +40,67 @@ void add_contour(Outline* outline, const Array<double>& points, int degree) {
   outline->close();
 }
 
+// How many numbers follow the letter of a segment in add_path; -1 for no such letter.
+int number_count(char letter) {
+  switch (letter) {
+    case 'M':
+    case 'L':
+      return 2;
+    case 'Q':
+      return 4;
+    case 'W':
+      return 5;
+    case 'C':
+      return 6;
+    case 'Z':
+      return 0;
+    default:
+      return -1;
+  }
+}
+
+void add_path(Outline* outline, const std::string& letters, const Array<double>& numbers) {
+  std::size_t needed = 0;
+  for (const char letter : letters) {
+    const int count = number_count(letter);
+    if (count < 0) {
+      throw_invalid("letters: '" + std::string(1, letter) + "' is not one of M, L, Q, C, W, Z");
+    }
+    needed += static_cast<std::size_t>(count);
+  }
+  const std::size_t size = static_cast<std::size_t>(numbers.size());
+  if (needed != size) {
+    throw_invalid("numbers: " + std::to_string(size) + "; the letters need " +
+                  std::to_string(needed));
+  }
+  if (!letters.empty() && letters.front() != 'M') {
+    throw_invalid("letters: begin with '" + letters.substr(0, 1) + "'; M is needed");
+  }
+  const double* at = numbers.data();
+  outline->reserve(size, letters.size());
+  for (const char letter : letters) {
+    if (letter == 'M') {
+      outline->move_to({at[0], at[1]});
+    } else if (letter == 'L') {
+      outline->line_to({at[0], at[1]});
+    } else if (letter == 'W') {
+      if (!(at[2] >= 1e-6 && at[2] <= 1e6)) {
+        throw_invalid("numbers: a weight of " + std::to_string(at[2]) +
+                      "; it has to be from 1e-6 to 1e6");
+      }
+      outline->conic_to({at[0], at[1]}, at[2], {at[3], at[4]});
+    } else if (letter == 'Z') {
+      outline->close();
+    } else {
+      std::array<Point2, 3> points;
+      const std::size_t count = letter == 'Q' ? 2 : 3;
+      for (std::size_t k = 0; k < count; ++k) points[k] = {at[2 * k], at[2 * k + 1]};
+      outline->curve_to(std::span(points).first(count));
+    }
+    at += number_count(letter);
+  }
+}
+
 ChannelValues values_of(const std::vector<double>& values) {
   ChannelValues out{};
   std::copy(values.begin(), values.end(), out.begin());
@@ -164,6 +225,7 @@ void bind_raster(py::module_& m) {
           py::arg("x1"), py::arg("y1"), py::arg("weight"), py::arg("x2"), py::arg("y2"))
       .def("close", &Outline::close)
       .def("add_contour", &add_contour, py::arg("points"), py::arg("degree"))
+      .def("add_path", &add_path, py::arg("letters"), py::arg("numbers"))
       .def(
           "transformed",
           [](const Outline& outline, const std::array<double, 6>& matrix) {

@@ -328,3 +328,42 @@ def test_uses_and_symbols():
 def test_what_is_used_has_the_style_of_its_use():
     body = '<defs><rect id="a" width="10" height="10"/></defs><use href="#a" fill="lime"/>'
     assert read(body, light="srgb").shapes[0].color == pytest.approx((0, 1, 0, 1))
+
+
+def test_a_path_given_at_once_is_that_of_its_steps():
+    def by_steps(shape):
+        shape.move_to(10, 20)
+        shape.line_to(60, 20)
+        shape.curve_to(90, 30, 60, 50)
+        shape.conic_to(60, 80, 0.5, 40, 70)
+        shape.curve_to(30, 60, 20, 90, 10, 60)
+        shape.close()
+        shape.move_to(20, 30)
+        shape.line_to(40, 30)
+        shape.line_to(30, 50)
+
+    numbers = [10, 20, 60, 20, 90, 30, 60, 50, 60, 80, 0.5, 40, 70, 30, 60, 20, 90, 10, 60]
+    numbers += [20, 30, 40, 30, 30, 50]
+    same(outline(by_steps), outline(lambda shape: shape.add_path("MLQWCZMLL", numbers)))
+    shape = prefilter.Shape()
+    shape.add_path("", [])
+    assert shape.bounds is None
+
+
+@pytest.mark.parametrize(
+    ("letters", "numbers", "words"),
+    [
+        ("MX", [1, 2], "letters: 'X' is not one of"),
+        ("LM", [1, 2, 3, 4], "letters: begin with 'L'; M is needed"),
+        (3, [1, 2], "letters: 3"),
+        ("ML", [1, 2, 3], "numbers: 3; the letters need 4"),
+        ("M", [[1, 2]], "numbers: shape (1, 2)"),
+        ("M", ["a", "b"], "numbers: shape (2,)"),
+        ("M", [1, math.nan], "numbers: one is not finite"),
+        ("MW", [1, 2, 3, 4, 0, 5, 6], "numbers: a weight of 0"),
+    ],
+)
+def test_paths_that_are_refused(letters, numbers, words):
+    with pytest.raises(ValueError, match=words.split(":")[0]) as caught:
+        prefilter.Shape().add_path(letters, numbers)
+    assert words in str(caught.value)

@@ -270,6 +270,29 @@ class Shape:
         self._outline.add_contour(np.ascontiguousarray(chain), degree)
         self._has_contour = True
 
+    def add_path(self, letters: str, numbers: npt.ArrayLike) -> None:
+        """Adds contours of all kinds of segments at once, which is quicker than one by one.
+
+        Args:
+            letters: One for each step: M moves, L adds a line, Q and C Bezier curves of degree 2
+                and 3, W a conic, and Z closes. The first is M.
+            numbers: What the steps take, one after another: for each the coordinates of the points
+                behind the one where it begins; W has its weight between the two.
+
+        Raises:
+            ValueError: There is another letter, too few or too many numbers, one that is not
+                finite, or a weight not from 1e-6 to 1e6.
+        """
+        steps = as_name("letters", letters)
+        found = as_array("numbers", numbers)
+        if found.ndim != 1 or (found.size and found.dtype.kind not in "fiu"):
+            raise ValueError(f"numbers: shape {found.shape}; a row of numbers is needed")
+        values = np.ascontiguousarray(found, np.float64)
+        if not np.isfinite(values).all():
+            raise ValueError("numbers: one is not finite")
+        self._outline.add_path(steps, values)
+        self._has_contour = self._has_contour or bool(steps)
+
     def transformed(self, matrix: npt.ArrayLike) -> "Shape":
         """The shape where an affine map puts it; its color goes along.
 

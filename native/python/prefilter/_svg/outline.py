@@ -3,7 +3,9 @@
 import math
 import re
 from collections.abc import Iterator
-from itertools import pairwise
+from itertools import chain, pairwise
+
+import numpy as np
 
 from ..shapes import Shape
 from .values import NUMBER, leading_numbers
@@ -174,17 +176,9 @@ class Outline:
         """The outline as a shape, made once."""
         if fill_rule not in self._shapes:
             shape = Shape(fill_rule=fill_rule)
-            for kind, numbers in self.segments:
-                if kind == "M":
-                    shape.move_to(*numbers)
-                elif kind == "L":
-                    shape.line_to(*numbers)
-                elif kind == "W":
-                    shape.conic_to(*numbers)
-                elif kind == "Z":
-                    shape.close()
-                else:
-                    shape.curve_to(*numbers)
+            letters = "".join(kind for kind, _ in self.segments)
+            numbers = chain.from_iterable(numbers for _, numbers in self.segments)
+            shape.add_path(letters, np.fromiter(numbers, np.float64))
             self._shapes[fill_rule] = shape
         return self._shapes[fill_rule]
 
