@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import prefilter
 import pytest
 from drawings import SIZE, box_of, drawn, image, outline, polygon, read, same
 
