@@ -1,7 +1,9 @@
 // The segments of outlines in coordinates of cells, found again by the rows they pass.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -27,6 +29,10 @@ class EdgeList {
   template <typename Use>
   void for_pieces_between(int first_row, int end_row, const CellFilter& filter,
                           const Use& use) const;
+  /// Calls use(std::span<const Point2> controls, double weight) for the segments that may pass
+  /// between two heights, in pixels.
+  template <typename Use>
+  void for_segments_between(double low, double high, const Use& use) const;
 
  private:
   struct Run {
@@ -51,19 +57,28 @@ class EdgeList {
 template <typename Use>
 void EdgeList::for_pieces_between(int first_row, int end_row, const CellFilter& filter,
                                   const Use& use) const {
-  const double low = filter.to_pixel(first_row);
-  const double high = filter.to_pixel(end_row);
   std::array<Point2, Outline::kMostDegree + 1> cells;
+  for_segments_between(filter.to_pixel(first_row), filter.to_pixel(end_row),
+                       [&](std::span<const Point2> controls, double weight) {
+                         std::transform(controls.begin(), controls.end(), cells.begin(),
+                                        [&](const Point2& point) -> Point2 {
+                                          return {filter.to_cell(point.x), filter.to_cell(point.y)};
+                                        });
+                         for_monotone_pieces({cells.data(), controls.size()}, weight, use);
+                       });
+}
+
+template <typename Use>
+void EdgeList::for_segments_between(double low, double high, const Use& use) const {
   const auto use_segment = [&](std::span<const Point2> controls, double weight) {
     double segment_low = HUGE_VAL;
     double segment_high = -HUGE_VAL;
-    for (std::size_t i = 0; i < controls.size(); ++i) {
-      segment_low = std::min(segment_low, controls[i].y);
-      segment_high = std::max(segment_high, controls[i].y);
-      cells[i] = {filter.to_cell(controls[i].x), filter.to_cell(controls[i].y)};
+    for (const Point2& point : controls) {
+      segment_low = std::min(segment_low, point.y);
+      segment_high = std::max(segment_high, point.y);
     }
     if (segment_high < low || segment_low > high) return;
-    for_monotone_pieces({cells.data(), controls.size()}, weight, use);
+    use(controls, weight);
   };
   for (const Run& run : runs_) {
     if (run.high < low || run.low > high) continue;

@@ -13,6 +13,7 @@
 #include "prefilter/base/memory.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/raster/box_coverage.h"
 #include "prefilter/raster/coverage_rows.h"
 #include "prefilter/raster/local_color.h"
 #include "prefilter/raster/moment_rows.h"
@@ -103,6 +104,11 @@ class BandMaker {
   }
 
   void add_constant(const RasterLayer& layer) {
+    // Of the filters the box alone is of degree 0.
+    if (N == 0 && image_->width <= kMostBoxPixels && image_->height <= kMostBoxPixels) {
+      add_box(layer);
+      return;
+    }
     if (moments_ == nullptr) {
       moments_ = std::make_unique<MomentRows<N>>(filter_, image_->width);
       cells_.begin_band(filter_, image_->width, first_row_, end_row_);
@@ -123,6 +129,27 @@ class BandMaker {
         for (int x = begin; x < end; ++x) add(x, coverage);
       });
     }
+  }
+
+  void add_box(const RasterLayer& layer) {
+    if (box_ == nullptr) box_ = std::make_unique<BoxCoverage>();
+    box_->begin(image_->width, first_row_, end_row_);
+    box_->add(layer.edges);
+    const int channels = job_.channels;
+    const ChannelValues& color = layer.paint.constant;
+    const auto add = [&](int row, int x, std::uint32_t steps) {
+      const double coverage = static_cast<std::int32_t>(steps) * kBoxUnit;
+      double* out = values_.data() +
+                    (static_cast<std::size_t>(row - first_row_) * image_->width + x) * channels;
+      for (int c = 0; c < channels; ++c) out[c] += coverage * color[c];
+    };
+    box_->take(
+        [&](int row, int x, int count, const std::uint32_t* steps) {
+          for (int i = 0; i < count; ++i) add(row, x + i, steps[i]);
+        },
+        [&](int row, int begin, int end, std::uint32_t steps) {
+          for (int x = begin; x < end; ++x) add(row, x, steps);
+        });
   }
 
   template <int M>
@@ -147,6 +174,7 @@ class BandMaker {
   std::unique_ptr<Painted<N + 1>> linear_;
   std::unique_ptr<Painted<N + 2>> radial_;
   CoverageRows rows_;
+  std::unique_ptr<BoxCoverage> box_;
   std::vector<double> values_;
 };
 

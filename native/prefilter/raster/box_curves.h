@@ -1,0 +1,53 @@
+// Curves under the box filter.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/moments/monotone_curve.h"
+#include "prefilter/raster/difference_rows.h"
+
+namespace prefilter {
+
+/// Adds up pieces of curves. Ends are rounded to multiples of kBoxUnit, as those of lines are.
+class BoxCurves {
+ public:
+  explicit BoxCurves(DifferenceRows* rows) : rows_(*rows) {}
+
+  /// The region on the right of a piece counts `sign` times.
+  void add(const MonotoneCurve& piece, int sign);
+
+ private:
+  /// Polynomials over a piece, of s in [0, 1]: x from a column on, y, and the integral of x dy.
+  struct Piece {
+    std::array<double, 4> x;
+    std::array<double, 4> y;
+    std::array<double, 6> area;  // of s^1 to s^6
+    double column = 0.0;
+    bool is_cubic = false;
+  };
+  /// Where a piece is, and its area from the start up to there.
+  struct Places {
+    std::vector<double> x;
+    std::vector<double> y;
+    std::vector<double> area;
+
+    void resize(std::size_t count) {
+      x.resize(count);
+      y.resize(count);
+      area.resize(count);
+    }
+  };
+
+  static Piece polynomials(const MonotoneCurve& piece);
+  void find_rows(const Piece& piece, double low, double high, bool rises);
+  void find_columns(const Piece& piece, int first, int end);
+  void add_cells(const MonotoneCurve& piece, int sign);
+
+  DifferenceRows& rows_;
+  Places at_rows_;     // at the ends of a piece and at the lines between rows in between
+  Places at_columns_;  // at the lines between columns
+};
+
+}  // namespace prefilter

@@ -1,0 +1,233 @@
+// Section 2.2 for lines and the box filter.
+//
+// In one row let x run along a line from L to R while y rises by d, from the column i of L on. With
+// E_k, the integral over y of how far x is beyond column i + k, where it is, the pixel i + k is
+// covered by d - E_k + E_(k + 1). Of a line E_k is c (R - i - k)^2 with c = 1 / (2 |slope|), and
+// E_0 is d (L + R - 2 i) / 2. Each is rounded by itself, so the pixels of a row add up to d
+// exactly.
+
+#include "prefilter/raster/box_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prefilter {
+namespace {
+
+// Below, a line is as good as vertical, and its c has no use.
+constexpr double kLeastSlope = 1e-9;
+
+double half_over(double slope) { return 0.5 / std::max(std::abs(slope), kLeastSlope); }
+
+std::uint32_t to_steps(double value) {
+  return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::llrint(value)));
+}
+
+}  // namespace
+
+void BoxLines::begin_at(const Point2& point) {
+  constexpr double kScale = kOne;
+  cell_ = floor(DoublePair{point.x, point.y});
+  const IntFour place = round_to_int((DoublePair{point.x, point.y} - cell_) * kScale);
+  x_ = place[0];
+  y_ = place[1];
+  begin_y_ = y_;
+}
+
+void BoxLines::flush() {
+  const std::uint32_t height = y_ - begin_y_;
+  const auto part = static_cast<std::uint32_t>(part_);
+  if (height == 0 && part == 0) return;
+  begin_y_ = y_;
+  part_ = 0;
+  const auto row = static_cast<int>(cell_[1]);
+  if (row < rows_.first_row() || row >= rows_.end_row()) return;
+  const auto column = static_cast<int>(cell_[0]);
+  if (column >= rows_.width()) return;
+  // A line that falls has the region that it adds to on its right.
+  rows_.add(row, rows_.clamped(column), part - height);
+  rows_.add(row, rows_.clamped(column + 1), 0U - part);
+}
+
+void BoxLines::leave_cell(const Point2& point) {
+  const Point2 from{cell_[0] + x_ * kBoxUnit, cell_[1] + y_ * kBoxUnit};
+  flush();
+  const Point2 to{rounded_to_unit(point.x), rounded_to_unit(point.y)};
+  begin_at(to);
+  if (from.y < to.y) {
+    add_line(from, to, -static_cast<double>(kOne));
+  } else if (from.y > to.y) {
+    add_line(to, from, kOne);
+  }
+}
+
+std::size_t BoxLines::lines_to(const Point2* points, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (stays_in_cell(points[i])) continue;
+    if (!(std::abs(points[i].x) <= kFarthestBoxPixel &&
+          std::abs(points[i].y) <= kFarthestBoxPixel)) {
+      return i;
+    }
+    leave_cell(points[i]);
+  }
+  return count;
+}
+
+void BoxLines::add_line(Point2 low, Point2 high, double scale) {
+  const double first_row = rows_.first_row();
+  const double end_row = rows_.end_row();
+  const double width = rows_.width();
+  if (high.y <= first_row || low.y >= end_row) return;
+  const double left = std::min(low.x, high.x);
+  const double right = std::max(low.x, high.x);
+  if (left >= width) return;
+  const double slope = (high.x - low.x) / (high.y - low.y);
+  double begin = std::max(low.y, first_row);
+  double end = std::min(high.y, end_row);
+  if (right > width || left < 0.0) {
+    // Rows in which the line is beyond a side, by more than what rounding is worth, are not cut.
+    const auto y_at = [&](double x) { return low.y + (x - low.x) / slope; };
+    const auto row_at = [&](double y) { return std::floor(std::clamp(y, begin, end)); };
+    const auto add_left = [&](double from, double to) {
+      const double full_from = std::min(std::ceil(from), to);
+      const double full_to = std::max(std::floor(to), full_from);
+      const auto sign = scale > 0.0 ? 1U : ~0U;
+      const auto add_part = [&](double part_from, double part_to) {
+        if (part_from >= part_to) return;
+        rows_.add(static_cast<int>(std::floor(part_from)), -1,
+                  to_steps((part_to - part_from) * scale));
+      };
+      add_part(from, full_from);
+      rows_.add_rows(static_cast<int>(full_from), static_cast<int>(full_to), sign * kOne);
+      add_part(full_to, to);
+    };
+    const bool rises = slope > 0.0;
+    if (right <= 0.0) {
+      add_left(begin, end);
+      return;
+    }
+    if (left < 0.0) {
+      const double pass = row_at(y_at(0.0));
+      if (rises) {
+        const double to = std::max(pass - 1.0, begin);
+        add_left(begin, to);
+        begin = to;
+      } else {
+        const double from = std::min(pass + 2.0, end);
+        add_left(from, end);
+        end = from;
+      }
+    }
+    if (right > width && begin < end) {
+      const double pass = row_at(y_at(width));
+      if (rises) {
+        end = std::min(end, pass + 2.0);
+      } else {
+        begin = std::max(begin, pass - 1.0);
+      }
+    }
+  }
+  constexpr double kNarrow = 2.0;
+  if (std::min(std::abs(slope), right - left) <= kNarrow) {
+    add_narrow(low, slope, begin, end, scale);
+  } else {
+    add_wide(low, slope, begin, end, scale);
+  }
+}
+
+// In each row no more than three columns: four differences, of four rows at once.
+void BoxLines::add_narrow(const Point2& low, double slope, double begin, double end, double scale) {
+  const double c = half_over(slope) * scale;
+  const auto first_row = static_cast<int>(std::floor(begin));
+  const auto end_row = static_cast<int>(std::ceil(end));
+  const DoublePair zero{};
+  const DoublePair least = pair_of(-DifferenceRows::kMargin);
+  const DoublePair most = pair_of(rows_.width());
+  struct Pair {
+    IntFour column;
+    IntFour height;
+    IntFour inside;   // E_0
+    IntFour beyond;   // E_1
+    IntFour beyond2;  // E_2
+  };
+  const auto two_rows = [&](double row) {
+    const DoublePair y = DoublePair{row, row + 1.0};
+    const DoublePair from = higher(y, pair_of(begin));
+    const DoublePair to = higher(lower(y + 1.0, pair_of(end)), from);
+    const DoublePair x_from = low.x + (from - low.y) * slope;
+    const DoublePair x_to = low.x + (to - low.y) * slope;
+    const DoublePair left = lower(x_from, x_to);
+    const DoublePair column = floor(left);
+    const DoublePair l = left - column;
+    const DoublePair r = higher(x_from, x_to) - column;
+    const DoublePair height = (to - from) * scale;
+    const DoublePair r1 = higher(r - 1.0, zero);
+    const DoublePair r2 = higher(r - 2.0, zero);
+    return Pair{round_to_int(lower(higher(column, least), most)), round_to_int(height),
+                round_to_int((l + r) * (0.5 * height)), round_to_int(c * r1 * r1),
+                round_to_int(c * r2 * r2)};
+  };
+  for (int row = first_row; row < end_row; row += 4) {
+    const Pair a = two_rows(row);
+    const Pair b = two_rows(row + 2.0);
+    const IntFour column = joined(a.column, b.column);
+    const IntFour height = joined(a.height, b.height);
+    const IntFour e0 = joined(a.inside, b.inside);
+    const IntFour e1 = joined(a.beyond, b.beyond);
+    const IntFour e2 = joined(a.beyond2, b.beyond2);
+    const IntFour s0 = height - e0 + e1;
+    const IntFour s1 = e0 - e1 - e1 + e2;
+    const IntFour s2 = e1 - e2 - e2;
+    const IntFour& s3 = e2;
+    const IntFour s01_low = __builtin_shufflevector(s0, s1, 0, 4, 1, 5);
+    const IntFour s01_high = __builtin_shufflevector(s0, s1, 2, 6, 3, 7);
+    const IntFour s23_low = __builtin_shufflevector(s2, s3, 0, 4, 1, 5);
+    const IntFour s23_high = __builtin_shufflevector(s2, s3, 2, 6, 3, 7);
+    const auto add = [&](int k, IntFour steps) {
+      rows_.add_four(row + k, static_cast<std::int32_t>(column[k]), steps);
+    };
+    add(0, __builtin_shufflevector(s01_low, s23_low, 0, 1, 4, 5));
+    add(1, __builtin_shufflevector(s01_low, s23_low, 2, 3, 6, 7));
+    add(2, __builtin_shufflevector(s01_high, s23_high, 0, 1, 4, 5));
+    add(3, __builtin_shufflevector(s01_high, s23_high, 2, 3, 6, 7));
+  }
+}
+
+void BoxLines::add_wide(const Point2& low, double slope, double begin, double end, double scale) {
+  const double c = half_over(slope) * scale;
+  const auto first_row = static_cast<int>(std::floor(begin));
+  const auto end_row = static_cast<int>(std::ceil(end));
+  for (int row = first_row; row < end_row; ++row) {
+    const double from = std::max<double>(row, begin);
+    const double to = std::min(row + 1.0, end);
+    const double x_from = low.x + (from - low.y) * slope;
+    const double x_to = low.x + (to - low.y) * slope;
+    const double left = std::min(x_from, x_to);
+    const double right = std::max(x_from, x_to);
+    const double first = std::floor(left);
+    if (first >= rows_.width()) continue;
+    const std::uint32_t height = to_steps((to - from) * scale);
+    // From the first column in the image, or the last of the line's, on.
+    const double last = std::floor(right);
+    const auto begin_column = static_cast<int>(std::max(first, std::min(last, -1.0)));
+    const auto end_column = static_cast<int>(std::min<double>(last, rows_.width()));
+    const auto beyond = [&](int column) {
+      const double r = std::max(right - column, 0.0);
+      return to_steps(c * r * r);
+    };
+    std::uint32_t here =
+        begin_column > first
+            ? beyond(begin_column)
+            : to_steps((left - first + (right - first)) * 0.5 * (to - from) * scale);
+    std::uint32_t covered = 0;
+    for (int column = begin_column; column <= end_column; ++column) {
+      const std::uint32_t next = beyond(column + 1);
+      rows_.add(row, rows_.clamped(column), height - here + next - covered);
+      covered = height - here + next;
+      here = next;
+    }
+    rows_.add(row, rows_.clamped(end_column + 1), height - covered);
+  }
+}
+
+}  // namespace prefilter

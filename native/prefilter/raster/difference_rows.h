@@ -1,0 +1,132 @@
+// Rows of box-filtered coverage, as differences from pixel to pixel in whole numbers.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "prefilter/raster/double_pair.h"
+
+namespace prefilter {
+
+/// Coverage is counted in fractions of 2^-kBoxBits, modulo 2^32: up to 31 windings. Whole numbers
+/// add up to the same in any order, edges that two shapes share cancel, and behind the last edge of
+/// a closed contour exactly nothing is left.
+inline constexpr int kBoxBits = 26;
+inline constexpr double kBoxUnit = 1.0 / (1 << kBoxBits);
+
+/// A band of rows. Blocks of 16 pixels in which nothing changes are not looked at.
+class DifferenceRows {
+ public:
+  /// An edge may write this many columns beyond those of the image on either side: differences left
+  /// of column 0 count for all pixels, those right of the image for none.
+  static constexpr int kMargin = 4;
+
+  /// The rows [first_row, end_row) of an image, all 0. What was added before must have been taken.
+  void begin(int width, int first_row, int end_row);
+
+  int width() const { return width_; }
+  int first_row() const { return first_row_; }
+  int end_row() const { return end_row_; }
+
+  /// A column where differences may be added, in place of one that may be outside.
+  int clamped(int column) const { return std::clamp(column, -kMargin, width_); }
+
+  /// From a column on, a row is higher by this. The column is clamped().
+  void add(int row, int column, std::uint32_t step) {
+    place(row, column)[0] += step;
+    mark(row, column);
+  }
+  /// The same of four columns in a row; rows up to three behind the last may get zeros.
+  void add_four(int row, int column, IntFour steps) {
+    std::uint32_t* to = place(row, column);
+    store_four(to, load_four(to) + steps);
+    mark(row, column);
+    mark(row, column + 3);
+  }
+  /// All pixels of the rows [first, end), which are of the band, are higher by this.
+  void add_rows(int first, int end, std::uint32_t step) {
+    if (first >= end) return;
+    left_[first - first_row_] += step;
+    left_[end - first_row_] -= step;
+  }
+
+  /// Calls for each row, in order, and makes it 0: block(row, x, count, values) with 16 values of
+  /// which `count` are pixels, and run(row, begin, end, value) for pixels between blocks that are
+  /// not 0.
+  template <typename Block, typename Run>
+  void take(const Block& block, const Run& run);
+
+ private:
+  static constexpr int kBlock = 16;
+  static constexpr int kRowsBehind = 3;
+
+  std::uint32_t* place(int row, int column) {
+    return steps_.data() + static_cast<std::size_t>(row - first_row_) * stride_ + kBlock + column;
+  }
+  void mark(int row, int column) {
+    is_marked_[static_cast<std::size_t>(row - first_row_) * blocks_ + (column + kBlock) / kBlock] =
+        1;
+  }
+
+  int width_ = 0;
+  int first_row_ = 0;
+  int end_row_ = 0;
+  int stride_ = 0;  // of values: a block left of column 0, and at least kMargin behind the last
+  int blocks_ = 0;  // of marks: those of a row, up to a multiple of 8
+  std::vector<std::uint32_t> steps_;
+  std::vector<std::uint8_t> is_marked_;
+  std::vector<std::uint32_t> left_;  // differences from row to row
+};
+
+template <typename Block, typename Run>
+void DifferenceRows::take(const Block& block, const Run& run) {
+  std::uint32_t before = 0;
+  for (int row = first_row_; row < end_row_; ++row) {
+    before += left_[row - first_row_];
+    left_[row - first_row_] = 0;
+    std::uint32_t* steps = place(row, 0);
+    std::uint8_t* marks = is_marked_.data() + static_cast<std::size_t>(row - first_row_) * blocks_;
+    std::uint32_t sum = before;
+    int done = 0;
+    for (int group = 0; group < blocks_; group += 8) {
+      std::uint64_t marked;
+      std::memcpy(&marked, marks + group, sizeof(marked));
+      if (marked == 0) continue;
+      std::memset(marks + group, 0, sizeof(marked));
+      for (; marked != 0; marked &= marked - 1) {
+        // Marks are bytes of 1, the first in the lowest bits.
+        const int at = (group + std::countr_zero(marked) / 8 - 1) * kBlock;
+        std::uint32_t* values = steps + at;
+        if (at < 0) {
+          for (int i = kBlock - kMargin; i < kBlock; ++i) {
+            sum += values[i];
+            values[i] = 0;
+          }
+          continue;
+        }
+        const int begin = std::min(at, width_);
+        if (sum != 0 && begin > done) run(row, done, begin, sum);
+        done = std::min(at + kBlock, width_);
+        alignas(16) std::uint32_t sums[kBlock];
+        for (int i = 0; i < kBlock; i += 4) {
+          IntFour four = load_four(values + i);
+          store_four(values + i, IntFour{});
+          const IntFour none{};
+          four += __builtin_shufflevector(none, four, 0, 4, 5, 6);
+          four += __builtin_shufflevector(none, four, 0, 1, 4, 5);
+          four += sum;
+          store_four(sums + i, four);
+          sum = four[3];
+        }
+        if (done > begin) block(row, begin, done - begin, sums);
+      }
+    }
+    if (sum != 0 && width_ > done) run(row, done, width_, sum);
+  }
+  left_[end_row_ - first_row_] = 0;
+}
+
+}  // namespace prefilter

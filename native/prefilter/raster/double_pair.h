@@ -1,0 +1,61 @@
+// Two doubles, four integers: what the box filter's inner loops are made of.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+#if defined(__SSE4_1__)
+#include <smmintrin.h>
+#endif
+
+namespace prefilter {
+
+using DoublePair [[gnu::vector_size(16)]] = double;
+/// Counted modulo 2^32.
+using IntFour [[gnu::vector_size(16)]] = std::uint32_t;
+
+inline DoublePair pair_of(double value) { return DoublePair{value, value}; }
+
+inline IntFour load_four(const std::uint32_t* from) {
+  IntFour values;
+  std::memcpy(&values, from, sizeof(values));
+  return values;
+}
+
+inline void store_four(std::uint32_t* to, IntFour values) {
+  std::memcpy(to, &values, sizeof(values));
+}
+
+#if defined(__SSE4_1__)
+inline DoublePair lower(DoublePair a, DoublePair b) { return _mm_min_pd(a, b); }
+inline DoublePair higher(DoublePair a, DoublePair b) { return _mm_max_pd(a, b); }
+inline DoublePair floor(DoublePair a) { return _mm_floor_pd(a); }
+inline DoublePair sqrt(DoublePair a) { return _mm_sqrt_pd(a); }
+/// Rounded to the nearest, halves to even, in the first two; 2^31 where that has no 32 bits. The
+/// others are 0.
+inline IntFour round_to_int(DoublePair a) { return reinterpret_cast<IntFour>(_mm_cvtpd_epi32(a)); }
+#else
+inline DoublePair lower(DoublePair a, DoublePair b) {
+  return DoublePair{a[0] < b[0] ? a[0] : b[0], a[1] < b[1] ? a[1] : b[1]};
+}
+inline DoublePair higher(DoublePair a, DoublePair b) {
+  return DoublePair{a[0] > b[0] ? a[0] : b[0], a[1] > b[1] ? a[1] : b[1]};
+}
+inline DoublePair floor(DoublePair a) { return DoublePair{std::floor(a[0]), std::floor(a[1])}; }
+inline DoublePair sqrt(DoublePair a) { return DoublePair{std::sqrt(a[0]), std::sqrt(a[1])}; }
+inline IntFour round_to_int(DoublePair a) {
+  const auto rounded = [](double value) {
+    // As x86 has it where there is no such integer.
+    return std::abs(value) < 0x1p31 ? static_cast<std::uint32_t>(std::lrint(value)) : 1U << 31;
+  };
+  return IntFour{rounded(a[0]), rounded(a[1]), 0, 0};
+}
+#endif
+
+/// The first two of each.
+inline IntFour joined(IntFour low, IntFour high) {
+  return __builtin_shufflevector(low, high, 0, 1, 4, 5);
+}
+
+}  // namespace prefilter
