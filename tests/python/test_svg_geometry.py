@@ -317,13 +317,17 @@ def test_uses_and_symbols():
         '<defs><rect id="box" width="10" height="10"/><symbol id="sign" viewBox="0 0 10 10">'
         '<rect width="10" height="10"/></symbol></defs>'
         '<use xlink:href="#box" x="5" y="6" transform="scale(2)"/>'
-        '<use href="#sign" x="50" y="60" width="20" height="20"/>'
+        '<use href="#sign" x="50" y="60" width="20" height="20" opacity="0.5"/>'
+        '<symbol id="faint" opacity="0.5" transform="scale(2)"><use href="#box"/></symbol>'
+        '<use href="#faint"/>'
     )
     drawing = read(body)
     assert drawing.warnings == ()
-    assert len(drawing.shapes) == 2
+    assert len(drawing.shapes) == 3
     assert box_of(drawing, 0) == pytest.approx((10, 12, 30, 32))
     assert box_of(drawing, 1) == pytest.approx((50, 60, 70, 80))
+    assert box_of(drawing, 2) == pytest.approx((0, 0, 20, 20))
+    assert [shape.color[3] for shape in drawing.shapes] == [1.0, 0.5, 0.5]
 
 
 def test_what_is_used_has_the_style_of_its_use():

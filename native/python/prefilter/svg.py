@@ -81,7 +81,7 @@ class SvgDrawing:
         to_pixels = self._drawing.placement(float(width), float(height))
         shapes = []
         for index, painted in enumerate(self._drawing.painted):
-            if index % 100 == 0:
+            if index % 20 == 0:
                 tell(index / len(self._drawing.painted))
             shapes.append(painted.shape(to_pixels, _STROKE_TOLERANCE))
         return shapes

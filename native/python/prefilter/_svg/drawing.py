@@ -35,10 +35,10 @@ _LARGEST = 1e5
 _SMALLEST_DETERMINANT = 1e-40
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")
-_GROUPS = ("g", "a", "svg", "switch")
+_GROUPS = ("g", "a", "svg", "symbol", "switch")
 _NOT_DRAWN = frozenset(
     (
-        *("defs", "symbol", "marker", "clipPath", "mask", "filter", "pattern", *GRADIENTS),
+        *("defs", "marker", "clipPath", "mask", "filter", "pattern", *GRADIENTS),
         *("title", "desc", "metadata", "style", "script", "view", "cursor"),
         *("animate", "animateColor", "animateMotion", "animateTransform", "set"),
         *("font", "font-face", "color-profile", "solidcolor", "hatch", "meshgradient"),
@@ -114,6 +114,7 @@ class _Context:
         opacity: Of all groups around it.
         groups: Those of them that are seen as one, by number.
         uses: The elements that `use` has brought here.
+        use: The `use` that brought this very element.
     """
 
     style: Style
@@ -122,6 +123,7 @@ class _Context:
     opacity: float = 1.0
     groups: tuple[int, ...] = ()
     uses: tuple[SvgElement, ...] = ()
+    use: SvgElement | None = None
 
     @property
     def units(self) -> Units:
@@ -199,7 +201,7 @@ class Drawing:
         while waiting:
             element, context = waiting.pop()
             count += 1
-            if count % 500 == 0:
+            if count % 100 == 0:
                 # With `use` there may be more than there are elements.
                 self._tell(0.5 + 0.5 * min(count / self._document.count, 0.99))
             if count > MOST_USED + self._document.count:
@@ -214,6 +216,8 @@ class Drawing:
         """Paints an element; yields those in it."""
         tag, declared = element.tag, self._sheets.declared(element)
         if tag in _NOT_DRAWN or tag.startswith("{") or declared.get("display", "") == "none":
+            return
+        if tag == "symbol" and context.use is None:
             return
         if tag not in _GROUPS and tag not in BASIC_SHAPES and tag != "use":
             self._warnings.unsupported(f"<{tag}>", "left out", element.line)
@@ -244,11 +248,12 @@ class Drawing:
         if tag == "use":
             yield from self._used(element, context)
             return
-        if tag == "svg" and element is not self._document.root:
-            inner = self._viewport(element, declared, context, None)
+        if tag in ("svg", "symbol") and element is not self._document.root:
+            inner = self._viewport(element, declared, context)
             if inner is None:
                 return
             context = inner
+        context = replace(context, use=None)
         yield from ((child, context) for child in self._children(element))
 
     def _clipped(
@@ -326,30 +331,19 @@ class Drawing:
             context,
             matrix=multiplied(context.matrix, (1.0, 0.0, 0.0, 1.0, x, y)),
             uses=(*context.uses, target),
+            use=element,
         )
-        if target.tag not in ("symbol", "svg"):
-            yield target, context
-            return
-        declared = self._sheets.declared(target)
-        if declared.get("display", "") == "none":
-            return
-        context = replace(context, style=self._sheets.style_below(target, context.style))
-        inner = self._viewport(target, declared, context, element)
-        if inner is not None:
-            yield from ((child, inner) for child in self._children(target))
+        yield target, context
 
     def _viewport(
-        self,
-        element: SvgElement,
-        declared: Mapping[str, str],
-        context: _Context,
-        use: SvgElement | None,
+        self, element: SvgElement, declared: Mapping[str, str], context: _Context
     ) -> _Context | None:
         """The context inside of an `svg` or `symbol`; None where nothing shows."""
         sizes = []
         for name in ("width", "height"):
-            by_use = use is not None and name in self._sheets.declared(use)
-            source = use if by_use and use is not None else element
+            source = element
+            if context.use is not None and name in self._sheets.declared(context.use):
+                source = context.use
             sizes.append(self._pixels(source, name, _WHOLE, context.units))
         x = y = 0.0
         if element.tag == "svg":

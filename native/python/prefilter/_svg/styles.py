@@ -157,7 +157,7 @@ class StyleSheets:
         if not is_styled:
             matcher = None
         for index, each in enumerate(wrapper.iter_subtree() if is_styled else document.root.iter()):
-            if index % 500 == 0:
+            if index % 50 == 0:
                 tell(index / document.count)
             if matcher is None:
                 self._declared[each] = self._declarations(each, ())
