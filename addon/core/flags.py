@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 from functools import partial
 from typing import Any
 
+from .colors import from_hex
 from .options import Option, declared
 
 
@@ -29,10 +30,11 @@ def add_flags(
             more["action"] = "store_false" if default else "store_true"
         else:
             more |= {"type": partial(_read, default, found), "metavar": found.metavar}
-            if isinstance(default, tuple):
+            if isinstance(default, tuple) and found.choices:
                 more["nargs"] = "+"
             notes = [found.allowed] if found.has_limits else []
-            if default != "":
+            # What a color is without its flag is another option's to say.
+            if default != "" and found.subtype != "COLOR":
                 notes.append(f"default: {found.shown(default)}")
             if notes:
                 text += f" ({'; '.join(notes)})"
@@ -74,6 +76,8 @@ def _flags(settings: type, names: tuple[str, ...]) -> Iterator[tuple[str, Any, s
 def _read(default: Any, declaration: Option, text: str) -> Any:
     if isinstance(default, str) or declaration.choices:
         value: Any = text
+    elif declaration.subtype == "COLOR":
+        value = from_hex(text) or ()
     else:
         try:
             value = type(default)(text)

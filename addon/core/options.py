@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from .choices import Choice
+from .colors import Color, to_hex
 
 _KEY = "option"
 _ROUNDING = 2.0**-24
@@ -33,7 +34,7 @@ class Option:
         high: The greatest.
         is_above: Whether it has to be above `low`.
         subtype: What a number or a text means, as in bpy.props. An ANGLE is in radians; users see
-            degrees.
+            degrees. A COLOR is scene-linear, with straight alpha; commands take it as #RRGGBBAA.
         display: More arguments of the property.
         flag: What commands call it; None for the field's name with dashes, empty for nothing.
         metavar: What stands for the value in their help.
@@ -57,6 +58,8 @@ class Option:
         """What it may be, in words."""
         if self.choices:
             return ", ".join(self.choices)
+        if self.subtype == "COLOR":
+            return "#RRGGBB or #RRGGBBAA, with values from 0 to 1"
         low, high = self.shown(self.low), self.shown(self.high)
         if self.is_above:
             return f"above {low}" + (f", up to {high}" if self.high < math.inf else "")
@@ -72,6 +75,8 @@ class Option:
         if self.choices:
             chosen = {value} if isinstance(value, str) else set(value)
             return chosen <= self.choices.keys()
+        if self.subtype == "COLOR":
+            return len(value) == 4 and all(0.0 <= one <= 1.0 + _ROUNDING for one in value)
         if not isinstance(value, int | float):
             return True
         # Blender keeps numbers in single precision.
@@ -84,6 +89,8 @@ class Option:
         """Returns a value as a user of a command writes it."""
         if isinstance(value, float):
             return f"{math.degrees(value) if self.subtype == 'ANGLE' else value:.7g}"
+        if self.subtype == "COLOR":
+            return to_hex(value)
         if isinstance(value, tuple):
             return " ".join(value)
         return str(value)
@@ -113,6 +120,11 @@ def switch(default: bool, label: str, description: str, **more: Any) -> Any:
 def text(default: str, label: str, description: str, **more: Any) -> Any:
     """Declares an option that is a text: a name, or with the subtype FILE_PATH a file."""
     return _declared(default, Option(label, description, **more))
+
+
+def rgba(default: Color, label: str, description: str, **more: Any) -> Any:
+    """Declares an option that is a color with alpha, each number from 0 to 1."""
+    return _declared(default, Option(label, description, subtype="COLOR", **more))
 
 
 def threads() -> Any:

@@ -4,7 +4,14 @@ import math
 from typing import Any
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import (
+    BoolProperty,
+    EnumProperty,
+    FloatProperty,
+    FloatVectorProperty,
+    IntProperty,
+    StringProperty,
+)
 
 from .choices import flag_items, items
 from .options import Option, declared, option
@@ -33,8 +40,11 @@ def values(source: Any, settings: type) -> Any:
     for name, _, declaration in declared(settings):
         if declaration.label:
             value = getattr(source, name)
-            is_path = declaration.subtype == "FILE_PATH"
-            found[name] = bpy.path.abspath(value) if is_path else value
+            if declaration.subtype == "FILE_PATH":
+                value = bpy.path.abspath(value)
+            elif declaration.subtype == "COLOR":
+                value = tuple(value)
+            found[name] = value
     return settings(**found)
 
 
@@ -60,6 +70,8 @@ def _property(default: Any, declaration: Option, **more: Any) -> Any:
     if isinstance(default, bool):
         return BoolProperty(**common)
     common["subtype"] = declaration.subtype
+    if declaration.subtype == "COLOR":
+        return FloatVectorProperty(size=len(default), min=0.0, max=1.0, **common)
     if isinstance(default, str):
         return StringProperty(**common)
     low = declaration.low + _ABOVE if declaration.is_above else declaration.low

@@ -28,6 +28,9 @@ def settings(addon):
         use_more: bool = options.switch(False, "More", "Use more")
         name: str = options.text("", "Name", "What it is called", flag="--called", metavar="NAME")
         hidden: int = options.number(7, "Hidden", "No flag", flag="")
+        ink: tuple[float, ...] = options.rgba(
+            (1.0, 1.0, 1.0, 0.5), "Ink", "Its color", metavar="COLOR"
+        )
         threads: int = options.threads()
 
     return Settings
@@ -66,6 +69,9 @@ def test_flags(read, settings):
         threads=2,
     )
     assert read("--share", "1").share == 1.0
+    half = ((0x80 / 255 + 0.055) / 1.055) ** 2.4
+    assert read("--ink", "#0080ff").ink == pytest.approx((0, half, 1, 1))
+    assert read("--ink", "0080FF33").ink == pytest.approx((0, half, 1, 0.2))
 
 
 @pytest.mark.parametrize(
@@ -82,6 +88,8 @@ def test_flags(read, settings):
         (["--bend", "181"], "--bend: found '181'; allowed: 0 to 180"),
         (["--threads", "-1"], "--threads: found '-1'; allowed: 0 and up"),
         (["--threads", "inf"], "--threads: found 'inf'; allowed: 0 and up"),
+        (["--ink", "#fff"], "--ink: found '#fff'; allowed: #RRGGBB or #RRGGBBAA"),
+        (["--ink", "#00000g"], "--ink: found '#00000g'; allowed: #RRGGBB or #RRGGBBAA"),
         (["--hidden", "1"], "unrecognized arguments: --hidden 1"),
     ],
 )
@@ -99,6 +107,8 @@ def test_wrong_values(read, capsys, arguments, message):
         ({"count": 0}, "Count: found 0; allowed: 1 to 12"),
         ({"share": math.nan}, "Share: found nan; allowed: above 0, up to 1"),
         ({"bend": -1.0}, "Bend: found -57.29578; allowed: 0 to 180"),
+        ({"ink": (0, 0, 2, 1)}, "Ink: found #0000ff; allowed: #RRGGBB or #RRGGBBAA.*"),
+        ({"ink": (0, math.nan, 0, 1)}, "Ink: found .*; allowed: #RRGGBB or #RRGGBBAA.*"),
         ({"threads": -1}, "threads: found -1; allowed: 0 and up"),
     ],
 )
@@ -118,6 +128,7 @@ def test_help(addon, settings):
     assert "100% at most (above 0, up to 1; default: 0.5)" in text
     assert "how far (0 to 180; default: 30)" in text
     assert "--no-it leave it" in text
+    assert "--ink COLOR its color --threads" in text
     assert flags.tables(settings, "kind") == [
         "--kind:\n  a                 Round\n  b-c               Long"
     ]
@@ -126,9 +137,10 @@ def test_help(addon, settings):
 def test_table(addon, settings):
     rows = addon("core.options").table(settings).splitlines()
     assert rows[0] == "| Setting | Default | Meaning |"
-    assert len(rows) == 2 + 9
+    assert len(rows) == 2 + 10
     assert rows[2] == (
         "| Kind | Apple | What it is.<br>**Apple** (`a`): Round.<br>**Bean** (`b-c`): Long. |"
     )
     assert rows[6] == "| Bend | 30° | How far. Allowed: 0 to 180. |"
     assert rows[7] == "| It | on | Use it. |"
+    assert rows[11] == "| Ink | #ffffff80 | Its color. |"
