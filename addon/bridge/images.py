@@ -152,7 +152,7 @@ def read(image: bpy.types.Image) -> Picture:
     if stored.shape[2] == 4 and np.all(stored[..., 3] == 1.0):
         stored = np.ascontiguousarray(stored[..., :3])
     space = image.colorspace_settings
-    linear_space = _scene_linear_name()
+    linear_space = scene_linear_name()
     return Picture(
         name=image.name,
         full_name=image.name_full,
@@ -347,7 +347,7 @@ def _ocio_config() -> str:
     return os.environ.get("OCIO") or os.path.join(folder, "config.ocio")
 
 
-def _scene_linear_name() -> str:
+def scene_linear_name() -> str:
     """Returns the name of the scene-linear space, which is what new float images have."""
     probe = bpy.data.images.new("prefilter probe", 1, 1, float_buffer=True)
     try:

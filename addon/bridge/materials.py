@@ -16,6 +16,9 @@ WRAP_OF_EXTENSION = {
 }
 """The library's wrap mode for what an Image Texture node does outside of its image."""
 
+WHITE = (1.0, 1.0, 1.0, 1.0)
+"""The color of what has no material."""
+
 _ONE_COLOR = frozenset({"BSDF_DIFFUSE", "EMISSION"})
 _FACTORS = frozenset({"Fac", "Factor"})
 
@@ -127,6 +130,51 @@ def has_alpha_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
         _comes_from(socket, groups, image, set(), output="Alpha")
         for socket, groups in _coverage_inputs(material.node_tree)
     )
+
+
+def base_color(material: bpy.types.Material | None) -> tuple[float, float, float, float]:
+    """Returns the color that a material gives a surface that is the same everywhere.
+
+    That is the base color and the alpha of the shader that the output shows, or of an RGB node that
+    leads there; without such a shader the color of the viewport.
+
+    Returns:
+        Scene-linear red, green and blue, and alpha.
+    """
+    if material is None:
+        return WHITE
+    shader = _shown_shader(material)
+    if shader is None:
+        red, green, blue, alpha = material.diffuse_color
+        return red, green, blue, alpha
+    name = "Color" if shader.type in _ONE_COLOR else "Base Color"
+    socket = shader.inputs[name]
+    link = _link_into(socket)
+    while link is not None and link.from_node.type == "REROUTE":
+        link = _link_into(link.from_node.inputs[0])
+    if link is not None and link.from_node.type == "RGB":
+        socket = link.from_socket
+    red, green, blue = socket.default_value[:3]
+    coverage = shader.inputs.get("Alpha")
+    alpha = 1.0 if coverage is None or coverage.is_linked else coverage.default_value
+    return red, green, blue, alpha
+
+
+def _shown_shader(material: bpy.types.Material) -> bpy.types.Node | None:
+    """Returns the shader with a base color that the output of a material shows directly."""
+    if not material.use_nodes or material.node_tree is None:
+        return None
+    output = material.node_tree.get_output_node("ALL") or material.node_tree.get_output_node(
+        "EEVEE"
+    )
+    link = _link_into(output.inputs["Surface"]) if output is not None else None
+    while link is not None and link.from_node.type == "REROUTE":
+        link = _link_into(link.from_node.inputs[0])
+    if link is None:
+        return None
+    shader = link.from_node
+    name = "Color" if shader.type in _ONE_COLOR else "Base Color"
+    return shader if name in shader.inputs else None
 
 
 def _coverage_inputs(tree: bpy.types.NodeTree) -> Iterator[tuple[bpy.types.NodeSocket, Groups]]:

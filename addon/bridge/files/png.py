@@ -2,6 +2,7 @@
 
 import struct
 import zlib
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _COLOR_TYPES = {1: 0, 3: 2, 4: 6}
 _COMPRESSION = 3
+_ROWS_AT_ONCE = 64
 
 
 def encoded(pixels: NDArray[Any]) -> bytes:
@@ -21,15 +23,29 @@ def encoded(pixels: NDArray[Any]) -> bytes:
     """
     height, width, channels = pixels.shape
     size = pixels.dtype.itemsize
-    # Each row begins with the number of its filter, of which 0 is none.
-    rows = np.zeros((height, 1 + width * channels * size), np.uint8)
-    values = np.ascontiguousarray(pixels[::-1].astype(pixels.dtype.newbyteorder(">"), copy=False))
-    rows[:, 1:] = values.view(np.uint8).reshape(height, -1)
     header = struct.pack(">IIBBBBB", width, height, 8 * size, _COLOR_TYPES[channels], 0, 0, 0)
-    data = zlib.compress(rows.data, _COMPRESSION)
+    compressor = zlib.compressobj(_COMPRESSION)
+    data = [compressor.compress(rows.data) for rows in _filtered_rows(pixels)]
+    data.append(compressor.flush())
     return b"".join(
-        [_SIGNATURE, _chunk(b"IHDR", header), _chunk(b"IDAT", data), _chunk(b"IEND", b"")]
+        [
+            _SIGNATURE,
+            _chunk(b"IHDR", header),
+            _chunk(b"IDAT", b"".join(data)),
+            _chunk(b"IEND", b""),
+        ]
     )
+
+
+def _filtered_rows(pixels: NDArray[Any]) -> Iterator[NDArray[np.uint8]]:
+    """Yields bytes from the top, each row after the number of its filter, of which 0 is none."""
+    height = len(pixels)
+    for top in range(height, 0, -_ROWS_AT_ONCE):
+        band = pixels[max(top - _ROWS_AT_ONCE, 0) : top][::-1].reshape(min(top, _ROWS_AT_ONCE), -1)
+        values = band.astype(band.dtype.newbyteorder(">"), copy=False).view(np.uint8)
+        rows = np.zeros((len(values), 1 + values.shape[1]), np.uint8)
+        rows[:, 1:] = values
+        yield rows
 
 
 def _chunk(kind: bytes, data: bytes) -> bytes:

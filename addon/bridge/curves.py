@@ -1,0 +1,167 @@
+"""Curve and text objects as closed contours: chains of Bezier curves, rational ones included.
+
+As Blender fills them: the closed splines of a curve fill together where they have the same
+material, and those of each letter of a text by themselves, by the even-odd rule; open splines fill
+nothing. That a curve is three-dimensional, or is not to be filled, does not count.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from . import materials
+from .nurbs import bezier_segments
+
+FloatArray = NDArray[np.float64]
+
+CURVE_TYPES = frozenset({"CURVE", "FONT"})
+
+
+@dataclass
+class Fill:
+    """Contours that are filled together.
+
+    Attributes:
+        contours: (segments, degree + 1, 4) homogeneous control points of Bezier curves each:
+            coordinates multiplied by the weight, then the weight.
+        color: Scene-linear red, green and blue, and alpha.
+    """
+
+    contours: list[FloatArray]
+    color: tuple[float, float, float, float]
+
+
+@dataclass
+class Curves:
+    """What a curve or text object fills.
+
+    Attributes:
+        name: The object's name.
+        fills: In world space; a later one lies over those before it.
+        center: The object's origin.
+        open_splines: How many splines were left out because they are open.
+        problems: What else was left out.
+    """
+
+    name: str
+    fills: list[Fill] = field(default_factory=list)
+    center: FloatArray = field(default_factory=lambda: np.zeros(3))
+    open_splines: int = 0
+    problems: list[str] = field(default_factory=list)
+
+
+def is_curve(obj: bpy.types.Object) -> bool:
+    """Tells whether an object is a curve or a text."""
+    return obj.type in CURVE_TYPES
+
+
+def read_curves(
+    objects: Iterable[bpy.types.Object], depsgraph: bpy.types.Depsgraph
+) -> list[Curves]:
+    """Copies what curve and text objects fill, one entry for each.
+
+    Modifiers that work on splines count, as do shape keys, and what edit mode has changed. Objects
+    that are hidden are read too, without their modifiers.
+
+    Args:
+        objects: The objects.
+        depsgraph: The evaluated dependency graph.
+
+    Raises:
+        ValueError: A coordinate is not finite; the message names the object.
+    """
+    objects = list(objects)
+    edited = [obj for obj in objects if obj.mode == "EDIT"]
+    for obj in edited:
+        obj.update_from_editmode()
+        obj.data.update_tag()
+    if edited:
+        depsgraph.update()
+    return [_read(obj, depsgraph) for obj in objects]
+
+
+def _read(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Curves:
+    found = Curves(obj.name, problems=_ignored(obj))
+    shown = obj.evaluated_get(depsgraph) if obj.visible_get() else obj
+    matrix = np.array(shown.matrix_world, np.float64)
+    found.center = matrix[:3, 3].copy()
+    colors = [materials.base_color(slot.material) for slot in obj.material_slots]
+    fills: dict[tuple[int, int], Fill] = {}
+    curve = shown.to_curve(depsgraph, apply_modifiers=True)
+    try:
+        for spline in curve.splines:
+            if not spline.use_cyclic_u:
+                found.open_splines += 1
+                continue
+            contour = _contour(spline)
+            if contour is None:
+                continue
+            if not np.isfinite(contour).all():
+                raise ValueError(f"object '{obj.name}': a control point has no finite coordinates")
+            slot = min(spline.material_index, max(len(colors) - 1, 0))
+            color = colors[slot] if colors else materials.WHITE
+            fill = fills.setdefault((spline.character_index, slot), Fill([], color))
+            fill.contours.append(contour @ matrix.T)
+    finally:
+        shown.to_curve_clear()
+    found.fills = list(fills.values())
+    return found
+
+
+def _contour(spline: bpy.types.Spline) -> FloatArray | None:
+    """Returns a closed spline in the object's space; None where it has too few points."""
+    if spline.type == "BEZIER":
+        return _bezier_contour(spline)
+    count = len(spline.points)
+    if count < 2:
+        return None
+    points = _numbers(spline.points, "co", 4)
+    if spline.type == "POLY":
+        points[:, 3] = 1.0
+        return np.stack([points, np.roll(points, -1, axis=0)], axis=1)
+    order = spline.order_u
+    if count < order:
+        return None
+    points[:, :3] *= points[:, 3:]
+    return bezier_segments(
+        points,
+        order,
+        cyclic=True,
+        endpoint=spline.use_endpoint_u,
+        bezier=spline.use_bezier_u,
+    )
+
+
+def _bezier_contour(spline: bpy.types.Spline) -> FloatArray | None:
+    points = spline.bezier_points
+    if len(points) < 2:
+        return None
+    middle, left, right = (
+        _numbers(points, name, 3) for name in ("co", "handle_left", "handle_right")
+    )
+    control = np.stack(
+        [middle, right, np.roll(left, -1, axis=0), np.roll(middle, -1, axis=0)], axis=1
+    )
+    return np.concatenate([control, np.ones((*control.shape[:2], 1))], axis=2)
+
+
+def _numbers(points: bpy.types.bpy_prop_collection, name: str, width: int) -> FloatArray:
+    values = np.empty(width * len(points), np.float32)
+    points.foreach_get(name, values)
+    return values.reshape(-1, width).astype(np.float64)
+
+
+def _ignored(obj: bpy.types.Object) -> list[str]:
+    """Returns what of an object does not show in an image of its outlines."""
+    found = []
+    data = obj.data
+    if data.bevel_depth > 0.0 or data.bevel_mode == "OBJECT" or data.extrude > 0.0:
+        found.append("bevel and extrusion")
+    if data.offset != 0.0:
+        found.append("offset")
+    if any(one.show_viewport and not one.use_apply_on_spline for one in obj.modifiers):
+        found.append("modifiers that are not applied on splines")
+    return found
