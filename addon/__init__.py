@@ -1,4 +1,4 @@
-"""Prefilter: mipmaps that know the mesh, voxels of any mesh, surfaces of scans, in Blender."""
+"""Prefilter: mipmaps that know the mesh, voxels, surfaces of scans, vector shapes, in Blender."""
 
 from importlib import import_module
 
@@ -10,6 +10,7 @@ SUBJECTS = (
     "mipmaps",
     "resampling",
     "scans",
+    "shapes",
     "voxels",
 )
 """The folders of the subjects, in the order in which they are registered."""

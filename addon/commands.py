@@ -58,7 +58,7 @@ class Commands:
             prog=_PROGRAM,
             description=(
                 "Filters images for the surfaces that use them, and resizes them; makes meshes of "
-                "voxels and scans."
+                "voxels and scans, and images of vector shapes."
             ),
         )
         commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)

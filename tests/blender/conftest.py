@@ -33,6 +33,7 @@ SAME_IN_ANY_BLENDER = {
     "mipmaps/view/test_errors.py",
     "resampling/test_resize_commands.py",
     "scans/test_scan_commands.py",
+    "shapes/test_shape_commands.py",
     "voxels/test_voxel_commands.py",
 }
 TEXTURED = Path(__file__).resolve().parents[3] / "shared" / "data" / "textured"

@@ -11,6 +11,9 @@ ABSENT = {
     "roughness": ("", None),
     "trim": (0.0, None),
     "memory_limit": (0, None),
+    "background": ("transparent", None),
+    # What lies over something hides it in Blender.
+    "overlap": ("cover", "add"),
 }
 
 
@@ -25,6 +28,7 @@ def defaults(function):
         ("mipmaps.choices.Settings", prefilter.mipmaps, 5),
         ("mipmaps.choices.Settings", prefilter.normal_mipmaps, 3),
         ("mipmaps.choices.Settings", prefilter.keep_coverage, 2),
+        ("shapes.choices.RasterizeSettings", prefilter.rasterize, 3),
         ("scans.choices.ScanSettings", prefilter.reconstruct, 8),
         ("scans.choices.ScanSettings", prefilter.reconstruct_file, 8),
         ("resampling.choices.ResizeSettings", prefilter.resize, 3),

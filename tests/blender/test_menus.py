@@ -78,10 +78,16 @@ def test_every_operator_is_found():
     ("menu", "words"),
     [
         ("VIEW3D_MT_object_convert", ["reconstruct"]),
-        ("VIEW3D_MT_object", ["mip", "voxel", "boolean", "reconstruct", "texture cache"]),
+        (
+            "VIEW3D_MT_object",
+            ["mip", "voxel", "boolean", "reconstruct", "texture cache", "rasterize"],
+        ),
         (
             "IMAGE_MT_image",
-            ["mip", "texel", "preview", "plot", "weights", "fill", "texture cache", "resize"],
+            [
+                *("mip", "texel", "preview", "plot", "weights", "fill", "texture cache"),
+                *("resize", "rasterize", "svg", "update"),
+            ],
         ),
     ],
 )

@@ -7,16 +7,17 @@ import bpy
 import pytest
 from conftest import PACKAGE
 
-OPERATORS = ("PREFILTER_OT_voxelize", "PREFILTER_OT_boolean")
-PANELS = ("PREFILTER_PT_voxelize", "PREFILTER_PT_boolean")
+OPERATORS = ("PREFILTER_OT_voxelize", "PREFILTER_OT_boolean", "PREFILTER_OT_rasterize")
+PANELS = ("PREFILTER_PT_voxelize", "PREFILTER_PT_boolean", "PREFILTER_PT_shapes")
 
 
-def test_voxels_come_and_go():
+def test_subjects_come_and_go():
     for is_there in (True, False, True):
         for name in (*OPERATORS, *PANELS):
             assert hasattr(bpy.types, name) == is_there
-        for name in ("prefilter_voxelize", "prefilter_boolean"):
+        for name in ("prefilter_voxelize", "prefilter_boolean", "prefilter_rasterize"):
             assert hasattr(bpy.types.Scene, name) == is_there
+        assert hasattr(bpy.types.Image, "prefilter_drawn") == is_there
         if is_there:
             addon_utils.disable(PACKAGE, default_set=True)
         else:

@@ -1,0 +1,97 @@
+"""The command `rasterize`."""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ..bridge.curves import is_curve
+from ..bridge.files import pictures, scenes, staging
+from ..bridge.uv_layouts import has_uv_map
+from ..core import command
+from ..core.flags import add_flags, given, tables
+from ..core.wording import either
+from .choices import RasterizeSettings
+from .memory import Request
+from .rasterization import Rasterization
+
+_HELP = "make an image of curves and texts, of an SVG file, or of a UV map"
+_SVG = ".svg"
+_SOURCES = (_SVG, *scenes.SOURCES)
+_CURVES = "visible curve or text"
+_MESHES = "visible mesh with a UV map"
+_NOTES = """\
+Of other files than .svg, all visible curves and texts count, or with --uv one mesh. Shapes are
+fitted into the size with the margin around them; --density has their size decide. PNG files have 8
+bits with --depth byte, else 16, and straight alpha; OpenEXR files are scene-linear, with
+premultiplied alpha.
+
+examples:
+  prefilter rasterize logo.svg logo.png --width 512 --height 512
+  prefilter rasterize sign.blend sign.exr --object Text --density 400 --filter mitchell
+  prefilter rasterize figure.glb mask.png --uv --object Body --width 2048 --height 2048"""
+
+
+def add(commands: Any) -> None:
+    """Adds the command."""
+    parser = command.add_command(commands, "rasterize", _HELP, *tables(RasterizeSettings), _NOTES)
+    parser.add_argument("source", metavar="INPUT", help=f"a file: {either(_SOURCES)}")
+    parser.add_argument(
+        "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
+    )
+    parser.add_argument(
+        "--object",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="a curve or text, or with --uv the mesh; repeat for several (default: all visible "
+        "curves and texts)",
+    )
+    parser.add_argument("--uv", action="store_true", help="make a mask of the UV map of a mesh")
+    add_flags(parser, RasterizeSettings)
+    parser.set_defaults(execute=_rasterize, usage_error=parser.error)
+
+
+def _rasterize(options: argparse.Namespace) -> None:
+    ending = command.check_ending(options, "INPUT", options.source, _SOURCES)
+    command.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
+    if ending == _SVG and (options.uv or options.object):
+        options.usage_error("--object, --uv: an SVG file has neither objects nor a UV map")
+    target = staging.check_output(options.target)
+    settings = _settings(options)
+    if ending == _SVG:
+        request = Request("svg", filepath=str(Path(options.source).absolute()))
+    elif options.uv:
+        request = Request("uv", [_mesh(options)])
+    else:
+        (objects,) = scenes.load([options.source], _is_wanted(is_curve), _CURVES)
+        request = Request("curves", scenes.chosen(objects, options.object, _CURVES))
+    work = Rasterization.read(request, settings, bpy.context, target=target)
+    command.tell(command.done(work))
+
+
+def _mesh(options: argparse.Namespace) -> bpy.types.Object:
+    (objects,) = scenes.load([options.source], _is_wanted(has_uv_map), _MESHES)
+    found = scenes.chosen(objects, options.object, _MESHES)
+    if len(found) > 1:
+        options.usage_error(f"--object: name one of the {len(found)} meshes, as --uv takes one")
+    return found[0]
+
+
+def _is_wanted(is_kind: Any) -> Any:
+    return lambda obj: is_kind(obj) and obj.visible_get()
+
+
+def _settings(options: argparse.Namespace) -> RasterizeSettings:
+    """Returns the settings that were given, with what follows from them."""
+    found = given(options, RasterizeSettings)
+    settings = RasterizeSettings(**found)
+    if "density" in found:
+        if "width" in found or "height" in found:
+            options.usage_error("--density: not allowed with --width and --height")
+        settings = replace(settings, resolution="density")
+    if "background_color" in found:
+        settings = replace(settings, background="color")
+    return settings

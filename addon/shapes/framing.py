@@ -1,0 +1,151 @@
+"""From where shapes are seen, and where they are in the image."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from ..core.memory import available_memory
+from .choices import LARGEST_SIDE, RasterizeSettings
+
+FloatArray = NDArray[np.float64]
+
+_BYTES_PER_PIXEL = 40.0
+"""What an image takes while it is made: its values as floats, a copy, and its bytes."""
+_FRONT = np.array([[1, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]], np.float64)
+_RIGHT = np.array([[0, 1, 0, 0], [0, 0, 1, 0], [1, 0, 0, 0], [0, 0, 0, 1]], np.float64)
+_WORLD = {"top": np.eye(4), "front": _FRONT, "right": _RIGHT}
+
+
+@dataclass(frozen=True)
+class View:
+    """How a point of the world is seen.
+
+    Attributes:
+        matrix: (4, 4), from world space to the view: right, up, towards the viewer.
+        projection: (4, 4), from there to a camera's frame, which is [-1, 1] x [-1, 1] wherever the
+            last number is 1; None for a view along an axis, which has no frame.
+    """
+
+    matrix: FloatArray
+    projection: FloatArray | None = None
+
+    def seen(self, points: FloatArray) -> FloatArray:
+        """Returns (..., 3) homogeneous points of the plane, of (..., 4) ones of the world."""
+        found = points @ self.matrix.T
+        if self.projection is not None:
+            found = found @ self.projection.T
+        return found[..., [0, 1, 3]]
+
+    def nearness(self, point: FloatArray) -> float:
+        """Returns a number that is greater for points that are nearer to the viewer."""
+        return float((self.matrix @ [*point, 1.0])[2])
+
+
+def find_view(
+    settings: RasterizeSettings,
+    active: bpy.types.Object,
+    scene: bpy.types.Scene,
+    depsgraph: bpy.types.Depsgraph,
+) -> View:
+    """Returns the view that the settings name.
+
+    Args:
+        settings: The settings.
+        active: The object whose Z axis is meant.
+        scene: The scene with the camera.
+        depsgraph: The evaluated dependency graph.
+
+    Raises:
+        ValueError: There is no camera, or it has no frame of a plane.
+    """
+    if settings.view in _WORLD:
+        return View(_WORLD[settings.view])
+    if settings.view == "object":
+        shown = active.evaluated_get(depsgraph) if active.visible_get() else active
+        location, rotation, _ = shown.matrix_world.decompose()
+        placed = Matrix.LocRotScale(location, rotation, None)
+        return View(np.array(placed.inverted(), np.float64))
+    camera = scene.camera
+    if camera is None:
+        raise ValueError("View: the scene has no camera")
+    if camera.data.type == "PANO":
+        raise ValueError(f"View: camera '{camera.name}' is panoramic; another type is needed")
+    shown = camera.evaluated_get(depsgraph)
+    placed = shown.matrix_world.normalized()
+    projection = shown.calc_matrix_camera(depsgraph, x=settings.width, y=settings.height)
+    return View(np.array(placed.inverted(), np.float64), np.array(projection, np.float64))
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where a plane is in an image.
+
+    Attributes:
+        width: In pixels.
+        height: In pixels.
+        to_pixels: (3, 3), from homogeneous points of the plane to those of the image.
+    """
+
+    width: int
+    height: int
+    to_pixels: FloatArray
+
+
+def whole_frame(width: int, height: int, low: Sequence[float], high: Sequence[float]) -> Frame:
+    """Returns the frame in which a box is stretched over an image."""
+    scale = [width / (high[0] - low[0]), height / (high[1] - low[1])]
+    return _frame(width, height, scale, [-low[0] * scale[0], -low[1] * scale[1]])
+
+
+def fitted_frame(box: FloatArray, settings: RasterizeSettings) -> Frame:
+    """Returns the frame in which a box is in the middle of an image, with the margin around it.
+
+    Args:
+        box: (2, 2): the low and the high corner.
+        settings: The resolution and the margin.
+
+    Raises:
+        ValueError: The box has no size, the margin leaves no room, or the image would be too large.
+    """
+    size = box[1] - box[0]
+    if not np.all(size > 0.0):
+        raise ValueError("the shapes have no area, as seen from there")
+    if settings.resolution == "density":
+        scale = settings.density
+        sides = np.ceil(size * scale + 2.0 * settings.margin - 1e-6)
+        if np.any(sides > LARGEST_SIDE):
+            raise ValueError(
+                f"Pixels per Unit: {scale:g} makes an image of {sides[0]:.0f} x {sides[1]:.0f} "
+                f"pixels; {LARGEST_SIDE} are allowed"
+            )
+        width, height = (max(1, int(side)) for side in sides)
+    else:
+        width, height = settings.width, settings.height
+        room = np.array([width, height]) - 2.0 * settings.margin
+        if np.any(room <= 0.0):
+            raise ValueError(
+                f"Margin: {settings.margin:g} leaves no room in {width} x {height} pixels"
+            )
+        scale = float(np.min(room / size))
+    shift = np.array([width, height]) / 2.0 - scale * (box[0] + box[1]) / 2.0
+    return _frame(width, height, [scale, scale], shift)
+
+
+def _frame(width: int, height: int, scale: Sequence[float], shift: Sequence[float]) -> Frame:
+    matrix = np.array([[scale[0], 0.0, shift[0]], [0.0, scale[1], shift[1]], [0.0, 0.0, 1.0]])
+    return Frame(width, height, matrix)
+
+
+def check_memory(width: int, height: int) -> None:
+    """Raises MemoryError where an image of that size cannot be made."""
+    needed = _BYTES_PER_PIXEL * width * height
+    free = available_memory()
+    if needed > free:
+        raise MemoryError(
+            f"an image of {width} x {height} pixels needs about {needed / 2**30:.1f} GB of memory, "
+            f"and {free / 2**30:.1f} GB are free; make it smaller"
+        )

@@ -1,0 +1,67 @@
+"""`prefilter.rasterize`: an image of the selected curves and texts, or of a UV map."""
+
+import bpy
+
+from ...bridge.curves import is_curve
+from ...bridge.uv_layouts import has_uv_map
+from ..memory import Request
+from ..properties import RasterizeProperties
+from ..rasterization import Rasterization
+from .shape_operator import ShapeOperator
+
+_NEEDED = {
+    "auto": "Select curves or texts, or make a mesh with a UV map the active object",
+    "curves": "Select curves or texts",
+    "uv": "Make a mesh with a UV map the active object",
+}
+
+
+class PREFILTER_OT_rasterize(RasterizeProperties, ShapeOperator, bpy.types.Operator):
+    """Rasterizes the selected curves and texts, or the UV map of the active mesh."""
+
+    bl_idname = "prefilter.rasterize"
+    bl_label = "Rasterize"
+    bl_description = (
+        "Make a crisp image of what the selected curves and texts fill; without any, a mask of "
+        "what the faces of the active mesh cover in its UV map"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there is something to rasterize."""
+        if cls.may_be_redone(context):
+            return True
+        if not found_source(context, "auto"):
+            cls.poll_message_set(_NEEDED["auto"])
+            return False
+        return True
+
+    def read_work(self, context: bpy.types.Context) -> Rasterization:
+        """Copies the selected curves, or the UV map."""
+        settings = self.to_settings()
+        if settings.source == "svg":
+            request = Request("svg", filepath=settings.filepath)
+        else:
+            source = found_source(context, settings.source)
+            if not source:
+                raise ValueError(_NEEDED[settings.source])
+            objects = [context.active_object] if source == "uv" else chosen_curves(context)
+            request = Request(source, objects)
+        self.source_drawn = request.source
+        return Rasterization.read(request, settings, context)
+
+
+def found_source(context: bpy.types.Context, source: str) -> str:
+    """Returns what "auto" means at present, or a source itself if it is there; else nothing."""
+    if source != "uv" and chosen_curves(context):
+        return "curves"
+    if source != "curves" and has_uv_map(context.active_object):
+        return "uv"
+    return ""
+
+
+def chosen_curves(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Returns the selected curves and texts, the active one first."""
+    selected = [obj for obj in context.selected_objects if is_curve(obj)]
+    return sorted(selected, key=lambda obj: obj != context.active_object)

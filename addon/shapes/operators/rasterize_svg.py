@@ -1,0 +1,42 @@
+"""`prefilter.rasterize_svg`: an image of an SVG file."""
+
+import bpy
+from bpy.props import StringProperty
+
+from ..memory import Request
+from ..properties import RasterizeProperties
+from ..rasterization import Rasterization
+from .shape_operator import ShapeOperator
+
+
+class PREFILTER_OT_rasterize_svg(RasterizeProperties, ShapeOperator, bpy.types.Operator):
+    """Lets a user choose an SVG file, and rasterizes it."""
+
+    bl_idname = "prefilter.rasterize_svg"
+    bl_label = "Rasterize SVG"
+    bl_description = "Make a crisp image of an SVG file, of any size"
+    bl_options = {"REGISTER", "UNDO"}
+    source_drawn = "svg"
+
+    filter_glob: StringProperty(default="*.svg", options={"HIDDEN"})
+    _is_browsing = False
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Opens the file browser, unless a file is named."""
+        if self.filepath or bpy.app.background:
+            return super().invoke(context, event)
+        context.window_manager.fileselect_add(self)
+        self._is_browsing = True
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Works and waits; for the file browser, which cannot wait, another one works."""
+        if self._is_browsing:
+            self._is_browsing = False
+            return self._start_again(use_apply=False)
+        return super().execute(context)
+
+    def read_work(self, context: bpy.types.Context) -> Rasterization:
+        """Looks for the file."""
+        settings = self.to_settings()
+        return Rasterization.read(Request("svg", filepath=settings.filepath), settings, context)

@@ -1,0 +1,40 @@
+"""What the operators share that make images of shapes."""
+
+import bpy
+
+from ...bridge import editors
+from ...core.operator import WorkOperator
+from ...core.outcome import Outcome
+from ..rasterization import Load, Rasterization
+
+
+class ShapeOperator(WorkOperator):
+    """A mixin: an image of shapes."""
+
+    doing = "Rasterizing"
+    work: Rasterization | None = None
+    source_drawn = "curves"
+    """The source whose settings the redo panel shows."""
+
+    def load(self) -> Load:
+        """Returns how much there was to do."""
+        assert self.work is not None
+        assert self.work.load is not None
+        return self.work.load
+
+    def effort(self, load: Load) -> float:
+        """Returns about how many seconds the image takes with the present settings."""
+        return load.seconds(self.to_settings())
+
+    def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+        """Draws the settings."""
+        del context
+        self.draw_in(layout, self.source_drawn)
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Writes the image, and shows it in the editor that the operator was called from."""
+        del result
+        assert self.work is not None
+        outcome: Outcome = self.work.write()
+        editors.show(context, bpy.data.images[outcome.images[0]])
+        return self.tell(outcome)

@@ -1,0 +1,68 @@
+"""`prefilter.update_drawn`: an image of shapes made again in place."""
+
+import bpy
+from bpy.props import StringProperty
+
+from ...bridge import images
+from ..memory import is_drawn, recall
+from ..rasterization import Load, Rasterization
+from .shape_operator import ShapeOperator
+
+
+class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
+    """Makes an image again, of what its objects or its file are now."""
+
+    bl_idname = "prefilter.update_drawn"
+    bl_label = "Update Rasterized Image"
+    bl_description = (
+        "Rasterize again what this image shows, with the settings of the image, in place: whatever "
+        "uses the image shows the new one"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    image: StringProperty(
+        name="Image",
+        description="The image to make again; the image of the editor if empty",
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there is an image that remembers how it was made."""
+        if context.area is not None and context.area.type == "IMAGE_EDITOR":
+            if not is_drawn(context.space_data.image):
+                cls.poll_message_set("The image of this editor was not made by Rasterize")
+                return False
+        elif not any(is_drawn(image) for image in bpy.data.images):
+            cls.poll_message_set("No image in this file was made by Rasterize")
+            return False
+        return True
+
+    def effort(self, load: Load) -> float:
+        """Returns how long it takes: as long as before."""
+        del load
+        return 1.0
+
+    def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+        """Draws nothing: the image has the settings."""
+
+    def read_work(self, context: bpy.types.Context) -> Rasterization:
+        """Copies what the image shows."""
+        if self.image:
+            image = images.find(self.image)
+        else:
+            image = getattr(context.space_data, "image", None) or _only_drawn()
+        if not is_drawn(image):
+            raise ValueError(f"image '{image.name}' was not made by Rasterize")
+        if image.library is not None:
+            raise ValueError(f"image '{image.name}' is linked; update it in its own file")
+        request, settings, warnings = recall(image)
+        self.warn(warnings)
+        return Rasterization.read(request, settings, context, image=image)
+
+
+def _only_drawn() -> bpy.types.Image:
+    drawn = [image for image in bpy.data.images if is_drawn(image)]
+    if len(drawn) != 1:
+        raise ValueError("image: no name is given, and the editor shows no image")
+    return drawn[0]

@@ -1,0 +1,157 @@
+"""Where a user finds shapes: the sidebars of the 3D view and the Image editor, and menus."""
+
+import bpy
+
+from ..bridge.curves import is_curve
+from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
+from ..core.properties import copy
+from ..core.sidebar import OptionsPanel, SidebarPanel
+from .choices import RasterizeSettings
+from .memory import is_drawn
+from .operators.rasterize import PREFILTER_OT_rasterize
+from .operators.rasterize_svg import PREFILTER_OT_rasterize_svg
+from .operators.update_drawn import PREFILTER_OT_update_drawn
+
+
+class _CurvesPanel(SidebarPanel):
+    fits = staticmethod(is_curve)
+
+
+class PREFILTER_PT_rasterize(_CurvesPanel, bpy.types.Panel):
+    """What is set most often for curves and texts, and the button."""
+
+    bl_label = "Rasterize"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_rasterize.draw_most_used(self.layout, "curves")
+        _draw_rasterize(self.layout, context, "curves")
+
+
+class PREFILTER_PT_rasterize_options(_CurvesPanel, OptionsPanel, bpy.types.Panel):
+    """The other settings."""
+
+    bl_parent_id = PREFILTER_PT_rasterize.__name__
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_rasterize.draw_others(self.layout, "curves")
+        self.layout.prop(context.scene.prefilter_rasterize, "image_name")
+
+
+class _ImagePanel:
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Prefilter"
+
+
+class PREFILTER_PT_shapes(_ImagePanel, bpy.types.Panel):
+    """The image that is shown, if it is of shapes; SVG files; the UV map as a mask."""
+
+    bl_label = "Shapes"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        image = context.space_data.image
+        if is_drawn(image):
+            row = layout.row()
+            row.scale_y = 1.5
+            row.operator(
+                PREFILTER_OT_update_drawn.bl_idname, text="Update", icon="FILE_REFRESH"
+            ).image = image.name
+            drawn = image.prefilter_drawn
+            if drawn.source == "svg":
+                layout.prop(drawn, "filepath", text="")
+            drawn.draw_most_used(layout, drawn.source)
+        else:
+            settings = context.scene.prefilter_rasterize
+            settings.draw_most_used(layout, "svg")
+            _draw_svg(layout, context)
+            _draw_uv_mask(layout, context)
+
+
+class PREFILTER_PT_shapes_options(_ImagePanel, OptionsPanel, bpy.types.Panel):
+    """The other settings."""
+
+    bl_parent_id = PREFILTER_PT_shapes.__name__
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        image = context.space_data.image
+        if is_drawn(image):
+            drawn = image.prefilter_drawn
+            drawn.draw_others(self.layout, drawn.source)
+        else:
+            context.scene.prefilter_rasterize.draw_others(self.layout, "svg")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (
+        PREFILTER_PT_rasterize,
+        PREFILTER_PT_rasterize_options,
+        PREFILTER_PT_shapes,
+        PREFILTER_PT_shapes_options,
+    )
+)
+
+
+def register() -> None:
+    """Registers the panels and the menu entries."""
+    _register_classes()
+    PREFILTER_MT_object.append(_draw_object_menu)
+    PREFILTER_MT_image.append(_draw_image_menu)
+    bpy.types.IMAGE_MT_uvs.append(_draw_uv_menu)
+
+
+def unregister() -> None:
+    """Removes them."""
+    bpy.types.IMAGE_MT_uvs.remove(_draw_uv_menu)
+    PREFILTER_MT_image.remove(_draw_image_menu)
+    PREFILTER_MT_object.remove(_draw_object_menu)
+    _unregister_classes()
+
+
+def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    _draw_rasterize(menu.layout, context, "auto")
+
+
+def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    _draw_uv_mask(menu.layout, context)
+    _draw_svg(menu.layout, context)
+    menu.layout.operator(PREFILTER_OT_update_drawn.bl_idname, icon="FILE_REFRESH")
+
+
+def _draw_uv_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    _draw_uv_mask(menu.layout, context)
+
+
+def _draw_rasterize(
+    layout: bpy.types.UILayout, context: bpy.types.Context, source: str
+) -> bpy.types.OperatorProperties:
+    operator = layout.operator(PREFILTER_OT_rasterize.bl_idname, icon="IMAGE_DATA")
+    copy(context.scene.prefilter_rasterize, operator, RasterizeSettings)
+    operator.source = source
+    return operator
+
+
+def _draw_svg(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    operator = layout.operator(
+        PREFILTER_OT_rasterize_svg.bl_idname, text="Rasterize SVG...", icon="FILE_IMAGE"
+    )
+    copy(context.scene.prefilter_rasterize, operator, RasterizeSettings)
+    # Empty, so that the file browser opens.
+    operator.filepath = ""
+
+
+def _draw_uv_mask(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draws the button of a mask, of the size of the image that the editor shows."""
+    operator = layout.operator(PREFILTER_OT_rasterize.bl_idname, text="Rasterize UV Map", icon="UV")
+    copy(context.scene.prefilter_rasterize, operator, RasterizeSettings)
+    operator.source = "uv"
+    image = getattr(context.space_data, "image", None)
+    if image is not None and all(image.size):
+        operator.width, operator.height = image.size

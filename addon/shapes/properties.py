@@ -1,0 +1,101 @@
+"""The settings of rasterizing as properties: of operators, of the scene, and of images."""
+
+import bpy
+from bpy.props import BoolProperty, CollectionProperty, PointerProperty
+
+from ..core.properties import properties, values
+from .choices import RasterizeSettings
+
+
+class RasterizeProperties:
+    """The properties of `prefilter.rasterize`; a mixin."""
+
+    __annotations__ = properties(RasterizeSettings)
+
+    def to_settings(self) -> RasterizeSettings:
+        """Returns the settings."""
+        return values(self, RasterizeSettings)
+
+    def draw_in(self, layout: bpy.types.UILayout, source: str) -> None:
+        """Draws the settings that count for a source: a key of `choices.SOURCES` but "auto"."""
+        self.draw_most_used(layout, source)
+        self.draw_others(layout, source)
+
+    def draw_most_used(self, layout: bpy.types.UILayout, source: str) -> None:
+        """Draws what is set most often."""
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(self, "filter")
+        if source != "uv" and not self._is_camera(source):
+            layout.prop(self, "resolution")
+        if self._has_density(source):
+            layout.prop(self, "density")
+        else:
+            column = layout.column(align=True)
+            column.prop(self, "width")
+            column.prop(self, "height")
+        if source == "curves":
+            layout.prop(self, "view")
+        elif source == "uv":
+            layout.prop(self, "tile")
+
+    def draw_others(self, layout: bpy.types.UILayout, source: str) -> None:
+        """Draws the other settings."""
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        if source != "uv":
+            if not self._is_camera(source):
+                layout.prop(self, "margin")
+            layout.prop(self, "color")
+            if self.color != "mask":
+                layout.prop(self, "background")
+                if self.background == "color":
+                    layout.prop(self, "background_color", text="")
+            layout.prop(self, "overlap")
+        layout.prop(self, "depth")
+        if source != "uv" and self.color != "mask":
+            layout.prop(self, "alpha")
+            layout.prop(self, "use_bleed")
+
+    def _is_camera(self, source: str) -> bool:
+        return source == "curves" and self.view == "camera"
+
+    def _has_density(self, source: str) -> bool:
+        is_free = source != "uv" and not self._is_camera(source)
+        return is_free and self.resolution == "density"
+
+
+class PREFILTER_PG_rasterize(RasterizeProperties, bpy.types.PropertyGroup):
+    """The settings that the panel shows; they stay with the scene."""
+
+
+class PREFILTER_PG_drawn_object(bpy.types.PropertyGroup):
+    """An object that an image shows."""
+
+    obj: PointerProperty(type=bpy.types.Object)
+
+
+class PREFILTER_PG_drawn(RasterizeProperties, bpy.types.PropertyGroup):
+    """What an image was made with, which its panel shows. The source is never "auto"."""
+
+    is_drawn: BoolProperty()
+    objects: CollectionProperty(type=PREFILTER_PG_drawn_object)
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (PREFILTER_PG_rasterize, PREFILTER_PG_drawn_object, PREFILTER_PG_drawn)
+)
+
+
+def register() -> None:
+    """Registers the settings on the scene, and on images."""
+    _register_classes()
+    bpy.types.Scene.prefilter_rasterize = PointerProperty(type=PREFILTER_PG_rasterize)
+    bpy.types.Image.prefilter_drawn = PointerProperty(type=PREFILTER_PG_drawn)
+
+
+def unregister() -> None:
+    """Removes them; images keep what they were made with."""
+    del bpy.types.Image.prefilter_drawn
+    del bpy.types.Scene.prefilter_rasterize
+    _unregister_classes()

@@ -1,0 +1,210 @@
+"""Shapes to an image in three steps: read from Blender, compute, write to Blender or to a file."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+
+from ..bridge import drawn_images
+from ..bridge.files import staging
+from ..core.jobs import Progress, go_on, share
+from ..core.options import check
+from ..core.outcome import Outcome
+from . import pixels
+from .choices import RasterizeSettings
+from .memory import Request, remember
+from .sources import Source, curves_source, svg_source, uv_source
+
+# What a load takes in seconds, as measured once on two cores; ratios are what counts.
+_ALWAYS = 0.005
+_PER_PIXEL = 30e-9
+_READ, _DRAWN = 0.1, 0.6
+"""What the progress is once there are shapes, and once they are drawn."""
+
+
+@dataclass(frozen=True)
+class Load:
+    """What decides how long an image takes.
+
+    Attributes:
+        pixels: How many it had.
+        settings: What it was made with.
+    """
+
+    pixels: int
+    settings: RasterizeSettings
+
+    def seconds(self, settings: RasterizeSettings) -> float:
+        """Returns about how long it takes with other settings."""
+        before, now = self.settings, settings
+        if now.resolution == before.resolution == "density":
+            count = self.pixels * (now.density / before.density) ** 2
+        elif now.resolution == "density":
+            count = float(self.pixels)
+        else:
+            count = float(now.width * now.height)
+        return _ALWAYS + _PER_PIXEL * count
+
+
+class Rasterization:
+    """An image of shapes: a new one, one that is made again in place, or a file.
+
+    `read` and `write` belong on the main thread; `compute` touches no Blender data and runs on any
+    thread. Nothing is written before everything is computed.
+    """
+
+    def __init__(
+        self,
+        source: Source,
+        request: Request,
+        settings: RasterizeSettings,
+        warnings: list[str],
+        *,
+        image: bpy.types.Image | None = None,
+        target: Path | None = None,
+    ) -> None:
+        """Keeps copies of what was read; use `Rasterization.read`."""
+        self.warnings = warnings
+        self.load: Load | None = None
+        self._source = source
+        self._kind = request.source
+        self._names = [obj.name for obj in request.objects]
+        self._settings = settings
+        self._image_uid = image.session_uid if image is not None else None
+        self._image_name = image.name if image is not None else settings.image_name or source.name
+        self._target = target
+        self._drawing: drawn_images.Drawing | None = None
+        self._staged: staging.StagedFile | None = None
+        self._size = (0, 0)
+
+    @classmethod
+    def read(
+        cls,
+        request: Request,
+        settings: RasterizeSettings,
+        context: bpy.types.Context,
+        *,
+        image: bpy.types.Image | None = None,
+        target: Path | None = None,
+    ) -> "Rasterization":
+        """Copies everything that the work needs out of Blender.
+
+        Args:
+            request: What to make an image of.
+            settings: How.
+            context: The scene and the dependency graph.
+            image: The image that is made again; None for a new one.
+            target: A path of `pictures.ENDINGS` for a file instead.
+
+        Raises:
+            ValueError: There is nothing to draw, or a setting is not allowed.
+            OSError: There is no such SVG file.
+        """
+        check(settings)
+        settings = replace(settings, source=request.source, filepath=request.filepath)
+        source: Source
+        if request.source == "svg":
+            source, warnings = svg_source(request.filepath)
+        elif request.source == "uv":
+            settings = replace(settings, color="mask")
+            depsgraph = context.evaluated_depsgraph_get()
+            source, warnings = uv_source(request.objects[0], settings, depsgraph)
+        else:
+            source, warnings = curves_source(
+                request.objects,
+                settings,
+                context.scene,
+                context.evaluated_depsgraph_get(),
+            )
+        return cls(source, request, settings, warnings, image=image, target=target)
+
+    def compute(self, progress: Progress) -> None:
+        """Draws the shapes.
+
+        Raises:
+            ValueError: There are none, or they do not fit the settings.
+            MemoryError: The image does not fit into memory.
+            OSError: A file cannot be read or written.
+            prefilter.Cancelled: `progress` has said so.
+        """
+        settings = self._settings
+        drawn = self._source.drawn(settings, share(progress, 0.0, _READ))
+        self.warnings.extend(drawn.warnings)
+        if drawn.shapes:
+            raster: NDArray[Any] = prefilter.rasterize(
+                drawn.shapes,
+                drawn.width,
+                drawn.height,
+                filter=settings.filter,
+                overlap=settings.overlap,
+                progress=share(progress, _READ, _DRAWN),
+                threads=settings.threads,
+            )
+        else:
+            raster = np.zeros((drawn.height, drawn.width, 1), np.float32)
+        made = pixels.finished(
+            raster,
+            drawn.color if drawn.shapes else (1.0, 1.0, 1.0, 1.0),
+            settings,
+            is_straight=self._is_straight(),
+            progress=share(progress, _DRAWN, 0.9),
+        )
+        del raster
+        go_on(progress, 0.9)
+        if self._target is None:
+            self._drawing = pixels.drawing(made, settings)
+        else:
+            self._staged = pixels.stage(self._target, made, settings)
+        self._size = (drawn.width, drawn.height)
+        self.load = Load(drawn.width * drawn.height, settings)
+        go_on(progress, 1.0)
+
+    def write(self) -> Outcome:
+        """Puts the image into Blender, or the file into place.
+
+        Raises:
+            ValueError: The image that was to be made again is gone.
+            OSError: Blender cannot take the pixels, or the file cannot be put into place.
+        """
+        size = f"{self._size[0]} x {self._size[1]} pixels"
+        if self._staged is not None:
+            self._staged.commit()
+            target = str(self._staged.target)
+            return Outcome(
+                f"Rasterized '{self._source.name}' to '{target}': {size}",
+                files=[target],
+                warnings=self.warnings,
+            )
+        assert self._drawing is not None
+        if self._image_uid is None:
+            image = drawn_images.new_image(self._image_name, self._drawing)
+        else:
+            image = self._found_image()
+            drawn_images.draw_into(image, self._drawing)
+        remember(image, self._kind, self._names, self._settings)
+        done = "Rasterized" if self._image_uid is None else "Updated"
+        return Outcome(
+            f"{done} '{image.name}': {size}", images=[image.name], warnings=self.warnings
+        )
+
+    def discard(self) -> None:
+        """Removes what was staged."""
+        if self._staged is not None:
+            self._staged.discard()
+
+    def _is_straight(self) -> bool:
+        if self._settings.alpha != "auto":
+            return self._settings.alpha == "straight"
+        if self._target is not None:
+            return self._target.suffix.lower() == ".png"
+        return self._settings.depth == "byte"
+
+    def _found_image(self) -> bpy.types.Image:
+        for image in bpy.data.images:
+            if image.session_uid == self._image_uid:
+                return image
+        raise ValueError(f"image '{self._image_name}' is gone")

@@ -1,0 +1,24 @@
+"""Panels, menus and modal operators of shapes, in a window that nobody sees."""
+
+import json
+from pathlib import Path
+
+SESSION = Path(__file__).with_name("shape_session.py")
+
+
+def test_panels_and_modal_operators(in_window, tmp_path):
+    result = tmp_path / "result.json"
+    in_window(SESSION, result)
+    found = json.loads(result.read_text())
+    assert found["tab"] == "Prefilter"
+    assert found["started"] == found["started_again"] == ["RUNNING_MODAL"]
+    assert "press Esc to cancel" in found["refused_while_running"]
+    assert found["made"] == {"Text": [64, 64]}
+    chosen, made = found["redone"]
+    assert chosen == made != "box"
+    assert found["updated"] == [made]
+    assert found["undone"] == {}
+    assert found["works"]
+    assert found["cancelled"] == {}
+    assert found["svg"] == {"drawing": [32, 32]}
+    assert found["shown"] == "drawing"
