@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "prefilter/base/gauss_rule.h"
 #include "prefilter/base/lanes.h"
@@ -10,6 +11,13 @@ namespace prefilter {
 namespace {
 
 using IntegerLanes [[gnu::vector_size(sizeof(Lanes))]] = std::int32_t;
+using BitLanes [[gnu::vector_size(sizeof(Lanes))]] = std::uint32_t;
+
+inline Lanes lanes_at(const float* values) {
+  Lanes lanes;
+  std::memcpy(&lanes, values, sizeof lanes);
+  return lanes;
+}
 
 // To the nearest, halves away from 0: as far from it for an edge and for its reverse.
 inline IntegerLanes rounded(Lanes values) {
@@ -24,11 +32,23 @@ inline IntegerLanes rounded(Lanes values, Lanes share) {
 
 // As good as random, and the same for an edge and for its reverse, which are cut alike.
 inline Lanes share_of(Lanes x, Lanes y) {
-  using Bits [[gnu::vector_size(sizeof(Lanes))]] = std::uint32_t;
-  Bits bits = std::bit_cast<Bits>(x) * 0x9E3779B1U ^ std::bit_cast<Bits>(y) * 0x85EBCA77U;
+  BitLanes bits =
+      std::bit_cast<BitLanes>(x) * 0x9E3779B1U ^ std::bit_cast<BitLanes>(y) * 0x85EBCA77U;
   bits ^= bits >> 15;
   bits *= 0xC2B2AE3DU;
   return __builtin_convertvector(std::bit_cast<IntegerLanes>(bits >> 8), Lanes) * 0x1p-24F;
+}
+
+// Of four vectors, in place.
+inline void transpose(IntegerLanes* rows) {
+  const IntegerLanes a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+  const IntegerLanes b = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+  const IntegerLanes c = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+  const IntegerLanes d = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+  rows[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
+  rows[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
+  rows[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
+  rows[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
 }
 
 constexpr float kScale = 1 << kMomentBits;
@@ -52,23 +72,34 @@ void antiderivatives(Lanes y, std::array<IntegerLanes, kCount>* values) {
 
 template <int N>
 void ArcBatch<N>::flush(Cells* cells) {
+  for (int first = 0; first < size_; first += kLanes) flush_lanes(first, cells);
+  size_ = 0;
+}
+
+template <int N>
+void ArcBatch<N>::flush_lanes(int first, Cells* cells) {
   // x^(a + 1) P_b has degree 2 N + 1 at the most along a line: this is exact up to N = 4, and
   // beyond the highest powers, of less than 1/2, are off by less than 1e-8.
   constexpr int kPoints = N < 5 ? N + 1 : 6;
   const auto& rule = gauss_rule<kPoints>();
-  const Lanes dx = x1_ - x0_;
-  const Lanes dy = y1_ - y0_;
-  const Lanes weight = dy * signs_;
+  const Lanes x0 = lanes_at(&x0_[first]);
+  const Lanes y0 = lanes_at(&y0_[first]);
+  const Lanes x1 = lanes_at(&x1_[first]);
+  const Lanes y1 = lanes_at(&y1_[first]);
+  const Lanes signs = lanes_at(&signs_[first]);
+  const Lanes dx = x1 - x0;
+  const Lanes dy = y1 - y0;
+  const Lanes weight = dy * signs;
   Lanes sums[kCount * kCount] = {};
   for (int k = 0; k < kPoints; ++k) {
     const auto t = static_cast<float>(rule.nodes[k]);
-    const Lanes x = x0_ + dx * t;
-    const Lanes y = y0_ + dy * t;
+    const Lanes x = x0 + dx * t;
+    const Lanes y = y0 + dy * t;
     Lanes powers[kCount];
     Lanes power = weight * static_cast<float>(rule.weights[k]) * x;
-    const Lanes first = power;
+    const Lanes level = power;
     for (int b = 0; b < kCount; ++b) {
-      powers[b] = b > 0 ? power - first * static_cast<float>(mean_power(b)) : power;
+      powers[b] = b > 0 ? power - level * static_cast<float>(mean_power(b)) : power;
       power *= y;
     }
     for (int a = 0; a < kCount; ++a) {
@@ -78,30 +109,34 @@ void ArcBatch<N>::flush(Cells* cells) {
       }
     }
   }
-  std::array<IntegerLanes, kCount> before;
-  std::array<IntegerLanes, kCount> across;
-  antiderivatives(y0_, &before);
-  antiderivatives(y1_, &across);
-  const IntegerLanes signs = rounded(signs_);
-  for (int b = 0; b < kCount; ++b) across[b] = (across[b] - before[b]) * signs;
-  const Lanes share = share_of(x1_, y1_);
-  IntegerLanes inside[kCount * kCount];
+  // The sums of each arc, in the order of the cells', one arc a lane.
+  IntegerLanes whole[ArcMoments<N>::kSums] = {};
+  const Lanes share = share_of(x1, y1);
   for (int a = 0; a < kCount; ++a) {
+    const float scale = kScale / static_cast<float>(a + 1);
     for (int b = 0; b < kCount; ++b) {
-      inside[a * kCount + b] =
-          rounded(sums[a * kCount + b] * (kScale / static_cast<float>(a + 1)), share);
+      whole[a * kCount + b] = rounded(sums[a * kCount + b] * scale, share);
     }
   }
-  for (int i = 0; i < size_; ++i) {
-    ArcMoments<N>& cell = (*cells)[places_[i]];
-    for (int j = 0; j < kCount * kCount; ++j) {
-      cell.inside_bits[j] += static_cast<std::uint32_t>(inside[j][i]);
-    }
-    for (int b = 0; b < kCount; ++b) {
-      cell.across_bits[b] += static_cast<std::uint32_t>(across[b][i]);
+  std::array<IntegerLanes, kCount> before;
+  std::array<IntegerLanes, kCount> after;
+  antiderivatives(y0, &before);
+  antiderivatives(y1, &after);
+  const IntegerLanes whole_signs = rounded(signs);
+  for (int b = 0; b < kCount; ++b) {
+    whole[ArcMoments<N>::kAcross + b] = (after[b] - before[b]) * whole_signs;
+  }
+  for (int j = 0; j < ArcMoments<N>::kSums; j += kLanes) transpose(whole + j);
+  const int count = std::min(kLanes, size_ - first);
+  for (int i = 0; i < count; ++i) {
+    std::uint32_t* cell = (*cells)[places_[first + i]].sums.data();
+    for (int j = 0; j < ArcMoments<N>::kSums; j += kLanes) {
+      BitLanes sum;
+      std::memcpy(&sum, cell + j, sizeof sum);
+      sum += std::bit_cast<BitLanes>(whole[j + i]);
+      std::memcpy(cell + j, &sum, sizeof sum);
     }
   }
-  size_ = 0;
 }
 
 template <int N>
@@ -161,10 +196,10 @@ void ArcBatch<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, Po
     for (int b = 0; b < kCount; ++b) {
       const float scaled = sums[a * kCount + b] * (kScale / static_cast<float>(a + 1));
       const auto whole = static_cast<std::int32_t>(scaled + std::copysign(0.5F, scaled));
-      cell.inside_bits[a * kCount + b] += static_cast<std::uint32_t>(whole * sign);
+      cell.sums[a * kCount + b] += static_cast<std::uint32_t>(whole * sign);
     }
   }
-  add({0.0, arc.begin.y - center.y}, {0.0, arc.end.y - center.y}, sign, place, cells);
+  add_line({0.0, arc.begin.y - center.y}, {0.0, arc.end.y - center.y}, sign, place, cells);
 }
 
 template class ArcBatch<0>;

@@ -24,16 +24,18 @@ inline constexpr int kMomentBits = 26;
 template <int N>
 struct ArcMoments {
   static constexpr int kCount = N + 1;
+  static constexpr int kAcross = kCount * kCount;
+  /// Whole vectors of them.
+  static constexpr int kSums = (kAcross + kCount + kMaxChannels - 1) / kMaxChannels * kMaxChannels;
 
-  /// The integral of x^(a + 1) / (a + 1) P_b(y) dy, at [a * kCount + b].
-  std::array<std::uint32_t, kCount * kCount> inside_bits{};
-  /// The integral of P_b(y) dy.
-  std::array<std::uint32_t, kCount> across_bits{};
+  /// The integrals of x^(a + 1) / (a + 1) P_b(y) dy at [a * kCount + b], and from kAcross on those
+  /// of P_b(y) dy.
+  alignas(16) std::array<std::uint32_t, kSums> sums{};
 
   std::int32_t inside(int a, int b) const {
-    return static_cast<std::int32_t>(inside_bits[a * kCount + b]);
+    return static_cast<std::int32_t>(sums[a * kCount + b]);
   }
-  std::int32_t across(int b) const { return static_cast<std::int32_t>(across_bits[b]); }
+  std::int32_t across(int b) const { return static_cast<std::int32_t>(sums[kAcross + b]); }
   bool is_zero() const;
 };
 
@@ -46,7 +48,13 @@ class ArcBatch {
   /// Adds a line, or an arc of a curve, in coordinates of the cell at `place`; the region on its
   /// right counts `sign` times, 1 or -1.
   void add_line(Point2 begin, Point2 end, int sign, std::int32_t place, Cells* cells) {
-    add(begin, end, sign, place, cells);
+    x0_[size_] = static_cast<float>(begin.x);
+    y0_[size_] = static_cast<float>(begin.y);
+    x1_[size_] = static_cast<float>(end.x);
+    y1_[size_] = static_cast<float>(end.y);
+    signs_[size_] = static_cast<float>(sign);
+    places_[size_] = place;
+    if (++size_ == kSize) flush(cells);
   }
   void add_curve(const ParametricCurve& curve, const CellArc& arc, Point2 center, int sign,
                  std::int32_t place, Cells* cells);
@@ -55,25 +63,20 @@ class ArcBatch {
 
  private:
   static constexpr int kLanes = kMaxChannels;
+  // More than are calculated at once: what has just been written, float by float, is slow to read
+  // as a vector.
+  static constexpr int kSize = 16 * kLanes;
   static constexpr int kCount = N + 1;
 
-  void add(Point2 begin, Point2 end, int sign, std::int32_t place, Cells* cells) {
-    x0_[size_] = static_cast<float>(begin.x);
-    y0_[size_] = static_cast<float>(begin.y);
-    x1_[size_] = static_cast<float>(end.x);
-    y1_[size_] = static_cast<float>(end.y);
-    signs_[size_] = static_cast<float>(sign);
-    places_[size_] = place;
-    if (++size_ == kLanes) flush(cells);
-  }
+  void flush_lanes(int first, Cells* cells);
 
   int size_ = 0;
-  Lanes x0_{};
-  Lanes y0_{};
-  Lanes x1_{};
-  Lanes y1_{};
-  Lanes signs_{};
-  std::array<std::int32_t, kLanes> places_{};
+  std::array<float, kSize> x0_{};
+  std::array<float, kSize> y0_{};
+  std::array<float, kSize> x1_{};
+  std::array<float, kSize> y1_{};
+  std::array<float, kSize> signs_{};
+  std::array<std::int32_t, kSize> places_{};
 };
 
 /// The mean of y^b over [-1/2, 1/2]: its integral over a cell.
@@ -94,8 +97,7 @@ constexpr double at_high_end(int a) {
 template <int N>
 bool ArcMoments<N>::is_zero() const {
   std::uint32_t any = 0;
-  for (const std::uint32_t bits : inside_bits) any |= bits;
-  for (const std::uint32_t bits : across_bits) any |= bits;
+  for (const std::uint32_t sum : sums) any |= sum;
   return any == 0;
 }
 

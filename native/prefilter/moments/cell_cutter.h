@@ -33,6 +33,12 @@ template <typename InCell, typename LeftOfWindow>
 void cut_to_cells(const MonotoneCurve& piece, const GridWindow& window, const InCell& in_cell,
                   const LeftOfWindow& left_of_window);
 
+/// The same for a line, from its lower end, which is quicker: calls in_cell(column, row, begin,
+/// end).
+template <typename InCell, typename LeftOfWindow>
+void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const InCell& in_cell,
+                       const LeftOfWindow& left_of_window);
+
 namespace internal {
 
 // The cell that a curve is in at a coordinate, from where it goes on rising or falling.
@@ -140,6 +146,63 @@ void cut_to_cells(const MonotoneCurve& piece, const GridWindow& window, const In
     if (row_step != 0) t_y = -1.0;
     arc.t_begin = arc.t_end;
     arc.begin = arc.end;
+  }
+}
+
+template <typename InCell, typename LeftOfWindow>
+void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const InCell& in_cell,
+                       const LeftOfWindow& left_of_window) {
+  if (!(begin.y < end.y)) return;
+  if (end.y <= window.first_row || begin.y >= window.end_row) return;
+  if (std::min(begin.x, end.x) >= window.end_column) return;
+  const bool x_rises = end.x >= begin.x;
+  const double slope = (end.x - begin.x) / (end.y - begin.y);
+  const double rise = (end.y - begin.y) / (end.x - begin.x);
+  const double x_low = std::min(begin.x, end.x);
+  const double x_high = std::max(begin.x, end.x);
+  const auto x_at = [&](double y) {
+    return std::clamp(begin.x + (y - begin.y) * slope, x_low, x_high);
+  };
+  const int left = window.first_column - 1;
+  const auto column_at = [&](double x) {
+    if (x < window.first_column) return left;
+    if (x > window.end_column) return window.end_column;
+    return std::clamp(internal::cell_at(x, x_rises), left, window.end_column);
+  };
+  Point2 from = begin;
+  if (from.y < window.first_row)
+    from = {x_at(window.first_row), static_cast<double>(window.first_row)};
+  int row = static_cast<int>(std::floor(from.y));
+  int column = column_at(from.x);
+  const double y_end = std::min(end.y, static_cast<double>(window.end_row));
+  while (from.y < y_end) {
+    Point2 to{end.x, end.y};
+    if (row + 1 < end.y) to = {x_at(row + 1), row + 1.0};
+    // From column to column within the row.
+    const int step = x_rises ? 1 : -1;
+    for (;;) {
+      const double line = x_rises ? column + 1 : column;
+      const bool passes = x_rises ? column < window.end_column && line < to.x
+                                  : column >= window.first_column && line > to.x;
+      if (!passes) break;
+      const Point2 at{line, std::clamp(begin.y + (line - begin.x) * rise, from.y, to.y)};
+      if (column == left) {
+        left_of_window(row, from.y, at.y);
+      } else if (column < window.end_column) {
+        in_cell(column, row, from, at);
+      }
+      from = at;
+      column += step;
+    }
+    if (column == left) {
+      left_of_window(row, from.y, to.y);
+    } else if (column < window.end_column) {
+      in_cell(column, row, from, to);
+    } else if (x_rises) {
+      return;
+    }
+    from = to;
+    ++row;
   }
 }
 

@@ -12,6 +12,7 @@ void MomentCells<N>::begin_band(const CellFilter& filter, int width, int first_r
   const std::size_t rows = window_.end_row - window_.first_row;
   slots_.assign(rows * blocks_ * kBlock, 0);
   is_touched_.assign(rows * blocks_, 0);
+  left_.assign(rows, 0);
   cells_.clear();
 }
 
@@ -28,21 +29,32 @@ std::int32_t MomentCells<N>::cell(int column, int row) {
 
 template <int N>
 void MomentCells<N>::add(const MonotoneCurve& piece, int sign) {
-  const auto in_cell = [&](int column, int row, const CellArc& arc) {
-    const Point2 center{column + 0.5, row + 0.5};
-    const std::int32_t place = cell(column, row);
-    if (piece.curve.kind == CurveKind::kLine) {
-      batch_.add_line(arc.begin - center, arc.end - center, sign, place, &cells_);
-    } else {
-      batch_.add_curve(piece.curve, arc, center, sign, place, &cells_);
-    }
-  };
   const auto left_of_window = [&](int row, double y_begin, double y_end) {
+    std::int32_t& slot = left_[row - window_.first_row];
+    if (slot == 0) {
+      cells_.emplace_back();
+      slot = static_cast<std::int32_t>(cells_.size());
+    }
     const double center = row + 0.5;
-    batch_.add_line({-0.5, y_begin - center}, {-0.5, y_end - center}, sign,
-                    cell(window_.first_column, row), &cells_);
+    batch_.add_line({0.0, y_begin - center}, {0.0, y_end - center}, sign, slot - 1, &cells_);
   };
-  cut_to_cells(piece, window_, in_cell, left_of_window);
+  if (piece.curve.kind == CurveKind::kLine) {
+    cut_line_to_cells(
+        piece.begin, piece.end, window_,
+        [&](int column, int row, Point2 begin, Point2 end) {
+          const Point2 center{column + 0.5, row + 0.5};
+          batch_.add_line(begin - center, end - center, sign, cell(column, row), &cells_);
+        },
+        left_of_window);
+    return;
+  }
+  cut_to_cells(
+      piece, window_,
+      [&](int column, int row, const CellArc& arc) {
+        batch_.add_curve(piece.curve, arc, {column + 0.5, row + 0.5}, sign, cell(column, row),
+                         &cells_);
+      },
+      left_of_window);
 }
 
 template <int N>
@@ -59,7 +71,16 @@ void MomentCells<N>::columns_of(int row, std::vector<int>* columns) const {
 }
 
 template <int N>
+std::array<std::int64_t, N + 1> MomentCells<N>::left_of(int row) const {
+  std::array<std::int64_t, N + 1> across{};
+  const std::int32_t slot = left_[row - window_.first_row];
+  for (int b = 0; slot != 0 && b <= N; ++b) across[b] = cells_[slot - 1].across(b);
+  return across;
+}
+
+template <int N>
 void MomentCells<N>::clear() {
+  std::fill(left_.begin(), left_.end(), 0);
   for (std::size_t block = 0; block < is_touched_.size(); ++block) {
     if (is_touched_[block] == 0) continue;
     is_touched_[block] = 0;

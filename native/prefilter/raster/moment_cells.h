@@ -1,6 +1,7 @@
 // The cells of a band of rows that arcs touch, and the moments of what those leave in them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -33,6 +34,9 @@ class MomentCells {
     return cells_[slots_[slot_place(column, row)] - 1];
   }
 
+  /// What arcs left of the window are across a row, by P_b.
+  std::array<std::int64_t, N + 1> left_of(int row) const;
+
   /// Forgets the cells, of which each row's columns were asked for.
   void clear();
 
@@ -50,6 +54,7 @@ class MomentCells {
   int blocks_ = 0;
   std::vector<std::int32_t> slots_;  // one more than the place in cells_, or 0
   std::vector<std::uint8_t> is_touched_;
+  std::vector<std::int32_t> left_;  // of each row, as slots_
   std::vector<Moments> cells_;
   ArcBatch<N> batch_;
 };

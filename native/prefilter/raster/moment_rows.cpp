@@ -84,6 +84,9 @@ void MomentRows<N>::add_coverage(const MomentCells<N>& cells, int first_row, int
   for (int row = cells.window().first_row; row < cells.window().end_row; ++row) {
     cells.columns_of(row, &columns_);
     Longs across{};
+    const auto left = cells.left_of(row);
+    for (int b = 0; b <= N; ++b) across[b] = left[b];
+    start_row(row, across, rows);
     // What lies between two cells whose pixels do not meet is a run.
     for (std::size_t begin = 0; begin < columns_.size();) {
       std::size_t end = begin + 1;
@@ -91,6 +94,17 @@ void MomentRows<N>::add_coverage(const MomentCells<N>& cells, int first_row, int
       add_span(cells, row, std::span(columns_).subspan(begin, end - begin), &across, rows);
       begin = end;
     }
+  }
+}
+
+// What is left of all columns is a run from the first pixel on.
+template <int N>
+void MomentRows<N>::start_row(int row, const Longs& across, CoverageRows* rows) {
+  const int begin_y = std::max(first_row_, filter_.first_pixel_over(row));
+  const int end_y = std::min(end_row_, filter_.last_pixel_over(row) + 1);
+  for (int y = begin_y; y < end_y; ++y) {
+    const std::int64_t value = run_value(row - filter_.first_cell(y), across);
+    if (value != 0) rows->add_step(y - first_row_, 0, value);
   }
 }
 

@@ -29,6 +29,7 @@ class MomentRows {
   using Doubles = LaneArray<double, kLanes>;
   using Longs = LaneArray<std::int64_t, kLanes>;
 
+  void start_row(int row, const Longs& across, CoverageRows* rows);
   void add_span(const MomentCells<N>& cells, int row, std::span<const int> columns, Longs* across,
                 CoverageRows* rows);
   std::int64_t run_value(int tap, const Longs& across) const;

@@ -122,7 +122,7 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
   const int end_column = cells.window().end_column;
   for (int row = cells.window().first_row; row < cells.window().end_row; ++row) {
     cells.columns_of(row, &columns_);
-    std::array<std::int64_t, N + 1> across{};
+    std::array<std::int64_t, N + 1> across = cells.left_of(row);
     // By powers of y, from P_b.
     const auto in_powers = [](std::array<double, N + 1> by_basis) {
       for (int b = 1; b <= N; ++b) by_basis[b] += mean_power(b) * by_basis[0];
@@ -145,6 +145,7 @@ void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& c
       }
       for (int column = begin; column < end; ++column) add_cell(column, row, moments, color);
     };
+    add_alike(cells.window().first_column, columns_.empty() ? end_column : columns_.front());
     for (std::size_t i = 0; i < columns_.size(); ++i) {
       const int column = columns_[i];
       const ArcMoments<N>& cell = cells.at(column, row);
