@@ -63,6 +63,7 @@ std::array<std::array<double, N>, N> legendre_powers() {
 // ends passes a cell, one that interpolates would have another integral.
 CellFilter of_radial(double radius) {
   constexpr int kCount = Kernel::kMostDegree + 1;
+  constexpr int kMostTotalDegree = 8;
   constexpr int kParts = 8;  // of a cell along each axis, with four points each
   const WindowedJinc jinc(radius);
   CellFilter filter;
@@ -104,7 +105,7 @@ CellFilter of_radial(double radius) {
       }
       integral += means[0][0];
       for (int ny = 0; ny < kCount; ++ny) {
-        for (int nx = 0; nx < kCount; ++nx) {
+        for (int nx = 0; nx < kCount && nx + ny <= kMostTotalDegree; ++nx) {
           for (int b = 0; b <= ny; ++b) {
             for (int a = 0; a <= nx; ++a) {
               piece[b * kCount + a] += means[ny][nx] * legendre[ny][b] * legendre[nx][a];
