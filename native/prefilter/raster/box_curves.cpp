@@ -230,15 +230,17 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
 void BoxCurves::add_cells(const MonotoneCurve& piece, int sign) {
   const GridWindow window{0, rows_.width(), rows_.first_row(), rows_.end_row()};
   const auto in_cell = [&](int column, int row, const CellArc& arc) {
-    ArcMoments<0> moments;
     const Point2 center{column + 0.5, row + 0.5};
+    cell_.assign(1, {});
     if (piece.curve.kind == CurveKind::kLine) {
-      moments.add_line(arc.begin - center, arc.end - center, sign);
+      batch_.add_line(arc.begin - center, arc.end - center, sign, 0, &cell_);
     } else {
-      moments.add_curve(piece.curve, arc, center, sign);
+      batch_.add_curve(piece.curve, arc, center, sign, 0, &cell_);
     }
-    const std::int32_t height = moments.across(0);
-    const auto part = static_cast<std::uint32_t>(moments.inside(0, 0) + height / 2);
+    batch_.flush(&cell_);
+    const double steps = (rounded_to_unit(arc.end.y) - rounded_to_unit(arc.begin.y)) / kBoxUnit;
+    const std::int32_t height = sign * static_cast<std::int32_t>(steps);
+    const auto part = static_cast<std::uint32_t>(cell_[0].inside(0, 0) + height / 2);
     rows_.add(row, column, static_cast<std::uint32_t>(height) - part);
     rows_.add(row, column + 1, part);
   };

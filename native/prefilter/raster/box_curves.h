@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "prefilter/moments/arc_moments.h"
 #include "prefilter/moments/monotone_curve.h"
 #include "prefilter/raster/difference_rows.h"
 
@@ -46,6 +47,8 @@ class BoxCurves {
   void add_cells(const MonotoneCurve& piece, int sign);
 
   DifferenceRows& rows_;
+  ArcBatch<0> batch_;
+  ArcBatch<0>::Cells cell_;
   Places at_rows_;     // at the ends of a piece and at the lines between rows in between
   Places at_columns_;  // at the lines between columns
 };

@@ -59,6 +59,7 @@ std::vector<double> general_coverage(const Outline& outline, Size size) {
   edges.for_pieces_between(0, size.height, filter, [&](const MonotoneCurve& piece, bool backwards) {
     cells.add(piece, backwards ? 1 : -1);
   });
+  cells.finish();
   CoverageRows rows;
   rows.reset(size.width, size.height);
   MomentRows<0>(filter, size.width).add_coverage(cells, 0, size.height, &rows);
