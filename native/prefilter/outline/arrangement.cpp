@@ -281,7 +281,11 @@ void Arrangement::visit(std::size_t first, std::size_t last, const Visitor& visi
     int looked = 0;
     visit_parts(chain, [&](const Part& part) {
       const Curve curve = contours_.curve(contours_.contours()[chain.contour], part.piece);
-      const Point2 step = point_at(curve, part.to) - point_at(curve, part.from);
+      const MonotonePiece& piece = part.piece;
+      const Point2 begin =
+          part.from == piece.from ? piece.controls.front() : point_at(curve, part.from);
+      const Point2 end = part.to == piece.to ? piece.controls.back() : point_at(curve, part.to);
+      const Point2 step = end - begin;
       const double reach = std::max(std::fabs(step.x), std::fabs(step.y));
       if (reach > best_reach) {
         best = part;

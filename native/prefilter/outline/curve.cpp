@@ -37,15 +37,14 @@ std::array<Weighted, 3> weighted(const Curve& conic) {
           Weighted{conic.controls[2], 1.0}};
 }
 
-// Keeps the part between two parameters.
+// Keeps the part between two parameters; `room` has place for as many points.
 template <typename Point>
-void keep_part(std::span<Point> points, double from, double to) {
-  std::array<Point, Outline::kMostDegree + 1> first;
+void keep_part(std::span<Point> points, double from, double to, Point* room) {
   if (to < 1.0) {
-    split(points, to, first.data());
-    std::copy_n(first.begin(), points.size(), points.begin());
+    split(points, to, room);
+    std::copy_n(room, points.size(), points.begin());
   }
-  if (from > 0.0) split(points, from / to, first.data());
+  if (from > 0.0) split(points, from / to, room);
 }
 
 // Lines over equal parts of the parameter are off by a bound on the second derivative / 8.
@@ -92,25 +91,40 @@ Point2 point_at(const Curve& curve, double t) {
     }
     return (1.0 / conic[0].weight) * conic[0].point;
   }
-  std::array<Point2, Outline::kMostDegree + 1> points;
-  std::copy(curve.controls.begin(), curve.controls.end(), points.begin());
-  for (std::size_t level = curve.controls.size() - 1; level > 0; --level) {
-    for (std::size_t i = 0; i < level; ++i) points[i] = (1.0 - t) * points[i] + t * points[i + 1];
+  const auto& p = curve.controls;
+  const double u = 1.0 - t;
+  switch (curve.degree()) {
+    case 1:
+      return u * p[0] + t * p[1];
+    case 2:
+      return u * (u * p[0] + t * p[1]) + t * (u * p[1] + t * p[2]);
+    case 3: {
+      const Point2 middle = u * p[1] + t * p[2];
+      return u * (u * (u * p[0] + t * p[1]) + t * middle) +
+             t * (u * middle + t * (u * p[2] + t * p[3]));
+    }
+    default:
+      break;
+  }
+  ControlPoints points(p);
+  for (std::size_t level = p.size() - 1; level > 0; --level) {
+    for (std::size_t i = 0; i < level; ++i) points[i] = u * points[i] + t * points[i + 1];
   }
   return points[0];
 }
 
 PartOfCurve::PartOfCurve(const Curve& curve, double from, double to)
-    : count_(curve.controls.size()), weight_(curve.weight) {
+    : points_(curve.controls), weight_(curve.weight) {
   if (curve.weight > 0.0) {
     std::array<Weighted, 3> conic = weighted(curve);
-    keep_part(std::span<Weighted>(conic), from, to);
+    std::array<Weighted, 3> room;
+    keep_part(std::span<Weighted>(conic), from, to, room.data());
     for (std::size_t i = 0; i < 3; ++i) points_[i] = (1.0 / conic[i].weight) * conic[i].point;
     weight_ = conic[1].weight / std::sqrt(conic[0].weight * conic[2].weight);
     return;
   }
-  std::copy(curve.controls.begin(), curve.controls.end(), points_.begin());
-  keep_part(std::span<Point2>(points_.data(), count_), from, to);
+  ControlPoints room(curve.controls);
+  keep_part(points_.span(), from, to, room.span().data());
 }
 
 void append_flattened(const Curve& curve, double tolerance, std::vector<Point2>* points) {

@@ -1,7 +1,9 @@
 // One segment of an outline: points, parts, and how finely lines follow it.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -23,6 +25,32 @@ inline Curve curve_of(const Outline& outline, const Outline::Segment& segment) {
   return {outline.controls(segment), segment.weight};
 }
 
+/// Room for a curve's control points. Only those that there are get written or copied.
+class ControlPoints {
+ public:
+  explicit ControlPoints(std::span<const Point2> points) : count_(points.size()) {
+    std::copy(points.begin(), points.end(), values_);
+  }
+  ControlPoints(const ControlPoints& other) : ControlPoints(other.span()) {}
+  ControlPoints& operator=(const ControlPoints& other) {
+    count_ = other.count_;
+    std::copy_n(other.values_, count_, values_);
+    return *this;
+  }
+
+  std::size_t size() const { return count_; }
+  std::span<const Point2> span() const { return {values_, count_}; }
+  std::span<Point2> span() { return {values_, count_}; }
+  const Point2& operator[](std::size_t i) const { return values_[i]; }
+  Point2& operator[](std::size_t i) { return values_[i]; }
+
+ private:
+  union {
+    Point2 values_[Outline::kMostDegree + 1];
+  };
+  std::size_t count_;
+};
+
 /// The point at t in [0, 1]; at 0 and 1 the ends, bit for bit.
 Point2 point_at(const Curve& curve, double t);
 
@@ -31,11 +59,10 @@ class PartOfCurve {
  public:
   PartOfCurve(const Curve& curve, double from, double to);
 
-  Curve curve() const { return {{points_.data(), count_}, weight_}; }
+  Curve curve() const { return {points_.span(), weight_}; }
 
  private:
-  std::array<Point2, Outline::kMostDegree + 1> points_;
-  std::size_t count_;
+  ControlPoints points_;
   double weight_;
 };
 

@@ -53,9 +53,8 @@ bool hulls_apart(std::span<const Point2> a, std::span<const Point2> b) {
 class Cell {
  public:
   explicit Cell(const CurvePiece& piece)
-      : from_(piece.from), to_(piece.to), count_(piece.controls.size()) {
+      : from_(piece.from), to_(piece.to), points_(piece.controls) {
     const Curve& curve = piece.curve;
-    std::copy(piece.controls.begin(), piece.controls.end(), points_.begin());
     if (curve.weight > 0.0) {
       is_conic_ = true;
       weights_ = {1.0, curve.weight, 1.0};
@@ -70,9 +69,9 @@ class Cell {
     }
   }
 
-  std::span<const Point2> points() const { return {points_.data(), count_}; }
+  std::span<const Point2> points() const { return points_.span(); }
   const Point2& begin() const { return points_[0]; }
-  const Point2& end() const { return points_[count_ - 1]; }
+  const Point2& end() const { return points_[points_.size() - 1]; }
   double from() const { return from_; }
   double to() const { return to_; }
   double middle() const { return 0.5 * (from_ + to_); }
@@ -80,7 +79,7 @@ class Cell {
     const Point2 chord = end() - begin();
     return std::max(std::fabs(chord.x), std::fabs(chord.y));
   }
-  bool is_line() const { return count_ == 2; }
+  bool is_line() const { return points_.size() == 2; }
   /// How far the control points are off the chord.
   double thickness() const {
     if (is_line()) return 0.0;
@@ -97,9 +96,10 @@ class Cell {
       split_conic(&first, &second);
       return parts;
     }
-    for (std::size_t level = 0; level < count_; ++level) {
+    const std::size_t count = points_.size();
+    for (std::size_t level = 0; level < count; ++level) {
       first.points_[level] = second.points_[0];
-      for (std::size_t i = 0; i + 1 < count_ - level; ++i) {
+      for (std::size_t i = 0; i + 1 < count - level; ++i) {
         second.points_[i] = 0.5 * (second.points_[i] + second.points_[i + 1]);
       }
     }
@@ -121,10 +121,9 @@ class Cell {
 
   double from_;
   double to_;
-  std::size_t count_;
   bool is_conic_ = false;
   std::array<double, 3> weights_{};
-  std::array<Point2, Outline::kMostDegree + 1> points_;
+  ControlPoints points_;
 };
 
 bool cells_apart(const Cell& a, const Cell& b, int depth) {
@@ -340,15 +339,11 @@ class MeetingFinder {
                                (2.0 * t * t * w) * (p[2] - p[1]);
       return (1.0 / (whole * whole)) * numerator;
     }
-    std::array<Point2, Outline::kMostDegree + 1> steps;
+    ControlPoints steps(curve.controls);
     const auto degree = static_cast<std::size_t>(curve.degree());
-    for (std::size_t i = 0; i < degree; ++i) {
-      steps[i] = curve.controls[i + 1] - curve.controls[i];
-    }
+    for (std::size_t i = 0; i < degree; ++i) steps[i] = steps[i + 1] - steps[i];
     for (std::size_t level = degree - 1; level > 0; --level) {
-      for (std::size_t i = 0; i < level; ++i) {
-        steps[i] = (1.0 - t) * steps[i] + t * steps[i + 1];
-      }
+      for (std::size_t i = 0; i < level; ++i) steps[i] = (1.0 - t) * steps[i] + t * steps[i + 1];
     }
     return static_cast<double>(degree) * steps[0];
   }

@@ -46,9 +46,30 @@ struct Span {
   }
 };
 
+// Whether pieces whose boxes share no more than part of a side in one axis are apart, but for being
+// joined one behind the other: at that side is no more than one end of each.
+bool touch_in_vain(const Span& a, const Span& b, double Point2::*axis) {
+  const Point2& a_begin = a.run->joints[a.first];
+  const Point2& a_end = a.run->joints[a.last];
+  const Point2& b_begin = b.run->joints[b.first];
+  const Point2& b_end = b.run->joints[b.last];
+  if (a_begin.*axis == a_end.*axis || b_begin.*axis == b_end.*axis) return false;
+  const bool a_rises = a_begin.*axis < a_end.*axis;
+  const bool b_rises = b_begin.*axis < b_end.*axis;
+  const Point2& a_low = a_rises ? a_begin : a_end;
+  const Point2& a_high = a_rises ? a_end : a_begin;
+  const Point2& b_low = b_rises ? b_begin : b_end;
+  const Point2& b_high = b_rises ? b_end : b_begin;
+  const bool a_first = a_high.*axis == b_low.*axis;
+  if (!a_first && !(b_high.*axis == a_low.*axis)) return false;
+  if (!(a_first ? a_high == b_low : b_high == a_low)) return true;
+  return &a_end == &b_begin || &b_end == &a_begin;
+}
+
 void append_span_pairs(const Span& a, const Span& b, Pairs* pairs) {
   if (!meet(a.box(), b.box())) return;
   if (a.is_piece() && b.is_piece()) {
+    if (touch_in_vain(a, b, &Point2::x) || touch_in_vain(a, b, &Point2::y)) return;
     pairs->emplace_back(a.id(), b.id());
   } else if (a.last - a.first >= b.last - b.first) {
     const auto [low, high] = a.halves();
@@ -128,30 +149,47 @@ RunTree::RunTree(const MonotoneContours& contours) : contours_(contours) {
     keys.push_back(static_cast<std::uint64_t>(key) << 32 | c);
   }
   std::sort(keys.begin(), keys.end());
-  order_.reserve(runs.size());
-  for (const std::uint64_t key : keys) {
-    const auto& contour = contours.contours()[key & UINT32_MAX];
-    for (std::uint32_t r = 0; r < contour.runs; ++r) order_.push_back(contour.first_run + r);
-  }
-  nodes_.reserve(runs.size());
-  build(0, static_cast<std::uint32_t>(order_.size()));
+  std::vector<std::uint32_t> order;
+  order.reserve(keys.size());
+  for (const std::uint64_t key : keys) order.push_back(static_cast<std::uint32_t>(key));
+  nodes_.reserve(2 * order.size() + runs.size());
+  build_contours(order);
 }
 
-std::uint32_t RunTree::build(std::uint32_t first, std::uint32_t count) {
+std::uint32_t RunTree::build_contours(std::span<const std::uint32_t> order) {
+  if (order.size() == 1) {
+    const auto& contour = contours_.contours()[order[0]];
+    return build_runs(contour.first_run, contour.runs, true);
+  }
+  const auto index = static_cast<std::uint32_t>(nodes_.size());
+  nodes_.emplace_back();
+  const std::size_t half = (order.size() + 1) / 2;
+  const std::uint32_t first = build_contours(order.first(half));
+  const std::uint32_t second = build_contours(order.subspan(half));
+  Node& node = nodes_[index];
+  node.box = unite(nodes_[first].box, nodes_[second].box);
+  node.count = nodes_[first].count + nodes_[second].count;
+  node.second_child = second;
+  node.has_whole_contours = true;
+  return index;
+}
+
+std::uint32_t RunTree::build_runs(std::uint32_t first, std::uint32_t count, bool is_whole) {
   const auto index = static_cast<std::uint32_t>(nodes_.size());
   nodes_.emplace_back();
   Node node;
   node.first = first;
   node.count = count;
+  node.has_whole_contours = is_whole;
   if (count <= kLeafRuns) {
     for (std::uint32_t i = first; i < first + count; ++i) {
-      const MonotoneRun& run = contours_.runs()[order_[i]];
+      const MonotoneRun& run = contours_.runs()[i];
       node.box = unite(node.box, box_of(run.begin(), run.end()));
     }
   } else {
     const std::uint32_t half = (count + 1) / 2;
-    const std::uint32_t first_child = build(first, half);
-    node.second_child = build(first + half, count - half);
+    const std::uint32_t first_child = build_runs(first, half, false);
+    node.second_child = build_runs(first + half, count - half, false);
     node.box = unite(nodes_[first_child].box, nodes_[node.second_child].box);
   }
   nodes_[index] = node;
@@ -172,7 +210,7 @@ void RunTree::pairs_within(std::uint32_t index, Pairs* pairs) const {
   }
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
     for (std::uint32_t j = i + 1; j < node.first + node.count; ++j) {
-      append_run_pairs(contours_.runs()[order_[i]], contours_.runs()[order_[j]], pairs);
+      append_run_pairs(contours_.runs()[i], contours_.runs()[j], pairs);
     }
   }
 }
@@ -184,7 +222,7 @@ void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, Pairs* pairs) cons
   if (first.second_child == 0 && second.second_child == 0) {
     for (std::uint32_t i = first.first; i < first.first + first.count; ++i) {
       for (std::uint32_t j = second.first; j < second.first + second.count; ++j) {
-        append_run_pairs(contours_.runs()[order_[i]], contours_.runs()[order_[j]], pairs);
+        append_run_pairs(contours_.runs()[i], contours_.runs()[j], pairs);
       }
     }
   } else if (second.second_child == 0 || (first.second_child != 0 && first.count >= second.count)) {
@@ -220,13 +258,15 @@ void RunTree::add_on_ray(const Point2& point, std::span<const PieceId> excluded,
         along<axis>(point) > along<axis>(node.box.high)) {
       continue;
     }
+    // Contours wind around nothing beside them.
+    if (node.has_whole_contours && along<axis>(point) < along<axis>(node.box.low)) continue;
     if (node.second_child != 0) {
       stack[height++] = node.second_child;
       stack[height++] = index + 1;
       continue;
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      const MonotoneRun& run = contours_.runs()[order_[i]];
+      const MonotoneRun& run = contours_.runs()[i];
       windings[contours_.contours()[run.contour].layer] += run_winding<axis>(run, point, excluded);
     }
   }

@@ -38,12 +38,14 @@ class RunTree {
  private:
   struct Node {
     Box2 box;
-    std::uint32_t first = 0;  // of the runs in order
-    std::uint32_t count = 0;
+    std::uint32_t first = 0;         // run
+    std::uint32_t count = 0;         // of runs
     std::uint32_t second_child = 0;  // 0: a leaf; the first child is the node behind this one
+    bool has_whole_contours = false;
   };
 
-  std::uint32_t build(std::uint32_t first, std::uint32_t count);
+  std::uint32_t build_contours(std::span<const std::uint32_t> order);
+  std::uint32_t build_runs(std::uint32_t first, std::uint32_t count, bool is_whole);
   void pairs_within(std::uint32_t node, std::vector<std::pair<PieceId, PieceId>>* pairs) const;
   void pairs_between(std::uint32_t a, std::uint32_t b,
                      std::vector<std::pair<PieceId, PieceId>>* pairs) const;
@@ -55,7 +57,6 @@ class RunTree {
                   std::span<const PieceId> excluded) const;
 
   const MonotoneContours& contours_;
-  std::vector<std::uint32_t> order_;  // runs, those near each other in a row
   std::vector<Node> nodes_;
 };
 

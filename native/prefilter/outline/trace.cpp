@@ -32,23 +32,22 @@ void extend(Stretch* a, const Stretch& b) {
 }
 
 void append_curve(const Curve& curve, bool reversed, const Point2& end, Outline* outline) {
-  std::array<Point2, Outline::kMostDegree> points;
-  const auto degree = static_cast<std::size_t>(curve.degree());
-  for (std::size_t i = 1; i <= degree; ++i) {
-    points[i - 1] = curve.controls[reversed ? degree - i : i];
+  if (curve.degree() == 1) {
+    outline->line_to(end);
+    return;
   }
-  points[degree - 1] = end;
+  ControlPoints points(curve.controls);
+  if (reversed) std::reverse(points.span().begin(), points.span().end());
+  points[points.size() - 1] = end;
   if (curve.weight > 0.0) {
-    outline->conic_to(points[0], curve.weight, end);
+    outline->conic_to(points[1], curve.weight, end);
   } else {
-    outline->curve_to({points.data(), degree});
+    outline->curve_to(points.span().subspan(1));
   }
 }
 
 void append(const Stretch& stretch, Outline* outline) {
-  if (stretch.curve.degree() == 1) {
-    outline->line_to(stretch.end);
-  } else if (stretch.from == 0.0 && stretch.to == 1.0) {
+  if (stretch.curve.degree() == 1 || (stretch.from == 0.0 && stretch.to == 1.0)) {
     append_curve(stretch.curve, stretch.reversed, stretch.end, outline);
   } else {
     const PartOfCurve part(stretch.curve, stretch.from, stretch.to);
