@@ -48,9 +48,9 @@ struct Arrangement::Site {
 
 Arrangement::Arrangement(std::span<const Outline* const> outlines, double precision)
     : contours_(outlines),
-      tree_(contours_),
-      layers_(outlines.size()),
-      precision_(std::max(precision * extent(contours_.box()), 8.0 * rounding(contours_.box()))) {}
+      precision_(std::max(precision * extent(contours_.box()), 8.0 * rounding(contours_.box()))),
+      tree_(contours_, precision_),
+      layers_(outlines.size()) {}
 
 CurvePiece Arrangement::curve_piece(const MonotonePiece& piece, std::uint32_t contour) const {
   return {contours_.curve(contours_.contours()[contour], piece), piece.from, piece.to,
@@ -86,7 +86,9 @@ bool Arrangement::collect_sites(std::vector<Site>* sites) const {
     const MonotonePiece second_piece = contours_.piece(contours_.contours()[b.contour], b.piece);
     const CurvePiece first = curve_piece(first_piece, a.contour);
     const CurvePiece second = curve_piece(second_piece, b.contour);
-    if (follows(a, b) ? are_apart_but_for_joint(first, second) : are_apart(first, second)) continue;
+    if (follows(a, b) ? are_apart_but_for_joint(first, second)
+                      : are_apart(first, second, precision_))
+      continue;
     meetings.clear();
     if (!append_meetings(first, second, precision_, &meetings)) return false;
     for (const Meeting& meeting : meetings) {
@@ -229,17 +231,6 @@ void Arrangement::group_chains() {
   std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return std::tie(a.low, a.high, a.chain) < std::tie(b.low, b.high, b.chain);
   });
-  const auto piece_of = [&](const Entry& entry, const Part& part,
-                            std::array<Point2, 2>* ends) -> CurvePiece {
-    const OutlineChain& chain = chains_[entry.chain];
-    const MonotonePiece& piece = part.piece;
-    CurvePiece result = curve_piece(piece, chain.contour);
-    *ends = {point_at(result.curve, part.from), point_at(result.curve, part.to)};
-    result.from = part.from;
-    result.to = part.to;
-    result.controls = *ends;
-    return result;
-  };
   for (std::size_t i = 0; i < entries.size(); ++i) {
     for (std::size_t j = i + 1; j < entries.size() && entries[j].low == entries[i].low &&
                                 entries[j].high == entries[i].high;
@@ -248,11 +239,9 @@ void Arrangement::group_chains() {
       const auto first = only_part(chains_[entries[i].chain]);
       const auto second = only_part(chains_[entries[j].chain]);
       if (!first || !second) continue;
-      std::array<Point2, 2> first_ends;
-      std::array<Point2, 2> second_ends;
-      const CurvePiece a = piece_of(entries[i], *first, &first_ends);
-      const CurvePiece b = piece_of(entries[j], *second, &second_ends);
-      if (!coincide(a, b, 8.0 * precision_)) continue;
+      const CurvePiece a = curve_piece(first->piece, chains_[entries[i].chain].contour);
+      const CurvePiece b = curve_piece(second->piece, chains_[entries[j].chain].contour);
+      if (!runs_along(a, first->from, first->to, b, 8.0 * precision_)) continue;
       std::uint32_t& group = group_of_[entries[i].chain];
       if (group == OutlineChain::kNone) {
         group = static_cast<std::uint32_t>(groups_.size());

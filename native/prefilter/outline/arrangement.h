@@ -86,9 +86,9 @@ class Arrangement {
   void visit_parts(const OutlineChain& chain, const Visit& visit) const;
 
   MonotoneContours contours_;
+  double precision_;
   RunTree tree_;
   std::size_t layers_;
-  double precision_;
   std::vector<Cut> cuts_;  // by contour, piece and parameter
   std::vector<Point2> vertices_;
   std::vector<OutlineChain> chains_;

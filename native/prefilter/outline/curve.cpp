@@ -113,6 +113,41 @@ Point2 point_at(const Curve& curve, double t) {
   return points[0];
 }
 
+Point2 derivative_at(const Curve& curve, double t) {
+  if (curve.degree() == 1) return curve.end() - curve.begin();
+  if (curve.weight > 0.0) {
+    const auto& p = curve.controls;
+    const double u = 1.0 - t;
+    const double w = curve.weight;
+    const double whole = u * u + 2.0 * t * u * w + t * t;
+    const Point2 numerator = (2.0 * u * u * w) * (p[1] - p[0]) + (2.0 * t * u) * (p[2] - p[0]) +
+                             (2.0 * t * t * w) * (p[2] - p[1]);
+    return (1.0 / (whole * whole)) * numerator;
+  }
+  ControlPoints steps(curve.controls);
+  const auto degree = static_cast<std::size_t>(curve.degree());
+  for (std::size_t i = 0; i < degree; ++i) steps[i] = steps[i + 1] - steps[i];
+  for (std::size_t level = degree - 1; level > 0; --level) {
+    for (std::size_t i = 0; i < level; ++i) steps[i] = (1.0 - t) * steps[i] + t * steps[i + 1];
+  }
+  return static_cast<double>(degree) * steps[0];
+}
+
+void append_curve(const Curve& curve, bool reversed, const Point2& end, Outline* outline) {
+  if (curve.degree() == 1) {
+    outline->line_to(end);
+    return;
+  }
+  ControlPoints points(curve.controls);
+  if (reversed) std::reverse(points.span().begin(), points.span().end());
+  points[points.size() - 1] = end;
+  if (curve.weight > 0.0) {
+    outline->conic_to(points[1], curve.weight, end);
+  } else {
+    outline->curve_to(points.span().subspan(1));
+  }
+}
+
 PartOfCurve::PartOfCurve(const Curve& curve, double from, double to)
     : points_(curve.controls), weight_(curve.weight) {
   if (curve.weight > 0.0) {

@@ -54,6 +54,12 @@ class ControlPoints {
 /// The point at t in [0, 1]; at 0 and 1 the ends, bit for bit.
 Point2 point_at(const Curve& curve, double t);
 
+Point2 derivative_at(const Curve& curve, double t);
+
+/// Appends a curve to the contour that an outline ends with, `end` in place of its last point; or
+/// backwards, `end` in place of its first.
+void append_curve(const Curve& curve, bool reversed, const Point2& end, Outline* outline);
+
 /// The curve between two parameters, `from` <= `to`, with control points of its own.
 class PartOfCurve {
  public:

@@ -28,25 +28,28 @@ Range offsets(std::span<const Point2> points, const Point2& origin, const Point2
   return range;
 }
 
-bool boxes_meet(std::span<const Point2> a, std::span<const Point2> b) {
+bool boxes_meet(std::span<const Point2> a, std::span<const Point2> b, double margin) {
   Box2 first;
   Box2 second;
   for (const Point2& point : a) first.include(point);
   for (const Point2& point : b) second.include(point);
-  return first.low.x <= second.high.x && second.low.x <= first.high.x &&
-         first.low.y <= second.high.y && second.low.y <= first.high.y;
+  return first.low.x <= second.high.x + margin && second.low.x <= first.high.x + margin &&
+         first.low.y <= second.high.y + margin && second.low.y <= first.high.y + margin;
 }
 
 // Whether the line through the ends of `a` has both hulls on different sides.
-bool chord_separates(std::span<const Point2> a, std::span<const Point2> b) {
+bool chord_separates(std::span<const Point2> a, std::span<const Point2> b, double margin) {
   const Point2 direction = a.back() - a.front();
+  const double apart = margin * (std::fabs(direction.x) + std::fabs(direction.y));
   const Range own = offsets(a, a.front(), direction);
   const Range other = offsets(b, a.front(), direction);
-  return other.low > own.high || other.high < own.low;
+  return other.low > own.high + apart || other.high < own.low - apart;
 }
 
-bool hulls_apart(std::span<const Point2> a, std::span<const Point2> b) {
-  return chord_separates(a, b) || chord_separates(b, a);
+// Whether two hulls are farther apart than a margin.
+bool hulls_apart(std::span<const Point2> a, std::span<const Point2> b, double margin) {
+  return !boxes_meet(a, b, margin) || chord_separates(a, b, margin) ||
+         chord_separates(b, a, margin);
 }
 
 // A part of a curve with its control points, halved again and again.
@@ -126,12 +129,13 @@ class Cell {
   ControlPoints points_;
 };
 
-bool cells_apart(const Cell& a, const Cell& b, int depth) {
-  if (!boxes_meet(a.points(), b.points()) || hulls_apart(a.points(), b.points())) return true;
+bool cells_apart(const Cell& a, const Cell& b, double margin, int depth) {
+  if (hulls_apart(a.points(), b.points(), margin)) return true;
   if (depth == 0 || (a.is_line() && b.is_line())) return false;
   const bool halve_a = !a.is_line() && (b.is_line() || a.size() >= b.size());
   for (const Cell& half : (halve_a ? a : b).halves()) {
-    if (!(halve_a ? cells_apart(half, b, depth - 1) : cells_apart(a, half, depth - 1))) {
+    if (!(halve_a ? cells_apart(half, b, margin, depth - 1)
+                  : cells_apart(a, half, margin, depth - 1))) {
       return false;
     }
   }
@@ -161,7 +165,7 @@ bool cells_apart_but_for_joint(const Cell& a, const Cell& b, int depth) {
   if (depth == 0) return false;
   const auto [a_far, a_near] = a.halves();
   const auto [b_near, b_far] = b.halves();
-  return cells_apart(a_far, b, 8) && cells_apart(a_near, b_far, 8) &&
+  return cells_apart(a_far, b, 0.0, 8) && cells_apart(a_near, b_far, 0.0, 8) &&
          cells_apart_but_for_joint(a_near, b_near, depth - 1);
 }
 
@@ -205,7 +209,7 @@ class MeetingFinder {
 
   bool find() {
     append_ends();
-    if (runs_along()) return true;
+    if (run_together()) return true;
     if (a_.curve.degree() == 1 && b_.curve.degree() == 1) {
       intersect_lines(Cell(a_), Cell(b_));
       return true;
@@ -229,19 +233,14 @@ class MeetingFinder {
   }
 
   // Two monotone pieces that run along each other somewhere do so from an end to an end.
-  bool runs_along() const {
+  bool run_together() const {
     const auto meetings = std::span(*meetings_).subspan(first_);
     for (std::size_t i = 0; i + 1 < meetings.size(); ++i) {
       for (std::size_t j = i + 1; j < meetings.size(); ++j) {
         const Meeting& first = meetings[i];
         const Meeting& second = meetings[j];
         if (distance(first.point, second.point) <= 4.0 * precision_) continue;
-        int close = 0;
-        for (const double share : {0.15, 0.35, 0.5, 0.7, 0.9}) {
-          const Point2 point = point_at(a_.curve, (1.0 - share) * first.a + share * second.a);
-          close += parameter_near(b_, point, 4.0 * precision_) >= 0.0 ? 1 : 0;
-        }
-        if (close == 5) return true;
+        if (runs_along(a_, first.a, second.a, b_, 4.0 * precision_)) return true;
       }
     }
     return false;
@@ -251,7 +250,7 @@ class MeetingFinder {
 
   bool search(const Cell& a, const Cell& b) {
     if (++steps_ > kMostSteps) return false;
-    if (!boxes_meet(a.points(), b.points()) || hulls_apart(a.points(), b.points())) return true;
+    if (hulls_apart(a.points(), b.points(), 0.0)) return true;
     const double small = 0.25 * precision_;
     if (a.size() <= small || b.size() <= small) {
       append_small(a, b);
@@ -296,8 +295,8 @@ class MeetingFinder {
     for (int i = 0; i < 12; ++i) {
       const Point2 at_a = point_at(a_.curve, s);
       const Point2 off = point_at(b_.curve, t) - at_a;
-      const Point2 along_a = derivative(a_.curve, s);
-      const Point2 along_b = derivative(b_.curve, t);
+      const Point2 along_a = derivative_at(a_.curve, s);
+      const Point2 along_b = derivative_at(b_.curve, t);
       const double turn = cross(along_a, along_b);
       if (turn == 0.0) return Outcome::kUnknown;
       const double step_s = cross(off, along_b) / turn;
@@ -326,26 +325,6 @@ class MeetingFinder {
       return Outcome::kMeet;
     }
     return Outcome::kUnknown;
-  }
-
-  static Point2 derivative(const Curve& curve, double t) {
-    if (curve.degree() == 1) return curve.end() - curve.begin();
-    if (curve.weight > 0.0) {
-      const auto& p = curve.controls;
-      const double u = 1.0 - t;
-      const double w = curve.weight;
-      const double whole = u * u + 2.0 * t * u * w + t * t;
-      const Point2 numerator = (2.0 * u * u * w) * (p[1] - p[0]) + (2.0 * t * u) * (p[2] - p[0]) +
-                               (2.0 * t * t * w) * (p[2] - p[1]);
-      return (1.0 / (whole * whole)) * numerator;
-    }
-    ControlPoints steps(curve.controls);
-    const auto degree = static_cast<std::size_t>(curve.degree());
-    for (std::size_t i = 0; i < degree; ++i) steps[i] = steps[i + 1] - steps[i];
-    for (std::size_t level = degree - 1; level > 0; --level) {
-      for (std::size_t i = 0; i < level; ++i) steps[i] = (1.0 - t) * steps[i] + t * steps[i + 1];
-    }
-    return static_cast<double>(degree) * steps[0];
   }
 
   // Cells that are as good as lines.
@@ -398,10 +377,10 @@ class MeetingFinder {
 
 }  // namespace
 
-bool are_apart(const CurvePiece& a, const CurvePiece& b) {
-  if (!boxes_meet(a.controls, b.controls) || hulls_apart(a.controls, b.controls)) return true;
+bool are_apart(const CurvePiece& a, const CurvePiece& b, double precision) {
+  if (hulls_apart(a.controls, b.controls, precision)) return true;
   if (a.curve.degree() == 1 && b.curve.degree() == 1) return false;
-  return cells_apart(Cell(a), Cell(b), 12);
+  return cells_apart(Cell(a), Cell(b), precision, 12);
 }
 
 bool are_apart_but_for_joint(const CurvePiece& a, const CurvePiece& b) {
@@ -447,10 +426,11 @@ double parameter_near(const CurvePiece& piece, const Point2& point, double preci
   return -1.0;
 }
 
-bool coincide(const CurvePiece& a, const CurvePiece& b, double precision) {
+bool runs_along(const CurvePiece& a, double from, double to, const CurvePiece& b,
+                double precision) {
   if (a.curve.degree() == 1 && b.curve.degree() == 1) return true;
-  for (const double share : {0.2, 0.5, 0.75}) {
-    const Point2 point = point_at(a.curve, (1.0 - share) * a.from + share * a.to);
+  for (const double share : {0.15, 0.35, 0.5, 0.7, 0.9}) {
+    const Point2 point = point_at(a.curve, (1.0 - share) * from + share * to);
     if (parameter_near(b, point, precision) < 0.0) return false;
   }
   return true;

@@ -18,8 +18,8 @@ struct CurvePiece {
   const Point2& end() const { return controls.back(); }
 };
 
-/// Whether it is certain that two pieces have no point in common.
-bool are_apart(const CurvePiece& a, const CurvePiece& b);
+/// Whether it is certain that two pieces are farther apart than `precision`.
+bool are_apart(const CurvePiece& a, const CurvePiece& b, double precision);
 /// Whether it is certain that they have none but the end of `a`, where `b` begins.
 bool are_apart_but_for_joint(const CurvePiece& a, const CurvePiece& b);
 
@@ -36,8 +36,8 @@ struct Meeting {
 bool append_meetings(const CurvePiece& a, const CurvePiece& b, double precision,
                      std::vector<Meeting>* meetings);
 
-/// Whether two parts between the same ends run along each other, up to `precision`.
-bool coincide(const CurvePiece& a, const CurvePiece& b, double precision);
+/// Whether the part of `a` between two parameters runs along `b`, up to `precision`. Its ends do.
+bool runs_along(const CurvePiece& a, double from, double to, const CurvePiece& b, double precision);
 
 /// The parameter of the piece's point nearest to `point`, where that is within `precision`; else a
 /// negative number.

@@ -14,8 +14,9 @@ Box2 box_of(const Point2& a, const Point2& b) {
   return {{std::min(a.x, b.x), std::min(a.y, b.y)}, {std::max(a.x, b.x), std::max(a.y, b.y)}};
 }
 
-bool meet(const Box2& a, const Box2& b) {
-  return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y;
+bool meet(const Box2& a, const Box2& b, double precision) {
+  return a.low.x <= b.high.x + precision && b.low.x <= a.high.x + precision &&
+         a.low.y <= b.high.y + precision && b.low.y <= a.high.y + precision;
 }
 
 Box2 unite(const Box2& a, const Box2& b) {
@@ -48,12 +49,14 @@ struct Span {
 
 // Whether pieces whose boxes share no more than part of a side in one axis are apart, but for being
 // joined one behind the other: at that side is no more than one end of each.
-bool touch_in_vain(const Span& a, const Span& b, double Point2::*axis) {
+bool touch_in_vain(const Span& a, const Span& b, double precision, double Point2::*axis) {
   const Point2& a_begin = a.run->joints[a.first];
   const Point2& a_end = a.run->joints[a.last];
   const Point2& b_begin = b.run->joints[b.first];
   const Point2& b_end = b.run->joints[b.last];
-  if (a_begin.*axis == a_end.*axis || b_begin.*axis == b_end.*axis) return false;
+  const double width =
+      std::min(std::fabs(a_begin.*axis - a_end.*axis), std::fabs(b_begin.*axis - b_end.*axis));
+  if (width <= 8.0 * precision) return false;
   const bool a_rises = a_begin.*axis < a_end.*axis;
   const bool b_rises = b_begin.*axis < b_end.*axis;
   const Point2& a_low = a_rises ? a_begin : a_end;
@@ -66,24 +69,25 @@ bool touch_in_vain(const Span& a, const Span& b, double Point2::*axis) {
   return &a_end == &b_begin || &b_end == &a_begin;
 }
 
-void append_span_pairs(const Span& a, const Span& b, Pairs* pairs) {
-  if (!meet(a.box(), b.box())) return;
+void append_span_pairs(const Span& a, const Span& b, double precision, Pairs* pairs) {
+  if (!meet(a.box(), b.box(), precision)) return;
   if (a.is_piece() && b.is_piece()) {
-    if (touch_in_vain(a, b, &Point2::x) || touch_in_vain(a, b, &Point2::y)) return;
+    if (touch_in_vain(a, b, precision, &Point2::x) || touch_in_vain(a, b, precision, &Point2::y))
+      return;
     pairs->emplace_back(a.id(), b.id());
   } else if (a.last - a.first >= b.last - b.first) {
     const auto [low, high] = a.halves();
-    append_span_pairs(low, b, pairs);
-    append_span_pairs(high, b, pairs);
+    append_span_pairs(low, b, precision, pairs);
+    append_span_pairs(high, b, precision, pairs);
   } else {
     const auto [low, high] = b.halves();
-    append_span_pairs(a, low, pairs);
-    append_span_pairs(a, high, pairs);
+    append_span_pairs(a, low, precision, pairs);
+    append_span_pairs(a, high, precision, pairs);
   }
 }
 
-void append_run_pairs(const MonotoneRun& a, const MonotoneRun& b, Pairs* pairs) {
-  append_span_pairs({&a, 0, a.pieces}, {&b, 0, b.pieces}, pairs);
+void append_run_pairs(const MonotoneRun& a, const MonotoneRun& b, double precision, Pairs* pairs) {
+  append_span_pairs({&a, 0, a.pieces}, {&b, 0, b.pieces}, precision, pairs);
 }
 
 template <RayAxis axis>
@@ -115,7 +119,7 @@ double along_at(const Curve& curve, double from, double to, const Point2& begin,
     point = point_at(curve, t);
     const double value = across<axis>(point) - level;
     if (std::fabs(value) <= close || t <= from || t >= to) break;
-    if ((value < 0.0) == (low < 0.0)) {
+    if ((value < 0.0) == (rise > 0.0)) {
       from = t;
       low = value;
     } else {
@@ -128,7 +132,8 @@ double along_at(const Curve& curve, double from, double to, const Point2& begin,
 
 }  // namespace
 
-RunTree::RunTree(const MonotoneContours& contours) : contours_(contours) {
+RunTree::RunTree(const MonotoneContours& contours, double precision)
+    : contours_(contours), precision_(precision) {
   const auto runs = contours.runs();
   if (runs.empty()) return;
   const Box2& whole = contours.box();
@@ -210,7 +215,7 @@ void RunTree::pairs_within(std::uint32_t index, Pairs* pairs) const {
   }
   for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
     for (std::uint32_t j = i + 1; j < node.first + node.count; ++j) {
-      append_run_pairs(contours_.runs()[i], contours_.runs()[j], pairs);
+      append_run_pairs(contours_.runs()[i], contours_.runs()[j], precision_, pairs);
     }
   }
 }
@@ -218,11 +223,11 @@ void RunTree::pairs_within(std::uint32_t index, Pairs* pairs) const {
 void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, Pairs* pairs) const {
   const Node& first = nodes_[a];
   const Node& second = nodes_[b];
-  if (!meet(first.box, second.box)) return;
+  if (!meet(first.box, second.box, precision_)) return;
   if (first.second_child == 0 && second.second_child == 0) {
     for (std::uint32_t i = first.first; i < first.first + first.count; ++i) {
       for (std::uint32_t j = second.first; j < second.first + second.count; ++j) {
-        append_run_pairs(contours_.runs()[i], contours_.runs()[j], pairs);
+        append_run_pairs(contours_.runs()[i], contours_.runs()[j], precision_, pairs);
       }
     }
   } else if (second.second_child == 0 || (first.second_child != 0 && first.count >= second.count)) {
@@ -258,8 +263,9 @@ void RunTree::add_on_ray(const Point2& point, std::span<const PieceId> excluded,
         along<axis>(point) > along<axis>(node.box.high)) {
       continue;
     }
-    // Contours wind around nothing beside them.
-    if (node.has_whole_contours && along<axis>(point) < along<axis>(node.box.low)) continue;
+    // Contours wind around nothing beside them. (A point on one may have been rounded off it.)
+    if (node.has_whole_contours && along<axis>(point) + precision_ < along<axis>(node.box.low))
+      continue;
     if (node.second_child != 0) {
       stack[height++] = node.second_child;
       stack[height++] = index + 1;

@@ -22,8 +22,8 @@ enum class RayAxis : std::uint8_t { kX, kY };
 
 class RunTree {
  public:
-  /// The contours must outlive it.
-  explicit RunTree(const MonotoneContours& contours);
+  /// The contours must outlive it. What is no farther apart than `precision` meets.
+  RunTree(const MonotoneContours& contours, double precision);
 
   /// Appends pairs of pieces whose boxes meet, each pair once. Neighbors along a run cannot meet
   /// elsewhere than at their joint, and are left out.
@@ -57,6 +57,7 @@ class RunTree {
                   std::span<const PieceId> excluded) const;
 
   const MonotoneContours& contours_;
+  double precision_;
   std::vector<Node> nodes_;
 };
 

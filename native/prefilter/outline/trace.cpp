@@ -31,21 +31,6 @@ void extend(Stretch* a, const Stretch& b) {
   a->end = b.end;
 }
 
-void append_curve(const Curve& curve, bool reversed, const Point2& end, Outline* outline) {
-  if (curve.degree() == 1) {
-    outline->line_to(end);
-    return;
-  }
-  ControlPoints points(curve.controls);
-  if (reversed) std::reverse(points.span().begin(), points.span().end());
-  points[points.size() - 1] = end;
-  if (curve.weight > 0.0) {
-    outline->conic_to(points[1], curve.weight, end);
-  } else {
-    outline->curve_to(points.span().subspan(1));
-  }
-}
-
 void append(const Stretch& stretch, Outline* outline) {
   if (stretch.curve.degree() == 1 || (stretch.from == 0.0 && stretch.to == 1.0)) {
     append_curve(stretch.curve, stretch.reversed, stretch.end, outline);

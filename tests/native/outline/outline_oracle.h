@@ -14,10 +14,10 @@ inline Point2 bernstein(const Outline& outline, const Outline::Segment& segment,
   const auto controls = outline.controls(segment);
   Point2 sum{};
   double whole = 0.0;
+  double binomial = 1.0;
   for (int i = 0; i <= segment.degree; ++i) {
-    double factor = std::exp(std::lgamma(segment.degree + 1.0) - std::lgamma(i + 1.0) -
-                             std::lgamma(segment.degree - i + 1.0));
-    factor *= std::pow(t, i) * std::pow(1.0 - t, segment.degree - i);
+    double factor = binomial * std::pow(t, i) * std::pow(1.0 - t, segment.degree - i);
+    binomial *= static_cast<double>(segment.degree - i) / (i + 1.0);
     if (segment.weight > 0.0 && i == 1) factor *= segment.weight;
     sum = sum + factor * controls[static_cast<std::size_t>(i)];
     whole += factor;
