@@ -6,18 +6,16 @@ Leaves FOLDER/cutout.png and FOLDER/lobes.png.
 """
 
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
+from sheets import PAPER, encoded, sheet
 
 Array = NDArray[np.float64]
 
-PAPER, INK = (246, 246, 244), (40, 40, 40)
-GAP, TEXT = 16, 18
 THRESHOLD = 0.5
 CUTOUT_LEVELS = (0, 2, 3, 4, 5)
 CUTOUT_CELL = 240
@@ -188,27 +186,6 @@ def bilinear(texels: NDArray[np.float32], uvs: Array, *, wrap: bool = False) -> 
 def unit(vectors: Array) -> Array:
     """Vectors of length 1."""
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-
-
-def encoded(light: Array) -> Array:
-    """Encodes sRGB, clipped."""
-    return prefilter.to_srgb(np.clip(light, 0, 1).astype(np.float32))
-
-
-def sheet(cells: Sequence[tuple[Array, str]], columns: int) -> Image.Image:
-    """Puts pictures in rows, with a line under each."""
-    high, wide = cells[0][0].shape[:2]
-    rows = -(-len(cells) // columns)
-    size = (GAP + columns * (wide + GAP), GAP + rows * (high + GAP + TEXT + 6))
-    page = Image.new("RGB", size, PAPER)
-    draw = ImageDraw.Draw(page)
-    font = ImageFont.load_default(size=TEXT - 3)
-    for index, (pixels, note) in enumerate(cells):
-        left = GAP + index % columns * (wide + GAP)
-        top = GAP + index // columns * (high + GAP + TEXT + 6)
-        page.paste(Image.fromarray(np.round(255 * pixels).astype(np.uint8)), (left, top))
-        draw.text((left + wide // 2, top + high + 4), note, fill=INK, font=font, anchor="mt")
-    return page
 
 
 main(Path(sys.argv[1]))

@@ -1,0 +1,136 @@
+"""Makes the pictures of shapes for docs/benchmarks.md.
+
+usage: python3 shapes.py FOLDER        (with the package prefilter importable)
+
+Leaves FOLDER/patterns.png (figures 2.5 and 2.6), FOLDER/abutting.png and, where the drawings
+gathered beside the checkout are, FOLDER/tiger.png.
+"""
+
+import sys
+from collections.abc import Iterator
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+from PIL import Image
+from sheets import encoded, sheet
+
+Array = NDArray[np.float32]
+
+DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "svg"
+FILTERS = ("box", "tent", "mitchell", "lanczos3", "radial3")
+CELL = 256
+TIGER_SMALL = 64
+TIGER_CELL = 384
+
+
+def main(folder: Path) -> None:
+    """Makes all pictures."""
+    patterns().save(folder / "patterns.png")
+    abutting().save(folder / "abutting.png")
+    drawing = DATA / "Ghostscript_Tiger.svg"
+    if drawing.exists():
+        tiger(drawing).save(folder / "tiger.png")
+
+
+def patterns() -> Image.Image:
+    """Lines in perspective, a star and rings, each by several filters."""
+    cells = []
+    for shape, size in ((fan(), 128), (star(), 64), (rings(), 64)):
+        for name in FILTERS:
+            found = prefilter.rasterize([shape], size, size, filter=name)
+            cells.append((shown(1 - found, CELL), name))
+    return sheet(cells, len(FILTERS))
+
+
+def fan() -> prefilter.Shape:
+    """A plane of lines, 1/4 a pixel at the bottom and 2 a pixel at the top of 128 pixels."""
+    shape = prefilter.Shape()
+    for left in np.arange(-128, 128):
+        near, far = 64 + 4 * (left + np.array([0, 0.5])), 64 + 0.5 * (left + np.array([0, 0.5]))
+        shape.add_polygon([(near[0], 0), (near[1], 0), (far[1], 128), (far[0], 128)])
+    return shape
+
+
+def star() -> prefilter.Shape:
+    """32 triangles around the middle of 64 pixels."""
+    shape = prefilter.Shape()
+    for angle in 2 * np.pi * np.arange(32) / 32:
+        sides = angle + 2 * np.pi * np.array([-0.25, 0.25]) / 32
+        tips = 32 + 31 * np.stack([np.cos(sides), np.sin(sides)], axis=1)
+        shape.add_polygon([(32, 32), *tips])
+    return shape
+
+
+def rings() -> prefilter.Shape:
+    """A quarter of 32 rings of the same area, by quadratic curves, in 64 pixels."""
+    shape = prefilter.Shape()
+    radii = 64 * np.sqrt(np.arange(1, 65) / 64)
+    for inner, outer in zip(radii[::2], radii[1::2], strict=True):
+        shape.move_to(outer, 0)
+        for control, end in arc(outer, 0, np.pi / 2):
+            shape.curve_to(*control, *end)
+        shape.line_to(0, inner)
+        for control, end in arc(inner, np.pi / 2, 0):
+            shape.curve_to(*control, *end)
+        shape.close()
+    return shape
+
+
+def arc(radius: float, begin: float, end: float) -> Iterator[tuple[Array, Array]]:
+    """Yields control points and ends of two quadratic curves around the origin."""
+    for first, last in pairwise(np.linspace(begin, end, 3)):
+        middle = (first + last) / 2
+        reach = radius / np.cos((last - first) / 2)
+        yield (
+            reach * np.array([np.cos(middle), np.sin(middle)]),
+            radius * np.array([np.cos(last), np.sin(last)]),
+        )
+
+
+def abutting() -> Image.Image:
+    """64 white quads side by side, composited one after another, and added."""
+    quads = []
+    for left in range(64):
+        lean = (0 if left == 0 else 1, 0 if left == 63 else 1)
+        quads.append(prefilter.Shape())
+        corners = [(left, 0), (left + 1, 0), (left + 1 + lean[1], 64), (left + lean[0], 64)]
+        quads[-1].add_polygon(corners)
+    composited = np.zeros((64, 64, 1), np.float32)
+    for quad in quads:
+        coverage = prefilter.rasterize([quad], 64, 64)
+        composited += coverage * (1 - composited)
+    added = prefilter.rasterize(quads, 64, 64)
+    cells = []
+    for found, how in ((composited, "composited"), (added, "added by Prefilter")):
+        lowest = np.floor(255 * found.min() + 0.5)
+        cells.append((shown(found, CELL, encode=False), how))
+        print(f"abutting quads, {how}: lowest {lowest:.0f} of 255")
+    return sheet(cells, 2)
+
+
+def tiger(drawing: Path) -> Image.Image:
+    """The drawing at 64 pixels by two filters, and large."""
+    svg = prefilter.read_svg(drawing)
+    cells = []
+    for size, name in ((TIGER_SMALL, "box"), (TIGER_SMALL, "mitchell"), (TIGER_CELL, "mitchell")):
+        found = prefilter.rasterize(
+            svg.shapes_for(size, size), size, size, filter=name, overlap="cover"
+        )
+        over_white = found[..., :3] + 1 - found[..., 3:]
+        cells.append((shown(over_white, TIGER_CELL), f"{name}, {size} x {size}"))
+    return sheet(cells, len(cells))
+
+
+def shown(light: Array, side: int, *, encode: bool = True) -> Array:
+    """Returns sRGB with rows from the top, pixels enlarged to squares."""
+    times = side // light.shape[0]
+    pixels = encoded(light) if encode else np.clip(light, 0, 1)
+    large = pixels[::-1].repeat(times, axis=0).repeat(times, axis=1)
+    return np.broadcast_to(large, (*large.shape[:2], 3)) if light.shape[2] == 1 else large
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
