@@ -22,6 +22,7 @@ Array = NDArray[np.float32]
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "svg"
 FILTERS = ("box", "tent", "mitchell", "lanczos3", "radial3")
 CELL = 256
+QUAD_COLOR = np.array([0.10, 0.32, 0.65], np.float32)
 TIGER_SMALL = 64
 TIGER_CELL = 384
 
@@ -91,23 +92,23 @@ def arc(radius: float, begin: float, end: float) -> Iterator[tuple[Array, Array]
 
 
 def abutting() -> Image.Image:
-    """64 white quads side by side, composited one after another, and added."""
+    """Quads side by side that cover 64 x 64 pixels, composited one after another, and added."""
     quads = []
-    for left in range(64):
-        lean = (0 if left == 0 else 1, 0 if left == 63 else 1)
+    for left in range(0, 64, 8):
+        bottom = [left, left + 8]
+        top = [x if x in (0, 64) else x + 3 for x in bottom]
+        corners = [(bottom[0], 0), (bottom[1], 0), (top[1], 64), (top[0], 64)]
         quads.append(prefilter.Shape())
-        corners = [(left, 0), (left + 1, 0), (left + 1 + lean[1], 64), (left + lean[0], 64)]
-        quads[-1].add_polygon(corners)
+        quads[-1].add_polygon(np.array(corners, float))
     composited = np.zeros((64, 64, 1), np.float32)
     for quad in quads:
         coverage = prefilter.rasterize([quad], 64, 64)
         composited += coverage * (1 - composited)
     added = prefilter.rasterize(quads, 64, 64)
     cells = []
-    for found, how in ((composited, "composited"), (added, "added by Prefilter")):
-        lowest = np.floor(255 * found.min() + 0.5)
-        cells.append((shown(found, CELL, encode=False), how))
-        print(f"abutting quads, {how}: lowest {lowest:.0f} of 255")
+    for found, how in ((composited, "composited"), (added, "added")):
+        print(f"abutting quads, {how}: lowest {np.floor(255 * found.min() + 0.5):.0f} of 255")
+        cells.append((shown(found * QUAD_COLOR, CELL), how))
     return sheet(cells, 2)
 
 
@@ -124,11 +125,10 @@ def tiger(drawing: Path) -> Image.Image:
     return sheet(cells, len(cells))
 
 
-def shown(light: Array, side: int, *, encode: bool = True) -> Array:
+def shown(light: Array, side: int) -> Array:
     """Returns sRGB with rows from the top, pixels enlarged to squares."""
     times = side // light.shape[0]
-    pixels = encoded(light) if encode else np.clip(light, 0, 1)
-    large = pixels[::-1].repeat(times, axis=0).repeat(times, axis=1)
+    large = encoded(light)[::-1].repeat(times, axis=0).repeat(times, axis=1)
     return np.broadcast_to(large, (*large.shape[:2], 3)) if light.shape[2] == 1 else large
 
 
