@@ -163,8 +163,8 @@ FillRule fill_rule_of(const std::string& name) {
 }
 
 Array<float> bound_rasterize(
-    const std::vector<std::tuple<const Outline*, std::string, Paint>>& drawn, int width, int height,
-    const std::string& filter, const std::string& method, const std::string& overlap,
+    const std::vector<std::tuple<const Outline*, std::string, Paint, bool>>& drawn, int width,
+    int height, const std::string& filter, const std::string& method, const std::string& overlap,
     const std::vector<float>& background, const py::object& progress, int threads) {
   RasterOptions options;
   options.width = width;
@@ -176,8 +176,8 @@ Array<float> bound_rasterize(
   options.threads = threads;
   options.progress = to_progress(progress);
   std::vector<Shape> shapes;
-  for (const auto& [outline, fill_rule, paint] : drawn) {
-    shapes.push_back({*outline, fill_rule_of(fill_rule), paint});
+  for (const auto& [outline, fill_rule, paint, winds_once] : drawn) {
+    shapes.push_back({*outline, fill_rule_of(fill_rule), paint, winds_once});
   }
   Image image;
   {

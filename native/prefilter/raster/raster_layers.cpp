@@ -1,5 +1,6 @@
 #include "prefilter/raster/raster_layers.h"
 
+#include <optional>
 #include <utility>
 
 #include "prefilter/base/parallel.h"
@@ -32,11 +33,12 @@ class LayerMaker {
  public:
   explicit LayerMaker(RasterLayers* out) : out_(out) {}
 
-  void add(Outline outline, const Paint& paint) {
+  // An outline that is kept elsewhere.
+  void add(const Outline& outline, const Paint& paint) {
     if (outline.empty()) return;
     if (paint.kind == Paint::Kind::kLinearStops) {
       for (GradientStrip& strip : gradient_strips(outline, paint)) {
-        add(std::move(strip.outline), strip.paint);
+        add(keep(std::move(strip.outline)), strip.paint);
       }
       return;
     }
@@ -48,8 +50,12 @@ class LayerMaker {
       together_ = 0;
     }
     together_ = is_constant ? together_ + 1 : 0;
+    out_->layers.back().edges.add(outline);
+  }
+
+  const Outline& keep(Outline outline) {
     out_->outlines.push_back(std::move(outline));
-    out_->layers.back().edges.add(out_->outlines.back());
+    return out_->outlines.back();
   }
 
  private:
@@ -65,15 +71,17 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
   for (std::size_t c = 0; c < options.background.size(); ++c) {
     out.background[c] = options.background[c];
   }
-  std::vector<Outline> resolved(shapes.size());
-  parallel_for(
-      static_cast<std::int64_t>(shapes.size()), options.threads, options.progress.part(0.0, 0.2),
-      [&](std::int64_t i) { resolved[i] = resolve(shapes[i].outline, shapes[i].fill_rule); });
+  std::vector<std::optional<Outline>> changed(shapes.size());
+  parallel_for(static_cast<std::int64_t>(shapes.size()), options.threads,
+               options.progress.part(0.0, 0.2), [&](std::int64_t i) {
+                 if (shapes[i].winds_once) return;
+                 changed[i] = resolved(shapes[i].outline, shapes[i].fill_rule);
+               });
   LayerMaker maker(&out);
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     Paint paint = shapes[i].paint;
     take_background(out.background, &paint);
-    maker.add(std::move(resolved[i]), paint);
+    maker.add(changed[i] ? maker.keep(*std::move(changed[i])) : shapes[i].outline, paint);
   }
   return out;
 }

@@ -21,6 +21,9 @@ struct Shape {
   Outline outline;
   FillRule fill_rule = FillRule::kNonzero;
   Paint paint;
+  /// The caller knows that contours wind once, counter-clockwise, round what they fill. A point
+  /// then counts as often as they wind round it, and no overlaps are looked for.
+  bool winds_once = false;
 };
 
 enum class RasterMethod : std::uint8_t {

@@ -393,7 +393,7 @@ def reconstruct_file(
 ) -> dict[str, float]: ...
 
 def rasterize(
-    shapes: Sequence[tuple[Outline, str, Paint]],
+    shapes: Sequence[tuple[Outline, str, Paint, bool]],
     width: int,
     height: int,
     filter: str,

@@ -34,16 +34,26 @@ class Shape:
         color: One to four values, which a pixel takes as far as the shape covers it. Four are
             red, green and blue multiplied by alpha, and alpha. Filtering needs scene-linear
             values.
+        winds_once: Contours are known to wind once, counter-clockwise, round what they fill. No
+            overlaps are looked for then, which saves time where there are many curves; where there
+            are some, a place counts as often as contours wind round it.
 
     Raises:
         ValueError: `fill_rule` is no such name, or `color` not one to four finite numbers.
     """
 
-    def __init__(self, fill_rule: str = "nonzero", color: Sequence[float] = (1.0,)) -> None:
+    def __init__(
+        self,
+        fill_rule: str = "nonzero",
+        color: Sequence[float] = (1.0,),
+        *,
+        winds_once: bool = False,
+    ) -> None:
         name = as_name("fill_rule", fill_rule)
         if name not in _FILL_RULES:
             raise ValueError(f"fill_rule: '{name}' is not one of {', '.join(_FILL_RULES)}")
         self._fill_rule = name
+        self._winds_once = bool(winds_once)
         self._outline = _native.Outline()
         self._has_contour = False
         self.color = color
@@ -395,7 +405,7 @@ def rasterize(
     except (KeyError, TypeError) as error:
         raise ValueError(f"dtype: {dtype!r} is not one of float32, uint8") from error
     image = _native.rasterize(
-        [(shape._outline, shape._fill_rule, shape._paint) for shape in drawn],
+        [(shape._outline, shape._fill_rule, shape._paint, shape._winds_once) for shape in drawn],
         as_size("width", width),
         as_size("height", height),
         as_name("filter", filter),
