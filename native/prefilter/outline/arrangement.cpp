@@ -76,11 +76,16 @@ bool Arrangement::follows(const PieceId& a, const PieceId& b) const {
 }
 
 // The two sites of a meeting stand one behind the other.
-bool Arrangement::collect_sites(std::vector<Site>* sites) const {
+bool Arrangement::collect_sites(const Progress& progress, std::vector<Site>* sites) const {
   std::vector<std::pair<PieceId, PieceId>> pairs;
   tree_.append_pairs(&pairs);
   std::vector<Meeting> meetings;
-  for (auto [a, b] : pairs) {
+  constexpr std::size_t kPairsPerReport = 1 << 12;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (i % kPairsPerReport == 0) {
+      progress.report(static_cast<double>(i) / static_cast<double>(pairs.size()));
+    }
+    auto [a, b] = pairs[i];
     if (!follows(a, b) && follows(b, a)) std::swap(a, b);
     const MonotonePiece first_piece = contours_.piece(contours_.contours()[a.contour], a.piece);
     const MonotonePiece second_piece = contours_.piece(contours_.contours()[b.contour], b.piece);
@@ -153,9 +158,9 @@ void Arrangement::merge_sites(std::vector<Site>* sites) {
   }
 }
 
-bool Arrangement::cut() {
+bool Arrangement::cut(const Progress& progress) {
   std::vector<Site> sites;
-  if (!collect_sites(&sites)) return false;
+  if (!collect_sites(progress, &sites)) return false;
   merge_sites(&sites);
   std::sort(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
     return std::tie(a.place, a.parameter, a.vertex) < std::tie(b.place, b.parameter, b.vertex);
@@ -255,8 +260,8 @@ void Arrangement::group_chains() {
 
 void Arrangement::visit(std::size_t first, std::size_t last, const Visitor& visitor) const {
   constexpr int kMostLooked = 32;
-  std::vector<int> near_side(layers_);
-  std::vector<int> far_side(layers_);
+  LayerWindings near_side(layers_);
+  LayerWindings far_side(layers_);
   std::vector<PieceId> excluded;
   for (std::size_t i = first; i < last; ++i) {
     const OutlineChain& chain = chains_[i];
@@ -293,23 +298,26 @@ void Arrangement::visit(std::size_t first, std::size_t last, const Visitor& visi
     };
 
     excluded.assign(1, {chain.contour, best->piece_index});
-    std::fill(near_side.begin(), near_side.end(), 0);
+    near_side.clear();
+    far_side.clear();
     if (group != OutlineChain::kNone) {
       for (std::size_t m = 1; m < groups_[group].size(); ++m) {
         const OutlineChain& member = chains_[groups_[group][m]];
         excluded.push_back({member.contour, only_part(member)->piece_index});
       }
     }
-    tree_.add_windings(point, axis, excluded, near_side);
-    far_side = near_side;
-    far_side[contours_.contours()[chain.contour].layer] += sign_of(best_step);
+    tree_.add_windings(point, axis, excluded, &near_side);
+    for (const std::uint32_t layer : near_side.touched()) {
+      far_side.add(layer, near_side[layer] - far_side[layer]);
+    }
+    far_side.add(contours_.contours()[chain.contour].layer, sign_of(best_step));
     if (group != OutlineChain::kNone) {
       const std::uint32_t begin = cuts_[chain.begin_cut].vertex;
       for (std::size_t m = 1; m < groups_[group].size(); ++m) {
         const OutlineChain& member = chains_[groups_[group][m]];
         const bool along = cuts_[member.begin_cut].vertex == begin;
-        far_side[contours_.contours()[member.contour].layer] +=
-            along ? sign_of(best_step) : -sign_of(best_step);
+        far_side.add(contours_.contours()[member.contour].layer,
+                     along ? sign_of(best_step) : -sign_of(best_step));
       }
     }
     // The ray starts on the side of +x, or of +y.

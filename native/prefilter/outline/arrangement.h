@@ -39,7 +39,7 @@ class Arrangement {
   Arrangement(std::span<const Outline* const> outlines, double precision);
 
   /// Cuts contours where they meet. Returns false where that cannot be told.
-  bool cut();
+  bool cut(const Progress& progress = {});
 
   /// Whether all contours are apart from each other and from themselves, after `cut`.
   bool all_whole() const { return cuts_.empty(); }
@@ -47,10 +47,10 @@ class Arrangement {
   std::size_t chain_count() const { return chains_.size(); }
   std::uint32_t contour_of(std::uint32_t chain) const { return chains_[chain].contour; }
 
-  /// Is given a chain, and the winding numbers of every layer to its right and to its left. Of
-  /// chains that run along each other it gets one.
+  /// Is given a chain, and the winding numbers to its right and to its left. Of chains that run
+  /// along each other it gets one.
   using Visitor =
-      std::function<void(std::uint32_t, std::span<const int> right, std::span<const int> left)>;
+      std::function<void(std::uint32_t, const LayerWindings& right, const LayerWindings& left)>;
   /// Calls the visitor for chains of [first, last), in order.
   void visit(std::size_t first, std::size_t last, const Visitor& visitor) const;
 
@@ -74,7 +74,7 @@ class Arrangement {
 
   CurvePiece curve_piece(const MonotonePiece& piece, std::uint32_t contour) const;
   bool follows(const PieceId& a, const PieceId& b) const;
-  bool collect_sites(std::vector<Site>* sites) const;
+  bool collect_sites(const Progress& progress, std::vector<Site>* sites) const;
   Site site_at(const PieceId& id, const MonotonePiece& piece, double parameter,
                const Point2& point) const;
   void merge_sites(std::vector<Site>* sites);

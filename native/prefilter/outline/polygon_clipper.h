@@ -5,10 +5,9 @@
 #include <vector>
 
 #include "prefilter/base/outline.h"
+#include "prefilter/outline/set_operations.h"
 
 namespace prefilter {
-
-enum class SetOperation : std::uint8_t { kUnion, kIntersection, kDifference };
 
 /// A contour's vertices; a line closes it.
 using Polygon = std::vector<Point2>;

@@ -3,14 +3,11 @@
 #include <array>
 
 #include "prefilter/outline/arrangement.h"
+#include "prefilter/outline/fill_rule.h"
 #include "prefilter/outline/polygon_clipper.h"
 
 namespace prefilter {
 namespace {
-
-bool is_filled(int winding, FillRule rule) {
-  return rule == FillRule::kNonzero ? winding != 0 : winding % 2 != 0;
-}
 
 enum class Outcome : std::uint8_t { kAsItIs, kTraced, kUnclear };
 
@@ -21,8 +18,8 @@ Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
   std::vector<BoundaryChain> boundary;
   boundary.reserve(arrangement.chain_count());
   bool all_forward = true;
-  const auto visitor = [&](std::uint32_t chain, std::span<const int> right,
-                           std::span<const int> left) {
+  const auto visitor = [&](std::uint32_t chain, const LayerWindings& right,
+                           const LayerWindings& left) {
     const bool is_left = is_filled(left[0], rule);
     const bool is_right = is_filled(right[0], rule);
     all_forward = all_forward && is_left && !is_right;

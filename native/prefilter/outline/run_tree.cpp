@@ -240,7 +240,7 @@ void RunTree::pairs_between(std::uint32_t a, std::uint32_t b, Pairs* pairs) cons
 }
 
 void RunTree::add_windings(const Point2& point, RayAxis axis, std::span<const PieceId> excluded,
-                           std::span<int> windings) const {
+                           LayerWindings* windings) const {
   if (nodes_.empty()) return;
   if (axis == RayAxis::kX) {
     add_on_ray<RayAxis::kX>(point, excluded, windings);
@@ -251,7 +251,7 @@ void RunTree::add_windings(const Point2& point, RayAxis axis, std::span<const Pi
 
 template <RayAxis axis>
 void RunTree::add_on_ray(const Point2& point, std::span<const PieceId> excluded,
-                         std::span<int> windings) const {
+                         LayerWindings* windings) const {
   std::array<std::uint32_t, 64> stack;
   std::size_t height = 0;
   stack[height++] = 0;
@@ -273,7 +273,8 @@ void RunTree::add_on_ray(const Point2& point, std::span<const PieceId> excluded,
     }
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
       const MonotoneRun& run = contours_.runs()[i];
-      windings[contours_.contours()[run.contour].layer] += run_winding<axis>(run, point, excluded);
+      windings->add(contours_.contours()[run.contour].layer,
+                    run_winding<axis>(run, point, excluded));
     }
   }
 }

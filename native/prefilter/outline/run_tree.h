@@ -17,6 +17,29 @@ struct PieceId {
   friend auto operator<=>(const PieceId&, const PieceId&) = default;
 };
 
+/// Winding numbers of a point, one for each layer. Most of them are 0.
+class LayerWindings {
+ public:
+  explicit LayerWindings(std::size_t layers) : values_(layers, 0) {}
+
+  int operator[](std::size_t layer) const { return values_[layer]; }
+  /// Layers that something was added to, and maybe more than once.
+  std::span<const std::uint32_t> touched() const { return touched_; }
+  void add(std::uint32_t layer, int winding) {
+    if (winding == 0) return;
+    values_[layer] += winding;
+    touched_.push_back(layer);
+  }
+  void clear() {
+    for (const std::uint32_t layer : touched_) values_[layer] = 0;
+    touched_.clear();
+  }
+
+ private:
+  std::vector<int> values_;
+  std::vector<std::uint32_t> touched_;
+};
+
 /// The direction of a ray.
 enum class RayAxis : std::uint8_t { kX, kY };
 
@@ -29,11 +52,11 @@ class RunTree {
   /// elsewhere than at their joint, and are left out.
   void append_pairs(std::vector<std::pair<PieceId, PieceId>>* pairs) const;
 
-  /// Adds to `windings`, one for each layer, what the pieces on the ray from a point upward in x,
+  /// Adds to `windings` what the pieces on the ray from a point upward in x,
   /// or in y, contribute to the winding numbers at that point. `excluded` are left out: those that
   /// the point lies on.
   void add_windings(const Point2& point, RayAxis axis, std::span<const PieceId> excluded,
-                    std::span<int> windings) const;
+                    LayerWindings* windings) const;
 
  private:
   struct Node {
@@ -51,7 +74,7 @@ class RunTree {
                      std::vector<std::pair<PieceId, PieceId>>* pairs) const;
   template <RayAxis axis>
   void add_on_ray(const Point2& point, std::span<const PieceId> excluded,
-                  std::span<int> windings) const;
+                  LayerWindings* windings) const;
   template <RayAxis axis>
   int run_winding(const MonotoneRun& run, const Point2& point,
                   std::span<const PieceId> excluded) const;

@@ -88,7 +88,10 @@ inline double area(const std::vector<Chain>& chains) {
   return sum;
 }
 
-inline double area(const Outline& outline) { return area(fine_chains(outline)); }
+/// By Richardson's extrapolation: lines are off by the square of their length.
+inline double area(const Outline& outline) {
+  return (4.0 * area(fine_chains(outline, 400)) - area(fine_chains(outline, 200))) / 3.0;
+}
 
 /// Random points of a box somewhat larger than the outline's, and at least `clearance` away from
 /// the curves.

@@ -1,0 +1,12 @@
+// What a fill rule says of a winding number.
+#pragma once
+
+#include "prefilter/base/outline.h"
+
+namespace prefilter {
+
+inline bool is_filled(int winding, FillRule rule) {
+  return rule == FillRule::kNonzero ? winding != 0 : winding % 2 != 0;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,51 @@
+#include "prefilter/outline/set_operations.h"
+
+#include <array>
+#include <vector>
+
+#include "prefilter/outline/arrangement.h"
+#include "prefilter/outline/fill_rule.h"
+#include "prefilter/outline/polygon_clipper.h"
+
+namespace prefilter {
+namespace {
+
+bool holds(SetOperation operation, bool in_first, bool in_second) {
+  switch (operation) {
+    case SetOperation::kUnion:
+      return in_first || in_second;
+    case SetOperation::kIntersection:
+      return in_first && in_second;
+    case SetOperation::kDifference:
+      break;
+  }
+  return in_first && !in_second;
+}
+
+}  // namespace
+
+Outline combine(const Outline& first, FillRule first_rule, const Outline& second,
+                FillRule second_rule, SetOperation operation, double tolerance) {
+  const std::array<const Outline*, 2> outlines = {&first, &second};
+  const auto is_inside = [&](const LayerWindings& windings) {
+    return holds(operation, is_filled(windings[0], first_rule),
+                 is_filled(windings[1], second_rule));
+  };
+  for (const double precision : kPrecisions) {
+    Arrangement arrangement(outlines, precision);
+    if (!arrangement.cut()) continue;
+    std::vector<BoundaryChain> boundary;
+    arrangement.visit(
+        0, arrangement.chain_count(),
+        [&](std::uint32_t chain, const LayerWindings& right, const LayerWindings& left) {
+          const bool is_right = is_inside(right);
+          if (is_right != is_inside(left)) boundary.push_back({chain, is_right});
+        });
+    Outline result;
+    if (arrangement.trace(boundary, &result)) return result;
+  }
+  return combine_polygons(flattened(first, tolerance), first_rule, flattened(second, tolerance),
+                          second_rule, operation);
+}
+
+}  // namespace prefilter

@@ -1,0 +1,18 @@
+// Unions, intersections and differences of what outlines fill.
+#pragma once
+
+#include <cstdint>
+
+#include "prefilter/base/outline.h"
+#include "prefilter/outline/resolve.h"
+
+namespace prefilter {
+
+enum class SetOperation : std::uint8_t { kUnion, kIntersection, kDifference };
+
+/// The boundary of a set operation of what two outlines fill by their rules, as `resolve` would
+/// have it.
+Outline combine(const Outline& first, FillRule first_rule, const Outline& second,
+                FillRule second_rule, SetOperation operation, double tolerance = kOutlineTolerance);
+
+}  // namespace prefilter
