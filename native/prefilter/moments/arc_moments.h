@@ -25,8 +25,9 @@ template <int N>
 struct ArcMoments {
   static constexpr int kCount = N + 1;
   static constexpr int kAcross = kCount * kCount;
-  /// Whole vectors of them.
-  static constexpr int kSums = (kAcross + kCount + kMaxChannels - 1) / kMaxChannels * kMaxChannels;
+  /// Whole vectors of them, wherever in them one is read from.
+  static constexpr int kSums =
+      (kAcross + (kCount + 1) / 2 * 2 + kMaxChannels - 1) / kMaxChannels * kMaxChannels;
 
   /// The integrals of x^(a + 1) / (a + 1) P_b(y) dy at [a * kCount + b], and from kAcross on those
   /// of P_b(y) dy.

@@ -29,6 +29,13 @@ class CoverageRows {
     is_changed_[static_cast<std::size_t>(blocks_) * row + x / kBlock] = 1;
     is_row_changed_[row] = 1;
   }
+  /// The steps at the pixels [begin, end) of a row, to be added to; end is up to the width + 1.
+  std::int64_t* change(int row, int begin, int end) {
+    std::uint8_t* changed = is_changed_.data() + static_cast<std::size_t>(blocks_) * row;
+    for (int block = begin / kBlock; block <= (end - 1) / kBlock; ++block) changed[block] = 1;
+    is_row_changed_[row] = 1;
+    return steps_.data() + stride_ * row + begin;
+  }
   bool is_changed(int row) const { return is_row_changed_[row] != 0; }
 
   /// Calls one(x, coverage) for pixels of which some differ, and run(begin, end, coverage) for

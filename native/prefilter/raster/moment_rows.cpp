@@ -16,49 +16,55 @@ constexpr int kWeightBits = kCoverageBits - kMomentBits;
 
 template <int N>
 MomentRows<N>::MomentRows(const CellFilter& filter, int width) : filter_(filter), width_(width) {
-  const int count = filter.degree + 1;
   const int taps = filter.taps;
+  using ByBasis = std::array<double, 2 * kPairs>;
   // Powers of y by P_b: y^b is P_b + its mean P_0.
   const auto by_basis = [&](const auto& coefficient) {
-    Doubles out{};
-    for (int b = 0; b < count; ++b) {
+    ByBasis out{};
+    for (int b = 0; b < kCount; ++b) {
       out[b] += coefficient(b);
       if (b > 0) out[0] += coefficient(b) * mean_power(b);
     }
     return out;
   };
-  std::vector<Doubles> run_weights;
+  const auto as_pairs = [](const ByBasis& values) {
+    Powers powers;
+    std::memcpy(powers.v, values.data(), sizeof powers.v);
+    return powers;
+  };
+  std::vector<ByBasis> run_weights;
   if (filter.is_separable) {
     integrals_before_.push_back(0.0);
     for (int tap = 0; tap < taps; ++tap) {
-      const double* along = filter.along.data() + tap * count;
-      along_y_.push_back(by_basis([&](int b) { return along[b]; }));
+      const double* along = filter.along.data() + tap * kCount;
+      run_weights.push_back(by_basis([&](int b) { return along[b]; }));
       double integral = 0.0;
-      for (int a = 0; a < count; ++a) integral += along[a] * mean_power(a);
+      for (int a = 0; a < kCount; ++a) integral += along[a] * mean_power(a);
       integrals_before_.push_back(integrals_before_.back() + integral);
+      for (int b = 0; b < kCount; ++b) along_y_[b].v[tap / 2][tap % 2] = run_weights.back()[b];
     }
     integrals_before_.back() = 1.0;
-    run_weights = along_y_;
   } else {
     for (int oy = 0; oy < taps; ++oy) {
-      Doubles before{};
-      table_before_.push_back(before);
+      ByBasis before{};
+      table_before_.push_back({});
       for (int ox = 0; ox < taps; ++ox) {
-        const double* piece = filter.table.data() + (oy * taps + ox) * count * count;
-        for (int a = 0; a < count; ++a) {
-          table_.push_back(by_basis([&](int b) { return piece[b * count + a]; }));
-          before += table_.back() * mean_power(a);
+        const double* piece = filter.table.data() + (oy * taps + ox) * kCount * kCount;
+        for (int a = 0; a < kCount; ++a) {
+          const ByBasis powers = by_basis([&](int b) { return piece[b * kCount + a]; });
+          table_.push_back(as_pairs(powers));
+          for (int b = 0; b < kCount; ++b) before[b] += powers[b] * mean_power(a);
         }
-        table_before_.push_back(before);
+        table_before_.push_back(as_pairs(before));
       }
       run_weights.push_back(before);
     }
   }
   constexpr double kScale = std::int64_t{1} << kWeightBits;
   std::int64_t sum = 0;
-  for (const Doubles& weights : run_weights) {
-    Longs rounded{};
-    for (int b = 0; b <= N; ++b) rounded[b] = std::llrint(weights[b] * kScale);
+  for (const ByBasis& weights : run_weights) {
+    Across rounded{};
+    for (int b = 0; b < kCount; ++b) rounded[b] = std::llrint(weights[b] * kScale);
     sum += rounded[0];
     run_weights_.push_back(rounded);
   }
@@ -67,8 +73,10 @@ MomentRows<N>::MomentRows(const CellFilter& filter, int width) : filter_(filter)
 }
 
 template <int N>
-std::int64_t MomentRows<N>::run_value(int tap, const Longs& across) const {
-  return (run_weights_[tap] * across).sum();
+std::int64_t MomentRows<N>::run_value(int tap, const Across& across) const {
+  std::int64_t value = 0;
+  for (int b = 0; b < kCount; ++b) value += run_weights_[tap][b] * across[b];
+  return value;
 }
 
 template <int N>
@@ -83,9 +91,7 @@ void MomentRows<N>::add_coverage(const MomentCells<N>& cells, int first_row, int
   end_row_ = end_row;
   for (int row = cells.window().first_row; row < cells.window().end_row; ++row) {
     cells.columns_of(row, &columns_);
-    Longs across{};
-    const auto left = cells.left_of(row);
-    for (int b = 0; b <= N; ++b) across[b] = left[b];
+    Across across = cells.left_of(row);
     start_row(row, across, rows);
     // What lies between two cells whose pixels do not meet is a run.
     for (std::size_t begin = 0; begin < columns_.size();) {
@@ -99,7 +105,7 @@ void MomentRows<N>::add_coverage(const MomentCells<N>& cells, int first_row, int
 
 // What is left of all columns is a run from the first pixel on.
 template <int N>
-void MomentRows<N>::start_row(int row, const Longs& across, CoverageRows* rows) {
+void MomentRows<N>::start_row(int row, const Across& across, CoverageRows* rows) {
   const int begin_y = std::max(first_row_, filter_.first_pixel_over(row));
   const int end_y = std::min(end_row_, filter_.last_pixel_over(row) + 1);
   for (int y = begin_y; y < end_y; ++y) {
@@ -108,104 +114,142 @@ void MomentRows<N>::start_row(int row, const Longs& across, CoverageRows* rows) 
   }
 }
 
+// Cells [from, to) that are alike.
+template <int N>
+void MomentRows<N>::add_alike(int from, int to, const Across& across) {
+  bool is_empty = true;
+  std::array<double, 2 * kPairs> units{};
+  for (int b = 0; b < kCount; ++b) {
+    units[b] = static_cast<double>(across[b]) * kMomentUnit;
+    is_empty = is_empty && across[b] == 0;
+  }
+  if (is_empty) return;
+  Powers moments;
+  std::memcpy(moments.v, units.data(), sizeof moments.v);
+  const int taps = filter_.taps;
+  const int begin = std::max(first_pixel_, filter_.first_pixel_over(from));
+  const int end = std::min(end_pixel_, filter_.last_pixel_over(to - 1) + 1);
+  for (int pixel = begin; pixel < end; ++pixel) {
+    const int low = taps_before(pixel, from);
+    const int high = taps_before(pixel, to);
+    if (filter_.is_separable) {
+      const double share = integrals_before_[high] - integrals_before_[low];
+      Powers& sums = sums_[pixel - first_pixel_];
+      for (int q = 0; q < kPairs; ++q) sums.v[q] += share * moments.v[q];
+      continue;
+    }
+    ByTap& values = values_[pixel - first_pixel_];
+    for (int oy = 0; oy < taps; ++oy) {
+      const Powers* before = table_before_.data() + oy * (taps + 1);
+      Pair products{};
+      for (int q = 0; q < kPairs; ++q) {
+        products += moments.v[q] * (before[high].v[q] - before[low].v[q]);
+      }
+      values.v[oy / 2][oy % 2] += products[0] + products[1];
+    }
+  }
+}
+
+template <int N>
+void MomentRows<N>::add_cell(int column, const ArcMoments<N>& cell, const Across& across) {
+  using Integers [[gnu::vector_size(2 * sizeof(std::int32_t))]] = std::int32_t;
+  const auto load = [&](int place) {
+    Integers integers;
+    std::memcpy(&integers, cell.sums.data() + place, sizeof integers);
+    return integers;
+  };
+  Pair moments[kCount][kPairs];
+  for (int q = 0; q < kPairs; ++q) {
+    const Pair own =
+        __builtin_convertvector(load(ArcMoments<N>::kAcross + 2 * q), Pair) * kMomentUnit;
+    Pair before{};
+    for (int b = 2 * q; b < std::min(2 * q + 2, kCount); ++b) {
+      before[b % 2] = static_cast<double>(across[b]) * kMomentUnit;
+    }
+    for (int a = 0; a < kCount; ++a) {
+      const Pair inside = __builtin_convertvector(load(a * kCount + 2 * q), Pair) * kMomentUnit;
+      moments[a][q] = own * at_high_end(a) - inside + before * mean_power(a);
+    }
+  }
+  const int taps = filter_.taps;
+  const int begin = std::max(first_pixel_, filter_.first_pixel_over(column));
+  const int end = std::min(end_pixel_, filter_.last_pixel_over(column) + 1);
+  for (int pixel = begin; pixel < end; ++pixel) {
+    const int ox = column - filter_.first_cell(pixel);
+    if (filter_.is_separable) {
+      const double* along = filter_.along.data() + ox * kCount;
+      Powers& sums = sums_[pixel - first_pixel_];
+      for (int q = 0; q < kPairs; ++q) {
+        Pair sum = moments[0][q] * along[0];
+        for (int a = 1; a < kCount; ++a) sum += moments[a][q] * along[a];
+        sums.v[q] += sum;
+      }
+      continue;
+    }
+    ByTap& values = values_[pixel - first_pixel_];
+    for (int oy = 0; oy < taps; ++oy) {
+      const Powers* powers = table_.data() + (oy * taps + ox) * kCount;
+      Pair products{};
+      for (int a = 0; a < kCount; ++a) {
+        for (int q = 0; q < kPairs; ++q) products += powers[a].v[q] * moments[a][q];
+      }
+      values.v[oy / 2][oy % 2] += products[0] + products[1];
+    }
+  }
+}
+
 template <int N>
 void MomentRows<N>::add_span(const MomentCells<N>& cells, int row, std::span<const int> columns,
-                             Longs* across, CoverageRows* rows) {
-  const int taps = filter_.taps;
-  const int count = filter_.degree + 1;
-  const int first_column = columns.front();
-  const int last_column = columns.back();
+                             Across* across, CoverageRows* rows) {
   // The pixels that weigh some cell of the span.
-  const int first_pixel = std::max(0, filter_.first_pixel_over(first_column));
-  const int end_pixel = std::min(width_, filter_.last_pixel_over(last_column) + 1);
-  const int pixels = std::max(0, end_pixel - first_pixel);
-  const Longs across_before = *across;
-
-  const auto in_units = [](const Longs& integers) {
-    return integers.template as<double>() * kMomentUnit;
-  };
-  if (filter_.is_separable) {
-    sums_.assign(pixels, Doubles{});
-  } else {
-    values_.assign(static_cast<std::size_t>(pixels) * taps, 0.0);
-  }
-  // Cells [from, to) that are alike.
-  const auto add_alike = [&](int from, int to, const Longs& integers) {
-    const Doubles moments = in_units(integers);
-    const int begin = std::max(first_pixel, filter_.first_pixel_over(from));
-    const int end = std::min(end_pixel, filter_.last_pixel_over(to - 1) + 1);
-    for (int pixel = begin; pixel < end; ++pixel) {
-      const int low = taps_before(pixel, from);
-      const int high = taps_before(pixel, to);
-      if (filter_.is_separable) {
-        sums_[pixel - first_pixel] += moments * (integrals_before_[high] - integrals_before_[low]);
-        continue;
-      }
-      for (int oy = 0; oy < taps; ++oy) {
-        const Doubles* before = table_before_.data() + oy * (taps + 1);
-        values_[(pixel - first_pixel) * taps + oy] +=
-            (moments * (before[high] - before[low])).sum();
-      }
-    }
-  };
-  const auto add_cell = [&](int column, const std::array<Doubles, N + 1>& moments) {
-    const int begin = std::max(first_pixel, filter_.first_pixel_over(column));
-    const int end = std::min(end_pixel, filter_.last_pixel_over(column) + 1);
-    for (int pixel = begin; pixel < end; ++pixel) {
-      const int ox = column - filter_.first_cell(pixel);
-      if (filter_.is_separable) {
-        const double* along = filter_.along.data() + ox * count;
-        Doubles sum{};
-        for (int a = 0; a < count; ++a) sum += moments[a] * along[a];
-        sums_[pixel - first_pixel] += sum;
-        continue;
-      }
-      for (int oy = 0; oy < taps; ++oy) {
-        const Doubles* powers = table_.data() + (oy * taps + ox) * count;
-        Doubles products{};
-        for (int a = 0; a < count; ++a) products += powers[a] * moments[a];
-        values_[(pixel - first_pixel) * taps + oy] += products.sum();
-      }
-    }
-  };
+  first_pixel_ = std::max(0, filter_.first_pixel_over(columns.front()));
+  end_pixel_ = std::min(width_, filter_.last_pixel_over(columns.back()) + 1);
+  const int pixels = std::max(0, end_pixel_ - first_pixel_);
+  const Across across_before = *across;
+  if (filter_.is_separable) sums_.assign(pixels, {});
+  values_.assign(pixels, {});
 
   constexpr int kFar = 1 << 28;
-  add_alike(-kFar, first_column, *across);
-  int next = first_column;
+  add_alike(-kFar, columns.front(), *across);
+  int next = columns.front();
   for (const int column : columns) {
     if (column > next) add_alike(next, column, *across);
     const ArcMoments<N>& cell = cells.at(column, row);
-    Longs cell_across{};
-    for (int b = 0; b <= N; ++b) cell_across[b] = cell.across(b);
-    const Doubles own = in_units(cell_across);
-    const Doubles before = in_units(*across);
-    std::array<Doubles, N + 1> moments;
-    for (int a = 0; a < count; ++a) {
-      Longs inside{};
-      for (int b = 0; b <= N; ++b) inside[b] = cell.inside(a, b);
-      moments[a] = own * at_high_end(a) - in_units(inside) + before * mean_power(a);
-    }
-    add_cell(column, moments);
-    *across += cell_across;
+    add_cell(column, cell, *across);
+    for (int b = 0; b < kCount; ++b) (*across)[b] += cell.across(b);
     next = column + 1;
   }
   add_alike(next, kFar, *across);
 
-  // The rows of pixels that weigh this row of cells.
   constexpr double kScale = std::int64_t{1} << kCoverageBits;
+  const int tap_pairs = (filter_.taps + 1) / 2;
+  for (int i = 0; i < pixels; ++i) {
+    ByTap& values = values_[i];
+    if (filter_.is_separable) {
+      double sums[2 * kPairs];
+      std::memcpy(sums, sums_[i].v, sizeof sums);
+      for (int pair = 0; pair < tap_pairs; ++pair) {
+        Pair sum = sums[0] * along_y_[0].v[pair];
+        for (int b = 1; b < kCount; ++b) sum += sums[b] * along_y_[b].v[pair];
+        values.v[pair] = sum;
+      }
+    }
+    for (int pair = 0; pair < tap_pairs; ++pair) values.v[pair] *= kScale;
+  }
+  // The rows of pixels that weigh this row of cells.
   const int begin_y = std::max(first_row_, filter_.first_pixel_over(row));
   const int end_y = std::min(end_row_, filter_.last_pixel_over(row) + 1);
   for (int y = begin_y; y < end_y; ++y) {
     const int tap = row - filter_.first_cell(y);
+    std::int64_t* steps = rows->change(y - first_row_, first_pixel_, end_pixel_ + 1);
+    const double* values = reinterpret_cast<const double*>(values_.data()) + tap;
     std::int64_t last = run_value(tap, across_before);
     for (int i = 0; i < pixels; ++i) {
-      const double value =
-          filter_.is_separable ? (along_y_[tap] * sums_[i]).sum() : values_[i * taps + tap];
-      const std::int64_t here = std::llrint(value * kScale);
-      rows->add_step(y - first_row_, first_pixel + i, here - last);
+      const std::int64_t here = std::llrint(values[kMostTaps * i]);
+      steps[i] += here - last;
       last = here;
     }
-    rows->add_step(y - first_row_, first_pixel + pixels, run_value(tap, *across) - last);
+    steps[pixels] += run_value(tap, *across) - last;
   }
 }
 

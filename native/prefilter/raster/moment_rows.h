@@ -2,11 +2,11 @@
 // at once.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "prefilter/base/lane_array.h"
 #include "prefilter/raster/cell_filter.h"
 #include "prefilter/raster/coverage_rows.h"
 #include "prefilter/raster/moment_cells.h"
@@ -25,14 +25,25 @@ class MomentRows {
   void add_coverage(const MomentCells<N>& cells, int first_row, int end_row, CoverageRows* rows);
 
  private:
-  static constexpr int kLanes = N < 4 ? 4 : 8;
-  using Doubles = LaneArray<double, kLanes>;
-  using Longs = LaneArray<std::int64_t, kLanes>;
+  // Moments by P_b, two at a time; one above N is weighed by 0.
+  static constexpr int kCount = N + 1;
+  static constexpr int kPairs = (kCount + 1) / 2;
+  static constexpr int kMostTaps = 8;
+  using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+  struct Powers {
+    Pair v[kPairs] = {};
+  };
+  struct ByTap {
+    Pair v[kMostTaps / 2] = {};
+  };
+  using Across = std::array<std::int64_t, kCount>;
 
-  void start_row(int row, const Longs& across, CoverageRows* rows);
-  void add_span(const MomentCells<N>& cells, int row, std::span<const int> columns, Longs* across,
+  void start_row(int row, const Across& across, CoverageRows* rows);
+  void add_span(const MomentCells<N>& cells, int row, std::span<const int> columns, Across* across,
                 CoverageRows* rows);
-  std::int64_t run_value(int tap, const Longs& across) const;
+  void add_alike(int from, int to, const Across& across);
+  void add_cell(int column, const ArcMoments<N>& cell, const Across& across);
+  std::int64_t run_value(int tap, const Across& across) const;
   // Of the cells before a column, how many are under a pixel.
   int taps_before(int pixel, int column) const;
 
@@ -40,14 +51,16 @@ class MomentRows {
   int width_;
   int first_row_ = 0;
   int end_row_ = 0;
+  int first_pixel_ = 0;  // of a span
+  int end_pixel_ = 0;
   std::vector<int> columns_;
-  std::vector<Doubles> sums_;             // separable: of the pixels of a span, by P_b
-  std::vector<double> values_;            // else: by tap along y
-  std::vector<Doubles> along_y_;          // separable: of each tap, by P_b
+  std::vector<Powers> sums_;              // separable: of the pixels of a span, by P_b
+  std::vector<ByTap> values_;             // of the pixels of a span, by tap along y
+  std::array<ByTap, kCount> along_y_{};   // separable: of P_b, by tap
   std::vector<double> integrals_before_;  // separable: of so many taps
-  std::vector<Doubles> table_;            // else: of taps (oy, ox) and power a, by P_b
-  std::vector<Doubles> table_before_;     // else: of tap oy and so many taps ox, by P_b
-  std::vector<Longs> run_weights_;        // of each tap along y, by P_b, for cells that are alike
+  std::vector<Powers> table_;             // else: of taps (oy, ox) and power a, by P_b
+  std::vector<Powers> table_before_;      // else: of tap oy and so many taps ox, by P_b
+  std::vector<Across> run_weights_;       // of each tap along y, by P_b, for cells that are alike
 };
 
 extern template class MomentRows<0>;
