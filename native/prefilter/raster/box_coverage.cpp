@@ -90,7 +90,7 @@ bool BoxCoverage::add(const Outline& outline) {
 }
 
 void BoxCoverage::add(const EdgeList& edges) {
-  Point2 at{};
+  Point2 at{NAN, NAN};  // No point is there, so that the first segment begins with a move.
   edges.for_segments_between(rows_.first_row(), rows_.end_row(),
                              [&](std::span<const Point2> controls, double weight) {
                                if (!(at == controls.front())) lines_.move_to(controls.front());
