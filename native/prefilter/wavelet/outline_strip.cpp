@@ -1,0 +1,346 @@
+// Section 3.2.2, with every curve cut once, along the finest cells.
+#include "prefilter/wavelet/outline_strip.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "prefilter/moments/cell_cutter.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kCells = kPlaneBrickSide * kPlaneBrickSide;
+
+// The bits of a number below 8, with a gap after each.
+constexpr std::array<std::uint8_t, kPlaneBrickSide> kSpread = {0, 1, 4, 5, 16, 17, 20, 21};
+
+// To the nearest multiple of 2^-26; magnitudes are below 2^25.
+double rounded(double value) {
+  constexpr double kMagic = 1.5 * (1 << 26);
+  return (value + kMagic) - kMagic;
+}
+
+Point2 rounded(const Point2& point) { return {rounded(point.x), rounded(point.y)}; }
+
+// The cell that is entered at a coordinate, and the one in which it is reached.
+int first_cell(double value, bool rises) {
+  return static_cast<int>(rises ? std::floor(value) : std::ceil(value) - 1.0);
+}
+
+// The integral of (x - column) dy by Gauss's rule, exact for quadratics and cubics.
+double three_point_integral(const ParametricCurve& curve, double t_begin, double t_end,
+                            double column) {
+  constexpr double kOutermost = 0.77459666924148337704;  // sqrt(3 / 5)
+  const double half = 0.5 * (t_end - t_begin);
+  const double middle = t_begin + half;
+  const auto at = [&](double t) { return (curve.at(t).x - column) * curve.derivative(t).y; };
+  return half * (8.0 / 9.0 * at(middle) +
+                 5.0 / 9.0 * (at(middle - kOutermost * half) + at(middle + kOutermost * half)));
+}
+
+// By halves, until these no longer differ from the whole.
+double halved_integral(const ParametricCurve& curve, double t_begin, double t_end, double column,
+                       double whole, int halvings) {
+  constexpr double kMostDifference = 1e-9;
+  const double middle = 0.5 * (t_begin + t_end);
+  const double low = three_point_integral(curve, t_begin, middle, column);
+  const double high = three_point_integral(curve, middle, t_end, column);
+  if (halvings == 0 || std::abs(low + high - whole) < kMostDifference) return low + high;
+  return halved_integral(curve, t_begin, middle, column, low, halvings - 1) +
+         halved_integral(curve, middle, t_end, column, high, halvings - 1);
+}
+
+double integral_along(const ParametricCurve& curve, double t_begin, double t_end, double column) {
+  constexpr int kMostHalvings = 12;
+  const double whole = three_point_integral(curve, t_begin, t_end, column);
+  if (curve.kind == CurveKind::kQuadratic || curve.kind == CurveKind::kCubic) return whole;
+  return halved_integral(curve, t_begin, t_end, column, whole, kMostHalvings);
+}
+
+// The flux of an arc between points in the coordinates of its cell, by its integral of x dy.
+PlaneFlux arc_flux(const Point2& a, const Point2& b, double integral, double sign) {
+  const double moment_x = rounded(integral);
+  // That of y dx is what is left of the change of x y.
+  const double product = rounded(b.x * b.y) - rounded(a.x * a.y);
+  return {sign * (b.y - a.y), sign * (a.x - b.x), sign * moment_x, sign * (moment_x - product)};
+}
+
+template <std::size_t N>
+void nest(const PlaneFlux* finer, std::array<PlaneFlux, N>* fluxes, QuadrantSteps<float>* steps) {
+  for (std::size_t i = 0; i < N; ++i) {
+    const QuadrantFluxes quadrants = {finer[4 * i], finer[4 * i + 1], finer[4 * i + 2],
+                                      finer[4 * i + 3]};
+    (*fluxes)[i] = flux_of_quadrants(quadrants);
+    steps[i] = steps_of_quadrants<float>(quadrants);
+  }
+}
+
+}  // namespace
+
+PlaneGrid::PlaneGrid(int width_, int height_) : width(width_), height(height_) {
+  const auto side = static_cast<unsigned>(std::max(width, height));
+  depth = std::max(kPlaneBrickDepth, static_cast<int>(std::bit_width(side - 1)));
+}
+
+void OutlineStrip::begin(const PlaneGrid& grid, int first_row, int end_row) {
+  grid_ = grid;
+  first_row_ = first_row;
+  end_row_ = end_row;
+  bricks_across_ = (grid.width + kPlaneBrickSide - 1) / kPlaneBrickSide;
+  const int bricks_up = (end_row - first_row + kPlaneBrickSide - 1) / kPlaneBrickSide;
+  slots_.assign(static_cast<std::size_t>(bricks_across_) * bricks_up, -1);
+  pool_.clear();
+  places_.clear();
+  at_sides_ = {};
+}
+
+int OutlineStrip::new_brick(int x, int y) {
+  pool_.emplace_back();
+  places_.push_back({x, y});
+  return static_cast<int>(places_.size()) - 1;
+}
+
+PlaneFlux& OutlineStrip::cell(int column, int row) {
+  const int x = column >> kPlaneBrickDepth;
+  const int y = row >> kPlaneBrickDepth;
+  std::int32_t& slot =
+      slots_[static_cast<std::size_t>(y - (first_row_ >> kPlaneBrickDepth)) * bricks_across_ + x];
+  if (slot < 0) slot = new_brick(x, y);
+  constexpr int kMask = kPlaneBrickSide - 1;
+  return pool_[slot].cells[kSpread[column & kMask] | (kSpread[row & kMask] << 1)];
+}
+
+StripBricks OutlineStrip::take() {
+  StripBricks taken;
+  taken.bricks.reserve(places_.size());
+  taken.fluxes.reserve(places_.size());
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const auto& cells = pool_[i].cells;
+    std::uint64_t touched = 0;
+    for (int c = 0; c < kCells; ++c) {
+      touched |= static_cast<std::uint64_t>(cells[c].is_zero() ? 0 : 1) << c;
+    }
+    const std::size_t slot =
+        static_cast<std::size_t>(places_[i].y - (first_row_ >> kPlaneBrickDepth)) * bricks_across_ +
+        places_[i].x;
+    slots_[slot] = -1;
+    if (touched == 0) continue;
+    PlaneBrick& brick = taken.bricks.emplace_back();
+    brick.x = places_[i].x;
+    brick.y = places_[i].y;
+    brick.touched = touched;
+    std::array<PlaneFlux, 16> sixteenths;
+    std::array<PlaneFlux, 4> quadrants;
+    std::array<PlaneFlux, 1> whole;
+    nest(cells.data(), &sixteenths, brick.steps.data() + 5);
+    nest(sixteenths.data(), &quadrants, brick.steps.data() + 1);
+    nest(quadrants.data(), &whole, brick.steps.data());
+    taken.fluxes.push_back(whole[0]);
+  }
+  taken.at_sides = at_sides_;
+  pool_.clear();
+  places_.clear();
+  at_sides_ = {};
+  return taken;
+}
+
+bool OutlineStrip::is_inside(const Point2& a, const Point2& b) const {
+  const auto [x_low, x_high] = std::minmax(a.x, b.x);
+  const auto [y_low, y_high] = std::minmax(a.y, b.y);
+  return x_low >= 0.0 && x_high <= grid_.width && y_low >= first_row_ && y_high <= end_row_ &&
+         (y_low < y_high || y_low > first_row_ || first_row_ == 0);
+}
+
+// Cuts a piece where it passes the grid's sides and the strip's. pass(axis, value) is the parameter
+// and the other coordinate of where it does; inside(begin, t_begin, end, t_end) takes what is left.
+template <typename Pass, typename Inside>
+void OutlineStrip::clip(const MonotoneCurve& piece, double sign, const Pass& pass,
+                        const Inside& inside) {
+  struct Place {
+    double t;
+    Point2 point;
+  };
+  std::array<Place, 6> places;
+  int count = 0;
+  const auto add_place = [&](double t, const Point2& point) {
+    int i = count++;
+    for (; i > 0 && places[i - 1].t > t; --i) places[i] = places[i - 1];
+    places[i] = {t, point};
+  };
+  add_place(piece.t_begin, piece.begin);
+  const auto passes = [](double a, double b, double value) {
+    return (a < value && value < b) || (b < value && value < a);
+  };
+  const double sides_x[] = {0.0, static_cast<double>(grid_.width)};
+  const double sides_y[] = {static_cast<double>(first_row_), static_cast<double>(end_row_)};
+  for (const double x : sides_x) {
+    if (!passes(piece.begin.x, piece.end.x, x)) continue;
+    const auto [t, y] = pass(0, x);
+    add_place(t, {x, y});
+  }
+  for (const double y : sides_y) {
+    if (!passes(piece.begin.y, piece.end.y, y)) continue;
+    const auto [t, x] = pass(1, y);
+    add_place(t, {x, y});
+  }
+  places[count++] = {piece.t_end, piece.end};
+  for (int i = 0; i + 1 < count; ++i) {
+    const Place& a = places[i];
+    const Place& b = places[i + 1];
+    if (is_inside(a.point, b.point)) {
+      inside(a.point, a.t, b.point, b.t);
+    } else {
+      add_at_sides(a.point, b.point, sign);
+    }
+  }
+}
+
+// A part that is outside, moved to the sides of the grid. On those of the root it has no part in
+// any cell's coefficients, only in the root's mean.
+void OutlineStrip::add_at_sides(const Point2& a, const Point2& b, double sign) {
+  const bool is_lowest = first_row_ == 0;
+  const bool is_highest = end_row_ == grid_.height;
+  const double y = 0.5 * (a.y + b.y);
+  if (y <= first_row_ && !is_lowest) return;
+  if (y > end_row_ && !is_highest) return;
+  const double side = std::ldexp(1.0, grid_.depth);
+  const auto moved = [&](const Point2& point) {
+    return rounded(Point2{
+        std::clamp(point.x, 0.0, static_cast<double>(grid_.width)),
+        std::clamp(point.y, static_cast<double>(first_row_), static_cast<double>(end_row_))});
+  };
+  const Point2 begin = moved(a);
+  const Point2 end = moved(b);
+  if (begin == end) return;
+  const PlaneFlux step{sign * (end.y - begin.y), sign * (begin.x - end.x), 0.0, 0.0};
+  if (begin.x == end.x && begin.x == 0.0) {
+    at_sides_.area_x += step.area_x;
+  } else if (begin.x == end.x && begin.x == side) {
+    at_sides_.area_x += step.area_x;
+    at_sides_.moment_x += step.area_x * side;
+  } else if (begin.y == end.y && begin.y == 0.0) {
+    at_sides_.area_y += step.area_y;
+  } else if (begin.y == end.y && begin.y == side) {
+    at_sides_.area_y += step.area_y;
+    at_sides_.moment_y += step.area_y * side;
+  } else {
+    add_inner_line(begin, end, sign);
+  }
+}
+
+void OutlineStrip::add_line(const Point2& begin, const Point2& end, double sign) {
+  if (is_inside(begin, end)) {
+    add_inner_line(begin, end, sign);
+    return;
+  }
+  MonotoneCurve piece;
+  piece.begin = begin;
+  piece.end = end;
+  const Point2 along = end - begin;
+  clip(
+      piece, sign,
+      [&](int axis, double value) {
+        const double t = axis == 0 ? (value - begin.x) / along.x : (value - begin.y) / along.y;
+        return std::pair(t, axis == 0 ? begin.y + (value - begin.x) * (along.y / along.x)
+                                      : begin.x + (value - begin.y) * (along.x / along.y));
+      },
+      [&](const Point2& a, double, const Point2& b, double) { add_inner_line(a, b, sign); });
+}
+
+void OutlineStrip::add(const MonotoneCurve& piece, double sign) {
+  const bool is_straight = piece.curve.kind == CurveKind::kLine || piece.begin.x == piece.end.x ||
+                           piece.begin.y == piece.end.y;
+  if (is_straight) {
+    add_line(piece.begin, piece.end, sign);
+  } else if (is_inside(piece.begin, piece.end)) {
+    add_inner_curve(piece, sign);
+  } else {
+    clip(
+        piece, sign,
+        [&](int axis, double value) {
+          const double t = crossing(piece, axis, value, piece.t_begin);
+          const Point2 at = piece.curve.at(t);
+          const auto between = [](double x, double a, double b) {
+            return std::clamp(x, std::min(a, b), std::max(a, b));
+          };
+          return std::pair(t, axis == 0 ? between(at.y, piece.begin.y, piece.end.y)
+                                        : between(at.x, piece.begin.x, piece.end.x));
+        },
+        [&](const Point2& a, double t_begin, const Point2& b, double t_end) {
+          MonotoneCurve part = piece;
+          part.begin = a;
+          part.t_begin = t_begin;
+          part.end = b;
+          part.t_end = t_end;
+          add_inner_curve(part, sign);
+        });
+  }
+}
+
+void OutlineStrip::add_chord(int column, int row, Point2 begin, Point2 end, double sign) {
+  begin = begin - Point2{static_cast<double>(column), static_cast<double>(row)};
+  end = end - Point2{static_cast<double>(column), static_cast<double>(row)};
+  cell(column, row) += arc_flux(begin, end, 0.5 * (begin.x + end.x) * (end.y - begin.y), sign);
+}
+
+void OutlineStrip::add_inner_line(const Point2& begin_, const Point2& end_, double sign) {
+  const Point2 begin = rounded(begin_);
+  const Point2 end = rounded(end_);
+  const bool x_rises = end.x > begin.x;
+  const bool y_rises = end.y > begin.y;
+  // Where a line begins or ends on a side of the grid, it is in the cell within.
+  const auto column_of = [&](int column) { return std::clamp(column, 0, grid_.width - 1); };
+  const auto row_of = [&](int row) { return std::clamp(row, first_row_, end_row_ - 1); };
+  int column = column_of(first_cell(begin.x, x_rises));
+  int row = row_of(first_cell(begin.y, y_rises));
+  const int last_column = begin.x == end.x ? column : column_of(first_cell(end.x, !x_rises));
+  const int last_row = begin.y == end.y ? row : row_of(first_cell(end.y, !y_rises));
+  if (column == last_column && row == last_row) {
+    add_chord(column, row, begin, end, sign);
+    return;
+  }
+  const double y_per_x = (end.y - begin.y) / (end.x - begin.x);
+  const double x_per_y = (end.x - begin.x) / (end.y - begin.y);
+  const int x_step = x_rises ? 1 : -1;
+  const int y_step = y_rises ? 1 : -1;
+  const auto between = [](double value, double a, double b) {
+    return std::clamp(value, std::min(a, b), std::max(a, b));
+  };
+  Point2 at = begin;
+  while (column != last_column || row != last_row) {
+    const double next_x = x_rises ? column + 1 : column;
+    const double next_y = y_rises ? row + 1 : row;
+    Point2 next;
+    bool passes_x = row == last_row;
+    if (column != last_column) {
+      const double y = rounded(begin.y + (next_x - begin.x) * y_per_x);
+      passes_x = passes_x || (y_rises ? y <= next_y : y >= next_y);
+      if (passes_x) next = {next_x, between(y, at.y, end.y)};
+    }
+    if (!passes_x) {
+      const double x = rounded(begin.x + (next_y - begin.y) * x_per_y);
+      next = {between(x, at.x, column != last_column ? next_x : end.x), next_y};
+    }
+    add_chord(column, row, at, next, sign);
+    (passes_x ? column : row) += passes_x ? x_step : y_step;
+    at = next;
+  }
+  add_chord(column, row, at, end, sign);
+}
+
+void OutlineStrip::add_inner_curve(const MonotoneCurve& piece, double sign) {
+  if (piece.begin.x == piece.end.x || piece.begin.y == piece.end.y) {
+    add_inner_line(piece.begin, piece.end, sign);
+    return;
+  }
+  const auto in_cell = [&](int column, int row, const CellArc& arc) {
+    const Point2 corner{static_cast<double>(column), static_cast<double>(row)};
+    const double integral = integral_along(piece.curve, arc.t_begin, arc.t_end, corner.x);
+    cell(column, row) +=
+        arc_flux(rounded(arc.begin - corner), rounded(arc.end - corner), integral, sign);
+  };
+  cut_to_cells(piece, {0, grid_.width, first_row_, end_row_}, in_cell, [](int, double, double) {});
+}
+
+}  // namespace prefilter
