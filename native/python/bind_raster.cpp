@@ -165,7 +165,7 @@ FillRule fill_rule_of(const std::string& name) {
 Array<float> bound_rasterize(
     const std::vector<std::tuple<const Outline*, std::string, Paint, bool>>& drawn, int width,
     int height, const std::string& filter, const std::string& method, const std::string& overlap,
-    const std::vector<float>& background, const py::object& progress, int threads) {
+    const std::vector<float>& background, int depth, const py::object& progress, int threads) {
   RasterOptions options;
   options.width = width;
   options.height = height;
@@ -173,6 +173,7 @@ Array<float> bound_rasterize(
   options.method = method_of(method);
   options.overlap = overlap_of(overlap);
   options.background = background;
+  options.depth = depth;
   options.threads = threads;
   options.progress = to_progress(progress);
   std::vector<Shape> shapes;
@@ -248,7 +249,7 @@ void bind_raster(py::module_& m) {
           py::arg("matrix"));
   m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("width"), py::arg("height"),
         py::arg("filter"), py::arg("method"), py::arg("overlap"), py::arg("background"),
-        py::arg("progress"), py::arg("threads"));
+        py::arg("depth"), py::arg("progress"), py::arg("threads"));
   m.def("raster_filters", [] {
     const auto names = raster_filters();
     return std::vector<std::string>(names.begin(), names.end());

@@ -4,7 +4,7 @@
 
 namespace prefilter {
 
-void EdgeList::add(const Outline& outline) {
+void EdgeList::add(const Outline& outline, bool closes) {
   const std::size_t count = outline.segments().size();
   for (std::size_t first = 0; first < count; first += kRunLength) {
     Run run{&outline, first, std::min(first + kRunLength, count), HUGE_VAL, -HUGE_VAL};
@@ -18,6 +18,7 @@ void EdgeList::add(const Outline& outline) {
     low_ = std::min(low_, run.low);
     high_ = std::max(high_, run.high);
   }
+  if (!closes) return;
   for (std::size_t contour = 0; contour < outline.contour_count(); ++contour) {
     const auto segments = outline.contour(contour);
     if (segments.empty()) continue;

@@ -16,8 +16,8 @@ namespace prefilter {
 /// Outlines whose coverage is added up, as segments in runs that are close together.
 class EdgeList {
  public:
-  /// An outline that is kept elsewhere. Open contours are closed by a line.
-  void add(const Outline& outline);
+  /// An outline that is kept elsewhere. Where `closes`, open contours are closed by a line.
+  void add(const Outline& outline, bool closes = true);
 
   bool empty() const { return runs_.empty(); }
   /// The rows of pixels that hold all of it.

@@ -29,9 +29,20 @@ void take_background(const ChannelValues& background, Paint* paint) {
   for (GradientStop& stop : paint->stops) take(&stop.value, 1.0);
 }
 
+// The wavelet method leaves gaps as they are, and with them what winds round what.
+bool is_left_open(const Outline& outline) {
+  for (std::size_t i = 0; i < outline.contour_count(); ++i) {
+    const auto segments = outline.contour(i);
+    if (!segments.empty() && !(outline.controls(segments.back()).back() == outline.begin_of(i))) {
+      return true;
+    }
+  }
+  return false;
+}
+
 class LayerMaker {
  public:
-  explicit LayerMaker(RasterLayers* out) : out_(out) {}
+  LayerMaker(RasterMethod method, RasterLayers* out) : method_(method), out_(out) {}
 
   // An outline that is kept elsewhere.
   void add(const Outline& outline, const Paint& paint) {
@@ -43,14 +54,15 @@ class LayerMaker {
       return;
     }
     const bool is_constant = paint.kind == Paint::Kind::kConstant;
-    const bool joins = is_constant && together_ > 0 && together_ < kMostShapesTogether &&
+    const bool joins = is_constant && together_ > 0 &&
+                       (together_ < kMostShapesTogether || method_ == RasterMethod::kWavelet) &&
                        out_->layers.back().paint.constant == paint.constant;
     if (!joins) {
       out_->layers.push_back({{}, paint});
       together_ = 0;
     }
     together_ = is_constant ? together_ + 1 : 0;
-    out_->layers.back().edges.add(outline);
+    out_->layers.back().edges.add(outline, method_ == RasterMethod::kScanline);
   }
 
   const Outline& keep(Outline outline) {
@@ -59,6 +71,7 @@ class LayerMaker {
   }
 
  private:
+  RasterMethod method_;
   RasterLayers* out_;
   int together_ = 0;  // shapes in the last layer, where that is of one color
 };
@@ -75,9 +88,12 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
   parallel_for(static_cast<std::int64_t>(shapes.size()), options.threads,
                options.progress.part(0.0, 0.2), [&](std::int64_t i) {
                  if (shapes[i].winds_once) return;
+                 if (options.method == RasterMethod::kWavelet && is_left_open(shapes[i].outline)) {
+                   return;
+                 }
                  changed[i] = resolved(shapes[i].outline, shapes[i].fill_rule);
                });
-  LayerMaker maker(&out);
+  LayerMaker maker(options.method, &out);
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     Paint paint = shapes[i].paint;
     take_background(out.background, &paint);

@@ -19,6 +19,7 @@
 #include "prefilter/raster/moment_rows.h"
 #include "prefilter/raster/painted_rows.h"
 #include "prefilter/raster/raster_layers.h"
+#include "prefilter/raster/wavelet_image.h"
 
 namespace prefilter {
 namespace {
@@ -46,6 +47,24 @@ void check_options(std::span<const Shape> shapes, const RasterOptions& options) 
       if (!(std::abs(point.x) <= kLargestPixel && std::abs(point.y) <= kLargestPixel)) {
         throw_invalid(who + " has a point that is not finite, or farther than 1e9 pixels away");
       }
+    }
+  }
+}
+
+void check_wavelet_options(std::span<const Shape> shapes, const RasterOptions& options) {
+  const int most = wavelet_depth(options.width, options.height);
+  if (options.depth > most) {
+    throw_invalid("depth: found " + std::to_string(options.depth) + "; an image of " +
+                  std::to_string(options.width) + " x " + std::to_string(options.height) +
+                  " pixels has depths from 0 to " + std::to_string(most));
+  }
+  if (options.filter != "box") {
+    throw_invalid("filter: '" + options.filter + "'; the method wavelet has box only");
+  }
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    if (shapes[i].paint.kind != Paint::Kind::kConstant) {
+      throw_invalid("shapes: shape " + std::to_string(i) +
+                    " has a gradient; the method wavelet has constant colors only");
     }
   }
 }
@@ -202,8 +221,21 @@ Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
     }
     throw_invalid("filter: '" + options.filter + "' is not one of " + names);
   }
+  const bool is_wavelet = options.method == RasterMethod::kWavelet;
+  if (is_wavelet) {
+    check_wavelet_options(shapes, options);
+  } else if (options.depth >= 0) {
+    throw_invalid("depth: found " + std::to_string(options.depth) +
+                  "; only the method wavelet has depths");
+  }
   const RasterLayers job = make_layers(shapes, options);
   Image image(options.width, options.height, job.channels);
+  if (is_wavelet) {
+    const int depth =
+        options.depth < 0 ? wavelet_depth(options.width, options.height) : options.depth;
+    add_up_wavelets(job, depth, options.threads, options.progress.part(0.2, 1.0), &image);
+    return image;
+  }
   switch (filter->degree) {
     case 0:
       make_bands<0>(job, *filter, options, &image);

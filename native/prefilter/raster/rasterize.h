@@ -28,7 +28,9 @@ struct Shape {
 
 enum class RasterMethod : std::uint8_t {
   kScanline,  // section 2.2
-  kWavelet,   // chapter 3: Haar coefficients; the box filter only
+  /// Chapter 3: Haar coefficients. For the box filter and constant colors. Open contours are left
+  /// so; a shape that has one is the sum of its winding numbers, whatever its fill rule.
+  kWavelet,
 };
 
 /// What becomes of several shapes at one place.
@@ -42,6 +44,9 @@ struct RasterOptions {
   int height = 0;  // pixels
   std::string filter = "box";
   RasterMethod method = RasterMethod::kScanline;
+  /// Of kWavelet: the synthesis ends at cells of which so many, doubled, make the side of the
+  /// square of the smallest power of two that holds the image; -1: at pixels.
+  int depth = -1;
   Overlap overlap = Overlap::kAdd;
   /// What shows where no shape is; none for 0.
   std::vector<float> background;
@@ -51,7 +56,7 @@ struct RasterOptions {
 
 /// The image of all shapes, each pixel the filter's mean around its center. Throws Error for shapes
 /// of different numbers of channels, points that are not finite, a filter there is not, a size of
-/// 0 or one that memory does not hold.
+/// 0 or one that memory does not hold, and for what the method does not have.
 Image rasterize(std::span<const Shape> shapes, const RasterOptions& options);
 
 }  // namespace prefilter

@@ -400,6 +400,7 @@ def rasterize(
     method: str,
     overlap: str,
     background: Sequence[float],
+    depth: int,
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float32]: ...

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from . import _native
 from ._border.arguments import (
     ProgressCallback,
+    as_int,
     as_name,
     as_number,
     as_progress,
@@ -351,6 +352,7 @@ def rasterize(
     *,
     filter: str = "box",
     method: str = "scanline",
+    depth: int | None = None,
     background: Sequence[float] | None = None,
     overlap: str = "add",
     dtype: npt.DTypeLike = np.float32,
@@ -371,8 +373,13 @@ def rasterize(
             of any direction are alike. All have an integral of 1; those from "mitchell" to
             "lanczos3", and the radial ones, have negative lobes, so values may leave the range of
             the colors.
-        method: "scanline" (section 2.2), or "wavelet" (chapter 3), for the box filter only: what is
-            missing from an outline then changes what is near, and no rows to the right of it.
+        method: "scanline" (section 2.2), or "wavelet" (chapter 3), for the box filter and constant
+            colors only. Both give the same image of closed contours. "wavelet" leaves open ones
+            open: a gap changes values near it, and not the rows beside it. Of a shape that has one
+            the winding numbers are drawn, whatever its fill rule.
+        depth: Of "wavelet": where to end. The square of the smallest power of two that holds the
+            image is halved so many times, and each pixel gets the mean over the cell that it is in.
+            0 is one cell for all; None ends at pixels.
         background: What is behind the shapes, as many values as they have; None for 0.
         overlap: "add": the values of all shapes are summed, so that shapes that share an edge have
             no seam. "cover": later ones cover those before them, with four channels as far as alpha
@@ -386,7 +393,7 @@ def rasterize(
 
     Raises:
         ValueError: A name is none of those, shapes differ in their channels, a point is more than
-            1e9 pixels away, or a size is below 1.
+            1e9 pixels away, a size is below 1, or the method has no such filter, color or depth.
         MemoryError: The image does not fit into memory.
         Cancelled: `progress` returned False.
     """
@@ -412,12 +419,23 @@ def rasterize(
         as_name("method", method),
         as_name("overlap", overlap),
         behind,
+        _as_depth(depth),
         as_progress(progress),
         as_threads(threads),
     )
     if is_bytes:
         return np.rint(np.clip(image, 0.0, 1.0) * np.float32(255.0)).astype(np.uint8)
     return image
+
+
+def _as_depth(depth: int | None) -> int:
+    if depth is None:
+        return -1
+    needed = "a whole number of at least 0 is needed, or None"
+    number = as_int("depth", depth, needed)
+    if number < 0:
+        raise ValueError(f"depth: {depth!r}; {needed}")
+    return number
 
 
 def _as_color(name: str, color: Sequence[float]) -> tuple[float, ...]:
