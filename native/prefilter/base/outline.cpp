@@ -70,6 +70,13 @@ std::span<const Outline::Segment> Outline::contour(std::size_t index) const {
   return std::span(segments_).subspan(first, last - first);
 }
 
+std::span<const Point2> Outline::contour_points(std::size_t index) const {
+  const std::size_t first = contours_[index].first_point;
+  const std::size_t last =
+      index + 1 < contours_.size() ? contours_[index + 1].first_point : points_.size();
+  return std::span(points_).subspan(first, last - first);
+}
+
 Outline Outline::transformed(const AffineMap2& map) const {
   Outline result = *this;
   std::transform(points_.begin(), points_.end(), result.points_.begin(), map);

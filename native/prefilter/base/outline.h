@@ -74,6 +74,8 @@ class Outline {
   /// it.
   const Point2& begin_of(std::size_t index) const { return points_[contours_[index].first_point]; }
   bool is_closed(std::size_t index) const { return contours_[index].is_closed; }
+  /// All points of a contour, in order. They are one more than its segments where these are lines.
+  std::span<const Point2> contour_points(std::size_t index) const;
   /// Its degree + 1 control points.
   std::span<const Point2> controls(const Segment& segment) const {
     return {points_.data() + segment.first, static_cast<std::size_t>(segment.degree) + 1};

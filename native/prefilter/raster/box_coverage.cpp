@@ -17,30 +17,24 @@ bool is_near(const Point2& point, double farthest) {
   return std::abs(point.x) <= farthest && std::abs(point.y) <= farthest;
 }
 
-float byte_value(std::uint32_t coverage) {
-  constexpr auto kScale = static_cast<float>(255.0 * kBoxUnit);
-  const float value = static_cast<float>(static_cast<std::int32_t>(coverage)) * kScale;
-  return std::min(std::max(value, 0.0F), 255.0F) + 0.5F;
-}
-
 void write_bytes(BoxCoverage* coverage, const ByteRows& target) {
+  constexpr auto kByteUnit = static_cast<float>(255.0 * kBoxUnit);
   const auto row_of = [&](int row) { return target.data + row * target.stride; };
   coverage->take(
       [&](int row, int x, int count, const std::uint32_t* values) {
-        std::uint8_t bytes[16];
-        for (int i = 0; i < 16; ++i) {
-          bytes[i] = static_cast<std::uint8_t>(static_cast<int>(byte_value(values[i])));
-        }
         std::uint8_t* to = row_of(row) + x;
         if (count == 16) {
-          std::memcpy(to, bytes, 16);
+          store_bytes(to, values, kByteUnit);
         } else {
+          std::uint8_t bytes[16];
+          store_bytes(bytes, values, kByteUnit);
           std::copy_n(bytes, count, to);
         }
       },
       [&](int row, int begin, int end, std::uint32_t value) {
-        const int byte = static_cast<int>(byte_value(value));
-        if (byte != 0) std::memset(row_of(row) + begin, byte, end - begin);
+        const float byte = kByteUnit * static_cast<float>(static_cast<std::int32_t>(value));
+        const auto rounded = static_cast<int>(std::lrint(std::clamp(byte, 0.0F, 255.0F)));
+        if (rounded != 0) std::memset(row_of(row) + begin, rounded, end - begin);
       });
 }
 
@@ -68,25 +62,37 @@ bool BoxCoverage::add_segment(std::span<const Point2> controls, double weight) {
   return true;
 }
 
-bool BoxCoverage::add(const Outline& outline) {
-  for (std::size_t contour = 0; contour < outline.contour_count(); ++contour) {
-    const auto segments = outline.contour(contour);
-    if (segments.empty()) continue;
-    const Point2& begin = outline.begin_of(contour);
-    Point2 at = begin;
-    lines_.move_to(begin);
-    for (const Outline::Segment& segment : segments) {
-      const auto controls = outline.controls(segment);
-      if (!add_segment(controls, segment.weight)) {
-        lines_.flush();
-        return false;
-      }
-      at = controls.back();
+bool BoxCoverage::add_polygon(std::span<const Point2> points) {
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (is_near(points[i - 1], kFarthestBoxPixel)) {
+      i += lines_.lines_to(points.data() + i, points.size() - i);
+      if (i == points.size()) break;
     }
-    if (!(at == begin)) add_segment(std::array<Point2, 2>{at, begin}, 0.0);
+    if (!add_segment(points.subspan(i - 1, 2), 0.0)) return false;
+  }
+  return true;
+}
+
+bool BoxCoverage::add(const Outline& outline) {
+  bool are_all_near = true;
+  for (std::size_t contour = 0; contour < outline.contour_count() && are_all_near; ++contour) {
+    const auto segments = outline.contour(contour);
+    const auto points = outline.contour_points(contour);
+    if (segments.empty()) continue;
+    lines_.move_to(points.front());
+    if (points.size() == segments.size() + 1) {
+      are_all_near = add_polygon(points);
+    } else {
+      for (std::size_t i = 0; i < segments.size() && are_all_near; ++i) {
+        are_all_near = add_segment(outline.controls(segments[i]), segments[i].weight);
+      }
+    }
+    if (are_all_near && !(points.back() == points.front())) {
+      are_all_near = add_segment(std::array<Point2, 2>{points.back(), points.front()}, 0.0);
+    }
   }
   lines_.flush();
-  return true;
+  return are_all_near;
 }
 
 void BoxCoverage::add(const EdgeList& edges) {

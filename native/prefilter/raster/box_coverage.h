@@ -40,6 +40,7 @@ class BoxCoverage {
   }
 
  private:
+  bool add_polygon(std::span<const Point2> points);
   bool add_segment(std::span<const Point2> controls, double weight);
 
   DifferenceRows rows_;

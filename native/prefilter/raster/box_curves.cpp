@@ -19,10 +19,6 @@ namespace {
 
 constexpr double kMostMiss = 1e-6;  // of a root, in pixels
 
-std::uint32_t to_steps(double value) {
-  return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::llrint(value)));
-}
-
 DoublePair value_of(const std::array<double, 4>& p, DoublePair s) {
   return p[0] + s * (p[1] + s * (p[2] + s * p[3]));
 }
@@ -31,7 +27,7 @@ DoublePair value_of(const std::array<double, 4>& p, DoublePair s) {
 class Roots {
  public:
   Roots(const std::array<double, 4>& p, bool is_cubic)
-      : p_(p), is_cubic_(is_cubic), begin_(p[0]), scale_(1.0 / (p[1] + p[2] + p[3])) {
+      : p_(p), is_cubic_(is_cubic), begin_(p[0]), rise_(p[1] + p[2] + p[3]), scale_(1.0 / rise_) {
     // Slopes at both ends, where the polynomial rises by 1; a monotone cubic has none above 4.
     first_slope_ = std::clamp(p[1] * scale_, 0.0, 4.0);
     const double last_slope = std::clamp((p[1] + 2.0 * p[2] + 3.0 * p[3]) * scale_, 0.0, 4.0);
@@ -47,6 +43,8 @@ class Roots {
     const DoublePair root = sqrt(higher(b * b + 4.0 * (1.0 - b) * v, zero));
     DoublePair s = 2.0 * v / higher(b + root, pair_of(1e-300));
     if (!is_cubic_) return lower(s, one);
+    // Of a value beyond the ends, next to the last line, the root is of no use.
+    values = begin_ + v * rise_;
     for (int step = 0; step < 2; ++step) s = halley(values, s);
     s = higher(lower(s, one), zero);
     const DoublePair miss = value_of(p_, s) - values;
@@ -78,6 +76,7 @@ class Roots {
   const std::array<double, 4>& p_;
   bool is_cubic_;
   double begin_;
+  double rise_;
   double scale_;
   double first_slope_;
   double bend_;
@@ -208,8 +207,8 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
         scale);
     const auto clamped =
         static_cast<int>(std::clamp(column, -1.0 * DifferenceRows::kMargin, rows_.width() + 0.0));
-    rows_.add(row, clamped, height - inside);
-    rows_.add(row, clamped + 1, inside);
+    const DifferenceRows::Row to = rows_.row(row);
+    to.add_two(clamped, height - inside, inside);
     const int end = std::min(clamp_line(right) + 1, end_line);
     for (int line = std::max(clamp_line(left) + 1, first_line); line < end; ++line) {
       const int place = line - first_line;
@@ -219,9 +218,8 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
           x_rises ? at_rows_.area[i + 1] - at_columns_.area[place] - to_line * (top - ahead)
                   : at_columns_.area[place] - at_rows_.area[i] - to_line * (ahead - y);
       const std::uint32_t steps = to_steps(beyond * scale);
-      rows_.add(row, line - 1, steps);
-      rows_.add(row, line, 0U - 2U * steps);
-      rows_.add(row, line + 1, steps);
+      to.add(line - 1, steps);
+      to.add_two(line, 0U - 2U * steps, steps);
     }
   }
 }
@@ -241,13 +239,11 @@ void BoxCurves::add_cells(const MonotoneCurve& piece, int sign) {
     const double steps = (rounded_to_unit(arc.end.y) - rounded_to_unit(arc.begin.y)) / kBoxUnit;
     const std::int32_t height = sign * static_cast<std::int32_t>(steps);
     const auto part = static_cast<std::uint32_t>(cell_[0].inside(0, 0) + height / 2);
-    rows_.add(row, column, static_cast<std::uint32_t>(height) - part);
-    rows_.add(row, column + 1, part);
+    rows_.row(row).add_two(column, static_cast<std::uint32_t>(height) - part, part);
   };
   const auto left_of_window = [&](int row, double y_begin, double y_end) {
-    rows_.add(
-        row, -1,
-        to_steps(sign * (rounded_to_unit(y_end) - rounded_to_unit(y_begin)) * (1 << kBoxBits)));
+    rows_.row(row).add(
+        -1, to_steps(sign * (rounded_to_unit(y_end) - rounded_to_unit(y_begin)) * (1 << kBoxBits)));
   };
   cut_to_cells(piece, window, in_cell, left_of_window);
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace prefilter {
 namespace {
@@ -18,10 +19,6 @@ namespace {
 constexpr double kLeastSlope = 1e-9;
 
 double half_over(double slope) { return 0.5 / std::max(std::abs(slope), kLeastSlope); }
-
-std::uint32_t to_steps(double value) {
-  return static_cast<std::uint32_t>(static_cast<std::int64_t>(std::llrint(value)));
-}
 
 }  // namespace
 
@@ -45,8 +42,7 @@ void BoxLines::flush() {
   const auto column = static_cast<int>(cell_[0]);
   if (column >= rows_.width()) return;
   // A line that falls has the region that it adds to on its right.
-  rows_.add(row, rows_.clamped(column), part - height);
-  rows_.add(row, rows_.clamped(column + 1), 0U - part);
+  rows_.row(row).add_two(rows_.clamped(column), part - height, 0U - part);
 }
 
 void BoxLines::leave_cell(const Point2& point) {
@@ -94,8 +90,8 @@ void BoxLines::add_line(Point2 low, Point2 high, double scale) {
       const auto sign = scale > 0.0 ? 1U : ~0U;
       const auto add_part = [&](double part_from, double part_to) {
         if (part_from >= part_to) return;
-        rows_.add(static_cast<int>(std::floor(part_from)), -1,
-                  to_steps((part_to - part_from) * scale));
+        rows_.row(static_cast<int>(std::floor(part_from)))
+            .add(-1, to_steps((part_to - part_from) * scale));
       };
       add_part(from, full_from);
       rows_.add_rows(static_cast<int>(full_from), static_cast<int>(full_to), sign * kOne);
@@ -127,69 +123,109 @@ void BoxLines::add_line(Point2 low, Point2 high, double scale) {
       }
     }
   }
-  constexpr double kNarrow = 2.0;
-  if (std::min(std::abs(slope), right - left) <= kNarrow) {
-    add_narrow(low, slope, begin, end, scale);
+  const double reach = std::min(std::abs(slope), right - left);
+  if (reach <= 1.0) {
+    add_narrow<2>(low, slope, begin, end, scale);
+  } else if (reach <= 2.0) {
+    add_narrow<3>(low, slope, begin, end, scale);
   } else {
     add_wide(low, slope, begin, end, scale);
   }
 }
 
-// In each row no more than three columns: four differences, of four rows at once.
+// Two rows of a line.
+struct BoxLines::RowPair {
+  IntFour column;
+  IntFour height;
+  IntFour inside;   // E_0
+  IntFour beyond;   // E_1
+  IntFour farther;  // E_2
+};
+
+// In each row no more than three columns, or two where kColumns is that: four differences, of four
+// rows at once.
+template <int kColumns>
 void BoxLines::add_narrow(const Point2& low, double slope, double begin, double end, double scale) {
-  const double c = half_over(slope) * scale;
+  const DoublePair c = pair_of(half_over(slope) * scale);
   const auto first_row = static_cast<int>(std::floor(begin));
   const auto end_row = static_cast<int>(std::ceil(end));
-  const DoublePair zero{};
   const DoublePair least = pair_of(-DifferenceRows::kMargin);
   const DoublePair most = pair_of(rows_.width());
-  struct Pair {
-    IntFour column;
-    IntFour height;
-    IntFour inside;   // E_0
-    IntFour beyond;   // E_1
-    IntFour beyond2;  // E_2
-  };
-  const auto two_rows = [&](double row) {
-    const DoublePair y = DoublePair{row, row + 1.0};
-    const DoublePair from = higher(y, pair_of(begin));
-    const DoublePair to = higher(lower(y + 1.0, pair_of(end)), from);
-    const DoublePair x_from = low.x + (from - low.y) * slope;
-    const DoublePair x_to = low.x + (to - low.y) * slope;
+  const DoublePair low_x = pair_of(low.x);
+  const DoublePair low_y = pair_of(low.y);
+  const DoublePair slopes = pair_of(slope);
+  const DoublePair begins = pair_of(begin);
+  const DoublePair ends = pair_of(end);
+  const DoublePair half_scale = pair_of(0.5 * scale);
+  const IntFour full_height = joined(round_to_int(pair_of(scale)), round_to_int(pair_of(scale)));
+  const auto two_rows = [&](DoublePair y, auto is_full) {
+    RowPair out;
+    DoublePair from = y;
+    DoublePair to = y + 1.0;
+    DoublePair half_height = half_scale;
+    out.height = full_height;
+    if constexpr (!is_full) {
+      from = higher(from, begins);
+      to = higher(lower(to, ends), from);
+      half_height = (to - from) * half_scale;
+      out.height = round_to_int(half_height + half_height);
+    }
+    const DoublePair x_from = low_x + (from - low_y) * slopes;
+    const DoublePair x_to = low_x + (to - low_y) * slopes;
     const DoublePair left = lower(x_from, x_to);
     const DoublePair column = floor(left);
-    const DoublePair l = left - column;
-    const DoublePair r = higher(x_from, x_to) - column;
-    const DoublePair height = (to - from) * scale;
-    const DoublePair r1 = higher(r - 1.0, zero);
-    const DoublePair r2 = higher(r - 2.0, zero);
-    return Pair{round_to_int(lower(higher(column, least), most)), round_to_int(height),
-                round_to_int((l + r) * (0.5 * height)), round_to_int(c * r1 * r1),
-                round_to_int(c * r2 * r2)};
+    const DoublePair right = higher(x_from, x_to) - column;
+    const DoublePair zero{};
+    const DoublePair beyond = higher(right - 1.0, zero);
+    out.column = round_to_int(lower(higher(column, least), most));
+    out.inside = round_to_int((left - column + right) * half_height);
+    out.beyond = round_to_int(c * beyond * beyond);
+    if constexpr (kColumns > 2) {
+      const DoublePair farther = higher(right - 2.0, zero);
+      out.farther = round_to_int(c * farther * farther);
+    }
+    return out;
   };
-  for (int row = first_row; row < end_row; row += 4) {
-    const Pair a = two_rows(row);
-    const Pair b = two_rows(row + 2.0);
+  DifferenceRows::Row to = rows_.row(first_row);
+  const DifferenceRows::Row second = rows_.next(to);
+  const std::ptrdiff_t stride = second.steps - to.steps;
+  const std::ptrdiff_t mark_stride = second.marks - to.marks;
+  const auto four_rows = [&](DoublePair y, auto is_full) {
+    const RowPair a = two_rows(y, is_full);
+    const RowPair b = two_rows(y + 2.0, is_full);
     const IntFour column = joined(a.column, b.column);
-    const IntFour height = joined(a.height, b.height);
+    const IntFour height = is_full ? full_height : joined(a.height, b.height);
     const IntFour e0 = joined(a.inside, b.inside);
     const IntFour e1 = joined(a.beyond, b.beyond);
-    const IntFour e2 = joined(a.beyond2, b.beyond2);
-    const IntFour s0 = height - e0 + e1;
-    const IntFour s1 = e0 - e1 - e1 + e2;
-    const IntFour s2 = e1 - e2 - e2;
-    const IntFour& s3 = e2;
+    IntFour s0 = height - e0 + e1;
+    IntFour s1 = e0 - e1 - e1;
+    IntFour s2 = e1;
+    IntFour s3{};
+    if constexpr (kColumns > 2) {
+      s3 = joined(a.farther, b.farther);
+      s1 += s3;
+      s2 -= s3 + s3;
+    }
     const IntFour s01_low = __builtin_shufflevector(s0, s1, 0, 4, 1, 5);
     const IntFour s01_high = __builtin_shufflevector(s0, s1, 2, 6, 3, 7);
     const IntFour s23_low = __builtin_shufflevector(s2, s3, 0, 4, 1, 5);
     const IntFour s23_high = __builtin_shufflevector(s2, s3, 2, 6, 3, 7);
     const auto add = [&](int k, IntFour steps) {
-      rows_.add_four(row + k, static_cast<std::int32_t>(column[k]), steps);
+      to.add_four(static_cast<std::int32_t>(column[k]), steps);
+      to = {to.steps + stride, to.marks + mark_stride};
     };
     add(0, __builtin_shufflevector(s01_low, s23_low, 0, 1, 4, 5));
     add(1, __builtin_shufflevector(s01_low, s23_low, 2, 3, 6, 7));
     add(2, __builtin_shufflevector(s01_high, s23_high, 0, 1, 4, 5));
     add(3, __builtin_shufflevector(s01_high, s23_high, 2, 3, 6, 7));
+  };
+  DoublePair y = DoublePair{0.0, 1.0} + static_cast<double>(first_row);
+  for (int row = first_row; row < end_row; row += 4, y += 4.0) {
+    if (row >= begin && row + 4 <= end) {
+      four_rows(y, std::true_type{});
+    } else {
+      four_rows(y, std::false_type{});
+    }
   }
 }
 
@@ -197,7 +233,8 @@ void BoxLines::add_wide(const Point2& low, double slope, double begin, double en
   const double c = half_over(slope) * scale;
   const auto first_row = static_cast<int>(std::floor(begin));
   const auto end_row = static_cast<int>(std::ceil(end));
-  for (int row = first_row; row < end_row; ++row) {
+  DifferenceRows::Row to_row = rows_.row(first_row);
+  for (int row = first_row; row < end_row; ++row, to_row = rows_.next(to_row)) {
     const double from = std::max<double>(row, begin);
     const double to = std::min(row + 1.0, end);
     const double x_from = low.x + (from - low.y) * slope;
@@ -222,11 +259,11 @@ void BoxLines::add_wide(const Point2& low, double slope, double begin, double en
     std::uint32_t covered = 0;
     for (int column = begin_column; column <= end_column; ++column) {
       const std::uint32_t next = beyond(column + 1);
-      rows_.add(row, rows_.clamped(column), height - here + next - covered);
+      to_row.add(rows_.clamped(column), height - here + next - covered);
       covered = height - here + next;
       here = next;
     }
-    rows_.add(row, rows_.clamped(end_column + 1), height - covered);
+    to_row.add(rows_.clamped(end_column + 1), height - covered);
   }
 }
 

@@ -61,6 +61,8 @@ class BoxLines {
   void leave_cell(const Point2& point);
   void begin_at(const Point2& point);
   void add_line(Point2 low, Point2 high, double scale);
+  struct RowPair;
+  template <int kColumns>
   void add_narrow(const Point2& low, double slope, double begin, double end, double scale);
   void add_wide(const Point2& low, double slope, double begin, double end, double scale);
 

@@ -34,18 +34,40 @@ class DifferenceRows {
   /// A column where differences may be added, in place of one that may be outside.
   int clamped(int column) const { return std::clamp(column, -kMargin, width_); }
 
-  /// From a column on, a row is higher by this. The column is clamped().
-  void add(int row, int column, std::uint32_t step) {
-    place(row, column)[0] += step;
-    mark(row, column);
+  /// A row to add to. What inner loops use is held in it, as writing marks would have a compiler
+  /// think that the rows themselves may change.
+  struct Row {
+    std::uint32_t* steps;  // at column 0
+    std::uint8_t* marks;   // of the block that begins there
+
+    /// From a column on, the row is higher by this. The column is clamped().
+    void add(int column, std::uint32_t step) const {
+      steps[column] += step;
+      marks[column >> kBlockBits] = 1;
+    }
+    /// The same of two columns.
+    void add_two(int column, std::uint32_t step, std::uint32_t next) const {
+      steps[column] += step;
+      steps[column + 1] += next;
+      marks[column >> kBlockBits] = 1;
+      marks[(column + 1) >> kBlockBits] = 1;
+    }
+    /// The same of four.
+    void add_four(int column, IntFour step) const {
+      std::uint32_t* to = steps + column;
+      store_four(to, load_four(to) + step);
+      marks[column >> kBlockBits] = 1;
+      marks[(column + 3) >> kBlockBits] = 1;
+    }
+  };
+  /// Rows up to three behind the last may get zeros.
+  Row row(int index) {
+    const auto below = static_cast<std::ptrdiff_t>(index - first_row_);
+    return {steps_.data() + below * stride_ + kBlock, is_marked_.data() + below * blocks_ + 1};
   }
-  /// The same of four columns in a row; rows up to three behind the last may get zeros.
-  void add_four(int row, int column, IntFour steps) {
-    std::uint32_t* to = place(row, column);
-    store_four(to, load_four(to) + steps);
-    mark(row, column);
-    mark(row, column + 3);
-  }
+  /// The row above.
+  Row next(Row row) const { return {row.steps + stride_, row.marks + blocks_}; }
+
   /// All pixels of the rows [first, end), which are of the band, are higher by this.
   void add_rows(int first, int end, std::uint32_t step) {
     if (first >= end) return;
@@ -60,16 +82,9 @@ class DifferenceRows {
   void take(const Block& block, const Run& run);
 
  private:
-  static constexpr int kBlock = 16;
+  static constexpr int kBlockBits = 4;
+  static constexpr int kBlock = 1 << kBlockBits;
   static constexpr int kRowsBehind = 3;
-
-  std::uint32_t* place(int row, int column) {
-    return steps_.data() + static_cast<std::size_t>(row - first_row_) * stride_ + kBlock + column;
-  }
-  void mark(int row, int column) {
-    is_marked_[static_cast<std::size_t>(row - first_row_) * blocks_ + (column + kBlock) / kBlock] =
-        1;
-  }
 
   int width_ = 0;
   int first_row_ = 0;
@@ -87,8 +102,8 @@ void DifferenceRows::take(const Block& block, const Run& run) {
   for (int row = first_row_; row < end_row_; ++row) {
     before += left_[row - first_row_];
     left_[row - first_row_] = 0;
-    std::uint32_t* steps = place(row, 0);
-    std::uint8_t* marks = is_marked_.data() + static_cast<std::size_t>(row - first_row_) * blocks_;
+    std::uint32_t* steps = this->row(row).steps;
+    std::uint8_t* marks = this->row(row).marks - 1;
     std::uint32_t sum = before;
     int done = 0;
     for (int group = 0; group < blocks_; group += 8) {
@@ -111,16 +126,18 @@ void DifferenceRows::take(const Block& block, const Run& run) {
         if (sum != 0 && begin > done) run(row, done, begin, sum);
         done = std::min(at + kBlock, width_);
         alignas(16) std::uint32_t sums[kBlock];
+        IntFour last = IntFour{} + sum;
         for (int i = 0; i < kBlock; i += 4) {
           IntFour four = load_four(values + i);
           store_four(values + i, IntFour{});
           const IntFour none{};
           four += __builtin_shufflevector(none, four, 0, 4, 5, 6);
           four += __builtin_shufflevector(none, four, 0, 1, 4, 5);
-          four += sum;
+          four += last;
           store_four(sums + i, four);
-          sum = four[3];
+          last = __builtin_shufflevector(four, four, 3, 3, 3, 3);
         }
+        sum = last[0];
         if (done > begin) block(row, begin, done - begin, sums);
       }
     }

@@ -53,6 +53,37 @@ inline IntFour round_to_int(DoublePair a) {
 }
 #endif
 
+/// Rounded to the nearest, halves to even, modulo 2^32. The value must be within 2^63.
+inline std::uint32_t to_steps(double value) {
+#if defined(__SSE4_1__)
+  return static_cast<std::uint32_t>(_mm_cvtsd_si64(_mm_set_sd(value)));
+#else
+  return static_cast<std::uint32_t>(std::llrint(value));
+#endif
+}
+
+/// 16 numbers that are counted as of below 0, too, times a factor, as bytes: rounded to the
+/// nearest, and those outside to 0 or 255.
+#if defined(__SSE4_1__)
+inline void store_bytes(std::uint8_t* to, const std::uint32_t* values, float factor) {
+  const auto four = [&](int i) {
+    const __m128i integers = reinterpret_cast<__m128i>(load_four(values + 4 * i));
+    return _mm_cvtps_epi32(_mm_mul_ps(_mm_cvtepi32_ps(integers), _mm_set1_ps(factor)));
+  };
+  const __m128i low = _mm_packs_epi32(four(0), four(1));
+  const __m128i high = _mm_packs_epi32(four(2), four(3));
+  const __m128i bytes = _mm_packus_epi16(low, high);
+  std::memcpy(to, &bytes, sizeof(bytes));
+}
+#else
+inline void store_bytes(std::uint8_t* to, const std::uint32_t* values, float factor) {
+  for (int i = 0; i < 16; ++i) {
+    const float value = factor * static_cast<float>(static_cast<std::int32_t>(values[i]));
+    to[i] = static_cast<std::uint8_t>(std::lrint(std::fmin(std::fmax(value, 0.0F), 255.0F)));
+  }
+}
+#endif
+
 /// The first two of each.
 inline IntFour joined(IntFour low, IntFour high) {
   return __builtin_shufflevector(low, high, 0, 1, 4, 5);
