@@ -9,6 +9,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
+#include "prefilter/outline/stroke.h"
 #include "prefilter/raster/cell_filter.h"
 #include "prefilter/raster/rasterize.h"
 
@@ -188,6 +189,34 @@ Array<float> bound_rasterize(
   return to_array(std::move(image));
 }
 
+StrokeJoin join_of(const std::string& name) {
+  if (name == "miter") return StrokeJoin::kMiter;
+  if (name == "round") return StrokeJoin::kRound;
+  if (name == "bevel") return StrokeJoin::kBevel;
+  throw_invalid("join: '" + name + "' is not one of miter, round, bevel");
+}
+
+StrokeCap cap_of(const std::string& name) {
+  if (name == "butt") return StrokeCap::kButt;
+  if (name == "round") return StrokeCap::kRound;
+  if (name == "square") return StrokeCap::kSquare;
+  throw_invalid("cap: '" + name + "' is not one of butt, round, square");
+}
+
+Outline bound_stroked(const Outline& outline, double width, const std::string& join,
+                      const std::string& cap, double miter_limit, const std::vector<double>& dashes,
+                      double dash_offset, double tolerance) {
+  StrokeOptions options;
+  options.width = width;
+  options.join = join_of(join);
+  options.cap = cap_of(cap);
+  options.miter_limit = miter_limit;
+  options.dashes = dashes;
+  options.dash_offset = dash_offset;
+  const py::gil_scoped_release unlocked;
+  return stroke(outline, options, tolerance);
+}
+
 py::object bound_bounds(const Outline& outline) {
   const Box2 box = control_box(outline);
   if (outline.empty()) return py::none();
@@ -233,7 +262,8 @@ void bind_raster(py::module_& m) {
             return outline.transformed(map_of(matrix));
           },
           py::arg("matrix"))
-      .def("copy", [](const Outline& outline) { return Outline(outline); })
+      .def("stroked", &bound_stroked, py::arg("width"), py::arg("join"), py::arg("cap"),
+           py::arg("miter_limit"), py::arg("dashes"), py::arg("dash_offset"), py::arg("tolerance"))
       .def("bounds", &bound_bounds)
       .def_property_readonly("contour_count", &Outline::contour_count);
   py::class_<Paint>(m, "Paint")

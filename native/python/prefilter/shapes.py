@@ -314,11 +314,62 @@ class Shape:
             ValueError: `matrix` is not as said.
         """
         numbers = _as_matrix("matrix", matrix)
-        moved = Shape.__new__(Shape)
-        moved.__dict__.update(self.__dict__)
-        moved._outline = self._outline.transformed(numbers)
-        moved._paint = self._paint.transformed(numbers)
+        moved = self._with(self._outline.transformed(numbers), self._paint.transformed(numbers))
+        # What a map turns over winds the other way.
+        moved._winds_once = self._winds_once and np.linalg.det(np.asarray(matrix)[:, :2]) > 0.0
         return moved
+
+    def stroked(
+        self,
+        width: float,
+        *,
+        join: str = "miter",
+        cap: str = "butt",
+        miter_limit: float = 4.0,
+        dashes: Sequence[float] = (),
+        dash_offset: float = 0.0,
+        tolerance: float = 1e-3,
+    ) -> "Shape":
+        """What a pen covers along the contours, with the same color. Lengths are pixels.
+
+        Args:
+            width: The pen's, 0 or more.
+            join: What fills the gap outside of a corner: "miter", "round" or "bevel".
+            cap: How open contours and dashes end: "butt", "round" or "square".
+            miter_limit: A miter longer than this, in widths, becomes a bevel; 1 or more.
+            dashes: Lengths along the curve of dashes and gaps in turns; none for a solid stroke. An
+                odd number of them is gone through twice. Every contour begins anew.
+            dash_offset: How far into the dashes a contour begins.
+            tolerance: How far off curves beside curves may be, above 0. Lines stay lines, and round
+                joins and caps are arcs.
+
+        Raises:
+            ValueError: An argument is not as said.
+        """
+        pattern = as_array("dashes", dashes)
+        if pattern.ndim != 1 or (pattern.size and pattern.dtype.kind not in "fiu"):
+            raise ValueError(f"dashes: {dashes!r}; lengths are needed")
+        reach = as_number("tolerance", tolerance)
+        if not 0.0 < reach < np.inf:
+            raise ValueError(f"tolerance: {tolerance!r}; a finite number above 0 is needed")
+        outline = self._outline.stroked(
+            as_number("width", width),
+            as_name("join", join),
+            as_name("cap", cap),
+            as_number("miter_limit", miter_limit),
+            [float(length) for length in pattern],
+            as_number("dash_offset", dash_offset),
+            reach,
+        )
+        drawn = self._with(outline, self._paint)
+        drawn._fill_rule, drawn._winds_once = "nonzero", True
+        return drawn
+
+    def _with(self, outline: _native.Outline, paint: _native.Paint) -> "Shape":
+        shape = Shape.__new__(Shape)
+        shape.__dict__.update(self.__dict__)
+        shape._outline, shape._paint = outline, paint
+        return shape
 
     def _check_begun(self, what: str) -> None:
         if not self._has_contour:
@@ -424,7 +475,8 @@ def rasterize(
         as_threads(threads),
     )
     if is_bytes:
-        return np.rint(np.clip(image, 0.0, 1.0) * np.float32(255.0)).astype(np.uint8)
+        levels = np.clip(image, 0.0, 1.0) * np.float32(255.0)
+        return np.rint(levels, out=levels).astype(np.uint8)
     return image
 
 
