@@ -11,7 +11,11 @@ from .options import Option, declared
 
 
 def add_flags(
-    parser: argparse.ArgumentParser, settings: type, *names: str, exclusive: Collection[str] = ()
+    parser: argparse.ArgumentParser,
+    settings: type,
+    *names: str,
+    exclusive: Collection[str] = (),
+    without_default: Collection[str] = (),
 ) -> None:
     """Adds the flags of options to a parser.
 
@@ -20,6 +24,7 @@ def add_flags(
         settings: A dataclass.
         names: The fields; all if none is named.
         exclusive: Fields of which a user may give one.
+        without_default: Fields that mean something else, or nothing, where no flag gives them.
     """
     group = parser.add_mutually_exclusive_group() if exclusive else parser
     for name, default, flag, found in _flags(settings, names):
@@ -34,7 +39,7 @@ def add_flags(
                 more["nargs"] = "+"
             notes = [found.allowed] if found.has_limits else []
             # What a color is without its flag is another option's to say.
-            if default != "" and found.subtype != "COLOR":
+            if default != "" and found.subtype != "COLOR" and name not in without_default:
                 notes.append(f"default: {found.shown(default)}")
             if notes:
                 text += f" ({'; '.join(notes)})"

@@ -36,7 +36,7 @@ def add(commands: Any) -> None:
         action="store_true",
         help="filter values as they are stored, each channel by itself: roughness, masks, normals",
     )
-    add_flags(parser, ResizeSettings)
+    add_flags(parser, ResizeSettings, without_default=_SIZES)
     parser.set_defaults(execute=_resize, usage_error=parser.error)
 
 
