@@ -12,8 +12,10 @@ namespace {
 // Sums are of doubles, in the order of the taps, so that constants stay what they are to the last
 // bit, and no result depends on how the work is shared.
 
-// Rows are filtered several at once, their values side by side: no sum then waits for itself.
-constexpr int rows_at_once(int channels) { return channels == 1 ? 8 : channels == 4 ? 2 : 4; }
+// Rows are filtered several at once, their values side by side: no sum then waits for itself. With
+// this many values, which 1 to 4 divide, compilers keep all sums in registers.
+constexpr int kValuesAtOnce = 12;
+constexpr int rows_at_once(int channels) { return kValuesAtOnce / channels; }
 
 int first_source(const AxisTaps& taps) {
   const auto first = std::min_element(
@@ -36,16 +38,27 @@ void pad_rows(const ImageView& source, int y, Wrap mode, int before, int after,
               std::vector<double>* padded) {
   constexpr int kRows = rows_at_once(C);
   padded->resize(static_cast<std::size_t>(before + source.width + after) * kRows * C);
-  for (int r = 0; r < kRows; ++r) {
-    const float* row = source.texel(0, std::min(y + r, source.height - 1));
-    double* out = padded->data() + r * C;
-    for (int i = -before; i < source.width + after; ++i, out += kRows * C) {
-      const int from = wrap_index(i, source.width, mode);
-      for (int c = 0; c < C; ++c) {
-        out[c] = from < 0 ? 0.0 : row[static_cast<std::ptrdiff_t>(from) * C + c];
+  const float* rows[kRows];
+  for (int r = 0; r < kRows; ++r) rows[r] = source.texel(0, std::min(y + r, source.height - 1));
+  double* out = padded->data();
+  const auto copy = [&](int begin, int end) {
+    for (std::ptrdiff_t i = static_cast<std::ptrdiff_t>(begin) * C; i < end * C; i += C) {
+      for (int r = 0; r < kRows; ++r) {
+        for (int c = 0; c < C; ++c) *out++ = rows[r][i + c];
       }
     }
-  }
+  };
+  const auto copy_wrapped = [&](int i) {
+    const int from = wrap_index(i, source.width, mode);
+    if (from >= 0) {
+      copy(from, from + 1);
+    } else {
+      out = std::fill_n(out, kRows * C, 0.0);
+    }
+  };
+  for (int i = -before; i < 0; ++i) copy_wrapped(i);
+  copy(0, source.width);
+  for (int i = source.width; i < source.width + after; ++i) copy_wrapped(i);
 }
 
 template <int C>
