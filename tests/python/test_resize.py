@@ -39,7 +39,7 @@ KERNELS = {
     "mitchell": (mitchell, 1e-7),
     "lanczos2": (lanczos(2), 1e-5),
     "lanczos3": (lanczos(3), 1e-5),
-    "gaussian": (lambda x: np.where(abs(x) < 2, np.exp(-np.pi * x**2), 0.0), 3e-5),
+    "gaussian": (lambda x: np.where(abs(x) < 2, np.exp(-np.pi * x**2), 0.0), 5e-6),
 }
 
 

@@ -1,0 +1,223 @@
+"""Compares resized images with those of other libraries: time, accuracy, and what comes back.
+
+Usage: scripts/run python3 bench/resize/compare.py [--rounds N] [--side N] [--markdown FILE]
+
+Other libraries are Pillow, OpenImageIO, libvips (pyvips) and OpenCV, as far as this Python can
+import them; all have one thread, and work on floats. Times are the least of rounds in turns, where
+a library does what the filter's name says: some have another box, or enlarge by another filter.
+What comes back is an image made smaller to a quarter, and enlarged again by bilinear interpolation:
+the base colors of the models in ../shared/data/textured, and figure 1.8 as in the documentation.
+Fails where a criterion does not hold.
+"""
+
+import argparse
+import sys
+import time
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+from PIL import Image
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
+from resize import drawn
+
+from bench.peers.resizers import Resize, found
+from bench.report import Report
+
+ROOT = Path(__file__).resolve().parents[2]
+Array = NDArray[np.float32]
+
+TEXTURES = ROOT.parent / "shared" / "data" / "textured"
+PICTURES = {
+    "spot": "spot/spot_texture.png",
+    "Duck": "Duck/DuckCM.png",
+    "BoomBox": "BoomBox/BoomBox_baseColor.png",
+    "AntiqueCamera": "AntiqueCamera/camera_camera_BaseColor.png",
+    "DamagedHelmet": "DamagedHelmet/Default_albedo.jpg",
+}
+SHRINK = 4
+# Channels, and the new side by the old one.
+WORK = ((1, 1 / 4), (4, 1 / 4), (4, 2 / 3), (4, 3 / 2))
+TIMED = ("box", "tent", "mitchell", "lanczos3", "radial3")
+CLOSED_FORMS = ("box", "tent", "mitchell", "lanczos3")
+SAME = 0.01  # How far a library may be from the definition for its time to count.
+EDGE = 12  # New pixels, whose filters reach over the edge: libraries differ there.
+OURS_ONLY = ("least-squares",)
+QUALITY = ("box", "tent", "mitchell", "lanczos3", "radial3", "least-squares")
+
+
+def main() -> None:
+    """Runs everything."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--rounds", type=int, default=15)
+    parser.add_argument("--side", type=int, default=2048)
+    parser.add_argument("--markdown", type=Path)
+    options = parser.parse_args()
+    report = Report()
+    libraries = found()
+    time_all(report, libraries, options.side, options.rounds)
+    accuracy(report, libraries)
+    quality(report)
+    report.finish(options.markdown)
+
+
+def time_all(
+    report: Report, libraries: dict[str, tuple[Resize, frozenset[str]]], side: int, rounds: int
+) -> None:
+    """Measures every library with every filter that it has."""
+    random = np.random.default_rng(0)
+    rows, ratios = [], {}
+    for channels, factor in WORK:
+        image = random.random((side, side, channels), np.float32)
+        target = round(side * factor)
+        work: dict[tuple[str, str], Callable[[], Any]] = {
+            (filter, name): partial(resize, image, target, target, filter)
+            for filter in (*TIMED, *OURS_ONLY)
+            for name, (resize, filters) in libraries.items()
+            if filter in filters and does_it(resize, filter, factor)
+        }
+        least = fastest(work, rounds)
+        for filter in (*TIMED, *OURS_ONLY):
+            own = least[filter, "prefilter"]
+            cells = []
+            for name in libraries:
+                seconds = least.get((filter, name))
+                cells.append("" if seconds is None else f"{1000 * seconds:.1f}")
+                if seconds is not None and name != "prefilter":
+                    ratios[channels, factor, filter, name] = own / seconds
+            rows.append((f"{channels} x {side}^2 to {target}^2, {filter}", *cells))
+    report.table("Least milliseconds of one thread", ("work", *libraries), rows)
+    for name in libraries:
+        shares = [ratio for key, ratio in ratios.items() if key[3] == name]
+        if shares:
+            report.note(
+                f"Of {name}'s time: {min(shares):.2f} to {max(shares):.2f}, "
+                f"{np.exp(np.mean(np.log(shares))):.2f} on geometric average"
+            )
+
+
+def does_it(resize: Resize, filter: str, factor: float) -> bool:
+    """Tells whether a library does what the filter's name says, and not something quicker."""
+    if filter not in CLOSED_FORMS:
+        return True
+    return definition_error(resize, filter, 192, round(192 * factor)) < SAME
+
+
+def fastest(work: dict[Any, Callable[[], Any]], rounds: int) -> dict[Any, float]:
+    """Returns the least times of work that is done in turns."""
+    least = dict.fromkeys(work, np.inf)
+    for number in range(rounds):
+        for key, do in work.items():
+            began = time.perf_counter()
+            do()
+            least[key] = min(least[key], time.perf_counter() - began)
+        print(f"round {number + 1} of {rounds}", file=sys.stderr, flush=True)
+    return least
+
+
+def accuracy(report: Report, libraries: dict[str, tuple[Resize, frozenset[str]]]) -> None:
+    """Compares with float64 sums of the filters' closed forms, away from the edges."""
+    rows = []
+    for target in (48, 128, 288):
+        for filter in CLOSED_FORMS:
+            errors = [
+                f"{definition_error(resize, filter, 192, target):.0e}" if filter in filters else ""
+                for resize, filters in libraries.values()
+            ]
+            rows.append((f"192^2 to {target}^2, {filter}", *errors))
+    report.table(
+        "Largest difference from the filter's definition, away from the edges",
+        ("work", *libraries),
+        rows,
+    )
+
+
+def definition_error(resize: Resize, filter: str, size: int, target: int) -> float:
+    """Returns the largest difference from float64 sums of the closed form, for random values."""
+    image = np.random.default_rng(1).random((size, size, 1), np.float32)
+    weights = dense(filter, size, target)
+    exact = weights @ image[..., 0].astype(float) @ weights.T
+    inner = np.s_[EDGE:-EDGE, EDGE:-EDGE]
+    return float(abs(resize(image, target, target, filter)[..., 0] - exact)[inner].max())
+
+
+def dense(filter: str, size: int, target: int) -> NDArray[np.float64]:
+    """The weights of all pixels for each new one, by closed forms."""
+    ratio = size / target
+    pixel = np.arange(size)
+    center = (np.arange(target)[:, None] + 0.5) * ratio
+    if filter == "box":
+        low = np.maximum(pixel, center - ratio / 2)
+        weights = np.maximum(0.0, np.minimum(pixel + 1, center + ratio / 2) - low)
+    else:
+        x = abs(pixel + 0.5 - center) / max(1.0, ratio)
+        cubic = np.where(
+            x < 1,
+            (7 * x**3 - 12 * x**2 + 16 / 3) / 6,
+            np.where(x < 2, (-7 / 3 * x**3 + 12 * x**2 - 20 * x + 32 / 3) / 6, 0.0),
+        )
+        windowed = np.where(x < 3, np.sinc(x) * np.sinc(x / 3), 0.0)
+        tent = np.maximum(0.0, 1 - x)
+        weights = {"tent": tent, "mitchell": cubic, "lanczos3": windowed}[filter]
+    return weights / weights.sum(axis=1, keepdims=True)
+
+
+def quality(report: Report) -> None:
+    """Makes pictures smaller and enlarges them again."""
+    rows, beaten = [], []
+    for name, picture in pictures():
+        height, width = picture.shape[:2]
+        errors = {}
+        for filter in QUALITY:
+            for constrained in (False, True):
+                small = prefilter.resize(
+                    picture,
+                    width // SHRINK,
+                    height // SHRINK,
+                    filter=filter,
+                    constrained=constrained,
+                )
+                large = prefilter.resize(small, width, height, filter="tent")
+                error = float(np.sqrt(np.mean((large - picture) ** 2)))
+                over = float(max(small.max() - picture.max(), picture.min() - small.min()))
+                errors[filter, constrained] = error, over
+        box = errors["box", False][0]
+        cells = []
+        for filter in QUALITY:
+            free, bound = errors[filter, False], errors[filter, True]
+            cells.append(f"{free[0] / box:.3f} / {bound[0] / box:.3f}; {max(free[1], 0.0):.2f}")
+        rows.append((name, f"{box:.4f}", *cells))
+        best = errors["least-squares", True][0]
+        beaten.append(best / min(errors[f, True][0] for f in QUALITY if f != "least-squares"))
+    report.table(
+        "To a quarter and back: error of the box; that of others, as they are / in [0, 1], as a "
+        "share of it; overshoot",
+        ("picture", "box", *QUALITY),
+        rows,
+    )
+    report.verdict(
+        max(beaten) < 1.0,
+        f"values in [0, 1]: least squares have the lowest error on every picture, "
+        f"{min(beaten):.3f} to {max(beaten):.3f} of the next filter's",
+    )
+
+
+def pictures() -> Iterator[tuple[str, Array]]:
+    """Yields names and scene-linear colors."""
+    yield "figure 1.8", drawn()
+    for name, path in PICTURES.items():
+        if (TEXTURES / path).exists():
+            colors = np.asarray(Image.open(TEXTURES / path).convert("RGB"))[::-1]
+            rows = colors.shape[0] // SHRINK * SHRINK
+            columns = colors.shape[1] // SHRINK * SHRINK
+            yield name, prefilter.to_linear(colors[:rows, :columns].astype(np.float32) / 255)
+
+
+if __name__ == "__main__":
+    main()
