@@ -4,7 +4,7 @@
 #include "prefilter/outline/visible_pieces.h"
 
 #include <algorithm>
-#include <tuple>
+#include <compare>
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/outline/arrangement.h"
@@ -17,70 +17,69 @@ namespace {
 
 constexpr std::int64_t kChainsPerRange = 256;
 
-// How much of a layer is seen at a place.
-struct Share {
+// A layer that is seen at a place, and what it is seen through, from the top.
+struct View {
   std::uint32_t layer;
-  double weight;
+  std::vector<std::uint32_t> veils;
 
-  friend bool operator==(const Share&, const Share&) = default;
+  friend auto operator<=>(const View&, const View&) = default;
 };
 
-// A part of the boundary of where that much of it is seen.
-struct ShareEdge {
-  Share share;
+// A part of the boundary of where it is seen like that.
+struct ViewEdge {
+  View view;
   BoundaryChain chain;
 };
 
 // What is seen at a place, from the top.
-void find_shares(std::span<const CoveringLayer> layers, const LayerWindings& windings,
-                 std::vector<std::uint32_t>* touched, std::vector<Share>* shares) {
-  shares->clear();
+void find_views(std::span<const CoveringLayer> layers, const LayerWindings& windings,
+                std::vector<std::uint32_t>* touched, std::vector<View>* views) {
+  views->clear();
   touched->assign(windings.touched().begin(), windings.touched().end());
   std::sort(touched->begin(), touched->end(), std::greater<>());
   touched->erase(std::unique(touched->begin(), touched->end()), touched->end());
-  double weight = 1.0;
+  std::vector<std::uint32_t> veils;
   for (const std::uint32_t layer : *touched) {
     if (!is_filled(windings[layer], layers[layer].fill_rule)) continue;
-    shares->push_back({layer, weight});
-    weight *= 1.0 - layers[layer].opacity;
-    if (weight <= 0.0) return;
+    views->push_back({layer, veils});
+    if (layers[layer].is_opaque) return;
+    veils.push_back(layer);
   }
 }
 
-// Boundaries of all shares: edges of the same share in a row.
-std::vector<ShareEdge> find_edges(const Arrangement& arrangement,
-                                  std::span<const CoveringLayer> layers, int threads,
-                                  const Progress& progress) {
+// Boundaries of all views: edges of the same one in a row.
+std::vector<ViewEdge> find_edges(const Arrangement& arrangement,
+                                 std::span<const CoveringLayer> layers, int threads,
+                                 const Progress& progress) {
   const auto count = static_cast<std::int64_t>(arrangement.chain_count());
-  std::vector<std::vector<ShareEdge>> parts(range_count(count, kChainsPerRange));
+  std::vector<std::vector<ViewEdge>> parts(range_count(count, kChainsPerRange));
   parallel_ranges(
       count, kChainsPerRange, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        std::vector<ShareEdge>& edges = parts[begin / kChainsPerRange];
+        std::vector<ViewEdge>& edges = parts[begin / kChainsPerRange];
         std::vector<std::uint32_t> touched;
-        std::vector<Share> on_right;
-        std::vector<Share> on_left;
-        const auto append = [&](const std::vector<Share>& here, const std::vector<Share>& there,
+        std::vector<View> on_right;
+        std::vector<View> on_left;
+        const auto append = [&](const std::vector<View>& here, const std::vector<View>& there,
                                 std::uint32_t chain, bool reversed) {
-          for (const Share& share : here) {
-            if (std::find(there.begin(), there.end(), share) == there.end()) {
-              edges.push_back({share, {chain, reversed}});
+          for (const View& view : here) {
+            if (std::find(there.begin(), there.end(), view) == there.end()) {
+              edges.push_back({view, {chain, reversed}});
             }
           }
         };
         arrangement.visit(
             begin, end,
             [&](std::uint32_t chain, const LayerWindings& right, const LayerWindings& left) {
-              find_shares(layers, right, &touched, &on_right);
-              find_shares(layers, left, &touched, &on_left);
+              find_views(layers, right, &touched, &on_right);
+              find_views(layers, left, &touched, &on_left);
               append(on_left, on_right, chain, false);
               append(on_right, on_left, chain, true);
             });
       });
-  std::vector<ShareEdge> all;
+  std::vector<ViewEdge> all;
   for (const auto& edges : parts) all.insert(all.end(), edges.begin(), edges.end());
-  std::stable_sort(all.begin(), all.end(), [](const ShareEdge& a, const ShareEdge& b) {
-    return std::tuple(a.share.layer, -a.share.weight) < std::tuple(b.share.layer, -b.share.weight);
-  });
+  std::stable_sort(all.begin(), all.end(),
+                   [](const ViewEdge& a, const ViewEdge& b) { return a.view < b.view; });
   return all;
 }
 
@@ -95,7 +94,7 @@ std::vector<VisiblePiece> pieces_by_polygons(std::span<const CoveringLayer> laye
                      tolerance);
   };
   const Box2 box = control_box(*layers[index].outline);
-  std::vector<VisiblePiece> pieces = {{index, 1.0, {}}};
+  std::vector<VisiblePiece> pieces = {{index, {}, {}}};
   for (const Polygon& polygon : polygons_of(index)) {
     pieces[0].outline.move_to(polygon[0]);
     for (std::size_t i = 1; i < polygon.size(); ++i) pieces[0].outline.line_to(polygon[i]);
@@ -108,17 +107,17 @@ std::vector<VisiblePiece> pieces_by_polygons(std::span<const CoveringLayer> laye
       continue;
     }
     const std::vector<Polygon> cover = polygons_of(above);
-    const double passing = 1.0 - layers[above].opacity;
     std::vector<VisiblePiece> divided;
     for (const VisiblePiece& piece : pieces) {
       const std::vector<Polygon> polygons = flattened(piece.outline, tolerance);
       divided.push_back(
-          {index, piece.weight,
+          {index, piece.veils,
            combine_polygons(polygons, kRule, cover, kRule, SetOperation::kDifference)});
-      if (passing <= 0.0) continue;
+      if (layers[above].is_opaque) continue;
       divided.push_back(
-          {index, piece.weight * passing,
+          {index, piece.veils,
            combine_polygons(polygons, kRule, cover, kRule, SetOperation::kIntersection)});
+      divided.back().veils.push_back(static_cast<std::uint32_t>(above));
     }
     std::erase_if(divided, [](const VisiblePiece& piece) { return piece.outline.empty(); });
     pieces = std::move(divided);
@@ -134,14 +133,14 @@ std::vector<VisiblePiece> visible_pieces(std::span<const CoveringLayer> layers, 
   for (const CoveringLayer& layer : layers) outlines.push_back(layer.outline);
   Arrangement arrangement(outlines, kPrecisions[0]);
   std::vector<std::vector<VisiblePiece>> pieces(layers.size());
-  std::vector<ShareEdge> edges;
+  std::vector<ViewEdge> edges;
   std::vector<std::size_t> starts;  // of the edges of a layer, and their end
   if (arrangement.cut(progress.part(0.0, 0.4))) {
     edges = find_edges(arrangement, layers, threads, progress.part(0.4, 0.8));
     for (std::uint32_t layer = 0; layer <= layers.size(); ++layer) {
       const auto first =
           std::partition_point(edges.begin(), edges.end(),
-                               [&](const ShareEdge& edge) { return edge.share.layer < layer; });
+                               [&](const ViewEdge& edge) { return edge.view.layer < layer; });
       starts.push_back(static_cast<std::size_t>(first - edges.begin()));
     }
   }
@@ -152,9 +151,10 @@ std::vector<VisiblePiece> visible_pieces(std::span<const CoveringLayer> layers, 
                  std::vector<BoundaryChain> boundary;
                  for (std::size_t i = is_clear ? starts[layer] : 0;
                       is_clear && i < starts[layer + 1];) {
-                   VisiblePiece piece = {layer, edges[i].share.weight, {}};
+                   const View& view = edges[i].view;
+                   VisiblePiece piece = {layer, {view.veils.rbegin(), view.veils.rend()}, {}};
                    boundary.clear();
-                   for (; i < starts[layer + 1] && edges[i].share.weight == piece.weight; ++i) {
+                   for (; i < starts[layer + 1] && edges[i].view == view; ++i) {
                      boundary.push_back(edges[i].chain);
                    }
                    is_clear = arrangement.trace(boundary, &piece.outline);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -15,21 +16,21 @@ namespace prefilter {
 struct CoveringLayer {
   const Outline* outline = nullptr;
   FillRule fill_rule = FillRule::kNonzero;
-  double opacity = 1.0;  // in [0, 1]
+  bool is_opaque = true;
 };
 
-/// Where a layer is seen, through layers that let the share `weight` of it pass.
+/// Where a layer is seen through the same layers.
 struct VisiblePiece {
   std::size_t layer = 0;
-  double weight = 1.0;  // in (0, 1]
-  Outline outline;      // as `resolve` would have it
+  /// The layers over it that are not opaque, from the lowest to the highest.
+  std::vector<std::uint32_t> veils;
+  Outline outline;  // as `resolve` would have it
 };
 
-/// The pieces of all layers that are seen, in the order of the layers, each piece's weight being
-/// the product of 1 - opacity of the layers over it. So the sum of weight times color over the
-/// pieces that hold a point is what the layers, drawn one over the other, show there; colors are
-/// premultiplied. Pieces beside each other share their curves, bit for bit, so that no seam is
-/// left.
+/// The pieces of all layers that are seen, in the order of the layers. So the sum, over the pieces
+/// that hold a point, of the layer's color times 1 - alpha of each veil is what the layers, drawn
+/// one over the other, show there; colors are premultiplied. Pieces beside each other share their
+/// curves, bit for bit, so that no seam is left.
 ///
 /// Only layers that rounding leaves unclear become lines, off by `tolerance` at the most.
 std::vector<VisiblePiece> visible_pieces(std::span<const CoveringLayer> layers, int threads = 0,

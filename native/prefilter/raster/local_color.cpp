@@ -2,14 +2,24 @@
 
 namespace prefilter {
 
+ChannelValues LocalColor::at(const Point2& point) const {
+  ChannelValues value = layer_.paint.at(point);
+  for (const Paint& veil : layer_.veils) {
+    const double passing = 1.0 - veil.at(point)[kMaxChannels - 1];
+    for (double& channel : value) channel *= passing;
+  }
+  return value;
+}
+
 void LocalColor::powers(int column, int row, std::array<ColorPowers, kMaxChannels>* out) const {
   const double scale = 1.0 / filter_.cells_per_pixel;
   const Point2 center{filter_.to_pixel(column + 0.5), filter_.to_pixel(row + 0.5)};
-  if (paint_.kind == Paint::Kind::kLinear) {
-    for (int c = 0; c < paint_.channels; ++c) {
-      (*out)[c] = {paint_.constant[c] + center.x * paint_.along_x[c] + center.y * paint_.along_y[c],
-                   scale * paint_.along_x[c],
-                   scale * paint_.along_y[c],
+  const Paint& paint = layer_.paint;
+  if (is_linear()) {
+    for (int c = 0; c < paint.channels; ++c) {
+      (*out)[c] = {paint.constant[c] + center.x * paint.along_x[c] + center.y * paint.along_y[c],
+                   scale * paint.along_x[c],
+                   scale * paint.along_y[c],
                    0.0,
                    0.0,
                    0.0};
@@ -23,12 +33,12 @@ void LocalColor::powers(int column, int row, std::array<ColorPowers, kMaxChannel
     for (int i = 0; i < 3; ++i) {
       const double u = kNodes[i];
       const double v = kNodes[j];
-      const ChannelValues value = paint_.at(center + scale * Point2{u, v});
+      const ChannelValues value = at(center + scale * Point2{u, v});
       const double weight = kWeights[i] * kWeights[j];
       // Legendre's polynomials, each over the integral of its square.
       const double uu = 180.0 * (u * u - 1.0 / 12.0);
       const double vv = 180.0 * (v * v - 1.0 / 12.0);
-      for (int c = 0; c < paint_.channels; ++c) {
+      for (int c = 0; c < paint.channels; ++c) {
         const double term = weight * value[c];
         ColorPowers& powers = (*out)[c];
         powers[0] += term * (1.0 - (uu + vv) / 12.0);

@@ -4,7 +4,7 @@
 #include <array>
 
 #include "prefilter/raster/cell_filter.h"
-#include "prefilter/raster/paint.h"
+#include "prefilter/raster/raster_layers.h"
 
 namespace prefilter {
 
@@ -17,18 +17,23 @@ inline constexpr std::array<std::array<int, 2>, 6> kColorExponents = {
 
 class LocalColor {
  public:
-  /// Of a paint whose kind is kLinear or kRadialStops. Both must outlive this.
-  LocalColor(const Paint& paint, const CellFilter& filter) : paint_(paint), filter_(filter) {}
+  /// Of a layer's paint and veils. Both must outlive this.
+  LocalColor(const RasterLayer& layer, const CellFilter& filter) : layer_(layer), filter_(filter) {}
 
-  int channels() const { return paint_.channels; }
+  int channels() const { return layer_.paint.channels; }
   /// 1 for linear colors, 2 for others.
-  int degree() const { return paint_.kind == Paint::Kind::kLinear ? 1 : 2; }
+  int degree() const { return is_linear() ? 1 : 2; }
   /// For each channel. Linear colors are what they are; others the polynomial that is nearest in
   /// the mean square, by Gauss's rule of three points along each axis.
   void powers(int column, int row, std::array<ColorPowers, kMaxChannels>* out) const;
 
  private:
-  const Paint& paint_;
+  bool is_linear() const {
+    return layer_.paint.kind == Paint::Kind::kLinear && layer_.veils.empty();
+  }
+  ChannelValues at(const Point2& point) const;
+
+  const RasterLayer& layer_;
   const CellFilter& filter_;
 };
 

@@ -1,10 +1,12 @@
 #include "prefilter/raster/raster_layers.h"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/outline/resolve.h"
+#include "prefilter/outline/visible_pieces.h"
 #include "prefilter/raster/gradient_strips.h"
 
 namespace prefilter {
@@ -13,15 +15,15 @@ namespace {
 // Coverage is summed up in whole numbers that hold this many times a full cell, and more.
 constexpr int kMostShapesTogether = 16;
 
+bool has_alpha(const Paint& paint) { return paint.channels == kMaxChannels; }
+
+constexpr int kAlpha = kMaxChannels - 1;
+
 // Before a background a shape adds, at every point, its value less what it hides of it.
 void take_background(const ChannelValues& background, Paint* paint) {
-  const int channels = paint->channels;
-  const auto alpha_of = [&](const ChannelValues& value, double opaque) {
-    return channels == kMaxChannels ? value[kMaxChannels - 1] : opaque;
-  };
   const auto take = [&](ChannelValues* value, double opaque) {
-    const double alpha = alpha_of(*value, opaque);
-    for (int c = 0; c < channels; ++c) (*value)[c] -= alpha * background[c];
+    const double alpha = has_alpha(*paint) ? (*value)[kAlpha] : opaque;
+    for (int c = 0; c < paint->channels; ++c) (*value)[c] -= alpha * background[c];
   };
   take(&paint->constant, 1.0);
   take(&paint->along_x, 0.0);
@@ -40,11 +42,51 @@ bool is_left_open(const Outline& outline) {
   return false;
 }
 
+bool is_opaque(const Paint& paint) {
+  if (!has_alpha(paint)) return true;
+  if (!paint.stops.empty()) {
+    return std::all_of(paint.stops.begin(), paint.stops.end(),
+                       [](const GradientStop& stop) { return stop.value[kAlpha] >= 1.0; });
+  }
+  return paint.constant[kAlpha] >= 1.0 && paint.along_x[kAlpha] == 0.0 &&
+         paint.along_y[kAlpha] == 0.0;
+}
+
+Paint scaled(Paint paint, double factor) {
+  const auto scale = [&](ChannelValues* values) {
+    for (double& value : *values) value *= factor;
+  };
+  scale(&paint.constant);
+  scale(&paint.along_x);
+  scale(&paint.along_y);
+  for (GradientStop& stop : paint.stops) scale(&stop.value);
+  return paint;
+}
+
 class LayerMaker {
  public:
   LayerMaker(RasterMethod method, RasterLayers* out) : method_(method), out_(out) {}
 
-  // An outline that is kept elsewhere.
+  // An outline that is kept elsewhere, under paints that let 1 - alpha pass.
+  void add_veiled(const Outline& outline, const Paint& paint, const std::vector<Paint>& veils) {
+    double passing = 1.0;
+    std::vector<Paint> varying;
+    for (const Paint& veil : veils) {
+      if (veil.kind == Paint::Kind::kConstant) {
+        passing *= 1.0 - veil.constant[kAlpha];
+      } else {
+        varying.push_back(veil);
+      }
+    }
+    if (varying.empty()) {
+      add(outline, scaled(paint, passing));
+    } else if (!outline.empty()) {
+      out_->layers.push_back({{}, scaled(paint, passing), std::move(varying)});
+      out_->layers.back().edges.add(outline);
+      together_ = 0;
+    }
+  }
+
   void add(const Outline& outline, const Paint& paint) {
     if (outline.empty()) return;
     if (paint.kind == Paint::Kind::kLinearStops) {
@@ -58,7 +100,7 @@ class LayerMaker {
                        (together_ < kMostShapesTogether || method_ == RasterMethod::kWavelet) &&
                        out_->layers.back().paint.constant == paint.constant;
     if (!joins) {
-      out_->layers.push_back({{}, paint});
+      out_->layers.push_back({{}, paint, {}});
       together_ = 0;
     }
     together_ = is_constant ? together_ + 1 : 0;
@@ -81,23 +123,37 @@ class LayerMaker {
 RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& options) {
   RasterLayers out;
   if (!shapes.empty()) out.channels = shapes.front().paint.channels;
-  for (std::size_t c = 0; c < options.background.size(); ++c) {
-    out.background[c] = options.background[c];
+  std::copy(options.background.begin(), options.background.end(), out.background.begin());
+  std::vector<Paint> paints;
+  for (const Shape& shape : shapes) {
+    paints.push_back(shape.paint);
+    take_background(out.background, &paints.back());
+  }
+  const Progress progress = options.progress.part(0.0, kLayersShare);
+  LayerMaker maker(options.method, &out);
+  if (options.overlap == Overlap::kCover && shapes.size() > 1) {
+    std::vector<CoveringLayer> layers;
+    for (const Shape& shape : shapes) {
+      layers.push_back({&shape.outline, shape.fill_rule, is_opaque(shape.paint)});
+    }
+    for (VisiblePiece& piece : visible_pieces(layers, options.threads, progress)) {
+      std::vector<Paint> veils;
+      for (const std::uint32_t veil : piece.veils) veils.push_back(shapes[veil].paint);
+      maker.add_veiled(maker.keep(std::move(piece.outline)), paints[piece.layer], veils);
+    }
+    return out;
   }
   std::vector<std::optional<Outline>> changed(shapes.size());
-  parallel_for(static_cast<std::int64_t>(shapes.size()), options.threads,
-               options.progress.part(0.0, 0.2), [&](std::int64_t i) {
+  parallel_for(static_cast<std::int64_t>(shapes.size()), options.threads, progress,
+               [&](std::int64_t i) {
                  if (shapes[i].winds_once) return;
                  if (options.method == RasterMethod::kWavelet && is_left_open(shapes[i].outline)) {
                    return;
                  }
                  changed[i] = resolved(shapes[i].outline, shapes[i].fill_rule);
                });
-  LayerMaker maker(options.method, &out);
   for (std::size_t i = 0; i < shapes.size(); ++i) {
-    Paint paint = shapes[i].paint;
-    take_background(out.background, &paint);
-    maker.add(changed[i] ? maker.keep(*std::move(changed[i])) : shapes[i].outline, paint);
+    maker.add(changed[i] ? maker.keep(*std::move(changed[i])) : shapes[i].outline, paints[i]);
   }
   return out;
 }

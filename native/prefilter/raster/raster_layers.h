@@ -15,8 +15,13 @@ namespace prefilter {
 /// then cancels.
 struct RasterLayer {
   EdgeList edges;
-  Paint paint;  // of any kind but kLinearStops
+  Paint paint;               // of any kind but kLinearStops, where there are no veils
+  std::vector<Paint> veils;  // over it, of which each lets 1 - alpha pass
 };
+
+inline bool is_constant(const RasterLayer& layer) {
+  return layer.paint.kind == Paint::Kind::kConstant && layer.veils.empty();
+}
 
 struct RasterLayers {
   std::vector<RasterLayer> layers;
@@ -24,6 +29,9 @@ struct RasterLayers {
   int channels = 1;
   std::deque<Outline> outlines;  // what the edges are of
 };
+
+/// How much of the time of rasterizing it takes to make the layers, as progress tells it.
+inline constexpr double kLayersShare = 0.3;
 
 /// The sum of all layers and the background is the image. The shapes must outlive it.
 RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& options);

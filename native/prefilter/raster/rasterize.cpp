@@ -97,16 +97,12 @@ class BandMaker {
       if (filter_.to_cell(layer.edges.low()) > filter_.first_cell(end_row - 1) + filter_.taps) {
         continue;
       }
-      switch (layer.paint.kind) {
-        case Paint::Kind::kConstant:
-          add_constant(layer);
-          break;
-        case Paint::Kind::kLinear:
-          add_painted(layer, &linear_);
-          break;
-        default:
-          add_painted(layer, &radial_);
-          break;
+      if (is_constant(layer)) {
+        add_constant(layer);
+      } else if (LocalColor(layer, filter_).degree() == 1) {
+        add_painted(layer, &linear_);
+      } else {
+        add_painted(layer, &curved_);
       }
     }
     std::transform(values_.begin(), values_.end(), image_->texel(0, first_row),
@@ -179,7 +175,7 @@ class BandMaker {
     }
     auto& [cells, rows] = **painted;
     add_edges(layer, &cells);
-    rows.add_values(cells, LocalColor(layer.paint, filter_), first_row_, end_row_, values_.data());
+    rows.add_values(cells, LocalColor(layer, filter_), first_row_, end_row_, values_.data());
     cells.clear();
   }
 
@@ -191,7 +187,7 @@ class BandMaker {
   MomentCells<N> cells_;
   std::unique_ptr<MomentRows<N>> moments_;
   std::unique_ptr<Painted<N + 1>> linear_;
-  std::unique_ptr<Painted<N + 2>> radial_;
+  std::unique_ptr<Painted<N + 2>> curved_;
   CoverageRows rows_;
   std::unique_ptr<BoxCoverage> box_;
   std::vector<double> values_;
@@ -202,7 +198,7 @@ void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterO
                 Image* image) {
   constexpr int kBandValues = 1 << 17;
   const int rows = std::clamp(kBandValues / (options.width * job.channels), 16, 256);
-  parallel_ranges(options.height, rows, options.threads, options.progress.part(0.2, 1.0),
+  parallel_ranges(options.height, rows, options.threads, options.progress.part(kLayersShare, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
                     BandMaker<N> maker(job, filter, image);
                     maker.make(static_cast<int>(begin), static_cast<int>(end));

@@ -39,7 +39,7 @@ class Scene {
   std::vector<CoveringLayer> layers() const {
     std::vector<CoveringLayer> layers;
     for (std::size_t i = 0; i < outlines_.size(); ++i) {
-      layers.push_back({&outlines_[i], rules_[i], opacities_[i]});
+      layers.push_back({&outlines_[i], rules_[i], opacities_[i] >= 1.0});
     }
     return layers;
   }
@@ -66,7 +66,9 @@ class Scene {
       for (std::size_t i = 0; i < pieces.size(); ++i) {
         const int inside = winding(piece_chains[i], point);
         ASSERT_TRUE(inside == 0 || inside == 1) << inside;
-        found[pieces[i].layer] += pieces[i].weight * inside;
+        double passing = inside;
+        for (const std::uint32_t veil : pieces[i].veils) passing *= 1.0 - opacities_[veil];
+        found[pieces[i].layer] += passing;
       }
       const Weights wanted = expected(point);
       for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -116,7 +118,7 @@ TEST(VisiblePieces, WhatIsCoveredIsLeftOut) {
   const std::vector<VisiblePiece> pieces = visible_pieces(layers);
   ASSERT_EQ(pieces.size(), 1u);
   EXPECT_EQ(pieces[0].layer, 1u);
-  EXPECT_EQ(pieces[0].weight, 1.0);
+  EXPECT_TRUE(pieces[0].veils.empty());
   ASSERT_EQ(pieces[0].outline.points().size(), large.points().size());
   EXPECT_TRUE(
       std::equal(large.points().begin(), large.points().end(), pieces[0].outline.points().begin()));
