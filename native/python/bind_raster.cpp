@@ -262,6 +262,7 @@ void bind_raster(py::module_& m) {
             return outline.transformed(map_of(matrix));
           },
           py::arg("matrix"))
+      .def("copy", [](const Outline& outline) { return Outline(outline); })
       .def("stroked", &bound_stroked, py::arg("width"), py::arg("join"), py::arg("cap"),
            py::arg("miter_limit"), py::arg("dashes"), py::arg("dash_offset"), py::arg("tolerance"))
       .def("bounds", &bound_bounds)

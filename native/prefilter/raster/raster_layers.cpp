@@ -120,9 +120,14 @@ class LayerMaker {
 
 }  // namespace
 
+int channel_count(std::span<const Shape> shapes, const RasterOptions& options) {
+  if (!shapes.empty()) return shapes.front().paint.channels;
+  return std::max(1, static_cast<int>(options.background.size()));
+}
+
 RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& options) {
   RasterLayers out;
-  if (!shapes.empty()) out.channels = shapes.front().paint.channels;
+  out.channels = channel_count(shapes, options);
   std::copy(options.background.begin(), options.background.end(), out.background.begin());
   std::vector<Paint> paints;
   for (const Shape& shape : shapes) {

@@ -33,6 +33,9 @@ struct RasterLayers {
 /// How much of the time of rasterizing it takes to make the layers, as progress tells it.
 inline constexpr double kLayersShare = 0.3;
 
+/// The channels of the image: the shapes', or where there are none, the background's.
+int channel_count(std::span<const Shape> shapes, const RasterOptions& options);
+
 /// The sum of all layers and the background is the image. The shapes must outlive it.
 RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& options);
 

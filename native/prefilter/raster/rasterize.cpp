@@ -32,8 +32,8 @@ void check_options(std::span<const Shape> shapes, const RasterOptions& options) 
     throw_invalid("width, height: found " + std::to_string(options.width) + " x " +
                   std::to_string(options.height) + " pixels; at least 1 x 1 is needed");
   }
-  const int channels = shapes.empty() ? 1 : shapes.front().paint.channels;
-  check_memory("an image of " + std::to_string(options.width) + " x " +
+  const int channels = channel_count(shapes, options);
+  check_memory("width, height: an image of " + std::to_string(options.width) + " x " +
                    std::to_string(options.height) + " pixels",
                4.0 * options.width * options.height * channels);
   for (std::size_t i = 0; i < shapes.size(); ++i) {

@@ -1,6 +1,7 @@
 """Vector shapes, and their images."""
 
 from collections.abc import Iterable, Sequence
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -199,7 +200,7 @@ class Shape:
             ValueError: The points are not as said or not finite, or no contour has begun.
         """
         self._check_begun("curve_to")
-        found = as_array("control_points", control_points)
+        found = as_array("control_points", cast(npt.ArrayLike, control_points))
         numbers = found.dtype.kind in "fiu"
         if not numbers or found.size % 2 or found.ndim not in (1, 2) or found.shape[-1] % 2:
             raise ValueError("control_points: found no pairs (x, y)")
@@ -371,6 +372,12 @@ class Shape:
         shape._outline, shape._paint = outline, paint
         return shape
 
+    def __copy__(self) -> "Shape":
+        return self._with(self._outline.copy(), self._paint)
+
+    def __deepcopy__(self, memo: object) -> "Shape":
+        return self.__copy__()
+
     def _check_begun(self, what: str) -> None:
         if not self._has_contour:
             raise ValueError(f"{what}: no contour has begun; call move_to first")
@@ -440,7 +447,8 @@ def rasterize(
         threads: 0 means all processors. The result does not depend on it.
 
     Returns:
-        (height, width, channels), row 0 at the bottom; one channel where there are no shapes.
+        (height, width, channels), row 0 at the bottom. Where there are no shapes, as many channels
+        as the background has, or one.
 
     Raises:
         ValueError: A name is none of those, shapes differ in their channels, a point is more than
@@ -448,7 +456,10 @@ def rasterize(
         MemoryError: The image does not fit into memory.
         Cancelled: `progress` returned False.
     """
-    drawn = list(shapes)
+    try:
+        drawn = list(shapes)
+    except TypeError as error:
+        raise ValueError(f"shapes: {shapes!r}; several of Shape are needed") from error
     for index, shape in enumerate(drawn):
         if not isinstance(shape, Shape):
             raise ValueError(f"shapes: item {index} is {type(shape).__name__}; Shape is needed")
@@ -475,8 +486,8 @@ def rasterize(
         as_threads(threads),
     )
     if is_bytes:
-        levels = np.clip(image, 0.0, 1.0) * np.float32(255.0)
-        return np.rint(levels, out=levels).astype(np.uint8)
+        levels: FloatArray = np.clip(image, 0.0, 1.0) * np.float32(255.0)
+        return np.rint(levels).astype(np.uint8)
     return image
 
 
