@@ -1,4 +1,4 @@
-// Anti-Grain Geometry 2.4, gray of 8 bits, with either of its scanlines: unpacked, as its examples
+// Anti-Grain Geometry, gray of 8 bits, with either of its scanlines: unpacked, as its examples
 // have it, a coverage for each pixel; packed, one for a whole run of full pixels.
 #include <agg_conv_curve.h>
 #include <agg_path_storage.h>
