@@ -62,7 +62,7 @@ def main() -> None:
         compare(report, name, measured([name], options.rounds))
     if not options.patterns or FILTER_PATTERN in names:
         compare_filters(report, measured(["--filters", FILTER_PATTERN], options.rounds))
-    words = ["--filters", "--rasterizers", "box,wavelet", *names]
+    words = ["--filters", "--rasterizers", "box;wavelet", *names]
     compare_wavelets(report, measured(words, options.rounds))
     compare_seams(report)
     report.finish(options.markdown)
@@ -106,7 +106,7 @@ def compare(report: Report, pattern: str, runs: Sequence[Run]) -> None:
     if agg is not None:
         share, bar = ours.shortest / agg.shortest, AGG_BARS[pattern]
         report.verdict(share <= bar, f"{pattern}: {share:.3f} of AGG's time, at most {bar}")
-    others = [run for run in runs if run is not ours]
+    others = [run for run in runs if not run.rasterizer.startswith(OURS)]
     for kind, group in (
         ("at its default tolerance", [run for run in others if run.is_default]),
         ("at the tolerance where its error is 1/255", near_exact(others)),

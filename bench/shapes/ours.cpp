@@ -1,8 +1,10 @@
-// Prefilter's own rasterizer, into floats.
+// Prefilter's own rasterizers.
 #include <algorithm>
 #include <span>
 
 #include "bench/shapes/rasterizers.h"
+#include "prefilter/outline/resolve.h"
+#include "prefilter/raster/box_coverage.h"
 #include "prefilter/raster/rasterize.h"
 
 namespace prefilter::bench {
@@ -35,15 +37,18 @@ Outline outline_of(const Path& path) {
   return outline;
 }
 
-class OurDrawing final : public Drawing {
+// Any filter, by `rasterize`, which makes an image of floats each time. Overlaps are not looked
+// for.
+class FilteredDrawing final : public Drawing {
  public:
-  OurDrawing(const Pattern& pattern, const std::string& filter, RasterMethod method)
+  FilteredDrawing(const Pattern& pattern, const std::string& filter, RasterMethod method)
       : pattern_(pattern), shapes_(1) {
     options_.width = pattern.width;
     options_.height = pattern.height;
     options_.filter = filter;
     options_.method = method;
     options_.threads = 1;
+    shapes_[0].winds_once = true;
     build();
   }
 
@@ -62,15 +67,58 @@ class OurDrawing final : public Drawing {
   Image image_;
 };
 
+// The box filter, into bytes as the others.
+class ByteDrawing final : public Drawing {
+ public:
+  ByteDrawing(const Pattern& pattern, bool resolves)
+      : pattern_(pattern),
+        resolves_(resolves),
+        pixels_(static_cast<std::size_t>(pattern.width) * pattern.height) {
+    build();
+  }
+
+  void build() override { outline_ = outline_of(pattern_.path); }
+
+  void clear() override { std::fill(pixels_.begin(), pixels_.end(), std::uint8_t{0}); }
+
+  void draw() override {
+    const ByteRows rows{pixels_.data(), pattern_.width, pattern_.height, pattern_.width};
+    if (resolves_) {
+      rasterizer_.draw(resolve(outline_, FillRule::kNonzero), rows);
+    } else {
+      rasterizer_.draw(outline_, rows);
+    }
+  }
+
+  std::vector<float> coverage() const override { return from_bytes(pixels_); }
+
+ private:
+  const Pattern& pattern_;
+  bool resolves_;
+  std::vector<std::uint8_t> pixels_;
+  Outline outline_;
+  BoxRasterizer rasterizer_;
+};
+
+Rasterizer byte_rasterizer(const std::string& name, bool resolves) {
+  return {name, false, [resolves](const Pattern& pattern, double) {
+            return std::make_unique<ByteDrawing>(pattern, resolves);
+          }};
+}
+
 Rasterizer rasterizer(const std::string& name, const std::string& filter, RasterMethod method) {
   return {name, false, [filter, method](const Pattern& pattern, double) {
-            return std::make_unique<OurDrawing>(pattern, filter, method);
+            return std::make_unique<FilteredDrawing>(pattern, filter, method);
           }};
 }
 
 }  // namespace
 
-Rasterizer our_rasterizer() { return rasterizer("Prefilter", "box", RasterMethod::kScanline); }
+std::vector<Rasterizer> our_boxes() {
+  return {byte_rasterizer("Prefilter", false),
+          byte_rasterizer("Prefilter, overlaps looked for", true),
+          rasterizer("Prefilter, floats", "box", RasterMethod::kScanline)};
+}
 
 std::vector<float> our_sum(const Pattern& pattern) {
   RasterOptions options;
@@ -81,7 +129,7 @@ std::vector<float> our_sum(const Pattern& pattern) {
   return rasterize(shapes, options).data;
 }
 
-std::vector<Rasterizer> our_rasterizers() {
+std::vector<Rasterizer> our_filters() {
   std::vector<Rasterizer> all;
   for (const char* filter : {"box", "tent", "bspline2", "mitchell", "lanczos2", "lanczos3",
                              "radial2", "radial3", "gaussian"}) {

@@ -35,10 +35,10 @@ struct Rasterizer {
   std::function<std::unique_ptr<Drawing>(const Pattern&, double fineness)> open;
 };
 
-/// Prefilter with the box filter.
-Rasterizer our_rasterizer();
-/// Prefilter with each of its filters, by their names, and with its other method.
-std::vector<Rasterizer> our_rasterizers();
+/// Prefilter with the box filter: into bytes, with overlaps looked for before, and into floats.
+std::vector<Rasterizer> our_boxes();
+/// Prefilter into floats with each of its filters, by their names, and with its other method.
+std::vector<Rasterizer> our_filters();
 /// Coverage of a pattern's contours, each a shape of its own, added by Prefilter.
 std::vector<float> our_sum(const Pattern& pattern);
 

@@ -1,6 +1,6 @@
 // Times of rasterizers on the same patterns, interleaved, and how far they are from the truth.
 //
-// usage: shapes_bench [--rounds N] [--rasterizers NAME,...] [--filters | --seams] [PATTERN...]
+// usage: shapes_bench [--rounds N] [--rasterizers NAME;...] [--filters | --seams] [PATTERN...]
 //
 // --filters compares Prefilter's own filters instead. --seams draws 64 abutting quads one after
 // another, and prints each rasterizer and the lowest value of the image, of 255.
@@ -198,7 +198,7 @@ int main(int count, char** words) {
       rounds = std::max(1, std::atoi(words[++word]));
     } else if (option == "--rasterizers" && word + 1 < count) {
       std::istringstream list(words[++word]);
-      for (std::string name; std::getline(list, name, ',');) names.push_back(name);
+      for (std::string name; std::getline(list, name, ';');) names.push_back(name);
     } else if (option == "--filters") {
       filters = true;
     } else if (option == "--seams") {
@@ -207,8 +207,11 @@ int main(int count, char** words) {
       subjects.emplace_back(option);
     }
   }
-  std::vector<Rasterizer> compared = filters ? our_rasterizers() : peers();
-  if (!filters && !seams) compared.insert(compared.begin(), our_rasterizer());
+  std::vector<Rasterizer> compared = filters ? our_filters() : peers();
+  if (!filters && !seams) {
+    std::vector<Rasterizer> boxes = our_boxes();
+    compared.insert(compared.begin(), boxes.begin(), boxes.end());
+  }
   std::erase_if(compared, [&](const Rasterizer& rasterizer) {
     return !names.empty() && std::find(names.begin(), names.end(), rasterizer.name) == names.end();
   });
