@@ -253,7 +253,7 @@ def test_entities_of_drawing_programs_are_read():
 def test_garbled_files_are_read_or_refused():
     random = np.random.default_rng(5)
     good = svg(
-        "<style>#a .b{fill:url(#g) blue;color:red}</style>"
+        "<style>#a .b{fill:red;stroke:url(#g) blue;stroke-dasharray:2 1px}</style>"
         '<radialGradient id="g" fx="20%"><stop offset="0.2" stop-color="#123"/>'
         '<stop offset="70%" stop-opacity=".5"/></radialGradient>'
         '<g id="a" transform="rotate(30)"><path class="b" d="M1 2a3 4 5 0 1 6 7z"/></g>'

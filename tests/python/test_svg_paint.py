@@ -1,6 +1,5 @@
 """Styles, colors and gradients read from SVG: against what its specification says."""
 
-
 import numpy as np
 import prefilter
 import pytest
