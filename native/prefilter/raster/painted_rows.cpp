@@ -89,7 +89,7 @@ void PaintedRows<N>::add_cell(int column, int row, const Moments& moments,
           for (int a = 0; a < count; ++a) sum += piece[b * count + a] * colored[a][b];
         }
       }
-      values_[(static_cast<std::size_t>(y) * width_ + x) * channels + c] += sum;
+      values_->row(y)[x * channels + c] += sum;
     });
   }
 }
@@ -103,7 +103,7 @@ void PaintedRows<N>::add_full_cells(int begin, int end, int row, double share,
     color.powers(column, row, &powers);
     for_pixels_over(column, row, [&](int x, int y, int ox, int oy) {
       const ColorPowers& full = full_[oy * filter_.taps + ox];
-      double* out = values_ + (static_cast<std::size_t>(y) * width_ + x) * channels;
+      double* out = values_->row(y) + x * channels;
       for (int c = 0; c < channels; ++c) {
         double sum = 0.0;
         for (std::size_t k = 0; k < full.size(); ++k) sum += full[k] * powers[c][k];
@@ -115,7 +115,7 @@ void PaintedRows<N>::add_full_cells(int begin, int end, int row, double share,
 
 template <int N>
 void PaintedRows<N>::add_values(const MomentCells<N>& cells, const LocalColor& color, int first_row,
-                                int end_row, double* values) {
+                                int end_row, BandValues* values) {
   first_row_ = first_row;
   end_row_ = end_row;
   values_ = values;

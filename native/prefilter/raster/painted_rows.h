@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "prefilter/raster/band_values.h"
 #include "prefilter/raster/cell_filter.h"
 #include "prefilter/raster/local_color.h"
 #include "prefilter/raster/moment_cells.h"
@@ -20,7 +21,7 @@ class PaintedRows {
   /// Adds to `values`, those of the pixel rows [first_row, end_row), the color of what lies in
   /// the cells.
   void add_values(const MomentCells<N>& cells, const LocalColor& color, int first_row, int end_row,
-                  double* values);
+                  BandValues* values);
 
  private:
   using Moments = std::array<std::array<double, N + 1>, N + 1>;  // of x^a y^b, at [a][b]
@@ -34,7 +35,7 @@ class PaintedRows {
   int width_;
   int first_row_ = 0;
   int end_row_ = 0;
-  double* values_ = nullptr;
+  BandValues* values_ = nullptr;
   std::vector<int> columns_;
   std::vector<ColorPowers> full_;  // of taps (oy, ox): the integrals of the color's powers
 };

@@ -13,6 +13,7 @@
 #include "prefilter/base/memory.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/raster/band_values.h"
 #include "prefilter/raster/box_coverage.h"
 #include "prefilter/raster/coverage_rows.h"
 #include "prefilter/raster/local_color.h"
@@ -88,10 +89,7 @@ class BandMaker {
   void make(int first_row, int end_row) {
     first_row_ = first_row;
     end_row_ = end_row;
-    const int channels = job_.channels;
-    const std::size_t row_values = static_cast<std::size_t>(image_->width) * channels;
-    values_.resize(row_values * (end_row - first_row));
-    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] = job_.background[i % channels];
+    values_.reset(image_->width, end_row - first_row, job_.channels, job_.background);
     for (const RasterLayer& layer : job_.layers) {
       if (filter_.to_cell(layer.edges.high()) < filter_.first_cell(first_row)) continue;
       if (filter_.to_cell(layer.edges.low()) > filter_.first_cell(end_row - 1) + filter_.taps) {
@@ -105,8 +103,9 @@ class BandMaker {
         add_painted(layer, &curved_);
       }
     }
-    std::transform(values_.begin(), values_.end(), image_->texel(0, first_row),
-                   [](double value) { return static_cast<float>(value); });
+    for (int row = first_row; row < end_row; ++row) {
+      values_.store(row - first_row, image_->texel(0, row));
+    }
   }
 
  private:
@@ -132,17 +131,15 @@ class BandMaker {
     add_edges(layer, &cells_);
     moments_->add_coverage(cells_, first_row_, end_row_, &rows_);
     cells_.clear();
-    const int channels = job_.channels;
     const ChannelValues& color = layer.paint.constant;
     for (int row = 0; row < end_row_ - first_row_; ++row) {
       if (!rows_.is_changed(row)) continue;
-      double* out = values_.data() + static_cast<std::size_t>(row) * image_->width * channels;
-      const auto add = [&](int x, double coverage) {
-        for (int c = 0; c < channels; ++c) out[x * channels + c] += coverage * color[c];
-      };
-      rows_.take(row, add, [&](int begin, int end, double coverage) {
-        for (int x = begin; x < end; ++x) add(x, coverage);
-      });
+      double* out = values_.row(row);
+      rows_.take(
+          row, [&](int x, double coverage) { values_.add(out, x, x + 1, coverage, color); },
+          [&](int begin, int end, double coverage) {
+            values_.add(out, begin, end, coverage, color);
+          });
     }
   }
 
@@ -150,20 +147,19 @@ class BandMaker {
     if (box_ == nullptr) box_ = std::make_unique<BoxCoverage>();
     box_->begin(image_->width, first_row_, end_row_);
     box_->add(layer.edges);
-    const int channels = job_.channels;
     const ChannelValues& color = layer.paint.constant;
-    const auto add = [&](int row, int x, std::uint32_t steps) {
-      const double coverage = static_cast<std::int32_t>(steps) * kBoxUnit;
-      double* out = values_.data() +
-                    (static_cast<std::size_t>(row - first_row_) * image_->width + x) * channels;
-      for (int c = 0; c < channels; ++c) out[c] += coverage * color[c];
+    const auto coverage_of = [](std::uint32_t steps) {
+      return static_cast<std::int32_t>(steps) * kBoxUnit;
     };
     box_->take(
         [&](int row, int x, int count, const std::uint32_t* steps) {
-          for (int i = 0; i < count; ++i) add(row, x + i, steps[i]);
+          double* out = values_.row(row - first_row_);
+          for (int i = 0; i < count; ++i) {
+            values_.add(out, x + i, x + i + 1, coverage_of(steps[i]), color);
+          }
         },
         [&](int row, int begin, int end, std::uint32_t steps) {
-          for (int x = begin; x < end; ++x) add(row, x, steps);
+          values_.add(values_.row(row - first_row_), begin, end, coverage_of(steps), color);
         });
   }
 
@@ -175,7 +171,7 @@ class BandMaker {
     }
     auto& [cells, rows] = **painted;
     add_edges(layer, &cells);
-    rows.add_values(cells, LocalColor(layer, filter_), first_row_, end_row_, values_.data());
+    rows.add_values(cells, LocalColor(layer, filter_), first_row_, end_row_, &values_);
     cells.clear();
   }
 
@@ -190,7 +186,7 @@ class BandMaker {
   std::unique_ptr<Painted<N + 2>> curved_;
   CoverageRows rows_;
   std::unique_ptr<BoxCoverage> box_;
-  std::vector<double> values_;
+  BandValues values_;
 };
 
 template <int N>
