@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "prefilter/moments/arc_moments.h"
 #include "prefilter/raster/box_lines.h"
@@ -17,70 +18,8 @@
 namespace prefilter {
 namespace {
 
-constexpr double kMostMiss = 1e-6;  // of a root, in pixels
-
-DoublePair value_of(const std::array<double, 4>& p, DoublePair s) {
-  return p[0] + s * (p[1] + s * (p[2] + s * p[3]));
-}
-
-// Roots of a polynomial that rises or falls over [0, 1].
-class Roots {
- public:
-  Roots(const std::array<double, 4>& p, bool is_cubic)
-      : p_(p), is_cubic_(is_cubic), begin_(p[0]), rise_(p[1] + p[2] + p[3]), scale_(1.0 / rise_) {
-    // Slopes at both ends, where the polynomial rises by 1; a monotone cubic has none above 4.
-    first_slope_ = std::clamp(p[1] * scale_, 0.0, 4.0);
-    const double last_slope = std::clamp((p[1] + 2.0 * p[2] + 3.0 * p[3]) * scale_, 0.0, 4.0);
-    bend_ = is_cubic ? first_slope_ + last_slope - 2.0 : 0.0;
-  }
-
-  DoublePair operator()(DoublePair values) const {
-    // The rational function with the same ends and slopes there; a quadratic is one.
-    const DoublePair zero{};
-    const DoublePair one = pair_of(1.0);
-    const DoublePair v = higher(lower((values - begin_) * scale_, one), zero);
-    const DoublePair b = first_slope_ - bend_ * v;
-    const DoublePair root = sqrt(higher(b * b + 4.0 * (1.0 - b) * v, zero));
-    DoublePair s = 2.0 * v / higher(b + root, pair_of(1e-300));
-    if (!is_cubic_) return lower(s, one);
-    // Of a value beyond the ends, next to the last line, the root is of no use.
-    values = begin_ + v * rise_;
-    for (int step = 0; step < 2; ++step) s = halley(values, s);
-    s = higher(lower(s, one), zero);
-    const DoublePair miss = value_of(p_, s) - values;
-    for (int lane = 0; lane < 2; ++lane) {
-      if (!(std::abs(miss[lane]) <= kMostMiss)) s[lane] = by_halves(values[lane]);
-    }
-    return s;
-  }
-
- private:
-  DoublePair halley(DoublePair values, DoublePair s) const {
-    const DoublePair off = value_of(p_, s) - values;
-    const DoublePair slope = p_[1] + s * (2.0 * p_[2] + s * (3.0 * p_[3]));
-    const DoublePair half_bend = p_[2] + s * (3.0 * p_[3]);
-    return s - off * slope / (slope * slope - off * half_bend);
-  }
-  // For the few cubics that are level somewhere.
-  double by_halves(double value) const {
-    double low = 0.0;
-    double high = 1.0;
-    for (int step = 0; step < 52; ++step) {
-      const double middle = 0.5 * (low + high);
-      const double at = value_of(p_, pair_of(middle))[0];
-      ((at - value) * scale_ > 0.0 ? high : low) = middle;
-    }
-    return 0.5 * (low + high);
-  }
-
-  const std::array<double, 4>& p_;
-  bool is_cubic_;
-  double begin_;
-  double rise_;
-  double scale_;
-  double first_slope_;
-  double bend_;
-};
+// Two at a time, the second may be one too many.
+void store_two(double* to, DoublePair values) { std::memcpy(to, &values, sizeof(values)); }
 
 }  // namespace
 
@@ -89,7 +28,6 @@ BoxCurves::Piece BoxCurves::polynomials(const MonotoneCurve& piece) {
   const double t = piece.t_begin;
   const double w = piece.t_end - piece.t_begin;
   Piece out;
-  out.is_cubic = piece.curve.kind == CurveKind::kCubic;
   out.column = std::floor(piece.begin.x);
   // p(t + w s), but for the ends, which are as they are.
   const Point2 p1 = w * (powers[1] + t * (2.0 * powers[2] + (3.0 * t) * powers[3]));
@@ -108,55 +46,77 @@ BoxCurves::Piece BoxCurves::polynomials(const MonotoneCurve& piece) {
   return out;
 }
 
-namespace {
+// Polynomials along a piece in two places at once.
+template <bool kIsCubic>
+class BoxCurves::Values {
+ public:
+  Values(const CubicPowers& p, const std::array<double, 6>& area) {
+    for (int i = 0; i < 4; ++i) p_[i] = pair_of(p[i]);
+    for (int i = 0; i < 6; ++i) area_[i] = pair_of(area[i]);
+  }
+  DoublePair at(DoublePair s) const {
+    if constexpr (kIsCubic) return p_[0] + s * (p_[1] + s * (p_[2] + s * p_[3]));
+    return p_[0] + s * (p_[1] + s * p_[2]);
+  }
+  DoublePair area_at(DoublePair s) const {
+    DoublePair sum = area_[3];
+    if constexpr (kIsCubic) sum += s * (area_[4] + s * area_[5]);
+    return s * (area_[0] + s * (area_[1] + s * (area_[2] + s * sum)));
+  }
 
-DoublePair area_at(const std::array<double, 6>& g, DoublePair s) {
-  return s * (g[0] + s * (g[1] + s * (g[2] + s * (g[3] + s * (g[4] + s * g[5])))));
-}
+ private:
+  std::array<DoublePair, 4> p_;
+  std::array<DoublePair, 6> area_;
+};
 
-}  // namespace
-
-// The ends are at the back and the lines in front, two at a time.
+template <bool kIsCubic>
 void BoxCurves::find_rows(const Piece& piece, double low, double high, bool rises) {
   const auto first = static_cast<int>(std::max(std::floor(low) + 1.0, rows_.first_row() + 0.0));
   const auto last = static_cast<int>(std::min(std::ceil(high) - 1.0, rows_.end_row() + 0.0));
   const bool has_low = low >= rows_.first_row();
   const bool has_high = high <= rows_.end_row();
   const int lines = std::max(0, last - first + 1);
-  const int count = lines + (has_low ? 1 : 0) + (has_high ? 1 : 0);
-  at_rows_.resize(count + 1);
-  const Roots roots(piece.y, piece.is_cubic);
+  const int place = has_low ? 1 : 0;
+  at_rows_.make_room(lines + 3);
+  at_rows_.count = place + lines + (has_high ? 1 : 0);
   const double x_end = piece.x[0] + piece.x[1] + piece.x[2] + piece.x[3];
-  const double left = std::min(piece.x[0], x_end);
-  const double right = std::max(piece.x[0], x_end);
-  const auto put = [&](int place, DoublePair y, DoublePair s) {
-    const DoublePair x = lower(higher(value_of(piece.x, s), pair_of(left)), pair_of(right));
-    const DoublePair area = area_at(piece.area, s) + x * (y - value_of(piece.y, s));
-    std::memcpy(&at_rows_.x[place], &x, sizeof(x));
-    std::memcpy(&at_rows_.y[place], &y, sizeof(y));
-    std::memcpy(&at_rows_.area[place], &area, sizeof(area));
+  const double area_end = std::accumulate(piece.area.begin(), piece.area.end(), 0.0);
+  const auto put_end = [&](int at, double y, bool is_end) {
+    const double x = is_end ? x_end : piece.x[0];
+    const double y_there = is_end ? piece.y[0] + piece.y[1] + piece.y[2] + piece.y[3] : piece.y[0];
+    at_rows_.x[at] = x;
+    at_rows_.y[at] = y;
+    at_rows_.area[at] = (is_end ? area_end : 0.0) + x * (y - y_there);
   };
-  int place = 0;
-  if (has_low) put(place++, pair_of(low), pair_of(rises ? 0.0 : 1.0));
-  for (int line = 0; line < lines; line += 2) {
-    const DoublePair y = DoublePair{first + line + 0.0, first + line + 1.0};
-    put(place + line, y, roots(y));
+  if (has_low) put_end(0, low, !rises);
+  if (lines > 0) {
+    const DoublePair left = pair_of(std::min(piece.x[0], x_end));
+    const DoublePair right = pair_of(std::max(piece.x[0], x_end));
+    const MonotoneRoots<kIsCubic> roots(piece.y);
+    const Values<kIsCubic> values(piece.x, piece.area);
+    DoublePair y = DoublePair{0.0, 1.0} + static_cast<double>(first);
+    for (int line = 0; line < lines; line += 2, y += 2.0) {
+      const auto [s, miss] = roots(y);
+      const DoublePair x = lower(higher(values.at(s), left), right);
+      store_two(&at_rows_.x[place + line], x);
+      store_two(&at_rows_.y[place + line], y);
+      store_two(&at_rows_.area[place + line], values.area_at(s) - x * miss);
+    }
   }
-  if (has_high) put(place + lines, pair_of(high), pair_of(rises ? 1.0 : 0.0));
-  at_rows_.resize(count);
+  if (has_high) put_end(place + lines, high, rises);
 }
 
+template <bool kIsCubic>
 void BoxCurves::find_columns(const Piece& piece, int first, int end) {
-  at_columns_.resize(std::max(0, end - first) + 1);
-  const Roots roots(piece.x, piece.is_cubic);
-  for (int column = first; column < end; column += 2) {
-    const DoublePair x = DoublePair{column - piece.column, column - piece.column + 1.0};
-    const DoublePair s = roots(x);
-    const DoublePair y = value_of(piece.y, s);
-    const DoublePair area = area_at(piece.area, s);
-    const int place = column - first;
-    std::memcpy(&at_columns_.y[place], &y, sizeof(y));
-    std::memcpy(&at_columns_.area[place], &area, sizeof(area));
+  if (first >= end) return;
+  at_columns_.make_room(end - first + 1);
+  const MonotoneRoots<kIsCubic> roots(piece.x);
+  const Values<kIsCubic> values(piece.y, piece.area);
+  DoublePair x = DoublePair{0.0, 1.0} + (first - piece.column);
+  for (int line = 0; line < end - first; line += 2, x += 2.0) {
+    const auto [s, miss] = roots(x);
+    store_two(&at_columns_.y[line], values.at(s));
+    store_two(&at_columns_.area[line], values.area_at(s));
   }
 }
 
@@ -179,11 +139,16 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
   if (std::min(piece.begin.x, piece.end.x) >= rows_.width()) return;
 
   const Piece polynomial = polynomials(piece);
-  find_rows(polynomial, low, high, rises);
-  const std::size_t places = at_rows_.x.size();
+  const bool is_cubic = kind == CurveKind::kCubic;
+  if (is_cubic) {
+    find_rows<true>(polynomial, low, high, rises);
+  } else {
+    find_rows<false>(polynomial, low, high, rises);
+  }
+  const int places = at_rows_.count;
   const auto column_of = [&](double x) { return polynomial.column + x; };
-  const double x_first = column_of(at_rows_.x.front());
-  const double x_last = column_of(at_rows_.x.back());
+  const double x_first = column_of(at_rows_.x[0]);
+  const double x_last = column_of(at_rows_.x[places - 1]);
   const bool x_rises = x_last >= x_first;
   // Lines between columns that matter in the image.
   const auto clamp_line = [&](double x) {
@@ -191,10 +156,14 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
   };
   const int first_line = clamp_line(std::min(x_first, x_last)) + 1;
   const int end_line = clamp_line(std::max(x_first, x_last)) + 1;
-  find_columns(polynomial, first_line, end_line);
+  if (is_cubic) {
+    find_columns<true>(polynomial, first_line, end_line);
+  } else {
+    find_columns<false>(polynomial, first_line, end_line);
+  }
 
   const double scale = static_cast<double>(1 << kBoxBits) * (rises ? sign : -sign);
-  for (std::size_t i = 0; i + 1 < places; ++i) {
+  for (int i = 0; i + 1 < places; ++i) {
     const double y = at_rows_.y[i];
     const double top = at_rows_.y[i + 1];
     const auto row = static_cast<int>(std::floor(y));

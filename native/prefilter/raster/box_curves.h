@@ -8,6 +8,7 @@
 #include "prefilter/moments/arc_moments.h"
 #include "prefilter/moments/monotone_curve.h"
 #include "prefilter/raster/difference_rows.h"
+#include "prefilter/raster/monotone_roots.h"
 
 namespace prefilter {
 
@@ -22,11 +23,10 @@ class BoxCurves {
  private:
   /// Polynomials over a piece, of s in [0, 1]: x from a column on, y, and the integral of x dy.
   struct Piece {
-    std::array<double, 4> x;
-    std::array<double, 4> y;
+    CubicPowers x;
+    CubicPowers y;
     std::array<double, 6> area;  // of s^1 to s^6
     double column = 0.0;
-    bool is_cubic = false;
   };
   /// Where a piece is, and its area from the start up to there.
   struct Places {
@@ -34,15 +34,22 @@ class BoxCurves {
     std::vector<double> y;
     std::vector<double> area;
 
-    void resize(std::size_t count) {
-      x.resize(count);
-      y.resize(count);
-      area.resize(count);
+    int count = 0;
+
+    void make_room(int places) {
+      if (static_cast<std::size_t>(places) <= x.size()) return;
+      x.resize(places);
+      y.resize(places);
+      area.resize(places);
     }
   };
+  template <bool kIsCubic>
+  class Values;
 
   static Piece polynomials(const MonotoneCurve& piece);
+  template <bool kIsCubic>
   void find_rows(const Piece& piece, double low, double high, bool rises);
+  template <bool kIsCubic>
   void find_columns(const Piece& piece, int first, int end);
   void add_cells(const MonotoneCurve& piece, int sign);
 

@@ -28,10 +28,15 @@ inline void store_four(std::uint32_t* to, IntFour values) {
 }
 
 #if defined(__SSE4_1__)
+/// The second where one is not a number.
 inline DoublePair lower(DoublePair a, DoublePair b) { return _mm_min_pd(a, b); }
 inline DoublePair higher(DoublePair a, DoublePair b) { return _mm_max_pd(a, b); }
 inline DoublePair floor(DoublePair a) { return _mm_floor_pd(a); }
 inline DoublePair sqrt(DoublePair a) { return _mm_sqrt_pd(a); }
+inline bool any_farther(DoublePair a, double most) {
+  const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), a);
+  return _mm_movemask_pd(_mm_cmpnle_pd(size, _mm_set1_pd(most))) != 0;
+}
 /// Rounded to the nearest, halves to even, in the first two; 2^31 where that has no 32 bits. The
 /// others are 0.
 inline IntFour round_to_int(DoublePair a) { return reinterpret_cast<IntFour>(_mm_cvtpd_epi32(a)); }
@@ -44,6 +49,9 @@ inline DoublePair higher(DoublePair a, DoublePair b) {
 }
 inline DoublePair floor(DoublePair a) { return DoublePair{std::floor(a[0]), std::floor(a[1])}; }
 inline DoublePair sqrt(DoublePair a) { return DoublePair{std::sqrt(a[0]), std::sqrt(a[1])}; }
+inline bool any_farther(DoublePair a, double most) {
+  return !(std::abs(a[0]) <= most && std::abs(a[1]) <= most);
+}
 inline IntFour round_to_int(DoublePair a) {
   const auto rounded = [](double value) {
     // As x86 has it where there is no such integer.

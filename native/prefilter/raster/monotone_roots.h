@@ -1,0 +1,104 @@
+// Where polynomials that only rise or only fall pass many values.
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "prefilter/raster/double_pair.h"
+
+namespace prefilter {
+
+/// A polynomial of degree 3 by powers, or of degree 2 whose last coefficient is 0.
+using CubicPowers = std::array<double, 4>;
+
+/// How far roots may miss their values; two numbers of CubicPowers' unit.
+inline constexpr double kMostMiss = 1e-5;
+
+/// Roots in [0, 1] of a polynomial that rises or falls there.
+template <bool kIsCubic>
+class MonotoneRoots {
+ public:
+  struct Roots {
+    DoublePair s;
+    DoublePair miss;  // of the polynomial there, what it has above the value; at most kMostMiss
+  };
+
+  explicit MonotoneRoots(const CubicPowers& p)
+      : p_(p), p0_(pair_of(p[0])), p1_(pair_of(p[1])), p2_(pair_of(p[2])), p3_(pair_of(p[3])) {
+    const double rise = p[1] + p[2] + p[3];
+    const double scale = 1.0 / rise;
+    // Slopes at both ends, where the polynomial rises by 1; a monotone cubic has none above 4.
+    const double first_slope = std::fmin(std::fmax(p[1] * scale, 0.0), 4.0);
+    const double last_slope =
+        std::fmin(std::fmax((p[1] + 2.0 * p[2] + 3.0 * p[3]) * scale, 0.0), 4.0);
+    rise_ = pair_of(rise);
+    scale_ = pair_of(scale);
+    first_slope_ = pair_of(first_slope);
+    bend_ = pair_of(first_slope + last_slope - 2.0);
+  }
+
+  /// For values beyond those at the ends it is the end.
+  Roots operator()(DoublePair values) const {
+    // The rational function with the same ends and slopes there; a quadratic is one.
+    const DoublePair zero{};
+    const DoublePair one = pair_of(1.0);
+    const DoublePair v = higher(lower((values - p0_) * scale_, one), zero);
+    const DoublePair b = kIsCubic ? first_slope_ - bend_ * v : first_slope_;
+    const DoublePair root = sqrt(higher(b * b + 4.0 * (v - b * v), zero));
+    DoublePair s = lower((v + v) / (b + root + kTiny), one);
+    values = p0_ + v * rise_;
+    DoublePair miss = value_at(s) - values;
+    if constexpr (kIsCubic) {
+      s = halley(s, miss);
+      miss = value_at(s) - values;
+      for (int step = 0; any_farther(miss, kMostMiss); ++step) {
+        if (step == kMostSteps) {
+          s = DoublePair{by_halves(values[0]), by_halves(values[1])};
+          return {s, value_at(s) - values};
+        }
+        s = halley(s, miss);
+        miss = value_at(s) - values;
+      }
+    }
+    return {s, miss};
+  }
+
+ private:
+  static constexpr double kTiny = 1e-300;  // makes 0 of 0 / 0
+  static constexpr int kMostSteps = 6;
+
+  DoublePair value_at(DoublePair s) const {
+    if constexpr (kIsCubic) return p0_ + s * (p1_ + s * (p2_ + s * p3_));
+    return p0_ + s * (p1_ + s * p2_);
+  }
+  DoublePair halley(DoublePair s, DoublePair miss) const {
+    const DoublePair bend = 3.0 * p3_ * s;
+    const DoublePair half_second = p2_ + bend;
+    const DoublePair slope = p1_ + s * (p2_ + half_second);
+    const DoublePair next = s - miss * slope / (slope * slope - miss * half_second + kTiny);
+    return higher(lower(next, pair_of(1.0)), DoublePair{});
+  }
+  // For the few cubics that are level somewhere.
+  double by_halves(double value) const {
+    double low = 0.0;
+    double high = 1.0;
+    for (int step = 0; step < 52; ++step) {
+      const double s = 0.5 * (low + high);
+      const double off = p_[0] + s * (p_[1] + s * (p_[2] + s * p_[3])) - value;
+      (off * scale_[0] > 0.0 ? high : low) = s;
+    }
+    return 0.5 * (low + high);
+  }
+
+  const CubicPowers& p_;
+  DoublePair p0_;
+  DoublePair p1_;
+  DoublePair p2_;
+  DoublePair p3_;
+  DoublePair rise_;
+  DoublePair scale_;
+  DoublePair first_slope_;
+  DoublePair bend_;
+};
+
+}  // namespace prefilter
