@@ -55,9 +55,7 @@ bool BoxCoverage::add_segment(std::span<const Point2> controls, double weight) {
   for (const Point2& point : controls) {
     if (!is_near(point, kFarthestPoint)) return false;
   }
-  for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool backwards) {
-    curves_.add(piece, backwards ? 1 : -1);
-  });
+  curves_.add(controls, weight);
   lines_.move_to(controls.back());
   return true;
 }
@@ -107,9 +105,10 @@ void BoxCoverage::add(const EdgeList& edges) {
 }
 
 void BoxRasterizer::draw(const Outline& outline, const ByteRows& target) {
-  // Rows whose differences stay in a processor's cache.
-  constexpr int kBandValues = 1 << 22;
-  const int rows = std::max(16, kBandValues / target.width);
+  // Differences of a few rows stay in a processor's cache; many segments are better seen once.
+  const bool is_simple = outline.points().size() < 4096;
+  const int band_values = is_simple ? 1 << 18 : 1 << 22;
+  const int rows = std::max(16, band_values / target.width);
   bool are_all_near = true;
   for (int first = 0; first < target.height; first += rows) {
     coverage_.begin(target.width, first, std::min(first + rows, target.height));

@@ -18,6 +18,14 @@
 namespace prefilter {
 namespace {
 
+bool is_far(const Point2& p) {
+  return std::abs(p.x) > kFarthestBoxPixel || std::abs(p.y) > kFarthestBoxPixel;
+}
+
+bool is_monotone(double a, double b, double c, double d) {
+  return (a <= b && b <= c && c <= d) || (a >= b && b >= c && c >= d);
+}
+
 // Two at a time, the second may be one too many.
 void store_two(double* to, DoublePair values) { std::memcpy(to, &values, sizeof(values)); }
 
@@ -29,7 +37,7 @@ BoxCurves::Piece BoxCurves::polynomials(const MonotoneCurve& piece) {
   const double w = piece.t_end - piece.t_begin;
   Piece out;
   out.column = std::floor(piece.begin.x);
-  // p(t + w s), but for the ends, which are as they are.
+  // p(t + w s), but for the begin, which is as it is.
   const Point2 p1 = w * (powers[1] + t * (2.0 * powers[2] + (3.0 * t) * powers[3]));
   const Point2 p2 = (w * w) * (powers[2] + (3.0 * t) * powers[3]);
   const Point2 p3 = (w * w * w) * powers[3];
@@ -38,11 +46,11 @@ BoxCurves::Piece BoxCurves::polynomials(const MonotoneCurve& piece) {
   const auto& x = out.x;
   const auto& y = out.y;
   out.area = {x[0] * y[1],
-              (x[1] * y[1] + 2.0 * x[0] * y[2]) / 2.0,
-              (x[2] * y[1] + 2.0 * x[1] * y[2] + 3.0 * x[0] * y[3]) / 3.0,
-              (x[3] * y[1] + 2.0 * x[2] * y[2] + 3.0 * x[1] * y[3]) / 4.0,
-              (2.0 * x[3] * y[2] + 3.0 * x[2] * y[3]) / 5.0,
-              3.0 * x[3] * y[3] / 6.0};
+              (x[1] * y[1] + 2.0 * x[0] * y[2]) * (1.0 / 2.0),
+              (x[2] * y[1] + 2.0 * x[1] * y[2] + 3.0 * x[0] * y[3]) * (1.0 / 3.0),
+              (x[3] * y[1] + 2.0 * x[2] * y[2] + 3.0 * x[1] * y[3]) * (1.0 / 4.0),
+              (2.0 * x[3] * y[2] + 3.0 * x[2] * y[3]) * (1.0 / 5.0),
+              x[3] * y[3] * (1.0 / 2.0)};
   return out;
 }
 
@@ -81,9 +89,17 @@ void BoxCurves::find_rows(const Piece& piece, double low, double high, bool rise
   at_rows_.count = place + lines + (has_high ? 1 : 0);
   const double x_end = piece.x[0] + piece.x[1] + piece.x[2] + piece.x[3];
   const double area_end = std::accumulate(piece.area.begin(), piece.area.end(), 0.0);
+  const DoublePair column = pair_of(piece.column);
+  const DoublePair least_column = pair_of(-DifferenceRows::kMargin);
+  const DoublePair most_column = pair_of(rows_.width());
+  const auto store_columns = [&](std::int32_t* to, DoublePair x) {
+    const IntFour columns = round_to_int(higher(lower(floor(x), most_column), least_column));
+    std::memcpy(to, &columns, 2 * sizeof(*to));
+  };
   const auto put_end = [&](int at, double y, bool is_end) {
     const double x = is_end ? x_end : piece.x[0];
     const double y_there = is_end ? piece.y[0] + piece.y[1] + piece.y[2] + piece.y[3] : piece.y[0];
+    store_columns(&at_rows_.column[at], x + column);
     at_rows_.x[at] = x;
     at_rows_.y[at] = y;
     at_rows_.area[at] = (is_end ? area_end : 0.0) + x * (y - y_there);
@@ -99,6 +115,7 @@ void BoxCurves::find_rows(const Piece& piece, double low, double high, bool rise
       const auto [s, miss] = roots(y);
       const DoublePair x = lower(higher(values.at(s), left), right);
       store_two(&at_rows_.x[place + line], x);
+      store_columns(&at_rows_.column[place + line], x + column);
       store_two(&at_rows_.y[place + line], y);
       store_two(&at_rows_.area[place + line], values.area_at(s) - x * miss);
     }
@@ -120,10 +137,38 @@ void BoxCurves::find_columns(const Piece& piece, int first, int end) {
   }
 }
 
+void BoxCurves::add(std::span<const Point2> controls, double weight) {
+  double low = controls[0].y;
+  double high = low;
+  for (const Point2& point : controls.subspan(1)) {
+    low = std::min(low, point.y);
+    high = std::max(high, point.y);
+  }
+  if (high <= rows_.first_row() || low >= rows_.end_row()) return;
+  const bool is_quadratic = controls.size() == 3 && weight == 0.0;
+  if (is_quadratic || controls.size() == 4) {
+    // Where the controls do not turn, the curve does not.
+    const Point2& second = controls[is_quadratic ? 1 : 2];
+    const Point2& last = controls.back();
+    if (is_monotone(controls[0].x, controls[1].x, second.x, last.x) &&
+        is_monotone(controls[0].y, controls[1].y, second.y, last.y)) {
+      const bool backwards = is_cut_backwards(controls);
+      std::array<Point2, 4> turned;
+      if (backwards) {
+        std::reverse_copy(controls.begin(), controls.end(), turned.begin());
+        controls = {turned.data(), controls.size()};
+      }
+      add({ParametricCurve(controls, 0.0), 0.0, 1.0, controls.front(), controls.back()},
+          backwards ? 1 : -1);
+      return;
+    }
+  }
+  for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool backwards) {
+    add(piece, backwards ? 1 : -1);
+  });
+}
+
 void BoxCurves::add(const MonotoneCurve& piece, int sign) {
-  const auto is_far = [](const Point2& p) {
-    return std::abs(p.x) > kFarthestBoxPixel || std::abs(p.y) > kFarthestBoxPixel;
-  };
   const CurveKind kind = piece.curve.kind;
   if (is_far(piece.begin) || is_far(piece.end) ||
       (kind != CurveKind::kQuadratic && kind != CurveKind::kCubic)) {
@@ -146,16 +191,11 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
     find_rows<false>(polynomial, low, high, rises);
   }
   const int places = at_rows_.count;
-  const auto column_of = [&](double x) { return polynomial.column + x; };
-  const double x_first = column_of(at_rows_.x[0]);
-  const double x_last = column_of(at_rows_.x[places - 1]);
-  const bool x_rises = x_last >= x_first;
+  const std::int32_t* columns = at_rows_.column.data();
+  const bool x_rises = at_rows_.x[places - 1] >= at_rows_.x[0];
   // Lines between columns that matter in the image.
-  const auto clamp_line = [&](double x) {
-    return static_cast<int>(std::clamp(std::floor(x), -1.0, rows_.width() + 0.0));
-  };
-  const int first_line = clamp_line(std::min(x_first, x_last)) + 1;
-  const int end_line = clamp_line(std::max(x_first, x_last)) + 1;
+  const int first_line = std::max(std::min(columns[0], columns[places - 1]) + 1, 0);
+  const int end_line = std::max(columns[0], columns[places - 1]) + 1;
   if (is_cubic) {
     find_columns<true>(polynomial, first_line, end_line);
   } else {
@@ -163,23 +203,18 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
   }
 
   const double scale = static_cast<double>(1 << kBoxBits) * (rises ? sign : -sign);
-  for (int i = 0; i + 1 < places; ++i) {
+  DifferenceRows::Row to = rows_.row(static_cast<int>(std::floor(at_rows_.y[0])));
+  for (int i = 0; i + 1 < places; ++i, to = rows_.next(to)) {
     const double y = at_rows_.y[i];
     const double top = at_rows_.y[i + 1];
-    const auto row = static_cast<int>(std::floor(y));
-    const double left = column_of(std::min(at_rows_.x[i], at_rows_.x[i + 1]));
-    const double right = column_of(std::max(at_rows_.x[i], at_rows_.x[i + 1]));
-    const double column = std::floor(left);
-    const std::uint32_t height = to_steps((top - y) * scale);
+    const double height = top - y;
+    const int column = std::min(columns[i], columns[i + 1]);
+    const int end = std::max(columns[i], columns[i + 1]) + 1;
+    const std::uint32_t height_steps = to_steps(height * scale);
     const std::uint32_t inside = to_steps(
-        (at_rows_.area[i + 1] - at_rows_.area[i] - (column - polynomial.column) * (top - y)) *
-        scale);
-    const auto clamped =
-        static_cast<int>(std::clamp(column, -1.0 * DifferenceRows::kMargin, rows_.width() + 0.0));
-    const DifferenceRows::Row to = rows_.row(row);
-    to.add_two(clamped, height - inside, inside);
-    const int end = std::min(clamp_line(right) + 1, end_line);
-    for (int line = std::max(clamp_line(left) + 1, first_line); line < end; ++line) {
+        (at_rows_.area[i + 1] - at_rows_.area[i] - (column - polynomial.column) * height) * scale);
+    to.add_two(column, height_steps - inside, inside);
+    for (int line = std::max(column + 1, first_line); line < end; ++line) {
       const int place = line - first_line;
       const double ahead = at_columns_.y[place];
       const double to_line = line - polynomial.column;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "prefilter/moments/arc_moments.h"
@@ -17,8 +18,8 @@ class BoxCurves {
  public:
   explicit BoxCurves(DifferenceRows* rows) : rows_(*rows) {}
 
-  /// The region on the right of a piece counts `sign` times.
-  void add(const MonotoneCurve& piece, int sign);
+  /// A segment of any kind by its control points, as Outline has it.
+  void add(std::span<const Point2> controls, double weight);
 
  private:
   /// Polynomials over a piece, of s in [0, 1]: x from a column on, y, and the integral of x dy.
@@ -33,6 +34,7 @@ class BoxCurves {
     std::vector<double> x;
     std::vector<double> y;
     std::vector<double> area;
+    std::vector<std::int32_t> column;  // where one may add differences
 
     int count = 0;
 
@@ -41,11 +43,14 @@ class BoxCurves {
       x.resize(places);
       y.resize(places);
       area.resize(places);
+      column.resize(places);
     }
   };
   template <bool kIsCubic>
   class Values;
 
+  /// The region on the right of a piece counts `sign` times.
+  void add(const MonotoneCurve& piece, int sign);
   static Piece polynomials(const MonotoneCurve& piece);
   template <bool kIsCubic>
   void find_rows(const Piece& piece, double low, double high, bool rises);

@@ -33,9 +33,10 @@ inline DoublePair lower(DoublePair a, DoublePair b) { return _mm_min_pd(a, b); }
 inline DoublePair higher(DoublePair a, DoublePair b) { return _mm_max_pd(a, b); }
 inline DoublePair floor(DoublePair a) { return _mm_floor_pd(a); }
 inline DoublePair sqrt(DoublePair a) { return _mm_sqrt_pd(a); }
-inline bool any_farther(DoublePair a, double most) {
+/// Which are not within `most` of 0, as bits.
+inline int farther(DoublePair a, double most) {
   const __m128d size = _mm_andnot_pd(_mm_set1_pd(-0.0), a);
-  return _mm_movemask_pd(_mm_cmpnle_pd(size, _mm_set1_pd(most))) != 0;
+  return _mm_movemask_pd(_mm_cmpnle_pd(size, _mm_set1_pd(most)));
 }
 /// Rounded to the nearest, halves to even, in the first two; 2^31 where that has no 32 bits. The
 /// others are 0.
@@ -49,8 +50,8 @@ inline DoublePair higher(DoublePair a, DoublePair b) {
 }
 inline DoublePair floor(DoublePair a) { return DoublePair{std::floor(a[0]), std::floor(a[1])}; }
 inline DoublePair sqrt(DoublePair a) { return DoublePair{std::sqrt(a[0]), std::sqrt(a[1])}; }
-inline bool any_farther(DoublePair a, double most) {
-  return !(std::abs(a[0]) <= most && std::abs(a[1]) <= most);
+inline int farther(DoublePair a, double most) {
+  return (std::abs(a[0]) <= most ? 0 : 1) + (std::abs(a[1]) <= most ? 0 : 2);
 }
 inline IntFour round_to_int(DoublePair a) {
   const auto rounded = [](double value) {

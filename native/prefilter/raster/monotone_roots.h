@@ -11,8 +11,8 @@ namespace prefilter {
 /// A polynomial of degree 3 by powers, or of degree 2 whose last coefficient is 0.
 using CubicPowers = std::array<double, 4>;
 
-/// How far roots may miss their values; two numbers of CubicPowers' unit.
-inline constexpr double kMostMiss = 1e-5;
+/// How far from their values roots may be.
+inline constexpr double kMostMiss = 3e-5;
 
 /// Roots in [0, 1] of a polynomial that rises or falls there.
 template <bool kIsCubic>
@@ -49,15 +49,17 @@ class MonotoneRoots {
     values = p0_ + v * rise_;
     DoublePair miss = value_at(s) - values;
     if constexpr (kIsCubic) {
-      s = halley(s, miss);
+      s = two_steps(s, miss, values);
       miss = value_at(s) - values;
-      for (int step = 0; any_farther(miss, kMostMiss); ++step) {
-        if (step == kMostSteps) {
-          s = DoublePair{by_halves(values[0]), by_halves(values[1])};
-          return {s, value_at(s) - values};
+      for (int step = 0; farther(miss, kMostMiss) != 0; ++step) {
+        // A root does not depend on that beside it.
+        const int far = farther(miss, kMostMiss);
+        const DoublePair next = two_steps(s, miss, values);
+        for (int i = 0; i < 2; ++i) {
+          if ((far >> i & 1) != 0) s[i] = step < kMostSteps ? next[i] : by_halves(values[i]);
         }
-        s = halley(s, miss);
         miss = value_at(s) - values;
+        if (step == kMostSteps) break;
       }
     }
     return {s, miss};
@@ -71,13 +73,18 @@ class MonotoneRoots {
     if constexpr (kIsCubic) return p0_ + s * (p1_ + s * (p2_ + s * p3_));
     return p0_ + s * (p1_ + s * p2_);
   }
-  DoublePair halley(DoublePair s, DoublePair miss) const {
+  // A step of Halley's, and one of Newton's with the slope that the first foretells.
+  DoublePair two_steps(DoublePair s, DoublePair miss, DoublePair values) const {
     const DoublePair bend = 3.0 * p3_ * s;
     const DoublePair half_second = p2_ + bend;
     const DoublePair slope = p1_ + s * (p2_ + half_second);
-    const DoublePair next = s - miss * slope / (slope * slope - miss * half_second + kTiny);
-    return higher(lower(next, pair_of(1.0)), DoublePair{});
+    const DoublePair off = miss * half_second;
+    const DoublePair inverse = 1.0 / (slope * slope - off + kTiny);
+    const DoublePair over_slope = slope * inverse;
+    s = inside(s - miss * over_slope);
+    return inside(s - (value_at(s) - values) * (over_slope + over_slope * (off * inverse)));
   }
+  static DoublePair inside(DoublePair s) { return higher(lower(s, pair_of(1.0)), DoublePair{}); }
   // For the few cubics that are level somewhere.
   double by_halves(double value) const {
     double low = 0.0;
