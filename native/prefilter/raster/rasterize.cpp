@@ -6,13 +6,13 @@
 #include "prefilter/raster/rasterize.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <memory>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/memory.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/base/text.h"
 #include "prefilter/raster/band_values.h"
 #include "prefilter/raster/box_coverage.h"
 #include "prefilter/raster/coverage_rows.h"
@@ -225,7 +225,7 @@ Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
   if (is_wavelet) {
     const int depth =
         options.depth < 0 ? wavelet_depth(options.width, options.height) : options.depth;
-    add_up_wavelets(job, depth, options.threads, options.progress.part(0.2, 1.0), &image);
+    add_up_wavelets(job, depth, options.threads, options.progress.part(kLayersShare, 1.0), &image);
     return image;
   }
   switch (filter->degree) {
@@ -242,6 +242,7 @@ Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
       make_bands<3>(job, *filter, options, &image);
       break;
     default:
+      assert(filter->degree == 7);
       make_bands<7>(job, *filter, options, &image);
       break;
   }
