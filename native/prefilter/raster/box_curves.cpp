@@ -31,29 +31,6 @@ void store_two(double* to, DoublePair values) { std::memcpy(to, &values, sizeof(
 
 }  // namespace
 
-BoxCurves::Piece BoxCurves::polynomials(const MonotoneCurve& piece) {
-  const auto& powers = piece.curve.powers;
-  const double t = piece.t_begin;
-  const double w = piece.t_end - piece.t_begin;
-  Piece out;
-  out.column = std::floor(piece.begin.x);
-  // p(t + w s), but for the begin, which is as it is.
-  const Point2 p1 = w * (powers[1] + t * (2.0 * powers[2] + (3.0 * t) * powers[3]));
-  const Point2 p2 = (w * w) * (powers[2] + (3.0 * t) * powers[3]);
-  const Point2 p3 = (w * w * w) * powers[3];
-  out.x = {piece.begin.x - out.column, p1.x, p2.x, p3.x};
-  out.y = {piece.begin.y, p1.y, p2.y, p3.y};
-  const auto& x = out.x;
-  const auto& y = out.y;
-  out.area = {x[0] * y[1],
-              (x[1] * y[1] + 2.0 * x[0] * y[2]) * (1.0 / 2.0),
-              (x[2] * y[1] + 2.0 * x[1] * y[2] + 3.0 * x[0] * y[3]) * (1.0 / 3.0),
-              (x[3] * y[1] + 2.0 * x[2] * y[2] + 3.0 * x[1] * y[3]) * (1.0 / 4.0),
-              (2.0 * x[3] * y[2] + 3.0 * x[2] * y[3]) * (1.0 / 5.0),
-              x[3] * y[3] * (1.0 / 2.0)};
-  return out;
-}
-
 // Polynomials along a piece in two places at once.
 template <bool kIsCubic>
 class BoxCurves::Values {
@@ -78,7 +55,7 @@ class BoxCurves::Values {
 };
 
 template <bool kIsCubic>
-void BoxCurves::find_rows(const Piece& piece, double low, double high, bool rises) {
+void BoxCurves::find_rows(const MonotonePolynomials& piece, double low, double high, bool rises) {
   const auto first = static_cast<int>(std::max(std::floor(low) + 1.0, rows_.first_row() + 0.0));
   const auto last = static_cast<int>(std::min(std::ceil(high) - 1.0, rows_.end_row() + 0.0));
   const bool has_low = low >= rows_.first_row();
@@ -124,7 +101,7 @@ void BoxCurves::find_rows(const Piece& piece, double low, double high, bool rise
 }
 
 template <bool kIsCubic>
-void BoxCurves::find_columns(const Piece& piece, int first, int end) {
+void BoxCurves::find_columns(const MonotonePolynomials& piece, int first, int end) {
   if (first >= end) return;
   at_columns_.make_room(end - first + 1);
   const MonotoneRoots<kIsCubic> roots(piece.x);
@@ -183,7 +160,7 @@ void BoxCurves::add(const MonotoneCurve& piece, int sign) {
   if (low == high || high <= rows_.first_row() || low >= rows_.end_row()) return;
   if (std::min(piece.begin.x, piece.end.x) >= rows_.width()) return;
 
-  const Piece polynomial = polynomials(piece);
+  const MonotonePolynomials polynomial(piece);
   const bool is_cubic = kind == CurveKind::kCubic;
   if (is_cubic) {
     find_rows<true>(polynomial, low, high, rises);

@@ -7,9 +7,8 @@
 #include <vector>
 
 #include "prefilter/moments/arc_moments.h"
-#include "prefilter/moments/monotone_curve.h"
+#include "prefilter/moments/monotone_polynomials.h"
 #include "prefilter/raster/difference_rows.h"
-#include "prefilter/raster/monotone_roots.h"
 
 namespace prefilter {
 
@@ -22,13 +21,6 @@ class BoxCurves {
   void add(std::span<const Point2> controls, double weight);
 
  private:
-  /// Polynomials over a piece, of s in [0, 1]: x from a column on, y, and the integral of x dy.
-  struct Piece {
-    CubicPowers x;
-    CubicPowers y;
-    std::array<double, 6> area;  // of s^1 to s^6
-    double column = 0.0;
-  };
   /// Where a piece is, and its area from the start up to there.
   struct Places {
     std::vector<double> x;
@@ -51,11 +43,10 @@ class BoxCurves {
 
   /// The region on the right of a piece counts `sign` times.
   void add(const MonotoneCurve& piece, int sign);
-  static Piece polynomials(const MonotoneCurve& piece);
   template <bool kIsCubic>
-  void find_rows(const Piece& piece, double low, double high, bool rises);
+  void find_rows(const MonotonePolynomials& piece, double low, double high, bool rises);
   template <bool kIsCubic>
-  void find_columns(const Piece& piece, int first, int end);
+  void find_columns(const MonotonePolynomials& piece, int first, int end);
   void add_cells(const MonotoneCurve& piece, int sign);
 
   DifferenceRows& rows_;

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <vector>
 
-#include "prefilter/raster/double_pair.h"
+#include "prefilter/base/double_pair.h"
 
 namespace prefilter {
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 
 #include "prefilter/moments/cell_cutter.h"
 
@@ -28,7 +29,6 @@ int first_cell(double value, bool rises) {
   return static_cast<int>(rises ? std::floor(value) : std::ceil(value) - 1.0);
 }
 
-// The integral of (x - column) dy by Gauss's rule, exact for quadratics and cubics.
 double three_point_integral(const ParametricCurve& curve, double t_begin, double t_end,
                             double column) {
   constexpr double kOutermost = 0.77459666924148337704;  // sqrt(3 / 5)
@@ -51,11 +51,38 @@ double halved_integral(const ParametricCurve& curve, double t_begin, double t_en
          halved_integral(curve, middle, t_end, column, high, halvings - 1);
 }
 
+// The integral of (x - column) dy.
 double integral_along(const ParametricCurve& curve, double t_begin, double t_end, double column) {
   constexpr int kMostHalvings = 12;
   const double whole = three_point_integral(curve, t_begin, t_end, column);
-  if (curve.kind == CurveKind::kQuadratic || curve.kind == CurveKind::kCubic) return whole;
   return halved_integral(curve, t_begin, t_end, column, whole, kMostHalvings);
+}
+
+template <bool kIsCubic>
+DoublePair value_of(const CubicPowers& p, DoublePair s) {
+  if constexpr (kIsCubic) return p[0] + s * (p[1] + s * (p[2] + s * p[3]));
+  return p[0] + s * (p[1] + s * p[2]);
+}
+
+template <bool kIsCubic>
+DoublePair value_of(const std::array<double, 6>& area, DoublePair s) {
+  DoublePair sum = pair_of(area[3]);
+  if constexpr (kIsCubic) sum += s * (area[4] + s * area[5]);
+  return s * (area[0] + s * (area[1] + s * (area[2] + s * sum)));
+}
+
+// Whether polynomials over parts of a curve are exact enough: its points are not so far away that
+// what is near is a small difference of theirs.
+bool has_near_polynomials(const ParametricCurve& curve) {
+  constexpr double kFarthest = 1 << 20;
+  if (curve.kind != CurveKind::kQuadratic && curve.kind != CurveKind::kCubic) return false;
+  return std::all_of(curve.powers.begin(), curve.powers.end(), [](const Point2& power) {
+    return std::abs(power.x) < kFarthest && std::abs(power.y) < kFarthest;
+  });
+}
+
+double between(double value, double a, double b) {
+  return std::clamp(value, std::min(a, b), std::max(a, b));
 }
 
 // The flux of an arc between points in the coordinates of its cell, by its integral of x dy.
@@ -261,9 +288,6 @@ void OutlineStrip::add(const MonotoneCurve& piece, double sign) {
         [&](int axis, double value) {
           const double t = crossing(piece, axis, value, piece.t_begin);
           const Point2 at = piece.curve.at(t);
-          const auto between = [](double x, double a, double b) {
-            return std::clamp(x, std::min(a, b), std::max(a, b));
-          };
           return std::pair(t, axis == 0 ? between(at.y, piece.begin.y, piece.end.y)
                                         : between(at.x, piece.begin.x, piece.end.x));
         },
@@ -304,9 +328,6 @@ void OutlineStrip::add_inner_line(const Point2& begin_, const Point2& end_, doub
   const double x_per_y = (end.x - begin.x) / (end.y - begin.y);
   const int x_step = x_rises ? 1 : -1;
   const int y_step = y_rises ? 1 : -1;
-  const auto between = [](double value, double a, double b) {
-    return std::clamp(value, std::min(a, b), std::max(a, b));
-  };
   Point2 at = begin;
   while (column != last_column || row != last_row) {
     const double next_x = x_rises ? column + 1 : column;
@@ -329,9 +350,89 @@ void OutlineStrip::add_inner_line(const Point2& begin_, const Point2& end_, doub
   add_chord(column, row, at, end, sign);
 }
 
+template <bool kIsCubic>
+void OutlineStrip::Passes::find(const MonotonePolynomials& piece, int axis, int first, int step,
+                                int count_) {
+  count = count_;
+  const auto room = static_cast<std::size_t>(count + 1);  // two at a time
+  if (s.size() < room) {
+    s.resize(room);
+    other.resize(room);
+    area.resize(room);
+  }
+  const MonotoneRoots<kIsCubic> roots(axis == 0 ? piece.x : piece.y);
+  for (int i = 0; i < count; i += 2) {
+    const double line = first + i * step - (axis == 0 ? piece.column : 0.0);
+    const DoublePair lines{line, line + step};
+    const auto [at, miss] = roots(lines);
+    const DoublePair along = value_of<kIsCubic>(axis == 0 ? piece.y : piece.x, at);
+    DoublePair up_to = value_of<kIsCubic>(piece.area, at);
+    if (axis == 1) up_to -= along * miss;
+    std::memcpy(&s[i], &at, sizeof(at));
+    std::memcpy(&other[i], &along, sizeof(along));
+    std::memcpy(&area[i], &up_to, sizeof(up_to));
+  }
+}
+
+template <bool kIsCubic>
+void OutlineStrip::add_inner_polynomials(const MonotoneCurve& piece, double sign) {
+  const Point2& end = piece.end;
+  const bool x_rises = end.x > piece.begin.x;
+  const bool y_rises = end.y > piece.begin.y;
+  const int x_step = x_rises ? 1 : -1;
+  const int y_step = y_rises ? 1 : -1;
+  int column = first_cell(piece.begin.x, x_rises);
+  int row = first_cell(piece.begin.y, y_rises);
+  const int column_count = std::abs(first_cell(end.x, !x_rises) - column);
+  const int row_count = std::abs(first_cell(end.y, !y_rises) - row);
+  const MonotonePolynomials polynomials(piece);
+  columns_.find<kIsCubic>(polynomials, 0, column + (x_rises ? 1 : 0), x_step, column_count);
+  rows_.find<kIsCubic>(polynomials, 1, row + (y_rises ? 1 : 0), y_step, row_count);
+
+  Point2 at = piece.begin;
+  double area = 0.0;
+  const auto add_up_to = [&](const Point2& next, double next_area) {
+    const Point2 corner{static_cast<double>(column), static_cast<double>(row)};
+    const double integral = next_area - area - (corner.x - polynomials.column) * (next.y - at.y);
+    cell(column, row) += arc_flux(rounded(at - corner), rounded(next - corner), integral, sign);
+    at = next;
+    area = next_area;
+  };
+  for (int i = 0, j = 0; i < column_count || j < row_count;) {
+    const double next_x = x_rises ? column + 1 : column;
+    const double next_y = y_rises ? row + 1 : row;
+    if (j == row_count || (i < column_count && columns_.s[i] <= rows_.s[j])) {
+      const double y = between(columns_.other[i], at.y, j < row_count ? next_y : end.y);
+      add_up_to({next_x, y},
+                columns_.area[i] + (next_x - polynomials.column) * (y - columns_.other[i]));
+      column += x_step;
+      ++i;
+    } else {
+      add_up_to(
+          {between(rows_.other[j] + polynomials.column, at.x, i < column_count ? next_x : end.x),
+           next_y},
+          rows_.area[j]);
+      row += y_step;
+      ++j;
+    }
+  }
+  const DoublePair one = pair_of(1.0);
+  const DoublePair short_of_end = end.y - value_of<kIsCubic>(polynomials.y, one);
+  add_up_to(end, (value_of<kIsCubic>(polynomials.area, one) +
+                  value_of<kIsCubic>(polynomials.x, one) * short_of_end)[0]);
+}
+
 void OutlineStrip::add_inner_curve(const MonotoneCurve& piece, double sign) {
   if (piece.begin.x == piece.end.x || piece.begin.y == piece.end.y) {
     add_inner_line(piece.begin, piece.end, sign);
+    return;
+  }
+  if (has_near_polynomials(piece.curve)) {
+    if (piece.curve.kind == CurveKind::kCubic) {
+      add_inner_polynomials<true>(piece, sign);
+    } else {
+      add_inner_polynomials<false>(piece, sign);
+    }
     return;
   }
   const auto in_cell = [&](int column, int row, const CellArc& arc) {

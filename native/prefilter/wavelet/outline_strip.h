@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "prefilter/moments/monotone_curve.h"
+#include "prefilter/moments/monotone_polynomials.h"
 #include "prefilter/wavelet/plane_flux.h"
 
 namespace prefilter {
@@ -72,6 +72,16 @@ class OutlineStrip {
     int x = 0;
     int y = 0;
   };
+  // Where a piece passes lines of the grid along one axis, in its order.
+  struct Passes {
+    std::vector<double> s;
+    std::vector<double> other;  // the coordinate along the other axis
+    std::vector<double> area;
+    int count = 0;
+
+    template <bool kIsCubic>
+    void find(const MonotonePolynomials& piece, int axis, int first, int step, int count_);
+  };
 
   PlaneFlux& cell(int column, int row);
   int new_brick(int x, int y);
@@ -81,6 +91,8 @@ class OutlineStrip {
   void add_at_sides(const Point2& a, const Point2& b, double sign);
   void add_inner_line(const Point2& begin, const Point2& end, double sign);
   void add_inner_curve(const MonotoneCurve& piece, double sign);
+  template <bool kIsCubic>
+  void add_inner_polynomials(const MonotoneCurve& piece, double sign);
   void add_chord(int column, int row, Point2 begin, Point2 end, double sign);
 
   PlaneGrid grid_;
@@ -91,6 +103,8 @@ class OutlineStrip {
   std::vector<CellBrick> pool_;
   std::vector<BrickPlace> places_;
   PlaneFlux at_sides_;
+  Passes columns_;
+  Passes rows_;
 };
 
 }  // namespace prefilter

@@ -1,4 +1,4 @@
-// Two doubles, four integers: what the box filter's inner loops are made of.
+// Two doubles, four integers: for inner loops.
 #pragma once
 
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "prefilter/raster/double_pair.h"
+#include "prefilter/base/double_pair.h"
 
 namespace prefilter {
 
