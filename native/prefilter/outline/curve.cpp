@@ -148,6 +148,22 @@ void append_curve(const Curve& curve, bool reversed, const Point2& end, Outline*
   }
 }
 
+void append_contour(const Outline& from, std::size_t index, bool reversed, Outline* to) {
+  const auto segments = from.contour(index);
+  if (!reversed) {
+    to->move_to(from.begin_of(index));
+    for (const Outline::Segment& segment : segments) {
+      append_curve(curve_of(from, segment), false, from.controls(segment).back(), to);
+    }
+  } else {
+    to->move_to(from.controls(segments.back()).back());
+    for (auto segment = segments.rbegin(); segment != segments.rend(); ++segment) {
+      append_curve(curve_of(from, *segment), true, from.controls(*segment).front(), to);
+    }
+  }
+  to->close();
+}
+
 PartOfCurve::PartOfCurve(const Curve& curve, double from, double to)
     : points_(curve.controls), weight_(curve.weight) {
   if (curve.weight > 0.0) {

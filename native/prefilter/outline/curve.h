@@ -60,6 +60,9 @@ Point2 derivative_at(const Curve& curve, double t);
 /// backwards, `end` in place of its first.
 void append_curve(const Curve& curve, bool reversed, const Point2& end, Outline* outline);
 
+/// Appends a contour that has segments, closed, or closed and backwards.
+void append_contour(const Outline& from, std::size_t index, bool reversed, Outline* to);
+
 /// The curve between two parameters, `from` <= `to`, with control points of its own.
 class PartOfCurve {
  public:

@@ -147,7 +147,7 @@ bool joint_separates(std::span<const Point2> a, std::span<const Point2> b) {
   const Point2& joint = b.front();
   const Point2 back = a.front() - joint;
   const Point2 ahead = b.back() - joint;
-  const Point2 direction = (1.0 / length(ahead)) * ahead - (1.0 / length(back)) * back;
+  const Point2 direction = std::sqrt(dot(back, back)) * ahead - std::sqrt(dot(ahead, ahead)) * back;
   for (std::size_t i = 0; i + 1 < a.size(); ++i) {
     const Point2 step = a[i] - joint;
     if (!(step == Point2{}) && dot(step, direction) >= 0.0) return false;

@@ -1,8 +1,11 @@
 #include "prefilter/outline/resolve.h"
 
+#include <algorithm>
 #include <array>
 
 #include "prefilter/outline/arrangement.h"
+#include "prefilter/outline/convex_contours.h"
+#include "prefilter/outline/curve.h"
 #include "prefilter/outline/fill_rule.h"
 #include "prefilter/outline/polygon_clipper.h"
 
@@ -30,9 +33,26 @@ Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
   return arrangement.trace(boundary, result) ? Outcome::kTraced : Outcome::kUnclear;
 }
 
+Outline contours_of(const Outline& outline, std::span<const ContourUse> uses) {
+  Outline result;
+  result.reserve(outline.points().size(), outline.segments().size());
+  for (std::size_t c = 0; c < uses.size(); ++c) {
+    if (uses[c] == ContourUse::kDropped || outline.contour(c).empty()) continue;
+    append_contour(outline, c, uses[c] == ContourUse::kReversed, &result);
+  }
+  return result;
+}
+
 }  // namespace
 
 std::optional<Outline> resolved(const Outline& outline, FillRule rule, double tolerance) {
+  if (const auto uses = convex_contour_uses(outline, rule)) {
+    if (std::all_of(uses->begin(), uses->end(),
+                    [](ContourUse use) { return use == ContourUse::kKept; })) {
+      return std::nullopt;
+    }
+    return contours_of(outline, *uses);
+  }
   for (const double precision : kPrecisions) {
     Outline result;
     switch (resolve_exactly(outline, rule, precision, &result)) {

@@ -99,6 +99,26 @@ double across(const Point2& point) {
   return axis == RayAxis::kX ? point.y : point.x;
 }
 
+// 1 for a point to the left of a hull, seen along its chord, -1 to its right, and 0 where the hull
+// is wider than that.
+int side_of_hull(std::span<const Point2> controls, const Point2& point) {
+  const Point2& begin = controls.front();
+  const Point2 chord = controls.back() - begin;
+  const double offset = cross(chord, point - begin);
+  double low = 0.0;
+  double high = 0.0;
+  for (const Point2& control : controls.subspan(1, controls.size() - 2)) {
+    const double other = cross(chord, control - begin);
+    low = std::min(low, other);
+    high = std::max(high, other);
+  }
+  // More than the products are rounded by.
+  const double margin = 1e-14 * (std::fabs(chord.x) + std::fabs(chord.y)) *
+                        (std::fabs(point.x - begin.x) + std::fabs(point.y - begin.y));
+  if (offset > high + margin) return 1;
+  return offset < low - margin ? -1 : 0;
+}
+
 // Where a monotone piece is at `level` across the axis.
 template <RayAxis axis>
 double along_at(const Curve& curve, double from, double to, const Point2& begin, const Point2& end,
@@ -307,6 +327,11 @@ int RunTree::run_winding(const MonotoneRun& run, const Point2& point,
   if (along<axis>(point) > std::max(along<axis>(begin), along<axis>(end))) return 0;
   const auto& contour = contours_.contours()[run.contour];
   const MonotonePiece piece = contours_.piece(contour, id.piece);
+  const int side = side_of_hull(piece.controls, point);
+  if (side != 0) {
+    // Beyond it, seen along the ray, is to its left where it rises in y, or falls in x.
+    return (side > 0) == (rises == (axis == RayAxis::kX)) ? sign : 0;
+  }
   const Curve curve = contours_.curve(contour, piece);
   const double at = along_at<axis>(curve, piece.from, piece.to, begin, end, level);
   return at > along<axis>(point) ? sign : 0;

@@ -40,23 +40,6 @@ void append(const Stretch& stretch, Outline* outline) {
   }
 }
 
-void append_contour(const Outline& from, std::size_t index, bool reversed, Outline* to) {
-  const auto segments = from.contour(index);
-  const Point2& begin = from.begin_of(index);
-  if (!reversed) {
-    to->move_to(begin);
-    for (const Outline::Segment& segment : segments) {
-      append_curve(curve_of(from, segment), false, from.controls(segment).back(), to);
-    }
-  } else {
-    to->move_to(from.controls(segments.back()).back());
-    for (auto segment = segments.rbegin(); segment != segments.rend(); ++segment) {
-      append_curve(curve_of(from, *segment), true, from.controls(*segment).front(), to);
-    }
-  }
-  to->close();
-}
-
 double angle_of(const Point2& direction) { return std::atan2(direction.y, direction.x); }
 
 }  // namespace
