@@ -764,13 +764,14 @@ def test_the_other_arguments_of_the_rows_are_good(function, folder):
 
 
 def test_every_function_is_there():
-    constants = {"MAX_DEPTH", "MIPMAP_FILTERS", "POINT_EXTENSIONS", "RESIZE_FILTERS"}
+    constants = {"MAX_DEPTH", "MIPMAP_FILTERS", "POINT_EXTENSIONS", "RASTER_FILTERS"}
+    constants |= {"RESIZE_FILTERS"}
     classes = {"Cancelled", "ClosedMesh", "MipmapFilter", "NearestPoints", "Surface"}
-    classes |= {"ReconstructionReport", "ScanPoints", "SvgDrawing", "SvgWarning"}
-    # In test_normals_of_points, test_face_normals, test_scan_files, test_scan_failures and
-    # test_svg_files.
+    classes |= {"ReconstructionReport", "ScanPoints", "Shape", "SvgDrawing", "SvgWarning"}
+    # In test_normals_of_points, test_face_normals, test_scan_files, test_scan_failures,
+    # test_shape_arguments and test_svg_files.
     elsewhere = {"estimate_normals", "file_normals", "grid_normals", "mesh_normals"}
-    elsewhere |= {"read_points", "read_svg", "reconstruct_file"}
+    elsewhere |= {"rasterize", "read_points", "read_svg", "reconstruct_file"}
     public = set(prefilter.__all__) - constants - classes - elsewhere
     assert public <= set(FUNCTIONS)
     assert {row[0] for row in ROWS} == set(FUNCTIONS)

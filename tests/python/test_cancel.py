@@ -11,6 +11,7 @@ import time
 import numpy as np
 import prefilter
 import pytest
+from outlines import circle, to_shape
 from scenes import random_image, random_soup
 from solids import sphere
 
@@ -65,6 +66,26 @@ def ball_grid(size):
 
 
 GRID = ball_grid(128)
+
+
+def drawing(count, size, **options):
+    """Circles of conics, some of which overlap."""
+    random = np.random.default_rng(3)
+    places = zip(random.uniform(0, size, (count, 2)), random.uniform(1, 30, count), strict=True)
+    return [to_shape([circle(center, radius)], **options) for center, radius in places]
+
+
+DRAWING = drawing(400, 1024)
+STOPS = [(0.0, (1.0,)), (0.3, (0.2,)), (1.0, (0.5,))]
+PAINTED = drawing(100, 512)
+for shape in PAINTED:
+    shape.radial_gradient((200, 200), 90, STOPS, spread="reflect")
+FINE = prefilter.Shape()
+FINE.add_polygon(
+    512
+    + np.linspace(300, 500, 100_000)[:, None]
+    * np.stack([f(np.linspace(0, 6.28, 100_000)) for f in (np.cos, np.sin)], 1)
+)
 
 WORK = {
     **{
@@ -144,6 +165,21 @@ WORK = {
         )
         for name in ("union", "difference")
     },
+    **{
+        f"rasterize, {filter}": lambda filter=filter, **options: prefilter.rasterize(
+            DRAWING, 1024, 1024, filter=filter, threads=1, **options
+        )
+        for filter in ("box", "lanczos3", "radial2")
+    },
+    "rasterize, cover": lambda **options: prefilter.rasterize(
+        DRAWING, 1024, 1024, overlap="cover", threads=1, **options
+    ),
+    "rasterize, gradients": lambda **options: prefilter.rasterize(
+        PAINTED, 512, 512, filter="mitchell", threads=1, **options
+    ),
+    "rasterize, many vertices": lambda **options: prefilter.rasterize(
+        [FINE], 1024, 1024, filter="tent", threads=1, **options
+    ),
     "octree.dense": lambda octrees, **options: octrees[0].dense(7, threads=1, **options),
 }
 
