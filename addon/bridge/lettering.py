@@ -1,32 +1,47 @@
-"""Text as triangles, from Blender's own font: it needs no file, no window and no GPU."""
+"""Text as outlines, from Blender's own font: it needs no file, no window and no GPU."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .curves import read_curves
+from .outlines import box_of
+
+
+@dataclass(frozen=True)
+class Lettering:
+    """A line of text of size 1, whose baseline is y = 0; it starts at about x = 0.
+
+    Attributes:
+        letters: For each letter its contours: (segments, degree + 1, 3) homogeneous control points,
+            which are filled by the even-odd rule.
+        low: Where the first letter starts along x.
+        high: Where the last letter ends.
+    """
+
+    letters: tuple[tuple[NDArray[np.float64], ...], ...]
+    low: float
+    high: float
+
 
 @lru_cache(maxsize=256)
-def triangles(text: str) -> NDArray[np.float64]:
-    """Returns (n, 3, 2) corners of a line of text of size 1.
-
-    The baseline is y = 0, and the line starts at about x = 0. Main thread only.
-    """
+def outlines(text: str) -> Lettering:
+    """Returns a line of text. Main thread only."""
     curve = bpy.data.curves.new("prefilter lettering", "FONT")
     obj = bpy.data.objects.new("prefilter lettering", curve)
     try:
         curve.body = text
-        mesh = obj.to_mesh()
-        mesh.calc_loop_triangles()
-        corners = np.empty(3 * len(mesh.loop_triangles), np.int32)
-        mesh.loop_triangles.foreach_get("vertices", corners)
-        positions = np.empty(3 * len(mesh.vertices), np.float32)
-        mesh.vertices.foreach_get("co", positions)
-        found = positions.reshape(-1, 3)[corners, :2].reshape(-1, 3, 2).astype(np.float64)
-        obj.to_mesh_clear()
+        (found,) = read_curves([obj], bpy.context.evaluated_depsgraph_get())
     finally:
         bpy.data.objects.remove(obj)
         bpy.data.curves.remove(curve)
-    found.setflags(write=False)
-    return found
+    letters = tuple(
+        tuple(contour[..., [0, 1, 3]] for contour in fill.contours) for fill in found.fills
+    )
+    boxes = np.array([box_of(contour) for letter in letters for contour in letter])
+    if len(boxes) == 0:
+        return Lettering((), 0.0, 0.0)
+    return Lettering(letters, float(boxes[:, 0, 0].min()), float(boxes[:, 1, 0].max()))

@@ -117,7 +117,7 @@ def _draw_legend(canvas: Canvas, curves: ErrorCurves) -> None:
         for name, overall in zip(curves.filters, curves.overall, strict=True)
     ]
     texts = [f"{label}  ({overall:.3g} over all)" for label, _, overall in rows]
-    width = max(_extent(text)[1] * _TEXT for text in texts) + _SAMPLE + 3 * _GAP
+    width = max(lettering.outlines(text).high for text in texts) * _TEXT + _SAMPLE + 3 * _GAP
     top, left = _BOTTOM + _GAP + _ROW * len(rows), WIDTH - _RIGHT - _GAP - width
     canvas.rectangle((left, top - _ROW * len(rows)), (left + width, top), PAPER)
     for index, (text, (_, color, _)) in enumerate(zip(texts, rows, strict=True)):
@@ -139,19 +139,13 @@ def _write(
     fit: float = math.inf,
 ) -> None:
     """Writes a line of text with the anchor, a share of its width, at (x, y) on its baseline."""
-    low, high = _extent(text)
-    size = min(size, fit / max(high - low, 1e-6))
-    letters = lettering.triangles(text) * size
-    shift = -(low + anchor * (high - low)) * size
-    letters = letters + np.array([shift, 0.0])
-    if upwards:
-        letters = np.stack([-letters[..., 1], letters[..., 0]], axis=-1)
-    canvas.triangles(letters + np.array([x, y]), _INK)
-
-
-def _extent(text: str) -> tuple[float, float]:
-    letters = lettering.triangles(text)
-    return (letters[..., 0].min(), letters[..., 0].max()) if len(letters) else (0.0, 0.0)
+    line = lettering.outlines(text)
+    extent = line.high - line.low
+    size = min(size, fit / max(extent, 1e-6))
+    shift = -(line.low + anchor * extent) * size
+    along, across = ((0.0, size), (-size, 0.0)) if upwards else ((size, 0.0), (0.0, size))
+    start = (x, y + shift) if upwards else (x + shift, y)
+    canvas.letters(line.letters, np.array([along, across, start]).T, _INK)
 
 
 def _round_step(top: float) -> float:

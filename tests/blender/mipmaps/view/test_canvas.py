@@ -2,6 +2,7 @@
 
 import bpy
 import numpy as np
+import outlines
 import pytest
 import scenes
 
@@ -26,43 +27,24 @@ def test_rectangle_covers_its_area(canvas):
     np.testing.assert_allclose(ink(made), expected, atol=1e-5)
 
 
-def test_triangle_covers_its_area(canvas):
-    """Against 64 x 64 points in each pixel."""
-    corners = np.array([[(1.3, 0.7), (9.2, 3.1), (4.4, 10.6)], [(10, 10), (11.5, 10), (10, 11.5)]])
-    made = canvas(12, 12)
-    made.triangles(corners, BLACK)
-    place = (np.arange(12 * 64) + 0.5) / 64
-    x, y = np.meshgrid(place, place)
-    inside = np.zeros(x.shape, bool)
-    for a, b, c in corners:
-        sides = [
-            (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]) >= 0
-            for p, q in ((a, b), (b, c), (c, a))
-        ]
-        inside |= np.all(sides, axis=0)
-    expected = inside.reshape(12, 64, 12, 64).mean(axis=(1, 3))
-    np.testing.assert_allclose(ink(made), expected, atol=0.01)
-
-
 def test_line_has_its_width_and_dashes_their_share(canvas):
     made = canvas(60, 40)
     made.line([(10, 20), (50, 20)], BLACK, width=3.0)
     assert ink(made)[:, 30].sum() == pytest.approx(3.0, abs=1e-4)
     assert ink(made)[20, 15:45].min() == pytest.approx(1.0, abs=1e-5)
-    whole = ink(made).sum()
+    assert ink(made).sum() == pytest.approx(40 * 3 + np.pi * 1.5**2, rel=1e-4)
     dashed = canvas(60, 40)
     dashed.line([(10, 20), (50, 20)], BLACK, width=3.0, dashes=5.0)
-    assert 0.5 * whole < ink(dashed).sum() < 0.75 * whole
-    assert ink(dashed)[20, 17] < 0.1
-    assert ink(dashed)[20, 12] > 0.9
+    assert ink(dashed).sum() == pytest.approx(4 * 5 * 3, rel=1e-4)
+    assert ink(dashed)[20, 17] < 1e-5
+    assert ink(dashed)[20, 12] > 1 - 1e-5
 
 
 def test_what_is_off_the_sheet_is_left_out(canvas):
     made = canvas(8, 8)
     made.line([(-50, -50), (-20, -30)], BLACK, width=2.0)
     made.rectangle((20, 20), (30, 30), BLACK)
-    made.triangles(np.array([[(-9.0, -9.0), (-5.0, -9.0), (-9.0, -5.0)]]), BLACK)
-    made.triangles(np.zeros((0, 3, 2)), BLACK)
+    made.letters([], np.eye(2, 3), BLACK)
     made.line([(3.5, 3.5), (3.5, 3.5)], BLACK, width=2.0)
     assert ink(made)[:2].max() == 0
     assert ink(made)[3, 3] > 0.9
@@ -74,24 +56,38 @@ def test_blends_in_light(canvas):
     assert made.pixels()[0, 0, 0] == pytest.approx(scenes.to_srgb(np.float32(0.5)), abs=1e-3)
 
 
+def test_what_is_drawn_later_covers(canvas):
+    made = canvas(4, 4)
+    made.rectangle((0.5, 0), (4, 4), BLACK)
+    made.rectangle((0.5, 0), (4, 4), WHITE)
+    np.testing.assert_allclose(ink(made), 0, atol=1e-5)
+
+
 def test_letters(addon):
     lettering = addon("bridge.lettering")
     before = (len(bpy.data.curves), len(bpy.data.objects), len(bpy.data.meshes))
-    corners = lettering.triangles("HI")
-    assert corners.shape[1:] == (3, 2)
-    assert corners[..., 1].min() == pytest.approx(0.0, abs=0.02)
-    assert 0.5 < corners[..., 1].max() < 0.9
-    assert len(lettering.triangles("")) == len(lettering.triangles(" ")) == 0
-    wide = lettering.triangles("HIHI")[..., 0].max()
-    assert wide > 1.8 * corners[..., 0].max()
+    line = lettering.outlines("HI")
+    assert len(line.letters) == 2
+    (first,), (second,) = line.letters
+    assert first.shape[1:] == (4, 3)
+    assert first[..., 1].min() == pytest.approx(0.0, abs=0.02)
+    assert 0.5 < first[..., 1].max() < 0.9
+    assert line.low == pytest.approx(first[..., 0].min())
+    assert line.high == pytest.approx(second[..., 0].max())
+    for text in ("", " "):
+        assert lettering.outlines(text) == lettering.Lettering((), 0.0, 0.0)
+    assert lettering.outlines("HIHI").high > 1.8 * line.high
     assert (len(bpy.data.curves), len(bpy.data.objects), len(bpy.data.meshes)) == before
 
 
-def test_letters_have_the_area_of_their_outlines(addon, canvas):
-    corners = addon("bridge.lettering").triangles("Mip 4") * 40 + np.array([5.0, 20.0])
+def test_letters_have_the_area_that_blender_gives_them(addon, canvas):
+    """Blender makes polygons of curves, which here are fine."""
+    text = outlines.text("Mip 4o")
+    text.data.resolution_u = 64
+    mesh = text.evaluated_get(scenes.depsgraph()).to_mesh()
+    area = sum(face.area for face in mesh.polygons)
     made = canvas(160, 80)
-    made.triangles(corners, BLACK)
-    u, v = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    area = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]).sum() / 2
-    assert ink(made).sum() == pytest.approx(area, rel=1e-3)
+    matrix = np.array([[40.0, 0.0, 5.0], [0.0, 40.0, 20.0]])
+    made.letters(addon("bridge.lettering").outlines("Mip 4o").letters, matrix, BLACK)
+    assert ink(made).sum() == pytest.approx(area * 40**2, rel=1e-3)
     assert ink(made).max() <= 1 + 1e-4
