@@ -158,7 +158,7 @@ def _ignored(obj: bpy.types.Object) -> list[str]:
     """Returns what of an object does not show in an image of its outlines."""
     found = []
     data = obj.data
-    if data.bevel_depth > 0.0 or data.bevel_mode == "OBJECT" or data.extrude > 0.0:
+    if data.bevel_depth > 0.0 or data.bevel_object is not None or data.extrude > 0.0:
         found.append("bevel and extrusion")
     if data.offset != 0.0:
         found.append("offset")

@@ -20,9 +20,9 @@ FILTERS = {
     "tent": Choice("Tent", "Soft"),
     "bspline2": Choice("Quadratic B-Spline", "Softer"),
     "gaussian": Choice("Gaussian", "Softer, the same in all directions"),
-    "mitchell": Choice("Mitchell", "Crisp, with little ringing"),
-    "lanczos2": Choice("Lanczos 2", "Crisper"),
-    "lanczos3": Choice("Lanczos 3", "Crispest, with ringing around edges"),
+    "mitchell": Choice("Mitchell", "A little softer than Box, with fewer stairs; little ringing"),
+    "lanczos2": Choice("Lanczos 2", "Sharper than Mitchell, with some ringing"),
+    "lanczos3": Choice("Lanczos 3", "Sharpest, with ringing around edges"),
     "radial2": Choice("Radial 2", "As Lanczos 2, the same in all directions"),
     "radial3": Choice("Radial 3", "As Lanczos 3, the same in all directions"),
 }
@@ -38,7 +38,10 @@ VIEWS = {
     "camera": Choice("Camera", "What the scene's camera sees, in its frame"),
 }
 COLORS = {
-    "material": Choice("Materials", "The base color and alpha of each material; white without one"),
+    "material": Choice(
+        "Materials",
+        "The base color and alpha of each material, white without one; the colors of an SVG file",
+    ),
     "white": Choice("White", "White shapes"),
     "mask": Choice("Mask", "White shapes on black, without alpha, in the color space Non-Color"),
 }
@@ -52,7 +55,7 @@ OVERLAPS = {
         "Add", "Colors and alpha are added. Faster, and right where shapes do not overlap"
     ),
 }
-DEPTHS = {
+PIXEL_TYPES = {
     "byte": Choice("8 Bit", "Whole numbers, sRGB-encoded"),
     "half": Choice("Half Float", "16-bit floats, scene-linear"),
     "float": Choice("Float", "32-bit floats, scene-linear"),
@@ -142,7 +145,9 @@ class RasterizeSettings:
     overlap: str = one_of(
         "cover", "Overlap", "What shows where shapes overlap", OVERLAPS, metavar="MODE"
     )
-    depth: str = one_of("byte", "Depth", "The numbers of the image", DEPTHS, metavar="DEPTH")
+    pixel_type: str = one_of(
+        "byte", "Pixel Type", "The numbers that a pixel has", PIXEL_TYPES, metavar="TYPE"
+    )
     alpha: str = one_of(
         "auto", "Alpha", "How colors are stored where alpha is below 1", ALPHAS, metavar="ALPHA"
     )

@@ -25,7 +25,7 @@ _MESHES = "visible mesh with a UV map"
 _NOTES = """\
 Of other files than .svg, all visible curves and texts count, or with --uv one mesh. Shapes are
 fitted into the size with the margin around them; --density has their size decide. PNG files have 8
-bits with --depth byte, else 16, and straight alpha; OpenEXR files are scene-linear, with
+bits with --pixel-type byte, else 16, and straight alpha; OpenEXR files are scene-linear, with
 premultiplied alpha.
 
 examples:

@@ -45,30 +45,57 @@ class _ImagePanel:
     bl_category = "Prefilter"
 
 
-class PREFILTER_PT_shapes(_ImagePanel, bpy.types.Panel):
-    """The image that is shown, if it is of shapes; SVG files; the UV map as a mask."""
+class _DrawnPanel(_ImagePanel):
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the editor shows an image that remembers how it was made."""
+        return is_drawn(context.space_data.image)
 
-    bl_label = "Shapes"
+
+class PREFILTER_PT_drawn(_DrawnPanel, bpy.types.Panel):
+    """What the image of the editor was made with, and the button that makes it again."""
+
+    bl_label = "Rasterized Image"
+    bl_order = -1
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         layout = self.layout
         image = context.space_data.image
-        if is_drawn(image):
-            row = layout.row()
-            row.scale_y = 1.5
-            row.operator(
-                PREFILTER_OT_update_drawn.bl_idname, text="Update", icon="FILE_REFRESH"
-            ).image = image.name
-            drawn = image.prefilter_drawn
-            if drawn.source == "svg":
-                layout.prop(drawn, "filepath", text="")
-            drawn.draw_most_used(layout, drawn.source)
-        else:
-            settings = context.scene.prefilter_rasterize
-            settings.draw_most_used(layout, "svg")
-            _draw_svg(layout, context)
-            _draw_uv_mask(layout, context)
+        drawn = image.prefilter_drawn
+        if drawn.source == "svg":
+            layout.prop(drawn, "filepath", text="")
+        drawn.draw_most_used(layout, drawn.source)
+        row = layout.row()
+        row.scale_y = 1.5
+        operator = row.operator(
+            PREFILTER_OT_update_drawn.bl_idname, text="Update", icon="FILE_REFRESH"
+        )
+        operator.image = image.name
+
+
+class PREFILTER_PT_drawn_options(_DrawnPanel, OptionsPanel, bpy.types.Panel):
+    """The other settings of that image."""
+
+    bl_parent_id = PREFILTER_PT_drawn.__name__
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        drawn = context.space_data.image.prefilter_drawn
+        drawn.draw_others(self.layout, drawn.source)
+
+
+class PREFILTER_PT_shapes(_ImagePanel, bpy.types.Panel):
+    """SVG files, and the UV map of the active mesh as a mask."""
+
+    bl_label = "Rasterize"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        context.scene.prefilter_rasterize.draw_most_used(self.layout, "svg")
+        _draw_svg(self.layout, context)
+        _draw_uv_mask(self.layout, context)
 
 
 class PREFILTER_PT_shapes_options(_ImagePanel, OptionsPanel, bpy.types.Panel):
@@ -78,18 +105,15 @@ class PREFILTER_PT_shapes_options(_ImagePanel, OptionsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        image = context.space_data.image
-        if is_drawn(image):
-            drawn = image.prefilter_drawn
-            drawn.draw_others(self.layout, drawn.source)
-        else:
-            context.scene.prefilter_rasterize.draw_others(self.layout, "svg")
+        context.scene.prefilter_rasterize.draw_others(self.layout, "svg")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
     (
         PREFILTER_PT_rasterize,
         PREFILTER_PT_rasterize_options,
+        PREFILTER_PT_drawn,
+        PREFILTER_PT_drawn_options,
         PREFILTER_PT_shapes,
         PREFILTER_PT_shapes_options,
     )

@@ -142,7 +142,7 @@ def _whole(values: FloatArray, kind: type[np.uint8] | type[np.uint16]) -> NDArra
 def drawing(pixels: Pixels, settings: RasterizeSettings) -> Drawing:
     """Returns what an image datablock is to hold."""
     height, width, _ = pixels.values.shape
-    is_byte = settings.depth == "byte"
+    is_byte = settings.pixel_type == "byte"
     # Blender keeps bytes straight and floats associated, and converts nothing that is packed so.
     alpha_mode = "STRAIGHT" if is_byte else "PREMUL"
     if pixels.channels == 4 and pixels.is_straight != is_byte:
@@ -156,7 +156,7 @@ def drawing(pixels: Pixels, settings: RasterizeSettings) -> Drawing:
         height,
         png.encoded(pixels.encoded(np.uint8)) if is_byte else None,
         values,
-        settings.depth == "half",
+        settings.pixel_type == "half",
         pixels.is_mask,
         alpha_mode,
     )
@@ -170,7 +170,9 @@ def stage(target: Path, pixels: Pixels, settings: RasterizeSettings) -> staging.
     """
     values: NDArray[Any]
     if target.suffix.lower() == ".png":
-        values = pixels.encoded(np.uint8 if settings.depth == "byte" else np.uint16)
+        values = pixels.encoded(np.uint8 if settings.pixel_type == "byte" else np.uint16)
     else:
         values = pixels.floats()
-    return pictures.stage(target, values, is_data=pixels.is_mask, is_half=settings.depth != "float")
+    return pictures.stage(
+        target, values, is_data=pixels.is_mask, is_half=settings.pixel_type != "float"
+    )

@@ -52,7 +52,7 @@ class RasterizeProperties:
                 if self.background == "color":
                     layout.prop(self, "background_color", text="")
             layout.prop(self, "overlap")
-        layout.prop(self, "depth")
+        layout.prop(self, "pixel_type")
         if source != "uv" and self.color != "mask":
             layout.prop(self, "alpha")
             layout.prop(self, "use_bleed")

@@ -201,7 +201,7 @@ class Rasterization:
             return self._settings.alpha == "straight"
         if self._target is not None:
             return self._target.suffix.lower() == ".png"
-        return self._settings.depth == "byte"
+        return self._settings.pixel_type == "byte"
 
     def _found_image(self) -> bpy.types.Image:
         for image in bpy.data.images:

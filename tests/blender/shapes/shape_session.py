@@ -77,7 +77,7 @@ def session() -> Iterator[None]:
     yield
     with bpy.context.temp_override(**override):
         bpy.ops.prefilter.rasterize(
-            "INVOKE_DEFAULT", width=4096, height=4096, filter="radial3", depth="float"
+            "INVOKE_DEFAULT", width=4096, height=4096, filter="radial3", pixel_type="float"
         )
     found["works"] = not idle()
     window.event_simulate(type="ESC", value="PRESS")

@@ -45,11 +45,11 @@ def test_circles_have_their_areas():
         (1, -1, 0, math.sqrt(0.5)),
     ]
     outlines.nurbs(obj, from_nurbs, order=3, bezier=True, endpoint=True)
-    made = rasterize(width=128, height=128, depth="float")
+    made = rasterize(width=128, height=128, pixel_type="float")
     assert pixels(made)[..., 3].sum(dtype=float) == pytest.approx(math.pi * 56**2, rel=1e-6)
     obj.data.splines.clear()
     outlines.bezier_circle(obj)
-    made = rasterize(width=128, height=128, depth="float")
+    made = rasterize(width=128, height=128, pixel_type="float")
     # Green's theorem on cubic segments with handles of length k (1 + k / 2 - k^2 / 4 a quarter).
     k = outlines.CIRCLE_HANDLE
     quarter = 0.5 + 0.6 * k - 0.15 * k * k
@@ -58,7 +58,7 @@ def test_circles_have_their_areas():
 
 def test_text_has_holes_and_its_area():
     text = outlines.text("o")
-    made = rasterize(margin=4, depth="float")
+    made = rasterize(margin=4, pixel_type="float")
     alpha = pixels(made)[..., 3]
     assert alpha[32, 32] == 0
     assert alpha.max() == 1
@@ -77,6 +77,25 @@ def test_even_odd_within_an_object():
     assert (alpha[8, 8], alpha[20, 20], alpha[32, 32]) == (1, 0, 1)
 
 
+def test_the_nearer_object_covers_the_other():
+    first = outlines.square("First", 4)
+    outlines.polygon(first, [(1, 1), (3, 1), (3, 3), (1, 3)])
+    outlines.colored(first, (1, 0, 0))
+    second = outlines.square("Second", 2, (0, 0))
+    outlines.colored(second, (0, 1, 0))
+    second.location.z = 1
+    bpy.context.view_layer.objects.active = first
+    first.select_set(True)
+    made = pixels(rasterize(margin=0))
+    np.testing.assert_allclose(made[8, 8], (0, 1, 0, 1), atol=1e-6)
+    np.testing.assert_allclose(made[24, 24], (0, 1, 0, 1), atol=1e-6)
+    np.testing.assert_allclose(made[56, 56], (1, 0, 0, 1), atol=1e-6)
+    second.location.z = -1
+    made = pixels(rasterize(margin=0))
+    np.testing.assert_allclose(made[8, 8], (1, 0, 0, 1), atol=1e-6)
+    np.testing.assert_allclose(made[24, 24], (0, 1, 0, 1), atol=1e-6)
+
+
 def test_colors_of_materials():
     obj = outlines.curve()
     outlines.colored(obj, (0.5, 0.25, 0.125), (0.1, 0.2, 0.8, 0.5))
@@ -93,10 +112,10 @@ def test_colors_of_materials():
         values[9, 50, :3], scenes.to_srgb(np.array([0.1, 0.2, 0.8])), atol=byte
     )
     np.testing.assert_allclose(values[9, [9, 50], 3], [1, 0.5], atol=byte)
-    made = rasterize(margin=0, depth="float")
+    made = rasterize(margin=0, pixel_type="float")
     assert made.alpha_mode == "PREMUL"
     np.testing.assert_allclose(pixels(made)[9, 50], (0.05, 0.1, 0.4, 0.5), atol=1e-6)
-    made = rasterize(margin=0, depth="float", alpha="straight")
+    made = rasterize(margin=0, pixel_type="float", alpha="straight")
     assert made.alpha_mode == "CHANNEL_PACKED"
     np.testing.assert_allclose(pixels(made)[9, 50], (0.1, 0.2, 0.8, 0.5), atol=1e-6)
     made = rasterize(margin=0, alpha="premultiplied")
@@ -110,16 +129,16 @@ def test_colors_of_materials():
 
 def test_colors_without_nodes_and_without_materials():
     obj = outlines.square()
-    np.testing.assert_array_equal(pixels(rasterize(margin=0, depth="float")), 1)
+    np.testing.assert_array_equal(pixels(rasterize(margin=0, pixel_type="float")), 1)
     material = bpy.data.materials.new("Viewport")
     material.diffuse_color = (0.25, 0.5, 0.75, 1)
     if material.node_tree is not None:
         material.node_tree.nodes.clear()
     obj.data.materials.append(material)
-    found = pixels(rasterize(margin=0, depth="float"))
+    found = pixels(rasterize(margin=0, pixel_type="float"))
     np.testing.assert_allclose(found[5, 5], (0.25, 0.5, 0.75, 1), atol=1e-6)
     obj.data.materials[0] = None
-    np.testing.assert_array_equal(pixels(rasterize(margin=0, depth="float")), 1)
+    np.testing.assert_array_equal(pixels(rasterize(margin=0, pixel_type="float")), 1)
 
 
 @pytest.mark.parametrize("color", [(1, 1, 1), (0.2, 0.4, 0.6, 0.5)])
@@ -142,10 +161,14 @@ def test_background_and_mask():
     obj = outlines.square(side=2)
     outlines.polygon(obj, [(0.5, 0.5), (1.5, 0.5), (1.5, 1.5), (0.5, 1.5)])
     outlines.colored(obj, (1, 0, 0))
-    made = rasterize(margin=0, background="color", background_color=(0, 0, 1, 1), depth="float")
+    made = rasterize(
+        margin=0, background="color", background_color=(0, 0, 1, 1), pixel_type="float"
+    )
     np.testing.assert_allclose(pixels(made)[32, 32, :3], (0, 0, 1), atol=1e-6)
     np.testing.assert_allclose(pixels(made)[2, 2, :3], (1, 0, 0), atol=1e-6)
-    made = rasterize(margin=0, background="color", background_color=(0, 0, 1, 0.5), depth="float")
+    made = rasterize(
+        margin=0, background="color", background_color=(0, 0, 1, 0.5), pixel_type="float"
+    )
     np.testing.assert_allclose(pixels(made)[32, 32], (0, 0, 0.5, 0.5), atol=1e-6)
     mask = rasterize(margin=4.5, color="mask")
     assert mask.colorspace_settings.is_data
@@ -171,8 +194,8 @@ def test_background_and_mask():
 )
 def test_filters_keep_areas(name):
     outlines.bezier_circle(outlines.curve())
-    values = pixels(rasterize(filter=name, depth="float"))[..., 3]
-    box = pixels(rasterize(depth="float"))[..., 3]
+    values = pixels(rasterize(filter=name, pixel_type="float"))[..., 3]
+    box = pixels(rasterize(pixel_type="float"))[..., 3]
     assert values.min() >= 0
     assert values.max() <= 1
     assert values.sum(dtype=float) == pytest.approx(box.sum(dtype=float), rel=0.01)
@@ -224,14 +247,14 @@ def test_camera():
     bpy.context.scene.camera = camera
     camera.location = (0, 0, 5)
     data.type, data.ortho_scale = "ORTHO", 4
-    alpha = pixels(rasterize(view="camera", depth="float"))[..., 3]
+    alpha = pixels(rasterize(view="camera", pixel_type="float"))[..., 3]
     assert alpha.sum(dtype=float) == pytest.approx(math.pi * 16**2, rel=1e-3)
     data.type, data.angle = "PERSP", 2 * math.atan(0.4)
     # At a distance of 5 the frame is 4 units wide; half as far away things are twice as large.
-    alpha = pixels(rasterize(view="camera", depth="float"))[..., 3]
+    alpha = pixels(rasterize(view="camera", pixel_type="float"))[..., 3]
     assert alpha.sum(dtype=float) == pytest.approx(math.pi * 16**2, rel=1e-3)
     obj.rotation_euler.x = 0.5
-    alpha = pixels(rasterize(view="camera", depth="float"))[..., 3]
+    alpha = pixels(rasterize(view="camera", pixel_type="float"))[..., 3]
     # Points of the circle, projected.
     turn = np.linspace(0, 2 * np.pi, 20000, endpoint=False)
     z = np.sin(0.5) * np.sin(turn)
@@ -279,7 +302,7 @@ def test_uv_map_of_a_model_is_what_texels_say(addon):
     import prefilter
 
     bpy.ops.mesh.primitive_uv_sphere_add()
-    values = pixels(rasterize(depth="float", source="uv"))[..., 0]
+    values = pixels(rasterize(pixel_type="float", source="uv"))[..., 0]
     obj = bpy.context.object
     layouts = addon("bridge.uv_layouts")
     polygons = layouts.read_layout(obj, scenes.depsgraph())
@@ -294,20 +317,20 @@ def test_uv_map_of_a_model_is_what_texels_say(addon):
 def test_new_images_are_packed_and_outlive_the_file(tmp_path):
     outlines.bezier_circle(outlines.curve())
     before = {}
-    for depth in ("byte", "half", "float"):
-        made = rasterize(depth=depth, image_name=depth)
+    for pixel_type in ("byte", "half", "float"):
+        made = rasterize(pixel_type=pixel_type, image_name=pixel_type)
         assert made.packed_file is not None
         made.use_fake_user = True
-        before[depth] = pixels(made)
+        before[pixel_type] = pixels(made)
     assert bpy.data.images["half"].use_half_precision
     path = str(tmp_path / "saved.blend")
     bpy.ops.wm.save_as_mainfile(filepath=path)
     bpy.ops.wm.open_mainfile(filepath=path)
-    for depth, values in before.items():
+    for pixel_type, values in before.items():
         np.testing.assert_allclose(
-            scenes.pixels(depth), values, atol=1e-3 if depth == "half" else 0
+            scenes.pixels(pixel_type), values, atol=1e-3 if pixel_type == "half" else 0
         )
-        assert bpy.data.images[depth].is_float == (depth != "byte")
+        assert bpy.data.images[pixel_type].is_float == (pixel_type != "byte")
 
 
 def test_names_and_report(capfd):

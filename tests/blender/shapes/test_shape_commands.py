@@ -69,12 +69,21 @@ def test_curves_to_png_and_exr(blend, tmp_path):
     expected[16:, :16] = 1
     np.testing.assert_array_equal(values[..., 3], expected[..., 3])
     np.testing.assert_array_equal(values * values[..., 3:], expected)
-    for depth, wanted in (("half", "half"), ("float", "float"), ("byte", "half")):
-        run("rasterize", blend, tmp_path / "out.exr", *options, "--depth", depth)
+    for pixel_type, wanted in (("half", "half"), ("float", "float"), ("byte", "half")):
+        run("rasterize", blend, tmp_path / "out.exr", *options, "--pixel-type", pixel_type)
         kind, values = picture(tmp_path / "out.exr")
         assert kind == wanted
         np.testing.assert_array_equal(values, expected)
-    run("rasterize", blend, tmp_path / "out.png", *options, "--depth", "half", "--color", "mask")
+    run(
+        "rasterize",
+        blend,
+        tmp_path / "out.png",
+        *options,
+        "--pixel-type",
+        "half",
+        "--color",
+        "mask",
+    )
     kind, values = picture(tmp_path / "out.png")
     assert kind == "uint16"
     np.testing.assert_array_equal(values[..., 0], expected[..., 3])

@@ -40,7 +40,7 @@ def test_settings_of_the_image_count(circle, tmp_path):
     _, image = circle
     drawn = image.prefilter_drawn
     assert (drawn.width, drawn.margin, drawn.source) == (64, 0, "curves")
-    drawn.width, drawn.height, drawn.depth = 96, 32, "half"
+    drawn.width, drawn.height, drawn.pixel_type = 96, 32, "half"
     update(image)
     assert tuple(image.size) == (96, 32)
     assert image.is_float
@@ -53,7 +53,7 @@ def test_settings_of_the_image_count(circle, tmp_path):
     bpy.ops.wm.open_mainfile(filepath=path)
     image = bpy.data.images["Circle"]
     np.testing.assert_allclose(scenes.pixels("Circle"), before, atol=1e-3)
-    image.prefilter_drawn.depth = "byte"
+    image.prefilter_drawn.pixel_type = "byte"
     update(image)
     assert not image.is_float
     np.testing.assert_allclose(scenes.pixels("Circle")[..., 3], before[..., 3], atol=3e-3)
