@@ -3,8 +3,8 @@
 usage: python3 panel.py TARGET.png        (outside of Blender: starts Xvfb and Blender)
 
 TARGET is named after what it shows: panel.png (the bake), preview.png (a level, with the wipe),
-weights.png (the weights of texels, with their legend) or voxelize.png (a mesh with a hole, and
-voxelized, beside the settings).
+weights.png (the weights of texels, with their legend), voxelize.png (a mesh with a hole, and
+voxelized, beside the settings) or rasterize.png (a text and a curve, and their image).
 """
 
 import os
@@ -177,9 +177,71 @@ def show_voxels() -> None:
     bpy.app.timers.register(open_tab, first_interval=2.0)
 
 
+def show_shapes() -> None:
+    """Inside Blender: a text and a ring with the tab in the sidebar, and their image beside it."""
+    import bpy
+
+    bpy.context.preferences.view.show_splash = False
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    bpy.ops.curve.primitive_nurbs_circle_add(radius=1.5)
+    ring = bpy.context.object
+    ring.data.dimensions, ring.data.fill_mode = "2D", "BOTH"
+    bpy.ops.curve.primitive_nurbs_circle_add(radius=1.3)
+    inner = bpy.context.object
+    inner.select_set(True)
+    ring.select_set(True)
+    bpy.context.view_layer.objects.active = ring
+    bpy.ops.object.join()
+    bpy.ops.object.text_add(location=(0.0, -0.3, 0.01))
+    text = bpy.context.object
+    text.data.body, text.data.align_x, text.data.size = "Curves", "CENTER", 0.75
+    for obj, color in ((ring, (0.9, 0.35, 0.1)), (text, (0.05, 0.25, 0.6))):
+        material = bpy.data.materials.new(obj.name)
+        material.diffuse_color = (*color, 1.0)
+        if material.node_tree is not None:
+            material.node_tree.nodes.clear()
+        obj.data.materials.append(material)
+        obj.select_set(True)
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    before = set(window.screen.areas)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=0.55)
+    bpy.ops.prefilter.rasterize(width=512, height=512, filter="mitchell")
+    (other,) = set(window.screen.areas) - before
+    bpy.context.preferences.system.use_region_overlap = False
+    space = area.spaces.active
+    space.overlay.show_overlays = space.show_gizmo = False
+    space.show_region_ui = True
+    view = space.region_3d
+    view.view_rotation = (1.0, 0.0, 0.0, 0.0)
+    view.view_location, view.view_distance = (0.4, 0.0, 0.0), 6.0
+    view.view_perspective = "ORTHO"
+    other.type = "IMAGE_EDITOR"
+    other.spaces.active.image = bpy.data.images[text.name]
+    other.spaces.active.show_region_ui = True
+
+    def open_tab() -> float | None:
+        for one in (area, other):
+            sidebar = next(region for region in one.regions if region.type == "UI")
+            # Until it is drawn for the first time.
+            if sidebar.active_panel_category == "UNSUPPORTED":
+                return 0.5
+            sidebar.active_panel_category = "Prefilter"
+            one.tag_redraw()
+        bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
+        return None
+
+    bpy.app.timers.register(open_tab, first_interval=2.0)
+
+
 if "bpy" in sys.modules:
     if sys.argv[-1] == "voxelize":
         show_voxels()
+    elif sys.argv[-1] == "rasterize":
+        show_shapes()
     else:
         show_panel()
 else:
