@@ -2,7 +2,6 @@
 
 import gzip
 import math
-import zlib
 
 import numpy as np
 import prefilter
@@ -178,6 +177,7 @@ LONG = f'<!DOCTYPE svg [<!ENTITY a "{"x" * 60000}">]>' + svg("&a;" * 60000)
         (svg(f'<g style="fill:{"(" * 9000}"/>'), "nested too deeply"),
         (3, "source: 3; a path, markup, or bytes are needed"),
     ],
+    ids=lambda value: str(value)[:40],
 )
 def test_files_that_are_refused(source, words):
     with pytest.raises(ValueError, match="source") as caught:
@@ -196,11 +196,12 @@ def test_a_file_that_is_refused_is_named(tmp_path):
         prefilter.read_svg(tmp_path)
 
 
-def test_what_would_take_no_end_is_stopped():
-    packed = zlib.compressobj(9, zlib.DEFLATED, 31)
-    spaces = b" " * (1 << 24)
-    large = b"".join(packed.compress(spaces) for _ in range(17)) + packed.flush()
-    with pytest.raises(ValueError, match="more than 256 MiB when unpacked"):
+def test_what_is_large_when_unpacked_is_stopped(monkeypatch):
+    from prefilter._svg import document
+
+    monkeypatch.setattr(document, "MOST_UNPACKED", 1 << 20)
+    large = gzip.compress(svg(" " * (1 << 20)).encode())
+    with pytest.raises(ValueError, match="more than 1 MiB when unpacked"):
         prefilter.read_svg(large)
 
 
@@ -234,6 +235,7 @@ def test_repeated_uses_are_limited(monkeypatch):
         "<style>rect:nth-of-type(3){fill:red}</style>" + "<rect/>" * 2000,
         '<rect width="9" height="9" style=";;:red;}{fill:blue"/>',
     ],
+    ids=lambda body: body[:40],
 )
 def test_odd_drawings_are_read(body):
     for shape in read(body).shapes_for(SIZE, SIZE):

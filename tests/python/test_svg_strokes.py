@@ -7,6 +7,8 @@ import prefilter
 import pytest
 from drawings import SIZE, drawn, image, read
 
+RED, LIME = (1, 0, 0, 1), (0, 1, 0, 1)
+
 
 def stroked(draw, width, **options):
     shape = prefilter.Shape(color=(0.0, 128 / 255, 0.0, 1.0))
@@ -63,3 +65,11 @@ def test_strokes_are_made_for_their_size():
         found = image(drawing.shapes_for(size, size), size, size)
         area = math.pi * (45**2 - 35**2) * (size / 100) ** 2
         assert found[..., 3].sum() == pytest.approx(area, rel=2e-4)
+
+
+def test_fill_comes_before_stroke_unless_said():
+    body = '<rect x="20" y="20" width="60" height="60" fill="red" stroke="lime" stroke-width="10"/>'
+    np.testing.assert_allclose(drawn(body)[50, 22], LIME, atol=1e-5)
+    first = body.replace("<rect", '<rect paint-order="stroke"')
+    np.testing.assert_allclose(drawn(first)[50, 22], RED, atol=1e-5)
+    np.testing.assert_allclose(drawn(first)[50, 17], LIME, atol=1e-5)

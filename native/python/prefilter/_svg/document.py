@@ -13,7 +13,7 @@ SVG = "http://www.w3.org/2000/svg"
 XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
 
 MOST_DEPTH = 256
-_MOST_UNPACKED = 1 << 28
+MOST_UNPACKED = 1 << 28
 # What entities may add to a file: expat's own limit came with 2.4.
 _MOST_EXPANDED = 1 << 24
 _TOLD_EVERY = 1000
@@ -156,11 +156,11 @@ def read_document(
 def _unpacked(data: bytes, name: str) -> bytes:
     unpacker = zlib.decompressobj(wbits=31)
     try:
-        unpacked = unpacker.decompress(data, _MOST_UNPACKED)
+        unpacked = unpacker.decompress(data, MOST_UNPACKED)
     except zlib.error as error:
         raise ValueError(f"{name}: compressed, and damaged: {error}") from None
     if unpacker.unconsumed_tail:
-        raise ValueError(f"{name}: more than {_MOST_UNPACKED >> 20} MiB when unpacked")
+        raise ValueError(f"{name}: more than {MOST_UNPACKED >> 20} MiB when unpacked")
     if not unpacker.eof:
         raise ValueError(f"{name}: compressed, and ends early")
     return unpacked

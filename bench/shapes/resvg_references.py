@@ -1,0 +1,138 @@
+"""Compares drawings with resvg's reference images of its own tests.
+
+Usage: python3 bench/shapes/resvg_references.py [FOLDER] (--help lists the options)
+
+FOLDER holds SVG files, each beside the PNG that resvg made of it. Each file is read by
+prefilter.read_svg with light="srgb", and rasterized at the size of its PNG, with the box filter and
+overlap="cover". The difference is the mean over pixels and channels of premultiplied RGBA, in
+1/255. Files in which read_svg finds what it does not support are listed by themselves. Ends with
+status 1 if fewer than 95 % of the others agree within 2/255.
+"""
+
+import argparse
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import prefilter
+from PIL import Image
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.report import Report
+
+DATA = Path(__file__).resolve().parents[3] / "shared/data/svg/resvg"
+LIMIT = 2.0
+SHARE = 0.95
+
+
+@dataclass
+class Compared:
+    """A drawing beside its reference.
+
+    Attributes:
+        path: Of the drawing.
+        difference: The mean absolute one, in 1/255.
+        worst: The largest of a pixel, in 1/255.
+        unsupported: What of it is not supported, in words.
+        ours: (height, width, 4), premultiplied, in 0..255, the top row first.
+        theirs: Likewise.
+    """
+
+    path: Path
+    difference: float
+    worst: float
+    unsupported: str
+    ours: np.ndarray
+    theirs: np.ndarray
+
+
+def compared(path: Path) -> Compared:
+    """Draws a file at the size of the PNG beside it, and compares both."""
+    with Image.open(path.with_suffix(".png")) as file:
+        straight = np.asarray(file.convert("RGBA"), np.float64)
+    theirs = straight.copy()
+    theirs[..., :3] *= straight[..., 3:] / 255.0
+    height, width = theirs.shape[:2]
+    drawing = prefilter.read_svg(path, light="srgb")
+    shapes = drawing.shapes_for(width, height)
+    ours = np.zeros((height, width, 4))
+    if shapes:
+        drawn = prefilter.rasterize(shapes, width, height, overlap="cover")
+        ours = 255.0 * drawn[::-1].astype(np.float64)
+    unsupported = [each for each in drawing.warnings if each.kind == "unsupported"]
+    difference = np.abs(ours - theirs)
+    return Compared(
+        path,
+        float(difference.mean()),
+        float(difference.max()),
+        "; ".join(f"{each.name} {each.effect}" for each in unsupported),
+        ours,
+        theirs,
+    )
+
+
+def keep_pictures(target: Path, found: list[Compared]) -> None:
+    """Writes each as ours, theirs and the difference side by side on white."""
+    target.mkdir(parents=True, exist_ok=True)
+    for each in found:
+        on_white = [side[..., :3] + 255.0 - side[..., 3:] for side in (each.ours, each.theirs)]
+        sides = [*on_white, np.abs(each.ours - each.theirs)[..., :3]]
+        row = np.clip(np.rint(np.concatenate(sides, 1)), 0, 255).astype(np.uint8)
+        Image.fromarray(row).save(target / f"{each.path.parent.name}-{each.path.stem}.png")
+
+
+def main() -> int:
+    """Compares all files, and says how many agree."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("folder", type=Path, nargs="?", default=DATA)
+    parser.add_argument("--markdown", type=Path, help="write the tables to this file, too")
+    parser.add_argument("--pictures", type=Path, help="keep pictures of what differs there")
+    options = parser.parse_args()
+    drawings = sorted(options.folder.rglob("*.svg"))
+    paths = [path for path in drawings if path.with_suffix(".png").exists()]
+    if not paths:
+        parser.error(f"{options.folder} holds no SVG files beside PNG files")
+    began = time.perf_counter()
+    found = [compared(path) for path in paths]
+    seconds = time.perf_counter() - began
+    report = Report()
+    supported = [each for each in found if not each.unsupported]
+    agreeing = [each for each in supported if each.difference <= LIMIT]
+    differing = [each for each in supported if each.difference > LIMIT]
+
+    def name(each: Compared) -> str:
+        return each.path.relative_to(each.path.parents[2]).with_suffix("").as_posix()
+
+    report.table(
+        "Supported features only, and further than 2/255 from the reference",
+        ("file", "mean difference in 1/255"),
+        [(name(each), f"{each.difference:.2f}") for each in differing],
+    )
+    report.table(
+        "With features that are not supported",
+        ("file", "what", "mean difference in 1/255"),
+        [
+            (name(each), each.unsupported, f"{each.difference:.2f}")
+            for each in found
+            if each.unsupported
+        ],
+    )
+    report.note(f"{len(found)} files read and drawn in {seconds:.1f} s")
+    report.note(
+        f"{len(agreeing)} of the {len(supported)} with supported features only agree; half of them "
+        f"within {np.median([each.difference for each in agreeing]):.3f}/255"
+    )
+    share = len(agreeing) / len(supported)
+    report.verdict(share >= SHARE, f"{share:.1%} agree within {LIMIT:g}/255 (at least {SHARE:.0%})")
+    if options.pictures:
+        keep_pictures(options.pictures, differing)
+    report.finish(options.markdown)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

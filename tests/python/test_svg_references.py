@@ -1,0 +1,33 @@
+"""Drawings of resvg's tests beside the images that it makes of them."""
+
+from pathlib import Path
+
+import numpy as np
+import prefilter
+import pytest
+from drawings import image
+
+RESVG = Path(__file__).resolve().parents[3] / "shared" / "data" / "svg" / "resvg"
+# resvg knows neither `fr` nor alpha in percent there, and a focus may be outside of its circle.
+THEIR_OWN = {"fr=0.2", "fr=0.5", "fr=0.7", "focal-point-correction", "rgba-0-127-0-50percent"}
+
+
+def test_reference_images():
+    pillow = pytest.importorskip("PIL.Image")
+    paths = sorted(RESVG.rglob("*.svg"))
+    if not paths:
+        pytest.skip(f"{RESVG} is not there")
+    compared = 0
+    for path in paths[::4]:
+        drawing = prefilter.read_svg(path, light="srgb")
+        if any(warning.kind == "unsupported" for warning in drawing.warnings):
+            continue
+        with pillow.open(path.with_suffix(".png")) as file:
+            theirs = np.asarray(file.convert("RGBA"), np.float64) / 255
+        theirs[..., :3] *= theirs[..., 3:]
+        height, width = theirs.shape[:2]
+        ours = image(drawing.shapes_for(width, height), width, height)[::-1]
+        difference = np.abs(ours - theirs).mean() * 255
+        assert difference < 2 or path.stem in THEIR_OWN, (path.stem, difference)
+        compared += 1
+    assert compared > 50
