@@ -1,9 +1,9 @@
-"""Makes the pictures of shapes for docs/benchmarks.md.
+"""Makes the pictures of shapes for docs/benchmarks.md and docs/algorithms.md.
 
 usage: python3 shapes.py FOLDER        (with the package prefilter importable)
 
-Leaves FOLDER/patterns.png (figures 2.5 and 2.6), FOLDER/abutting.png and, where the drawings
-gathered beside the checkout are, FOLDER/tiger.png.
+Leaves FOLDER/patterns.png (figures 2.5 and 2.6), FOLDER/abutting.png, FOLDER/gaps.png
+(figure 3.3) and, where the drawings gathered beside the checkout are, FOLDER/tiger.png.
 """
 
 import sys
@@ -31,6 +31,7 @@ def main(folder: Path) -> None:
     """Makes all pictures."""
     patterns().save(folder / "patterns.png")
     abutting().save(folder / "abutting.png")
+    gaps().save(folder / "gaps.png")
     drawing = DATA / "Ghostscript_Tiger.svg"
     if drawing.exists():
         tiger(drawing).save(folder / "tiger.png")
@@ -44,6 +45,37 @@ def patterns() -> Image.Image:
             found = prefilter.rasterize([shape], size, size, filter=name)
             cells.append((shown(1 - found, CELL), name))
     return sheet(cells, len(FILTERS))
+
+
+def gaps() -> Image.Image:
+    """An outline whose sides do not meet, by both methods, and the wavelets at smaller depths."""
+    size = 128
+    outline = torn_star(size)
+    strokes = prefilter.rasterize([outline.stroked(1.0)], size, size)
+    cells = [(shown(1 - strokes, CELL), "outline")]
+    for name, note in (("scanline", "scanline, each side closed"), ("wavelet", "wavelet")):
+        found = prefilter.rasterize([outline], size, size, method=name)
+        cells.append((shown(1 - found, CELL), note))
+    for depth in (3, 4, 5):
+        found = prefilter.rasterize([outline], size, size, method="wavelet", depth=depth)
+        cells.append((shown(1 - found, CELL), f"wavelet, depth {depth}"))
+    return sheet(cells, 3)
+
+
+def torn_star(size: int) -> prefilter.Shape:
+    """A star of 7 tips with a hole, each side a contour of its own that ends before its corner."""
+    shape = prefilter.Shape()
+    for radii, direction, bend in (((0.46, 0.24), 1, 0.03), ((0.13, 0.13), -1, 0.0)):
+        angles = 0.5 * np.pi + direction * np.pi * np.arange(15) / 7
+        lengths = size * np.array([radii[i % 2] for i in range(15)])
+        corners = 0.5 * size + lengths[:, None] * np.stack([np.cos(angles), np.sin(angles)], -1)
+        for begin, end in pairwise(corners):
+            along = end - begin
+            first, last = begin + 0.03 * along, end - 0.03 * along
+            middle = 0.5 * (begin + end) + bend * size * np.array([-along[1], along[0]]) / 30
+            shape.move_to(*first)
+            shape.curve_to(*middle, *last)
+    return shape
 
 
 def fan() -> prefilter.Shape:
