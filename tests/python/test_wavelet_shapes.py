@@ -49,6 +49,19 @@ def test_colors_add_up_before_a_background(channels: int) -> None:
         np.testing.assert_allclose(*images, atol=2e-6)
 
 
+def test_shapes_cover_each_other() -> None:
+    random = np.random.default_rng(12)
+    shapes = [_curves(random, 60, 60, 1.0) for _ in range(4)]
+    for index, shape in enumerate(shapes):
+        alpha = (1.0, 0.4)[index % 2]
+        shape.color = (*(alpha * random.random(3)), alpha)
+    images = [
+        rasterize(shapes, 60, 60, method=method, overlap="cover", background=(0.1, 0.2, 0.3, 1.0))
+        for method in ("scanline", "wavelet")
+    ]
+    np.testing.assert_allclose(*images, atol=2e-6)
+
+
 @pytest.mark.parametrize("size", SIZES)
 def test_every_depth_is_the_mean_over_its_cells(size: tuple[int, int]) -> None:
     width, height = size

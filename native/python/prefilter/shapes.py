@@ -433,8 +433,9 @@ def rasterize(
             the colors.
         method: "scanline" (section 2.2), or "wavelet" (chapter 3), for the box filter and constant
             colors only. Both give the same image of closed contours. "wavelet" leaves open ones
-            open: a gap changes values near it, and not the rows beside it. Of a shape that has one
-            the winding numbers are drawn, whatever its fill rule.
+            open, unless shapes cover each other: a gap changes values near it, and not the rows
+            beside it. Of a shape that has one the winding numbers are drawn, whatever its fill
+            rule.
         depth: Of "wavelet": where to end. The square of the smallest power of two that holds the
             image is halved so many times, and each pixel gets the mean over the cell that it is in.
             0 is one cell for all; None ends at pixels.
