@@ -53,6 +53,7 @@ def test_what_is_not_supported(body, name):
         ('<g clip-path="url(#none)"/>', "clip-path"),
         ('<g id="a"><use href="#a"/></g>', "<use>"),
         ('<rect width="9" height="9" fill="url(#none)"/>', "url(#none)"),
+        ('<g id="a"/><rect width="9" height="9" fill="url(#a)"/>', "<g> as paint"),
         ('<rect width="1e300" height="9"/>', "<rect>"),
         ('<rect width="9" height="9" stroke="red" stroke-width="1e300"/>', "<rect>"),
         (

@@ -35,13 +35,14 @@ _LARGEST = 1e5
 _SMALLEST_DETERMINANT = 1e-40
 
 _ZERO, _WHOLE = Length(0.0), Length(100.0, "%")
+_OTHER_PAINTS = ("pattern", "hatch", "meshgradient", "solidcolor")
 _GROUPS = ("g", "a", "svg", "symbol", "switch")
 _NOT_DRAWN = frozenset(
     (
-        *("defs", "marker", "clipPath", "mask", "filter", "pattern", *GRADIENTS),
+        *("defs", "marker", "clipPath", "mask", "filter", *GRADIENTS),
         *("title", "desc", "metadata", "style", "script", "view", "cursor"),
         *("animate", "animateColor", "animateMotion", "animateTransform", "set"),
-        *("font", "font-face", "color-profile", "solidcolor", "hatch", "meshgradient"),
+        *("font", "font-face", "color-profile", *_OTHER_PAINTS),
     )
 )
 
@@ -428,7 +429,9 @@ class Drawing:
             bounds = outline.bounds()
             found = self._servers.resolve(server, opacity, context.units, bounds)
         elif server is not None:
-            self._warnings.unsupported(f"<{server.tag}> as paint", "left out", element.line)
+            is_paint = server.tag in _OTHER_PAINTS
+            tell = self._warnings.unsupported if is_paint else self._warnings.broken
+            tell(f"<{server.tag}> as paint", "left out", element.line)
         elif paint.server:
             self._warnings.broken(f"url({paint.server[:60]})", "not there", element.line)
         if isinstance(found, Gradient):
