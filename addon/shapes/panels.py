@@ -1,4 +1,4 @@
-"""Where a user finds shapes: the sidebars of the 3D view and the Image editor, and menus."""
+"""Where a user finds shapes: the sidebars of the 3D view and the Image editor, menus, a header."""
 
 import bpy
 
@@ -56,7 +56,6 @@ class PREFILTER_PT_drawn(_DrawnPanel, bpy.types.Panel):
     """What the image of the editor was made with, and the button that makes it again."""
 
     bl_label = "Rasterized Image"
-    bl_order = -1
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
@@ -126,10 +125,12 @@ def register() -> None:
     PREFILTER_MT_object.append(_draw_object_menu)
     PREFILTER_MT_image.append(_draw_image_menu)
     bpy.types.IMAGE_MT_uvs.append(_draw_uv_menu)
+    bpy.types.IMAGE_HT_header.append(_draw_header)
 
 
 def unregister() -> None:
     """Removes them."""
+    bpy.types.IMAGE_HT_header.remove(_draw_header)
     bpy.types.IMAGE_MT_uvs.remove(_draw_uv_menu)
     PREFILTER_MT_image.remove(_draw_image_menu)
     PREFILTER_MT_object.remove(_draw_object_menu)
@@ -151,6 +152,13 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
 def _draw_uv_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
     _draw_uv_mask(menu.layout, context)
+
+
+def _draw_header(header: bpy.types.Header, context: bpy.types.Context) -> None:
+    image = context.space_data.image
+    if is_drawn(image):
+        update = PREFILTER_OT_update_drawn.bl_idname
+        header.layout.operator(update, text="Update", icon="FILE_REFRESH").image = image.name
 
 
 def _draw_rasterize(

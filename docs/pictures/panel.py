@@ -177,6 +177,16 @@ def show_voxels() -> None:
     bpy.app.timers.register(open_tab, first_interval=2.0)
 
 
+def close_panels(*names: str) -> None:
+    """Inside Blender: has panels start closed."""
+    import bpy
+
+    for panel in [getattr(bpy.types, name) for name in names]:
+        bpy.utils.unregister_class(panel)
+        panel.bl_options = {"DEFAULT_CLOSED"}
+        bpy.utils.register_class(panel)
+
+
 def show_shapes() -> None:
     """Inside Blender: a text and a ring with the tab in the sidebar, and their image beside it."""
     import bpy
@@ -209,15 +219,16 @@ def show_shapes() -> None:
     region = next(region for region in area.regions if region.type == "WINDOW")
     with bpy.context.temp_override(window=window, area=area, region=region):
         bpy.ops.screen.area_split(direction="VERTICAL", factor=0.55)
-    bpy.ops.prefilter.rasterize(width=512, height=512, filter="mitchell")
+    bpy.ops.prefilter.rasterize(width=180, height=180, filter="mitchell")
     (other,) = set(window.screen.areas) - before
     bpy.context.preferences.system.use_region_overlap = False
+    close_panels("PREFILTER_PT_bake", "PREFILTER_PT_preview")
     space = area.spaces.active
     space.overlay.show_overlays = space.show_gizmo = False
     space.show_region_ui = True
     view = space.region_3d
     view.view_rotation = (1.0, 0.0, 0.0, 0.0)
-    view.view_location, view.view_distance = (0.4, 0.0, 0.0), 6.0
+    view.view_location, view.view_distance = (0.1, 0.0, 0.0), 7.5
     view.view_perspective = "ORTHO"
     other.type = "IMAGE_EDITOR"
     other.spaces.active.image = bpy.data.images[text.name]
