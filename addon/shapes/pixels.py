@@ -121,9 +121,11 @@ def _of_one_color(
     """Returns one color with a coverage as alpha: it bleeds everywhere as it is."""
     if is_straight and settings.use_bleed:
         return Pixels(coverage, is_straight, color[:3])
-    visible = (coverage > 0.0).astype(np.float32) if is_straight else coverage
-    rgb = np.array(color[:3], np.float32)
-    return Pixels(np.concatenate([visible * rgb, coverage], axis=2), is_straight)
+    values = np.empty((*coverage.shape[:2], 4), np.float32)
+    visible = coverage > 0.0 if is_straight else coverage
+    np.multiply(visible, np.array(color[:3], np.float32), out=values[..., :3])
+    values[..., 3:] = coverage
+    return Pixels(values, is_straight)
 
 
 def _whole(values: FloatArray, kind: type[np.uint8] | type[np.uint16]) -> NDArray[Any]:
@@ -149,8 +151,11 @@ def drawing(pixels: Pixels, settings: RasterizeSettings) -> Drawing:
         alpha_mode = "CHANNEL_PACKED"
     values = None
     if not is_byte:
-        values = np.ones((height, width, 4), np.float32)
-        values[..., : max(pixels.channels, 3)] = pixels.floats()
+        values = pixels.floats()
+        if pixels.channels < 4:
+            opaque = np.ones((height, width, 4), np.float32)
+            opaque[..., :3] = values
+            values = opaque
     return Drawing(
         width,
         height,
