@@ -25,7 +25,7 @@ from .values import (
     determinant,
     multiplied,
 )
-from .viewports import ViewBox, as_view_box, placed
+from .viewports import MOST_UNITS, ViewBox, as_view_box, placed
 from .warnings import Warnings
 
 MOST_USED = 250_000
@@ -176,13 +176,14 @@ class Drawing:
         sizes = []
         for name in ("width", "height"):
             length = read_length(root, declared, name, self._warnings) or _WHOLE
-            if length.value <= 0.0:
+            font_size = self._sheets.style(root).font_size
+            pixels = length.pixels(1.0, font_size)
+            if not 0.0 < pixels < MOST_UNITS:
                 raise ValueError(
                     f"{self._document.name}, line {root.line}: {name} '{declared[name]}'; a "
-                    "drawing needs a positive one"
+                    f"drawing needs a positive one below {MOST_UNITS:g} pixels"
                 )
-            font_size = self._sheets.style(root).font_size
-            sizes.append(None if length.unit == "%" else length.pixels(0.0, font_size))
+            sizes.append(None if length.unit == "%" else pixels)
         width, height = sizes
         # What a file does not say follows from its view box, and without one is CSS's 300 x 150.
         if view is not None:

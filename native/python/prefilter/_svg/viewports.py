@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from .values import Matrix, leading_numbers
 
 _ALIGNMENT = re.compile(r"x(Min|Mid|Max)Y(Min|Mid|Max)(?:\s+(meet|slice))?")
+# A side has at most so many units; what is larger or smaller is a mistake.
+MOST_UNITS = 1e9
 _SHARES = {"Min": 0.0, "Mid": 0.5, "Max": 1.0}
 
 
@@ -24,7 +26,9 @@ def as_view_box(text: str | None) -> ViewBox | None:
     if text is None:
         return None
     numbers, is_whole = leading_numbers(text)
-    if not is_whole or len(numbers) != 4 or numbers[2] <= 0.0 or numbers[3] <= 0.0:
+    if not is_whole or len(numbers) != 4 or min(numbers[2:]) < 1.0 / MOST_UNITS:
+        return None
+    if max(map(abs, numbers)) > MOST_UNITS:
         return None
     return ViewBox(*numbers)
 
