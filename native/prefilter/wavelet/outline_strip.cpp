@@ -85,12 +85,15 @@ double between(double value, double a, double b) {
   return std::clamp(value, std::min(a, b), std::max(a, b));
 }
 
-// The flux of an arc between points in the coordinates of its cell, by its integral of x dy.
-PlaneFlux arc_flux(const Point2& a, const Point2& b, double integral, double sign) {
-  const double moment_x = rounded(integral);
+// Adds the flux of an arc between points in the coordinates of its cell, by its integral of x dy.
+void add_arc(const Point2& a, const Point2& b, double integral, double sign, PlaneFlux* flux) {
+  const auto [moment_x, b_product] = rounded(Point2{integral, b.x * b.y});
   // That of y dx is what is left of the change of x y.
-  const double product = rounded(b.x * b.y) - rounded(a.x * a.y);
-  return {sign * (b.y - a.y), sign * (a.x - b.x), sign * moment_x, sign * (moment_x - product)};
+  const double moment_y = moment_x - (b_product - rounded(a.x * a.y));
+  flux->area_x += sign * (b.y - a.y);
+  flux->area_y += sign * (a.x - b.x);
+  flux->moment_x += sign * moment_x;
+  flux->moment_y += sign * moment_y;
 }
 
 template <std::size_t N>
@@ -118,6 +121,7 @@ void OutlineStrip::begin(const PlaneGrid& grid, int first_row, int end_row) {
   const int bricks_up = (end_row - first_row + kPlaneBrickSide - 1) / kPlaneBrickSide;
   slots_.assign(static_cast<std::size_t>(bricks_across_) * bricks_up, -1);
   pool_.clear();
+  pool_.reserve(slots_.size());
   places_.clear();
   at_sides_ = {};
 }
@@ -128,7 +132,7 @@ int OutlineStrip::new_brick(int x, int y) {
   return static_cast<int>(places_.size()) - 1;
 }
 
-PlaneFlux& OutlineStrip::cell(int column, int row) {
+inline PlaneFlux& OutlineStrip::cell(int column, int row) {
   const int x = column >> kPlaneBrickDepth;
   const int y = row >> kPlaneBrickDepth;
   std::int32_t& slot =
@@ -136,6 +140,12 @@ PlaneFlux& OutlineStrip::cell(int column, int row) {
   if (slot < 0) slot = new_brick(x, y);
   constexpr int kMask = kPlaneBrickSide - 1;
   return pool_[slot].cells[kSpread[column & kMask] | (kSpread[row & kMask] << 1)];
+}
+
+inline void OutlineStrip::add_chord(int column, int row, Point2 begin, Point2 end, double sign) {
+  begin = begin - Point2{static_cast<double>(column), static_cast<double>(row)};
+  end = end - Point2{static_cast<double>(column), static_cast<double>(row)};
+  add_arc(begin, end, 0.5 * (begin.x + end.x) * (end.y - begin.y), sign, &cell(column, row));
 }
 
 StripBricks OutlineStrip::take() {
@@ -302,12 +312,6 @@ void OutlineStrip::add(const MonotoneCurve& piece, double sign) {
   }
 }
 
-void OutlineStrip::add_chord(int column, int row, Point2 begin, Point2 end, double sign) {
-  begin = begin - Point2{static_cast<double>(column), static_cast<double>(row)};
-  end = end - Point2{static_cast<double>(column), static_cast<double>(row)};
-  cell(column, row) += arc_flux(begin, end, 0.5 * (begin.x + end.x) * (end.y - begin.y), sign);
-}
-
 void OutlineStrip::add_inner_line(const Point2& begin_, const Point2& end_, double sign) {
   const Point2 begin = rounded(begin_);
   const Point2 end = rounded(end_);
@@ -329,23 +333,30 @@ void OutlineStrip::add_inner_line(const Point2& begin_, const Point2& end_, doub
   const int x_step = x_rises ? 1 : -1;
   const int y_step = y_rises ? 1 : -1;
   Point2 at = begin;
+  const auto y_at = [&](double x) { return rounded(begin.y + (x - begin.x) * y_per_x); };
+  double next_x = x_rises ? column + 1 : column;
+  double y_at_next_x = column != last_column ? y_at(next_x) : end.y;
   while (column != last_column || row != last_row) {
-    const double next_x = x_rises ? column + 1 : column;
     const double next_y = y_rises ? row + 1 : row;
     Point2 next;
-    bool passes_x = row == last_row;
-    if (column != last_column) {
-      const double y = rounded(begin.y + (next_x - begin.x) * y_per_x);
-      passes_x = passes_x || (y_rises ? y <= next_y : y >= next_y);
-      if (passes_x) next = {next_x, between(y, at.y, end.y)};
-    }
-    if (!passes_x) {
+    const bool passes_x =
+        row == last_row ||
+        (column != last_column && (y_rises ? y_at_next_x <= next_y : y_at_next_x >= next_y));
+    if (passes_x) {
+      next = {next_x, between(y_at_next_x, at.y, end.y)};
+    } else {
       const double x = rounded(begin.x + (next_y - begin.y) * x_per_y);
       next = {between(x, at.x, column != last_column ? next_x : end.x), next_y};
     }
     add_chord(column, row, at, next, sign);
-    (passes_x ? column : row) += passes_x ? x_step : y_step;
     at = next;
+    if (passes_x) {
+      column += x_step;
+      next_x += x_step;
+      y_at_next_x = y_at(next_x);
+    } else {
+      row += y_step;
+    }
   }
   add_chord(column, row, at, end, sign);
 }
@@ -394,7 +405,7 @@ void OutlineStrip::add_inner_polynomials(const MonotoneCurve& piece, double sign
   const auto add_up_to = [&](const Point2& next, double next_area) {
     const Point2 corner{static_cast<double>(column), static_cast<double>(row)};
     const double integral = next_area - area - (corner.x - polynomials.column) * (next.y - at.y);
-    cell(column, row) += arc_flux(rounded(at - corner), rounded(next - corner), integral, sign);
+    add_arc(rounded(at - corner), rounded(next - corner), integral, sign, &cell(column, row));
     at = next;
     area = next_area;
   };
@@ -438,8 +449,8 @@ void OutlineStrip::add_inner_curve(const MonotoneCurve& piece, double sign) {
   const auto in_cell = [&](int column, int row, const CellArc& arc) {
     const Point2 corner{static_cast<double>(column), static_cast<double>(row)};
     const double integral = integral_along(piece.curve, arc.t_begin, arc.t_end, corner.x);
-    cell(column, row) +=
-        arc_flux(rounded(arc.begin - corner), rounded(arc.end - corner), integral, sign);
+    add_arc(rounded(arc.begin - corner), rounded(arc.end - corner), integral, sign,
+            &cell(column, row));
   };
   cut_to_cells(piece, {0, grid_.width, first_row_, end_row_}, in_cell, [](int, double, double) {});
 }
