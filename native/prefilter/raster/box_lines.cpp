@@ -233,6 +233,7 @@ void BoxLines::add_wide(const Point2& low, double slope, double begin, double en
   const double c = half_over(slope) * scale;
   const auto first_row = static_cast<int>(std::floor(begin));
   const auto end_row = static_cast<int>(std::ceil(end));
+  const int width = rows_.width();
   DifferenceRows::Row to_row = rows_.row(first_row);
   for (int row = first_row; row < end_row; ++row, to_row = rows_.next(to_row)) {
     const double from = std::max<double>(row, begin);
@@ -242,28 +243,29 @@ void BoxLines::add_wide(const Point2& low, double slope, double begin, double en
     const double left = std::min(x_from, x_to);
     const double right = std::max(x_from, x_to);
     const double first = std::floor(left);
-    if (first >= rows_.width()) continue;
+    if (first >= width) continue;
     const std::uint32_t height = to_steps((to - from) * scale);
     // From the first column in the image, or the last of the line's, on.
+    constexpr double kLeast = -DifferenceRows::kMargin;
     const double last = std::floor(right);
-    const auto begin_column = static_cast<int>(std::max(first, std::min(last, -1.0)));
-    const auto end_column = static_cast<int>(std::min<double>(last, rows_.width()));
-    const auto beyond = [&](int column) {
-      const double r = std::max(right - column, 0.0);
-      return to_steps(c * r * r);
-    };
-    std::uint32_t here =
-        begin_column > first
-            ? beyond(begin_column)
-            : to_steps((left - first + (right - first)) * 0.5 * (to - from) * scale);
+    const auto begin_column = static_cast<int>(std::max({first, std::min(last, -1.0), kLeast}));
+    const auto end_column = static_cast<int>(std::min<double>(std::max(last, kLeast), width));
+    const double inside = (left - first + (right - first)) * 0.5 * (to - from) * scale;
+    const double first_beyond = right - begin_column;
+    std::uint32_t beyond =
+        to_steps(begin_column > first ? c * first_beyond * first_beyond : inside);
     std::uint32_t covered = 0;
-    for (int column = begin_column; column <= end_column; ++column) {
-      const std::uint32_t next = beyond(column + 1);
-      to_row.add(rows_.clamped(column), height - here + next - covered);
-      covered = height - here + next;
-      here = next;
+    double r = first_beyond - 1.0;
+    for (int column = begin_column; column < end_column; ++column, r -= 1.0) {
+      const std::uint32_t next = to_steps(c * r * r);
+      const std::uint32_t here = height - beyond + next;
+      to_row.steps[column] += here - covered;
+      covered = here;
+      beyond = next;
     }
-    to_row.add(rows_.clamped(end_column + 1), height - covered);
+    to_row.steps[end_column] += height - beyond - covered;
+    to_row.steps[end_column + 1] += beyond;
+    to_row.mark(begin_column, end_column + 1);
   }
 }
 

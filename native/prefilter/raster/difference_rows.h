@@ -40,6 +40,10 @@ class DifferenceRows {
     std::uint32_t* steps;  // at column 0
     std::uint8_t* marks;   // of the block that begins there
 
+    /// All blocks from that of a column to that of another.
+    void mark(int first, int last) const {
+      for (int block = first >> kBlockBits; block <= last >> kBlockBits; ++block) marks[block] = 1;
+    }
     /// From a column on, the row is higher by this. The column is clamped().
     void add(int column, std::uint32_t step) const {
       steps[column] += step;
