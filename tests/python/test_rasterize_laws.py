@@ -311,3 +311,16 @@ def test_gradients_over_a_covered_image_are_their_means(filter):
     y, x = np.indices((9, 11)) + 0.5
     expected = np.stack([0.4 + 0.03 * x - 0.02 * y, 1.0 + 0.01 * y], -1)
     assert np.abs(image - expected).max() < ROUNDING
+
+
+def test_covering_needs_no_color_of_what_is_covered():
+    """An opaque shape on top leaves nothing of what it covers, not even along its outline."""
+    below = to_shape([circle((5.0, 4.5), 3.0)], color=(9.0, 0.0))
+    above = to_shape([circle((5.0, 4.5), 3.5)], color=(0.25, 1.0))
+    for filter in ("box", "lanczos3"):
+        both = prefilter.rasterize([below, above], 11, 9, filter=filter, overlap="cover")
+        alone = prefilter.rasterize([above], 11, 9, filter=filter)
+        assert np.abs(both - alone).max() < ROUNDING
+        same = prefilter.rasterize([below, below], 11, 9, filter=filter, overlap="cover")
+        once = prefilter.rasterize([below], 11, 9, filter=filter)
+        assert np.abs(same - once).max() < 9 * ROUNDING

@@ -145,6 +145,38 @@ def test_gradients_are_exact(scene):
             assert off < (BOX_BAR if name == "box" else BAR), (name, channel)
 
 
+LAYERS = [
+    blob(3, 51, (0.5, 0.5), (6.5, 6.5)),
+    circle((5.3, 4.4), 2.8),
+    blob(1, 52, (1.5, 2.0), (8.5, 7.5)),
+]
+
+
+@pytest.mark.parametrize(
+    "colors",
+    [
+        [(1.0, 0.2), (0.3, 0.9), (0.6, 0.5)],
+        [(0.5, 0.2, 0.1, 0.6), (0.2, 0.3, 0.3, 0.3), (0.1, 0.6, 0.7, 0.8)],
+    ],
+    ids=["opaque", "alpha"],
+)
+def test_later_shapes_cover_earlier_ones(colors):
+    rows = Rows(LAYERS, WIDTH, HEIGHT)
+    shapes = [
+        to_shape([contour], color=color) for contour, color in zip(LAYERS, colors, strict=True)
+    ]
+    for name in ("box", "mitchell"):
+        image = prefilter.rasterize(shapes, WIDTH, HEIGHT, filter=name, overlap="cover")
+        for channel in range(len(colors[0])):
+            value = 0.0
+            for winding, color in zip(rows.winding, colors, strict=True):
+                alpha = color[3] if len(color) == 4 else 1.0
+                value = np.where(winding != 0, color[channel] + (1.0 - alpha) * value, value)
+            expected = image_of_rows(rows, WIDTH, HEIGHT, name, value)
+            off = np.abs(image[..., channel] - expected).max()
+            assert off < (BOX_BAR if name == "box" else BAR), (name, channel)
+
+
 def test_bytes_are_correctly_rounded():
     """Off by one only where the value is this close to the middle of two."""
     close = 1e-4
