@@ -131,12 +131,15 @@ def near_exact(runs: Sequence[Run]) -> list[Run]:
 def compare_filters(report: Report, runs: Sequence[Run]) -> None:
     """Our filters beside our box."""
     box = next(run for run in runs if run.rasterizer == "box")
+    agg = next((run for run in runs if run.rasterizer == AGG), None)
     rows = [
-        (run.rasterizer, f"{run.shortest:.1f}", f"{run.median:.1f}", multiple(run, box))
+        (run.rasterizer, f"{run.shortest:.1f}", f"{run.median:.1f}", multiple(run, box),
+         multiple(run, agg) if agg is not None else "", f"{run.peak_mib:.1f}")
         for run in runs
         if run.rasterizer != "wavelet"
-    ]
-    report.table(f"filters on {box.pattern}", ("filter", "shortest us", "median us", "box"), rows)
+    ]  # fmt: skip
+    head = ("filter", "shortest us", "median us", "box", AGG, "peak MiB")
+    report.table(f"filters on {box.pattern}", head, rows)
     for run in runs:
         bar = FILTER_BARS.get(run.rasterizer)
         if bar is not None:

@@ -2,8 +2,8 @@
 //
 // usage: shapes_bench [--rounds N] [--rasterizers NAME;...] [--filters | --seams] [PATTERN...]
 //
-// --filters compares Prefilter's own filters instead. --seams draws 64 abutting quads one after
-// another, and prints each rasterizer and the lowest value of the image, of 255.
+// --filters compares Prefilter's own filters, and AGG, instead. --seams draws 64 abutting quads one
+// after another, and prints each rasterizer and the lowest value of the image, of 255.
 //
 // Prints a line for each rasterizer and setting of each pattern, with tabs in between: pattern,
 // rasterizer, fineness (what its own tolerance of curves is divided by), minimum and median time
@@ -208,6 +208,9 @@ int main(int count, char** words) {
     }
   }
   std::vector<Rasterizer> compared = filters ? our_filters() : peers();
+#ifdef SHAPES_AGG
+  if (filters) compared.push_back(agg_rasterizer());
+#endif
   if (!filters && !seams) {
     std::vector<Rasterizer> boxes = our_boxes();
     compared.insert(compared.begin(), boxes.begin(), boxes.end());
