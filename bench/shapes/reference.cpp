@@ -7,7 +7,7 @@
 namespace prefilter::bench {
 namespace {
 
-constexpr double kDeviation = 1e-6;  // of curves from their chords [pixels]
+constexpr double kDeviation = 1e-7;  // of curves from their chords [pixels]
 
 /// Each pixel holds by how much the coverage of it and of those after it in its row differs.
 class Differences {

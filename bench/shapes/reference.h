@@ -7,7 +7,7 @@
 
 namespace prefilter::bench {
 
-/// How much of each pixel the pattern covers. Curves are followed to 1e-6 pixels, so that no pixel
+/// How much of each pixel the pattern covers. Curves are followed to 1e-7 pixels, so that no pixel
 /// is off by more than about that.
 std::vector<double> true_coverage(const Pattern& pattern);
 

@@ -144,7 +144,7 @@ void measure(std::vector<Entry>& entries, int rounds) {
 void print(const std::string& pattern, const Entry& one) {
   std::vector<double> times = one.times;
   std::sort(times.begin(), times.end());
-  std::printf("%s\t%s\t%.3f\t%.2f\t%.2f\t%.2f\t%.2f\t%.6f\t%.6f\n", pattern.c_str(),
+  std::printf("%s\t%s\t%.3f\t%.2f\t%.2f\t%.2f\t%.2f\t%.3g\t%.3g\n", pattern.c_str(),
               one.rasterizer.c_str(), one.fineness, 1e6 * times.front(),
               1e6 * times[times.size() / 2],
               1e6 * *std::min_element(one.times_with_path.begin(), one.times_with_path.end()),
