@@ -70,8 +70,9 @@ class MonotoneRoots {
   static constexpr int kMostSteps = 6;
 
   DoublePair value_at(DoublePair s) const {
-    if constexpr (kIsCubic) return p0_ + s * (p1_ + s * (p2_ + s * p3_));
-    return p0_ + s * (p1_ + s * p2_);
+    // Products side by side are there sooner than Horner's, one after another.
+    if constexpr (kIsCubic) return (p0_ + s * p1_) + (s * s) * (p2_ + s * p3_);
+    return (p0_ + s * p1_) + (s * s) * p2_;
   }
   // A step of Halley's, and one of Newton's with the slope that the first foretells.
   DoublePair two_steps(DoublePair s, DoublePair miss, DoublePair values) const {
@@ -81,7 +82,7 @@ class MonotoneRoots {
     const DoublePair off = miss * half_second;
     const DoublePair inverse = 1.0 / (slope * slope - off + kTiny);
     const DoublePair over_slope = slope * inverse;
-    s = inside(s - miss * over_slope);
+    s -= miss * over_slope;
     return inside(s - (value_at(s) - values) * (over_slope + over_slope * (off * inverse)));
   }
   static DoublePair inside(DoublePair s) { return higher(lower(s, pair_of(1.0)), DoublePair{}); }

@@ -40,13 +40,14 @@ class BoxCurves::Values {
     for (int i = 0; i < 6; ++i) area_[i] = pair_of(area[i]);
   }
   DoublePair at(DoublePair s) const {
-    if constexpr (kIsCubic) return p_[0] + s * (p_[1] + s * (p_[2] + s * p_[3]));
-    return p_[0] + s * (p_[1] + s * p_[2]);
+    if constexpr (kIsCubic) return (p_[0] + s * p_[1]) + (s * s) * (p_[2] + s * p_[3]);
+    return (p_[0] + s * p_[1]) + (s * s) * p_[2];
   }
   DoublePair area_at(DoublePair s) const {
-    DoublePair sum = area_[3];
-    if constexpr (kIsCubic) sum += s * (area_[4] + s * area_[5]);
-    return s * (area_[0] + s * (area_[1] + s * (area_[2] + s * sum)));
+    const DoublePair squared = s * s;
+    DoublePair high = area_[2] + s * area_[3];
+    if constexpr (kIsCubic) high += squared * (area_[4] + s * area_[5]);
+    return s * ((area_[0] + s * area_[1]) + squared * high);
   }
 
  private:
