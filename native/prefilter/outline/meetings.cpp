@@ -378,7 +378,10 @@ class MeetingFinder {
 }  // namespace
 
 bool are_apart(const CurvePiece& a, const CurvePiece& b, double precision) {
-  if (hulls_apart(a.controls, b.controls, precision)) return true;
+  if (chord_separates(a.controls, b.controls, precision) ||
+      chord_separates(b.controls, a.controls, precision)) {
+    return true;
+  }
   if (a.curve.degree() == 1 && b.curve.degree() == 1) return false;
   return cells_apart(Cell(a), Cell(b), precision, 12);
 }
