@@ -37,15 +37,15 @@ class Arrangement {
   /// Points closer than `precision` times the size of the outlines, whose layers their indices are,
   /// count as one. The outlines must outlive it.
   Arrangement(std::span<const Outline* const> outlines, double precision);
+  Arrangement(const Arrangement&) = delete;
+  Arrangement& operator=(const Arrangement&) = delete;
 
   /// Cuts contours where they meet. Returns false where that cannot be told.
   bool cut(const Progress& progress = {});
 
   /// Whether all contours are apart from each other and from themselves, after `cut`.
   bool all_whole() const { return cuts_.empty(); }
-  const MonotoneContours& contours() const { return contours_; }
   std::size_t chain_count() const { return chains_.size(); }
-  std::uint32_t contour_of(std::uint32_t chain) const { return chains_[chain].contour; }
 
   /// Is given a chain, and the winding numbers to its right and to its left. Of chains that run
   /// along each other it gets one.

@@ -61,11 +61,19 @@ bool measure(Convex* contour) {
   return sign != 0.0 && turns_back == 2;
 }
 
-// Whether a line along an edge of `a`, the one that looks to `b` most, has `b` outside.
+// Whether a line along an edge of `a` has `b` outside. The edge that looks to `b` most comes first.
 bool is_separated(const Convex& a, const Convex& b, double margin) {
+  const auto is_outside_of = [&](std::size_t edge) {
+    const Point2& origin = a.points[edge];
+    const Point2 step = a.sign * (a.next(edge) - origin);
+    if (step == Point2{}) return false;
+    const double most = margin * (std::fabs(step.x) + std::fabs(step.y));
+    return std::all_of(b.points.begin(), b.points.end(),
+                       [&](const Point2& p) { return cross(step, p - origin) <= most; });
+  };
   const Point2 way = (b.box.low + b.box.high) - (a.box.low + a.box.high);
   double best = -HUGE_VAL;
-  std::size_t edge = 0;
+  std::size_t best_edge = 0;
   for (std::size_t i = 0; i < a.points.size(); ++i) {
     const Point2 step = a.next(i) - a.points[i];
     const double square = dot(step, step);
@@ -74,14 +82,14 @@ bool is_separated(const Convex& a, const Convex& b, double margin) {
     const double look = outward * std::fabs(outward) / square;
     if (look > best) {
       best = look;
-      edge = i;
+      best_edge = i;
     }
   }
-  const Point2& origin = a.points[edge];
-  const Point2 step = a.sign * (a.next(edge) - origin);
-  const double most = margin * (std::fabs(step.x) + std::fabs(step.y));
-  return std::all_of(b.points.begin(), b.points.end(),
-                     [&](const Point2& p) { return cross(step, p - origin) <= most; });
+  if (is_outside_of(best_edge)) return true;
+  for (std::size_t i = 0; i < a.points.size(); ++i) {
+    if (i != best_edge && is_outside_of(i)) return true;
+  }
+  return false;
 }
 
 // Whether `outer`, of which no more than the polygon of its curves' ends and middles is looked at,

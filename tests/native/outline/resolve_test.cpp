@@ -122,6 +122,33 @@ TEST(Resolve, WhatIsRightIsLeftAsItIs) {
   }
 }
 
+TEST(Resolve, MeshesStayTrianglesAndUniteWhereOneOverlaps) {
+  constexpr int kSide = 20;
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> off(-0.3, 0.3);
+  std::vector<Point2> corners;
+  for (int y = 0; y <= kSide; ++y) {
+    for (int x = 0; x <= kSide; ++x) corners.push_back({x + off(random), y + off(random)});
+  }
+  const auto at = [&](int x, int y) {
+    return corners[static_cast<std::size_t>(y * (kSide + 1) + x)];
+  };
+  Outline mesh;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      mesh.append(polygon({at(x, y), at(x + 1, y), at(x + 1, y + 1)}));
+      mesh.append(polygon({at(x, y), at(x + 1, y + 1), at(x, y + 1)}));
+    }
+  }
+  EXPECT_FALSE(resolved(mesh, FillRule::kNonzero));
+  const double whole = area(fine_chains(mesh, 1));
+  mesh.append(polygon({{5.1, 5.2}, {7.3, 5.4}, {6.0, 8.1}}));
+  const Outline united = resolve(mesh, FillRule::kNonzero);
+  EXPECT_NEAR(area(fine_chains(united, 1)), whole, 1e-9);
+  EXPECT_EQ(united.contour_count(), 1u);
+  EXPECT_EQ(united.segments().size(), 4u * kSide);
+}
+
 TEST(Resolve, RuleSaysWhichContoursStay) {
   // The second is of a shape that is not convex.
   for (const auto& make : {+[](double radius) {
