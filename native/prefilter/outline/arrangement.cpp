@@ -46,6 +46,44 @@ struct Arrangement::Site {
   bool is_joint = false;
 };
 
+// Each of them once, and which of them are the same point.
+class Arrangement::SiteList {
+ public:
+  explicit SiteList(const MonotoneContours& contours) {
+    std::uint32_t pieces = 0;
+    for (const auto& contour : contours.contours()) {
+      first_joint_.push_back(pieces);
+      pieces += contour.pieces;
+    }
+    joint_sites_.assign(pieces, OutlineChain::kNone);
+  }
+
+  void add_meeting(const Site& a, const Site& b) {
+    const std::uint32_t first = index_of(a);
+    const std::uint32_t second = index_of(b);
+    join(&parents, first, second);
+  }
+
+  std::vector<Site> sites;
+  std::vector<std::uint32_t> parents;
+
+ private:
+  std::uint32_t index_of(const Site& site) {
+    const auto next = static_cast<std::uint32_t>(sites.size());
+    if (site.is_joint) {
+      std::uint32_t& known = joint_sites_[first_joint_[site.place.contour] + site.place.piece];
+      if (known != OutlineChain::kNone) return known;
+      known = next;
+    }
+    sites.push_back(site);
+    parents.push_back(next);
+    return next;
+  }
+
+  std::vector<std::uint32_t> first_joint_;  // a contour's
+  std::vector<std::uint32_t> joint_sites_;
+};
+
 Arrangement::Arrangement(std::span<const Outline* const> outlines, double precision)
     : contours_(outlines),
       precision_(std::max(precision * extent(contours_.box()), 8.0 * rounding(contours_.box()))),
@@ -75,8 +113,7 @@ bool Arrangement::follows(const PieceId& a, const PieceId& b) const {
           (b.piece == 0 && a.piece + 1 == contours_.contours()[a.contour].pieces));
 }
 
-// The two sites of a meeting stand one behind the other.
-bool Arrangement::collect_sites(const Progress& progress, std::vector<Site>* sites) const {
+bool Arrangement::collect_sites(const Progress& progress, SiteList* list) const {
   std::vector<std::pair<PieceId, PieceId>> pairs;
   tree_.append_pairs(&pairs);
   std::vector<Meeting> meetings;
@@ -97,19 +134,17 @@ bool Arrangement::collect_sites(const Progress& progress, std::vector<Site>* sit
     meetings.clear();
     if (!append_meetings(first, second, precision_, &meetings)) return false;
     for (const Meeting& meeting : meetings) {
-      sites->push_back(site_at(a, first_piece, meeting.a, meeting.point));
-      sites->push_back(site_at(b, second_piece, meeting.b, meeting.point));
+      list->add_meeting(site_at(a, first_piece, meeting.a, meeting.point),
+                        site_at(b, second_piece, meeting.b, meeting.point));
     }
   }
   return true;
 }
 
 // Sites that are near each other become one vertex.
-void Arrangement::merge_sites(std::vector<Site>* sites) {
-  std::vector<std::uint32_t> parents(sites->size());
-  std::iota(parents.begin(), parents.end(), 0u);
-  for (std::uint32_t i = 0; i < parents.size(); i += 2) join(&parents, i, i + 1);
-
+void Arrangement::merge_sites(SiteList* list) {
+  const std::vector<Site>& sites = list->sites;
+  std::vector<std::uint32_t>& parents = list->parents;
   struct PlaceHash {
     std::size_t operator()(const std::pair<std::int64_t, std::int64_t>& place) const {
       return static_cast<std::size_t>(place.first) * 0x9e3779b97f4a7c15u ^
@@ -122,8 +157,8 @@ void Arrangement::merge_sites(std::vector<Site>* sites) {
     return std::pair{static_cast<std::int64_t>(std::floor(off.x / precision_)),
                      static_cast<std::int64_t>(std::floor(off.y / precision_))};
   };
-  for (std::uint32_t i = 0; i < sites->size(); ++i) {
-    const Point2& point = (*sites)[i].point;
+  for (std::uint32_t i = 0; i < sites.size(); ++i) {
+    const Point2& point = sites[i].point;
     const auto place = place_of(point);
     const auto [found, is_new] = places.try_emplace(place, i);
     if (!is_new) {
@@ -134,23 +169,23 @@ void Arrangement::merge_sites(std::vector<Site>* sites) {
       for (std::int64_t y = -1; y <= 1; ++y) {
         const auto near = places.find({place.first + x, place.second + y});
         if (near == places.end()) continue;
-        const Point2 off = (*sites)[near->second].point - point;
+        const Point2 off = sites[near->second].point - point;
         if (std::hypot(off.x, off.y) <= precision_) join(&parents, near->second, i);
       }
     }
   }
 
   // A vertex is where one of its joints is, if it has any, so that this stays in its place.
-  std::vector<std::uint32_t> order(sites->size());
+  std::vector<std::uint32_t> order(sites.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto key = [&](std::uint32_t i) {
-    const Site& site = (*sites)[i];
+    const Site& site = sites[i];
     return std::tuple(root_of(&parents, i), !site.is_joint, site.point.x, site.point.y);
   };
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const Site& site = (*sites)[order[i]];
+    const Site& site = sites[order[i]];
     if (i == 0 || root_of(&parents, order[i]) != root_of(&parents, order[i - 1])) {
       vertices_.push_back(site.point);
     }
@@ -159,9 +194,9 @@ void Arrangement::merge_sites(std::vector<Site>* sites) {
 }
 
 bool Arrangement::cut(const Progress& progress) {
-  std::vector<Site> sites;
-  if (!collect_sites(progress, &sites)) return false;
-  merge_sites(&sites);
+  SiteList list(contours_);
+  if (!collect_sites(progress, &list)) return false;
+  merge_sites(&list);
   std::sort(cuts_.begin(), cuts_.end(), [](const Cut& a, const Cut& b) {
     return std::tie(a.place, a.parameter, a.vertex) < std::tie(b.place, b.parameter, b.vertex);
   });

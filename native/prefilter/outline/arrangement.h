@@ -70,14 +70,15 @@ class Arrangement {
     double to = 1.0;
   };
   struct Site;
+  class SiteList;
   class Tracer;
 
   CurvePiece curve_piece(const MonotonePiece& piece, std::uint32_t contour) const;
   bool follows(const PieceId& a, const PieceId& b) const;
-  bool collect_sites(const Progress& progress, std::vector<Site>* sites) const;
+  bool collect_sites(const Progress& progress, SiteList* list) const;
   Site site_at(const PieceId& id, const MonotonePiece& piece, double parameter,
                const Point2& point) const;
-  void merge_sites(std::vector<Site>* sites);
+  void merge_sites(SiteList* list);
   void make_chains();
   void group_chains();
   bool is_negligible(const OutlineChain& chain) const;

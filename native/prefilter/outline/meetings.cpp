@@ -208,6 +208,7 @@ class MeetingFinder {
       : a_(a), b_(b), precision_(precision), meetings_(meetings) {}
 
   bool find() {
+    if (a_.curve.degree() == 1 && b_.curve.degree() == 1 && append_corner()) return true;
     append_ends();
     if (run_together()) return true;
     if (a_.curve.degree() == 1 && b_.curve.degree() == 1) {
@@ -218,6 +219,24 @@ class MeetingFinder {
   }
 
  private:
+  // Lines from a common end into clearly different directions.
+  bool append_corner() {
+    for (const bool at_end_of_a : {false, true}) {
+      for (const bool at_end_of_b : {false, true}) {
+        const Point2& corner = at_end_of_a ? a_.end() : a_.begin();
+        if (!(corner == (at_end_of_b ? b_.end() : b_.begin()))) continue;
+        const Point2 first = (at_end_of_a ? a_.begin() : a_.end()) - corner;
+        const Point2 second = (at_end_of_b ? b_.begin() : b_.end()) - corner;
+        const double turn = cross(first, second);
+        const double least = 16.0 * precision_ * precision_;
+        if (turn * turn <= least * std::max(dot(first, first), dot(second, second))) return false;
+        append(at_end_of_a ? a_.to : a_.from, at_end_of_b ? b_.to : b_.from, corner);
+        return true;
+      }
+    }
+    return false;
+  }
+
   // Ends of one on the other; ends that are (almost) the same belong together.
   void append_ends() {
     for (const double s : {a_.from, a_.to}) {
