@@ -96,9 +96,12 @@ void add_arc(const Point2& a, const Point2& b, double integral, double sign, Pla
   flux->moment_y += sign * moment_y;
 }
 
+// `touched`: bit i of the i-th of the finer ones.
 template <std::size_t N>
-void nest(const PlaneFlux* finer, std::array<PlaneFlux, N>* fluxes, QuadrantSteps<float>* steps) {
-  for (std::size_t i = 0; i < N; ++i) {
+void nest(const PlaneFlux* finer, std::uint64_t touched, std::array<PlaneFlux, N>* fluxes,
+          QuadrantSteps<float>* steps) {
+  for (std::size_t i = 0; i < N; ++i, touched >>= 4) {
+    if ((touched & 15U) == 0U) continue;
     const QuadrantFluxes quadrants = {finer[4 * i], finer[4 * i + 1], finer[4 * i + 2],
                                       finer[4 * i + 3]};
     (*fluxes)[i] = flux_of_quadrants(quadrants);
@@ -156,7 +159,7 @@ StripBricks OutlineStrip::take() {
     const auto& cells = pool_[i].cells;
     std::uint64_t touched = 0;
     for (int c = 0; c < kCells; ++c) {
-      touched |= static_cast<std::uint64_t>(cells[c].is_zero() ? 0 : 1) << c;
+      touched |= static_cast<std::uint64_t>(!cells[c].is_zero()) << c;
     }
     const std::size_t slot =
         static_cast<std::size_t>(places_[i].y - (first_row_ >> kPlaneBrickDepth)) * bricks_across_ +
@@ -170,9 +173,9 @@ StripBricks OutlineStrip::take() {
     std::array<PlaneFlux, 16> sixteenths;
     std::array<PlaneFlux, 4> quadrants;
     std::array<PlaneFlux, 1> whole;
-    nest(cells.data(), &sixteenths, brick.steps.data() + 5);
-    nest(sixteenths.data(), &quadrants, brick.steps.data() + 1);
-    nest(quadrants.data(), &whole, brick.steps.data());
+    nest(cells.data(), touched, &sixteenths, brick.steps.data() + 5);
+    nest(sixteenths.data(), ~std::uint64_t{0}, &quadrants, brick.steps.data() + 1);
+    nest(quadrants.data(), ~std::uint64_t{0}, &whole, brick.steps.data());
     taken.fluxes.push_back(whole[0]);
   }
   taken.at_sides = at_sides_;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 namespace prefilter {
 
@@ -25,7 +26,7 @@ struct alignas(32) PlaneFlux {
     return *this;
   }
   bool is_zero() const {
-    return area_x == 0.0 && area_y == 0.0 && moment_x == 0.0 && moment_y == 0.0;
+    return std::abs(area_x) + std::abs(area_y) + std::abs(moment_x) + std::abs(moment_y) == 0.0;
   }
 };
 
@@ -49,9 +50,9 @@ inline PlaneFlux flux_of_quadrants(const QuadrantFluxes& q) {
 /// What the means of the quadrants differ by from that of their cell.
 template <typename T>
 struct QuadrantSteps {
-  T along_x;  // c^(1,0): added on the lower half along x, taken away on the upper one
-  T along_y;  // c^(0,1)
-  T across;   // c^(1,1): added where both halves are lower or both upper
+  T along_x{};  // c^(1,0): added on the lower half along x, taken away on the upper one
+  T along_y{};  // c^(0,1)
+  T across{};   // c^(1,1): added where both halves are lower or both upper
 
   std::array<T, 4> values(T mean) const {
     const T low = mean + along_y;
