@@ -73,7 +73,7 @@ def session() -> Iterator[None]:
 
     # Without a graphics card so many letters take long to draw.
     bpy.data.objects["Text"].display_type = "BOUNDS"
-    bpy.data.objects["Text"].data.body = "Hamburgefonts " * 400
+    bpy.data.objects["Text"].data.body = "Hamburgefonts " * 100
     yield
     with bpy.context.temp_override(**override):
         bpy.ops.prefilter.rasterize(
