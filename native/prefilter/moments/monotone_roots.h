@@ -1,8 +1,8 @@
 // Where polynomials that only rise or only fall pass many values.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "prefilter/base/double_pair.h"
 
@@ -28,9 +28,10 @@ class MonotoneRoots {
     const double rise = p[1] + p[2] + p[3];
     const double scale = 1.0 / rise;
     // Slopes at both ends, where the polynomial rises by 1; a monotone cubic has none above 4.
-    const double first_slope = std::fmin(std::fmax(p[1] * scale, 0.0), 4.0);
-    const double last_slope =
-        std::fmin(std::fmax((p[1] + 2.0 * p[2] + 3.0 * p[3]) * scale, 0.0), 4.0);
+    // Where it is level, they are 0.
+    const auto slope = [&](double sum) { return std::min(std::max(0.0, sum * scale), 4.0); };
+    const double first_slope = slope(p[1]);
+    const double last_slope = slope(p[1] + 2.0 * p[2] + 3.0 * p[3]);
     rise_ = pair_of(rise);
     scale_ = pair_of(scale);
     first_slope_ = pair_of(first_slope);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <string>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
@@ -36,6 +37,15 @@ void write_bytes(BoxCoverage* coverage, const ByteRows& target) {
         const auto rounded = static_cast<int>(std::lrint(std::clamp(byte, 0.0F, 255.0F)));
         if (rounded != 0) std::memset(row_of(row) + begin, rounded, end - begin);
       });
+}
+
+void check_size(const ByteRows& target) {
+  if (target.width < 1 || target.height < 1 || target.width > kMostBoxPixels ||
+      target.height > kMostBoxPixels) {
+    throw_invalid("target: found " + std::to_string(target.width) + " x " +
+                  std::to_string(target.height) + " pixels; 1 to " +
+                  std::to_string(kMostBoxPixels) + " are possible along a side");
+  }
 }
 
 void check_points(bool are_all_near) {
@@ -105,6 +115,7 @@ void BoxCoverage::add(const EdgeList& edges) {
 }
 
 void BoxRasterizer::draw(const Outline& outline, const ByteRows& target) {
+  check_size(target);
   // Differences of a few rows stay in a processor's cache; many segments are better seen once.
   const bool is_simple = outline.points().size() < 4096;
   const int band_values = is_simple ? 1 << 18 : 1 << 22;
@@ -120,6 +131,7 @@ void BoxRasterizer::draw(const Outline& outline, const ByteRows& target) {
 
 void rasterize_coverage(const Outline& outline, FillRule rule, const ByteRows& target, int threads,
                         const Progress& progress) {
+  check_size(target);
   for (const Point2& point : outline.points()) check_points(is_near(point, kFarthestPoint));
   const Outline simple = resolve(outline, rule);
   EdgeList edges;

@@ -62,7 +62,7 @@ class BoxRasterizer {
   /// Writes what an outline covers of each pixel, 0 to 255 rounded to the nearest, into rows that
   /// are all 0. The outline has to wind once round what it fills, as `resolve` makes it; below 0
   /// and above 1 coverage is cut off. Throws Error for coordinates that are not finite, or farther
-  /// away than 1e9 pixels.
+  /// away than 1e9 pixels, and for sizes that are not 1 to kMostBoxPixels.
   void draw(const Outline& outline, const ByteRows& target);
 
  private:

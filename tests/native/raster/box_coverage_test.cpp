@@ -187,6 +187,79 @@ TEST_P(BoxKinds, BandsDoNotMatter) {
   }
 }
 
+std::vector<std::uint8_t> drawn_bytes(const Outline& outline, Size size, int stride) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(stride) * size.height, 0);
+  BoxRasterizer rasterizer;
+  rasterizer.draw(outline, {bytes.data(), size.width, size.height, stride});
+  return bytes;
+}
+
+TEST_P(BoxKinds, BytesAreRounded) {
+  Random random(10);
+  for (int trial = 0; trial < 30; ++trial) {
+    const Outline outline = random_outline(&random, GetParam(), 4, -5.0, 45.0, trial % 3 == 0);
+    const Size size{1 + trial, 17};
+    const int stride = size.width + trial % 3;
+    const auto bytes = drawn_bytes(outline, size, stride);
+    const auto steps = box_steps({outline}, size, size.height);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < stride; ++x) {
+        const auto byte = static_cast<double>(bytes[static_cast<std::size_t>(y) * stride + x]);
+        if (x >= size.width) {
+          ASSERT_EQ(byte, 0.0) << "beyond the row";
+          continue;
+        }
+        const auto coverage =
+            static_cast<std::int32_t>(steps[static_cast<std::size_t>(y) * size.width + x]) *
+            kBoxUnit;
+        ASSERT_NEAR(byte, std::clamp(255.0 * coverage, 0.0, 255.0), 0.5 + 1e-4);
+      }
+    }
+  }
+}
+
+TEST(BoxCoverage, AFillRuleAndThreadsServeAnyOutline) {
+  const Size size{600, 700};
+  Outline star;  // its middle winds twice
+  star.move_to({300.0, 650.0});
+  for (const int corner : {2, 4, 1, 3}) {
+    const double angle = 2.0 * M_PI * corner / 5;
+    star.line_to({300.0 - 300.0 * std::sin(angle), 350.0 + 300.0 * std::cos(angle)});
+  }
+  star.close();
+  const auto draw = [&](FillRule rule, int threads) {
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size.width) * size.height, 0);
+    rasterize_coverage(star, rule, {bytes.data(), size.width, size.height, size.width}, threads);
+    return bytes;
+  };
+  const std::size_t middle = 350U * 600U + 300U;
+  EXPECT_EQ(draw(FillRule::kNonzero, 1)[middle], 255);
+  EXPECT_EQ(draw(FillRule::kEvenOdd, 1)[middle], 0);
+  EXPECT_EQ(draw(FillRule::kNonzero, 1), draw(FillRule::kNonzero, 3));
+}
+
+TEST(BoxCoverage, SizesThatAreNoneAreRefused) {
+  BoxRasterizer rasterizer;
+  EXPECT_THROW(rasterizer.draw({}, {nullptr, 0, 4, 0}), Error);
+  EXPECT_THROW(rasterizer.draw({}, {nullptr, 4, -1, 4}), Error);
+  EXPECT_THROW(rasterizer.draw({}, {nullptr, kMostBoxPixels + 1, 1, 0}), Error);
+}
+
+TEST(BoxCoverage, PointsThatAreNoneAreRefused) {
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
+                           std::numeric_limits<double>::infinity(), -1.1e9}) {
+    for (const bool is_curve : {false, true}) {
+      Outline outline;
+      outline.move_to({1.0, 1.0});
+      outline.line_to({2.0, 5.0});
+      if (is_curve) outline.curve_to(std::array<Point2, 2>{Point2{3.0, bad}, Point2{4.0, 4.0}});
+      if (!is_curve) outline.line_to({bad, 3.0});
+      outline.close();
+      EXPECT_THROW(drawn_bytes(outline, {8, 8}, 8), Error) << bad;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, BoxKinds,
                          testing::Values(Kind::kLines, Kind::kQuadratics, Kind::kCubics,
                                          Kind::kConics, Kind::kHigh, Kind::kMixed));
