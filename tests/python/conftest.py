@@ -22,6 +22,7 @@ SAME_IN_ANY_PYTHON = {
     "test_normals.py",
     "test_normals_of_points.py",
     "test_places.py",
+    "test_rasterize_gradients.py",
     "test_rasterize_laws.py",
     "test_rasterize_nasty.py",
     "test_rasterize_oracle.py",

@@ -376,3 +376,26 @@ def radial_values(rows, pixels, radius):
         along = 0.5 * lengths * (value(x**2 + y[..., None] ** 2) @ weights)
         means.append((change[near] * along).sum(1) @ rows.weights[near])
     return np.array(means)
+
+
+def image_of_colors(rows, width, height, name, values, color, nodes=8):
+    """(height, width), by a separable filter: values times color(x, y), any smooth function.
+
+    Where it is not smooth, contours of `rows` must run.
+    """
+    k = kernel(name)
+    lines = np.arange(-REACH, width + REACH + 0.25, 0.5)
+    crossings = np.clip(rows.x, -REACH, width + REACH)
+    breaks = np.sort(np.concatenate([crossings, np.tile(lines, (len(rows.y), 1))], 1), axis=1)
+    lengths = np.diff(breaks)
+    # What lies left of a middle: how many crossings.
+    left = (rows.x[:, None, :] < (breaks[:, :-1] + 0.5 * lengths)[..., None]).sum(2)
+    padded = np.concatenate([np.zeros((len(rows.y), 1)), values], 1)
+    points, weights = np.polynomial.legendre.leggauss(nodes)
+    x = breaks[:, :-1, None] + lengths[..., None] * (0.5 + 0.5 * points)
+    y = np.broadcast_to(rows.y[:, None, None], x.shape)
+    samples = np.take_along_axis(padded, left, 1)[..., None] * color(x, y)
+    samples *= 0.5 * lengths[..., None] * weights
+    by_y = k(rows.y[:, None] - (np.arange(height) + 0.5)) * rows.weights[:, None]
+    columns = [(samples * k(x - (i + 0.5))).sum((1, 2)) for i in range(width)]
+    return by_y.T @ np.stack(columns, 1)
