@@ -287,8 +287,8 @@ def test_where_no_shape_reaches_there_is_the_background(filter):
     without = prefilter.rasterize([shape], 40, 30, filter=filter)
     assert (without[far] == 0.0).all()
     empty = prefilter.rasterize([], 4, 3, filter=filter, background=(0.1, 0.2, 0.3, 0.4))
-    assert empty.shape[:2] == (3, 4)
-    assert (empty == np.float32((0.1, 0.2, 0.3, 0.4))[: empty.shape[2]]).all()
+    assert empty.shape == (3, 4, 4)
+    assert (empty == np.float32((0.1, 0.2, 0.3, 0.4))).all()
 
 
 def test_a_background_shows_through_as_far_as_alpha_says():

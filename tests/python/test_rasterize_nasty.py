@@ -1,5 +1,6 @@
 """Shapes that hold nothing, or too much: no input takes long, crashes or spoils other pixels."""
 
+import copy
 import time
 
 import numpy as np
@@ -253,6 +254,12 @@ def test_a_scribble():
     assert tiny.sum() == pytest.approx(1e-4 * area, abs=1e-6)
 
 
+def test_curves_many_times():
+    contour = blob(3, 3, (0.4, 0.3), (5.7, 4.8))
+    once = image_of(to_shape([contour]))
+    assert np.abs(image_of(to_shape([contour] * 50)) - once).max() < 1e-6
+
+
 @pytest.mark.parametrize("filter", ["box", "mitchell", "radial3"])
 def test_weights_at_the_limits(filter):
     """The lightest conic is nearly its chord, the heaviest nearly its control points."""
@@ -293,6 +300,18 @@ def test_large_and_small_colors():
     for value in (1e30, -1e30, 1e-30, 0.0):
         image = image_of(of_points(square, color=(value,)))
         assert (image[1:4, 1:4] == np.float32(value)).all()
+
+
+@pytest.mark.parametrize("duplicate", [copy.copy, copy.deepcopy])
+def test_copies_share_nothing(duplicate):
+    shape = of_points([(1, 1), (4, 1), (4, 4), (1, 4)])
+    before = image_of(shape)
+    other = duplicate(shape)
+    other.add_polygon([(5.0, 0), (6, 0), (6, 1), (5, 1)])
+    other.color = (0.5,)
+    assert (image_of(shape) == before).all()
+    assert shape.color == (1.0,)
+    assert (image_of(other)[:, :5] == 0.5 * before[:, :5]).all()
 
 
 def test_shapes_may_be_changed_and_drawn_again():

@@ -190,6 +190,9 @@ COLORED = prefilter.Shape(color=(1, 2))
 SIZES = "a whole number from 1 to 1048576 is needed"
 
 ROWS = [
+    ({"shapes": 3}, ["shapes: 3"]),
+    ({"shapes": None}, ["shapes: None"]),
+    ({"shapes": begun()}, ["shapes: "]),
     ({"shapes": [3]}, ["shapes: item 0 is int; Shape is needed"]),
     ({"shapes": [begun(), None]}, ["shapes: item 1 is NoneType; Shape is needed"]),
     (
@@ -228,7 +231,7 @@ def test_refusal_by_rasterize(arguments, words):
 
 
 def test_an_image_beyond_memory_is_refused_before_it_is_made():
-    with pytest.raises(MemoryError, match="an image of 1048576 x 1048576 pixels"):
+    with pytest.raises(MemoryError, match="width, height: an image of 1048576 x 1048576 pixels"):
         prefilter.rasterize([], 2**20, 2**20)
 
 
