@@ -45,7 +45,7 @@ METHODS = [
     ("add_polygon", ([],), ["points: shape (0,)", "(points, 2) is needed"]),
     ("add_polygon", (np.zeros((0, 2)),), ["points: found none; at least one is needed"]),
     ("add_polygon", (np.zeros((3, 3)),), ["points: shape (3, 3)", "(points, 2) is needed"]),
-    ("add_polygon", (np.zeros((3, 2), int),), ["points: dtype int64", "float32 or float64"]),
+    ("add_polygon", (np.zeros((3, 2), bool),), ["points: dtype bool", "float32 or float64"]),
     ("add_polygon", (np.full((3, 2), NAN),), ["points: a coordinate is not finite"]),
     ("add_polygon", ("abc",), ["points: dtype <U3", "float32 or float64"]),
     *(

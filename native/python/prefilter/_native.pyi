@@ -401,7 +401,6 @@ def reconstruct(
 def reconstruct_file(
     source: PointSource, target: bytes, options: ReconstructOptions
 ) -> dict[str, float]: ...
-
 def rasterize(
     shapes: Sequence[tuple[Outline, str, Paint, bool]],
     width: int,

@@ -247,7 +247,7 @@ class Shape:
         Raises:
             ValueError: The points are not as said, or not finite.
         """
-        corners = as_floats("points", points, ("points", 2), np.float64)
+        corners = _as_points("points", points, ("points", 2))
         if len(corners) == 0:
             raise ValueError("points: found none; at least one is needed")
         _check_finite("points", corners)
@@ -265,7 +265,7 @@ class Shape:
             ValueError: The points are not as said, not finite, or a curve does not begin where the
                 one before it ends.
         """
-        controls = as_floats("points", points, ("curves", "points", 2), np.float64)
+        controls = _as_points("points", points, ("curves", "points", 2))
         degree = controls.shape[1] - 1
         if len(controls) == 0 or not 1 <= degree <= _MOST_DEGREE:
             raise ValueError(
@@ -516,6 +516,13 @@ def _as_point(name: str, point: Sequence[float]) -> tuple[float, float]:
     if found.shape != (2,) or found.dtype.kind not in "fiu" or not np.isfinite(found).all():
         raise ValueError(f"{name}: {point!r}; a pair of finite numbers is needed")
     return float(found[0]), float(found[1])
+
+
+def _as_points(name: str, points: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
+    found = as_array(name, points)
+    if found.dtype.kind in "iu":
+        found = found.astype(np.float64)
+    return as_floats(name, found, shape, np.float64)
 
 
 def _check_finite(name: str, points: np.ndarray) -> None:
