@@ -80,6 +80,8 @@ STOPS = [(0.0, (1.0,)), (0.3, (0.2,)), (1.0, (0.5,))]
 PAINTED = drawing(100, 512)
 for shape in PAINTED:
     shape.radial_gradient((200, 200), 90, STOPS, spread="reflect")
+SCRIBBLE = prefilter.Shape()
+SCRIBBLE.add_polygon(np.random.default_rng(4).uniform(0, 64, (700, 2)))
 FINE = prefilter.Shape()
 FINE.add_polygon(
     512
@@ -179,6 +181,9 @@ WORK = {
     ),
     "rasterize, many vertices": lambda **options: prefilter.rasterize(
         [FINE], 1024, 1024, filter="tent", threads=1, **options
+    ),
+    "rasterize, lines that cross": lambda **options: prefilter.rasterize(
+        [SCRIBBLE], 64, 64, threads=1, **options
     ),
     "octree.dense": lambda octrees, **options: octrees[0].dense(7, threads=1, **options),
 }
