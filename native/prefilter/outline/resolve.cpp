@@ -14,10 +14,11 @@ namespace {
 
 enum class Outcome : std::uint8_t { kAsItIs, kTraced, kUnclear };
 
-Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision, Outline* result) {
+Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
+                        const Progress& progress, Outline* result) {
   const std::array<const Outline*, 1> outlines = {&outline};
   Arrangement arrangement(outlines, precision);
-  if (!arrangement.cut()) return Outcome::kUnclear;
+  if (!arrangement.cut(progress.part(0.0, 0.5))) return Outcome::kUnclear;
   std::vector<BoundaryChain> boundary;
   boundary.reserve(arrangement.chain_count());
   bool all_forward = true;
@@ -28,7 +29,12 @@ Outcome resolve_exactly(const Outline& outline, FillRule rule, double precision,
     all_forward = all_forward && is_left && !is_right;
     if (is_left != is_right) boundary.push_back({chain, is_right});
   };
-  arrangement.visit(0, arrangement.chain_count(), visitor);
+  constexpr std::size_t kAtOnce = 256;
+  const std::size_t count = arrangement.chain_count();
+  for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+    progress.report(0.5 + 0.5 * static_cast<double>(begin) / static_cast<double>(count));
+    arrangement.visit(begin, std::min(begin + kAtOnce, count), visitor);
+  }
   if (arrangement.all_whole() && all_forward) return Outcome::kAsItIs;
   return arrangement.trace(boundary, result) ? Outcome::kTraced : Outcome::kUnclear;
 }
@@ -45,7 +51,8 @@ Outline contours_of(const Outline& outline, std::span<const ContourUse> uses) {
 
 }  // namespace
 
-std::optional<Outline> resolved(const Outline& outline, FillRule rule, double tolerance) {
+std::optional<Outline> resolved(const Outline& outline, FillRule rule, double tolerance,
+                                const Progress& progress) {
   if (const auto uses = convex_contour_uses(outline, rule)) {
     if (std::all_of(uses->begin(), uses->end(),
                     [](ContourUse use) { return use == ContourUse::kKept; })) {
@@ -55,7 +62,7 @@ std::optional<Outline> resolved(const Outline& outline, FillRule rule, double to
   }
   for (const double precision : kPrecisions) {
     Outline result;
-    switch (resolve_exactly(outline, rule, precision, &result)) {
+    switch (resolve_exactly(outline, rule, precision, progress, &result)) {
       case Outcome::kAsItIs:
         return std::nullopt;
       case Outcome::kTraced:

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "prefilter/base/outline.h"
+#include "prefilter/base/progress.h"
 
 namespace prefilter {
 
@@ -24,6 +25,7 @@ Outline resolve(const Outline& outline, FillRule rule, double tolerance = kOutli
 /// The same, but nothing where that would be the outline itself: it is resolved as it is, but for
 /// open contours, which are filled as if they were closed, and contours that are points.
 std::optional<Outline> resolved(const Outline& outline, FillRule rule,
-                                double tolerance = kOutlineTolerance);
+                                double tolerance = kOutlineTolerance,
+                                const Progress& progress = {});
 
 }  // namespace prefilter

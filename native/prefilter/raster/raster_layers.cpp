@@ -148,15 +148,17 @@ RasterLayers make_layers(std::span<const Shape> shapes, const RasterOptions& opt
     }
     return out;
   }
+  // Only the thread that called reports, which one shape by itself stays on.
+  const Progress within = shapes.size() == 1 ? progress : Progress();
   std::vector<std::optional<Outline>> changed(shapes.size());
-  parallel_for(static_cast<std::int64_t>(shapes.size()), options.threads, progress,
-               [&](std::int64_t i) {
-                 if (shapes[i].winds_once) return;
-                 if (options.method == RasterMethod::kWavelet && is_left_open(shapes[i].outline)) {
-                   return;
-                 }
-                 changed[i] = resolved(shapes[i].outline, shapes[i].fill_rule);
-               });
+  parallel_for(
+      static_cast<std::int64_t>(shapes.size()), options.threads, progress, [&](std::int64_t i) {
+        if (shapes[i].winds_once) return;
+        if (options.method == RasterMethod::kWavelet && is_left_open(shapes[i].outline)) {
+          return;
+        }
+        changed[i] = resolved(shapes[i].outline, shapes[i].fill_rule, kOutlineTolerance, within);
+      });
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     maker.add(changed[i] ? maker.keep(*std::move(changed[i])) : shapes[i].outline, paints[i]);
   }

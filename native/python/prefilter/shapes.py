@@ -150,6 +150,9 @@ class Shape:
     ) -> None:
         """Colors the shape from a focus outwards.
 
+        Within a pixel the color is taken for a polynomial of degree 2: where it jumps at a stop, a
+        pixel may be some hundredths off.
+
         Args:
             center: The center (x, y) of the circle of offset 1.
             radius: Its radius, above 0.
