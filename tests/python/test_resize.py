@@ -5,8 +5,9 @@ from itertools import product
 import numpy as np
 import prefilter
 import pytest
-from scipy.optimize import lsq_linear
-from scipy.special import j1
+
+optimize = pytest.importorskip("scipy.optimize")
+special = pytest.importorskip("scipy.special")
 
 WRAPS = ("clamp", "repeat", "border")
 SIZES = [(12, 9, 5, 4), (8, 8, 4, 2), (6, 5, 1, 3), (7, 4, 17, 9), (5, 16, 9, 3), (4, 6, 4, 13)]
@@ -87,7 +88,7 @@ def test_kernels_are_their_closed_forms(filter):
 
 def jinc(r, radius):
     r = np.maximum(r, 1e-9)
-    return np.where(r < radius, j1(np.pi * r) / (np.pi * r) * np.sinc(r / radius), 0.0)
+    return np.where(r < radius, special.j1(np.pi * r) / (np.pi * r) * np.sinc(r / radius), 0.0)
 
 
 @pytest.mark.parametrize("radius", [2, 3])
@@ -148,7 +149,7 @@ def closest(image, width, height, wrap, bounds):
     result = np.empty((height, width, image.shape[2]))
     for c in range(image.shape[2]):
         right = (texels_y.T @ image[..., c] @ texels_x).ravel()
-        solved = lsq_linear(root.T, np.linalg.solve(root, right), bounds, "bvls")
+        solved = optimize.lsq_linear(root.T, np.linalg.solve(root, right), bounds, "bvls")
         result[..., c] = solved.x.reshape(height, width)
     return result
 
