@@ -1,5 +1,6 @@
 """Curves and texts made in code."""
 
+import math
 from collections.abc import Sequence
 
 import bpy
@@ -8,6 +9,18 @@ import numpy as np
 Point = tuple[float, float]
 
 CIRCLE_HANDLE = 0.5522847498307936
+
+# Control points and weights of a NURBS circle of radius 1, of order 3.
+NURBS_CIRCLE = [
+    (1, 0, 0, 1),
+    (1, 1, 0, math.sqrt(0.5)),
+    (0, 1, 0, 1),
+    (-1, 1, 0, math.sqrt(0.5)),
+    (-1, 0, 0, 1),
+    (-1, -1, 0, math.sqrt(0.5)),
+    (0, -1, 0, 1),
+    (1, -1, 0, math.sqrt(0.5)),
+]
 
 
 def curve(name: str = "Curve", *, dimensions: str = "2D", select: bool = True) -> bpy.types.Object:

@@ -3,22 +3,12 @@
 #include <cmath>
 #include <vector>
 
+#include "prefilter/base/curve.h"
+
 namespace prefilter {
 namespace {
 
 double component(const Point2& point, int axis) { return axis == 0 ? point.x : point.y; }
-
-// A Bezier curve and its derivative by de Casteljau's scheme, which no degree makes unstable.
-void evaluate_bezier(std::span<const Point2> controls, double t, Point2* point, Point2* slope) {
-  std::array<Point2, Outline::kMostDegree + 1> work;
-  std::copy(controls.begin(), controls.end(), work.begin());
-  const int degree = static_cast<int>(controls.size()) - 1;
-  for (int level = degree; level > 1; --level) {
-    for (int i = 0; i < level; ++i) work[i] = (1.0 - t) * work[i] + t * work[i + 1];
-  }
-  *slope = static_cast<double>(degree) * (work[1] - work[0]);
-  *point = (1.0 - t) * work[0] + t * work[1];
-}
 
 // The roots in (0, 1) of a + b t + c t^2, by a form that does not cancel.
 int quadratic_roots(double a, double b, double c, double* roots) {
@@ -32,39 +22,6 @@ int quadratic_roots(double a, double b, double c, double* roots) {
   if (c != 0.0) keep(q / c);
   if (q != 0.0) keep(a / q);
   return count;
-}
-
-// The places where a polynomial in Bernstein's basis changes its sign, by halving until it has one
-// change at the most.
-void sign_changes(std::vector<double> values, double low, double high,
-                  std::array<double, kMostTurns>* turns, int* count) {
-  int changes = 0;
-  double last = 0.0;
-  for (const double value : values) {
-    if (value == 0.0) continue;
-    changes += last != 0.0 && (value > 0.0) != (last > 0.0) ? 1 : 0;
-    last = value;
-  }
-  if (changes == 0) return;
-  const double middle = 0.5 * (low + high);
-  if (high - low < 1e-15 || middle == low || middle == high) {
-    if (*count < kMostTurns) (*turns)[(*count)++] = middle;
-    return;
-  }
-  std::vector<double> left;
-  std::vector<double> right = std::move(values);
-  const std::size_t size = right.size();
-  for (std::size_t level = size; level > 0; --level) {
-    left.push_back(right.front());
-    for (std::size_t i = 0; i + 1 < level; ++i) right[i] = 0.5 * (right[i] + right[i + 1]);
-  }
-  // What is left in `right` is the second half, in order.
-  if (right.front() == 0.0 && left.size() > 1 && right.size() > 1 &&
-      (left[size - 2] > 0.0) != (right[1] > 0.0) && *count < kMostTurns) {
-    (*turns)[(*count)++] = middle;
-  }
-  sign_changes(std::move(left), low, middle, turns, count);
-  sign_changes(std::move(right), middle, high, turns, count);
 }
 
 }  // namespace
@@ -98,24 +55,14 @@ ParametricCurve::ParametricCurve(std::span<const Point2> controls_, double weigh
 }
 
 Point2 ParametricCurve::at(double t) const {
-  if (kind == CurveKind::kBezier) {
-    Point2 point;
-    Point2 slope;
-    evaluate_bezier(controls, t, &point, &slope);
-    return point;
-  }
+  if (kind == CurveKind::kBezier) return point_at({controls}, t);
   const Point2 sum = powers[0] + t * (powers[1] + t * (powers[2] + t * powers[3]));
   if (kind != CurveKind::kConic) return sum;
   return (1.0 / (denominator[0] + t * (denominator[1] + t * denominator[2]))) * sum;
 }
 
 Point2 ParametricCurve::derivative(double t) const {
-  if (kind == CurveKind::kBezier) {
-    Point2 point;
-    Point2 slope;
-    evaluate_bezier(controls, t, &point, &slope);
-    return slope;
-  }
+  if (kind == CurveKind::kBezier) return derivative_at({controls}, t);
   const Point2 slope = powers[1] + t * (2.0 * powers[2] + (3.0 * t) * powers[3]);
   if (kind != CurveKind::kConic) return slope;
   const double below = denominator[0] + t * (denominator[1] + t * denominator[2]);
@@ -155,7 +102,11 @@ int turning_points(const ParametricCurve& curve, std::span<const Point2> control
         for (std::size_t i = 0; i + 1 < controls.size(); ++i) {
           differences.push_back(component(controls[i + 1] - controls[i], axis));
         }
-        sign_changes(std::move(differences), 0.0, 1.0, turns, &count);
+        std::vector<double> changes;
+        append_sign_changes(differences, 0.0, 1.0, &changes);
+        for (const double change : changes) {
+          if (count < kMostTurns) (*turns)[count++] = change;
+        }
         break;
       }
     }

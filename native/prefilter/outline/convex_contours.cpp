@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prefilter/outline/curve.h"
+#include "prefilter/base/curve.h"
 #include "prefilter/outline/fill_rule.h"
 
 namespace prefilter {

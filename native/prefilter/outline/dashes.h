@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "prefilter/outline/curve.h"
+#include "prefilter/base/curve.h"
 
 namespace prefilter {
 

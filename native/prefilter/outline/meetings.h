@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "prefilter/outline/curve.h"
+#include "prefilter/base/curve.h"
 
 namespace prefilter {
 

@@ -8,41 +8,11 @@ namespace {
 
 constexpr double kNearEnd = 1e-9;  // a turn so near an end is off by its square
 
-using Coefficients = std::array<double, Outline::kMostDegree + 1>;
-
-// Appends where a polynomial in Bernstein form changes its sign in (from, to). A polynomial has at
-// most as many roots as its coefficients have changes of sign.
-void find_roots(const Coefficients& coefficients, int count, double from, double to,
-                std::vector<double>* roots) {
-  int changes = 0;
-  double last = 0.0;
-  for (int i = 0; i < count; ++i) {
-    if (coefficients[i] == 0.0) continue;
-    if (last != 0.0 && (coefficients[i] < 0.0) != (last < 0.0)) ++changes;
-    last = coefficients[i];
-  }
-  if (changes == 0) return;
-  const double middle = 0.5 * (from + to);
-  if (to - from < 1e-15 || middle <= from || middle >= to) {
-    roots->push_back(middle);
-    return;
-  }
-  Coefficients first;
-  Coefficients second = coefficients;
-  for (int level = 0; level < count; ++level) {
-    first[level] = second[0];
-    for (int i = 0; i + 1 < count - level; ++i) second[i] = 0.5 * (second[i] + second[i + 1]);
-  }
-  find_roots(first, count, from, middle, roots);
-  if (second[0] == 0.0) roots->push_back(middle);
-  find_roots(second, count, middle, to, roots);
-}
-
 // Where a coordinate of a curve turns back.
 void find_turns(const Curve& curve, double Point2::*axis, std::vector<double>* turns) {
   const auto& p = curve.controls;
   const int degree = curve.degree();
-  Coefficients slope;
+  std::array<double, Outline::kMostDegree> slope;
   int count = degree;
   if (curve.weight > 0.0) {
     // The numerator of the derivative, in Bernstein form.
@@ -53,7 +23,7 @@ void find_turns(const Curve& curve, double Point2::*axis, std::vector<double>* t
   } else {
     for (int i = 0; i < degree; ++i) slope[i] = p[i + 1].*axis - p[i].*axis;
   }
-  find_roots(slope, count, 0.0, 1.0, turns);
+  append_sign_changes(std::span(slope).first(count), 0.0, 1.0, turns);
 }
 
 bool is_monotone(std::span<const Point2> controls) {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/base/curve.h"
 #include "prefilter/base/outline.h"
-#include "prefilter/outline/curve.h"
 
 namespace prefilter {
 

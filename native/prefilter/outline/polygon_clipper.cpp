@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "prefilter/outline/curve.h"
+#include "prefilter/base/curve.h"
 
 namespace prefilter {
 namespace {

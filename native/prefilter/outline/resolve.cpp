@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <array>
 
+#include "prefilter/base/curve.h"
 #include "prefilter/outline/arrangement.h"
 #include "prefilter/outline/convex_contours.h"
-#include "prefilter/outline/curve.h"
 #include "prefilter/outline/fill_rule.h"
 #include "prefilter/outline/polygon_clipper.h"
 

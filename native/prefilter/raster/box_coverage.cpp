@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
 #include <string>
 
 #include "prefilter/base/error.h"
@@ -11,8 +12,6 @@
 
 namespace prefilter {
 namespace {
-
-constexpr double kFarthestPoint = 1e9;
 
 bool is_near(const Point2& point, double farthest) {
   return std::abs(point.x) <= farthest && std::abs(point.y) <= farthest;
@@ -63,7 +62,7 @@ bool BoxCoverage::add_segment(std::span<const Point2> controls, double weight) {
     return true;
   }
   for (const Point2& point : controls) {
-    if (!is_near(point, kFarthestPoint)) return false;
+    if (!is_near(point, kFarthestPixel)) return false;
   }
   curves_.add(controls, weight);
   lines_.move_to(controls.back());
@@ -132,10 +131,10 @@ void BoxRasterizer::draw(const Outline& outline, const ByteRows& target) {
 void rasterize_coverage(const Outline& outline, FillRule rule, const ByteRows& target, int threads,
                         const Progress& progress) {
   check_size(target);
-  for (const Point2& point : outline.points()) check_points(is_near(point, kFarthestPoint));
-  const Outline simple = resolve(outline, rule);
+  for (const Point2& point : outline.points()) check_points(is_near(point, kFarthestPixel));
+  const std::optional<Outline> simple = resolved(outline, rule);
   EdgeList edges;
-  edges.add(simple);
+  edges.add(simple ? *simple : outline);
   constexpr int kBandValues = 1 << 18;
   const int rows = std::max(16, kBandValues / target.width);
   parallel_ranges(target.height, rows, threads, progress,

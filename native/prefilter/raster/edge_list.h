@@ -13,6 +13,10 @@
 
 namespace prefilter {
 
+/// Coordinates are finite and not farther from 0 than this, in pixels: those are counted by int,
+/// and 2^-20 of one is left behind the point.
+inline constexpr double kFarthestPixel = 1e9;
+
 /// Outlines whose coverage is added up, as segments in runs that are close together.
 class EdgeList {
  public:

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "prefilter/base/curve.h"
 #include "prefilter/moments/monotone_curve.h"
-#include "prefilter/outline/curve.h"
 
 namespace prefilter {
 namespace {

@@ -25,9 +25,6 @@
 namespace prefilter {
 namespace {
 
-// Pixels are counted by int, and a coordinate in them has 2^-20 behind the point left.
-constexpr double kLargestPixel = 1e9;
-
 void check_options(std::span<const Shape> shapes, const RasterOptions& options) {
   if (options.width < 1 || options.height < 1) {
     throw_invalid("width, height: found " + std::to_string(options.width) + " x " +
@@ -45,7 +42,7 @@ void check_options(std::span<const Shape> shapes, const RasterOptions& options) 
                     "; all must have the same number");
     }
     for (const Point2& point : shapes[i].outline.points()) {
-      if (!(std::abs(point.x) <= kLargestPixel && std::abs(point.y) <= kLargestPixel)) {
+      if (!(std::abs(point.x) <= kFarthestPixel && std::abs(point.y) <= kFarthestPixel)) {
         throw_invalid(who + " has a point that is not finite, or farther than 1e9 pixels away");
       }
     }

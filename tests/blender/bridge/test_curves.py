@@ -9,17 +9,6 @@ import outlines
 import pytest
 import scenes
 
-CIRCLE = [
-    (1, 0, 0, 1),
-    (1, 1, 0, math.sqrt(0.5)),
-    (0, 1, 0, 1),
-    (-1, 1, 0, math.sqrt(0.5)),
-    (-1, 0, 0, 1),
-    (-1, -1, 0, math.sqrt(0.5)),
-    (0, -1, 0, 1),
-    (1, -1, 0, math.sqrt(0.5)),
-]
-
 
 @pytest.fixture
 def read(addon):
@@ -79,7 +68,7 @@ def compare_nurbs(read, order, bezier, endpoint, weighted):
 
 def test_nurbs_circle_is_a_circle(read):
     obj = outlines.curve()
-    outlines.nurbs(obj, CIRCLE, order=3, bezier=True, endpoint=True)
+    outlines.nurbs(obj, outlines.NURBS_CIRCLE, order=3, bezier=True, endpoint=True)
     (contour,) = read(obj).fills[0].contours
     assert contour.shape == (4, 3, 4)
     radius = np.linalg.norm(along(contour, 50)[..., :2], axis=-1)

@@ -34,17 +34,7 @@ def refused(capfd, **options):
 def test_circles_have_their_areas():
     """8 pixels around a circle of radius 1 that fills 112 of 128 pixels."""
     obj = outlines.curve()
-    from_nurbs = [
-        (1, 0, 0, 1),
-        (1, 1, 0, math.sqrt(0.5)),
-        (0, 1, 0, 1),
-        (-1, 1, 0, math.sqrt(0.5)),
-        (-1, 0, 0, 1),
-        (-1, -1, 0, math.sqrt(0.5)),
-        (0, -1, 0, 1),
-        (1, -1, 0, math.sqrt(0.5)),
-    ]
-    outlines.nurbs(obj, from_nurbs, order=3, bezier=True, endpoint=True)
+    outlines.nurbs(obj, outlines.NURBS_CIRCLE, order=3, bezier=True, endpoint=True)
     made = rasterize(width=128, height=128, pixel_type="float")
     assert pixels(made)[..., 3].sum(dtype=float) == pytest.approx(math.pi * 56**2, rel=1e-6)
     obj.data.splines.clear()

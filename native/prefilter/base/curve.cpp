@@ -1,4 +1,4 @@
-#include "prefilter/outline/curve.h"
+#include "prefilter/base/curve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -189,6 +189,32 @@ void append_flattened(const Curve& curve, double tolerance, std::vector<Point2>*
     points->push_back(point_at(curve, static_cast<double>(i) / static_cast<double>(lines)));
   }
   points->push_back(curve.end());
+}
+
+// A polynomial has at most as many roots as its coefficients have changes of sign.
+void append_sign_changes(std::span<const double> coefficients, double from, double to,
+                         std::vector<double>* changes) {
+  int count = 0;
+  double last = 0.0;
+  for (const double coefficient : coefficients) {
+    if (coefficient == 0.0) continue;
+    if (last != 0.0 && (coefficient < 0.0) != (last < 0.0)) ++count;
+    last = coefficient;
+  }
+  if (count == 0) return;
+  const double middle = 0.5 * (from + to);
+  if (to - from < 1e-15 || middle <= from || middle >= to) {
+    changes->push_back(middle);
+    return;
+  }
+  const std::size_t size = coefficients.size();
+  std::array<double, Outline::kMostDegree + 1> first;
+  std::array<double, Outline::kMostDegree + 1> second;
+  std::copy(coefficients.begin(), coefficients.end(), second.begin());
+  split(std::span<double>(second.data(), size), 0.5, first.data());
+  append_sign_changes({first.data(), size}, from, middle, changes);
+  if (second[0] == 0.0) changes->push_back(middle);
+  append_sign_changes({second.data(), size}, middle, to, changes);
 }
 
 }  // namespace prefilter

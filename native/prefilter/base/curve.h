@@ -79,4 +79,9 @@ class PartOfCurve {
 /// them are within `tolerance` of it; 2^14 of them at the most.
 void append_flattened(const Curve& curve, double tolerance, std::vector<Point2>* points);
 
+/// Appends where a polynomial in Bernstein form on [from, to], by its coefficients, changes its
+/// sign inside.
+void append_sign_changes(std::span<const double> coefficients, double from, double to,
+                         std::vector<double>* changes);
+
 }  // namespace prefilter
