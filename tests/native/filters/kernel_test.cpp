@@ -49,8 +49,7 @@ const std::map<std::string, Definition>& definitions() {
         1e-14, 1e-14}},
       {"lanczos2", {2.0, [](double x) { return sinc(x) * sinc(x / 2.0); }, 6e-6, 0.0098}},
       {"lanczos3", {3.0, [](double x) { return sinc(x) * sinc(x / 3.0); }, 2e-6, 0.003}},
-      {"gaussian",
-       {2.0, [](double x) { return std::exp(-std::numbers::pi * x * x); }, 1.1e-5, 0.09}},
+      {"gaussian", {2.0, [](double x) { return std::exp(-std::numbers::pi * x * x); }, 2e-6, 0.09}},
   };
   return all;
 }
