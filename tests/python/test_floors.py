@@ -11,7 +11,7 @@ FLOORS = (
     {"base"},
     {"color", "filters", "moments", "outline", "solve", "spatial", "surface"},
     {"scan", "texels", "wavelet"},
-    {"contour", "mipmap", "raster", "resize", "voxel"},
+    {"contour", "mipmap", "raster", "resize", "sampling", "voxel"},
     {"reconstruct"},
 )
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
