@@ -140,9 +140,8 @@ const Kernel& box_kernel() {
   return box;
 }
 
-Taps resampling_taps(const Kernel& kernel, double ratio, int target) {
-  const double centre = (target + 0.5) * ratio;
-  const double scale = kernel.degree() == 0 ? ratio : std::max(1.0, ratio);
+Taps kernel_taps(const Kernel& kernel, double centre, double width) {
+  const double scale = kernel.degree() == 0 ? width : std::max(1.0, width);
   const double reach = kernel.radius() * scale;
   std::vector<double> values;
   Taps taps;
@@ -165,6 +164,10 @@ Taps resampling_taps(const Kernel& kernel, double ratio, int target) {
   const double sum = std::accumulate(values.begin(), values.end(), 0.0);
   for (const double value : values) taps.weights.push_back(value / sum);
   return taps;
+}
+
+Taps resampling_taps(const Kernel& kernel, double ratio, int target) {
+  return kernel_taps(kernel, (target + 0.5) * ratio, ratio);
 }
 
 }  // namespace prefilter

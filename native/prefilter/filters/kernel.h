@@ -61,16 +61,18 @@ const Kernel* find_kernel(std::string_view name);
 /// The one that the means over texels are.
 const Kernel& box_kernel();
 
-/// The weights with which source texels first, first + 1, ... make up one target texel.
+/// The weights of source texels first, first + 1, ... in a sum.
 struct Taps {
   int first = 0;
   std::vector<double> weights;  // sum to 1
 };
 
-/// Taps of target texel `target` where a target texel is as wide as `ratio` source texels. The
-/// kernel, in units of the wider ones of the two, is taken at the source texels' centres. Where it
-/// jumps it is in units of target texels, and integrated over each source texel: the box gives the
-/// mean over the target texel's square, also where that is smaller than a source texel.
+/// Taps of a kernel at `centre`, in texels of the source, where its unit is `width` texels wide: it
+/// is taken at the texels' centres, and never narrower than they are. Where it jumps it is
+/// integrated over each texel, at any width: the box gives the mean over its square.
+Taps kernel_taps(const Kernel& kernel, double centre, double width);
+
+/// Taps of target texel `target` where a target texel is as wide as `ratio` source texels.
 Taps resampling_taps(const Kernel& kernel, double ratio, int target);
 
 }  // namespace prefilter
