@@ -21,7 +21,8 @@ struct BuildTableOptions {
 SamplingTable build_sampling_table(const BuildTableOptions& options);
 
 /// The integral of equation 6.3 over the domain of a section, of the table's over trilinear
-/// interpolation's.
+/// interpolation's. Where that has no error to speak of, as it has none for the box and the tent at
+/// one level: 0 if the table has none either, else infinity.
 double error_ratio(const TableSection& section);
 
 }  // namespace prefilter

@@ -36,7 +36,8 @@ struct TableShape {
   int slices = 2;                   // parts from one level to the next
   int degree = 1;                   // of the weights in x, y and f: 1, or 2
 
-  /// Of a polynomial: 1, x, y, f, and for degree 2 also xx, yy, ff, xy, xf, yf.
+  /// Of a polynomial: 1, x, y, f, and for degree 2 also xx, yy, ff, xy, xf, yf. Where only one
+  /// level is there f has nothing to tell, and stands for xy: what bilinear weights need.
   int terms() const { return degree == 1 ? 4 : 10; }
   /// Of the folded square: (i, j) with j <= i < columns().
   int columns() const { return (grid + 1) / 2; }
@@ -44,8 +45,8 @@ struct TableShape {
 };
 
 /// The sets of all subdomains where this many levels are there: the cell's and those below it.
-/// Where there is only one the cell is a texel of level 0, the filter is as wide as that, f is 0,
-/// and there is one slice.
+/// Where there is only one the cell is a texel of level 0, the filter is as wide as that, there is
+/// one slice, and f is the product of the folded x and y.
 struct TableSection {
   int levels = 3;
   int slices = 2;
@@ -84,7 +85,8 @@ TexelOffset unfold(const TexelOffset& offset, const FoldedPlace& place);
 int subdomain_of(const TableShape& shape, const TableSection& section, double x, double y,
                  double f);
 
-/// The value of the polynomial with these coefficients.
+/// The value of the polynomial with these coefficients, at a folded place. For a section of one
+/// level f is xy.
 double weight_at(const double* coefficients, int degree, double x, double y, double f);
 
 /// Throws Error for a shape that is out of range.
