@@ -19,6 +19,7 @@ void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
 void bind_raster(py::module_& m);
 void bind_reconstruct(py::module_& m);
+void bind_resample(py::module_& m);
 void bind_resize(py::module_& m);
 void bind_scan(py::module_& m);
 void bind_spatial(py::module_& m);
@@ -124,5 +125,6 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_contour(m);
   prefilter::python::bind_reconstruct(m);
   prefilter::python::bind_raster(m);
+  prefilter::python::bind_resample(m);
   prefilter::python::bind_resize(m);
 }

@@ -100,6 +100,7 @@ FUNCTIONS = {
     "contour": (prefilter.contour, {"grid": np.ones((2, 2, 2))}),
     "Octree": (octree_method, {"name": "union", "other": OCTREE}),
     "resize": (prefilter.resize, {"image": IMAGE, "width": 5, "height": 7}),
+    "sampling_levels": (prefilter.sampling_levels, {"image": IMAGE}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
 }
@@ -535,6 +536,26 @@ ROWS = [
         "fill_unused",
         {"surface": AWAY, "wrap": "border"},
         ["surface: none of it lies inside of the image"],
+    ),
+    *(
+        ("sampling_levels", arguments, words)
+        for arguments, words in (
+            ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
+            ({"image": np.zeros((4, 4, 3), int)}, ["image: dtype int64", FLOATS]),
+            ({"image": BYTES[:0]}, ["image: shape (0, 4, 3)", "at least one"]),
+            ({"image": changed(IMAGE, (2, 3, 1), NAN)}, ["image: the texel in row 2, column 3"]),
+            (
+                {"image": changed(np.zeros((4, 4, 9)), (2, 3, 7), np.inf)},
+                ["image: the texel in row 2, column 3", "inf in channel 7", "at most 1e30"],
+            ),
+            ({"filter": "tent-covered"}, ["filter: 'tent-covered' is not one of box, tent"]),
+            ({"filter": None}, ["filter: None", "a name is needed"]),
+            ({"wrap": "mirror"}, ["wrap: 'mirror'", WRAPS]),
+            ({"levels": 0}, ["levels: 0", "at least 1 is needed, or None"]),
+            ({"levels": 6}, ["levels: 6", "16 x 16 texels has 1 to 5"]),
+            ({"progress": 1}, ["progress: 1", "a callable"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+        )
     ),
     *(
         ("resize", arguments, words)

@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 import prefilter
 import pytest
+from kernels import FILTERS, folded, tolerance_of, weights_of_texels
 
 optimize = pytest.importorskip("scipy.optimize")
 special = pytest.importorskip("scipy.special")
@@ -17,62 +18,14 @@ def image_of(width, height, channels=1, seed=0):
     return np.random.default_rng(seed).random((height, width, channels)).astype(np.float32)
 
 
-def mitchell(x):
-    x = abs(x)
-    near = (7 * x**3 - 12 * x**2 + 16 / 3) / 6
-    far = (-7 / 3 * x**3 + 12 * x**2 - 20 * x + 32 / 3) / 6
-    return np.where(x < 1, near, np.where(x < 2, far, 0.0))
-
-
-def bspline2(x):
-    x = abs(x)
-    return np.where(x < 0.5, 0.75 - x**2, np.where(x < 1.5, (1.5 - x) ** 2 / 2, 0.0))
-
-
-def lanczos(radius):
-    return lambda x: np.where(abs(x) < radius, np.sinc(x) * np.sinc(x / radius), 0.0)
-
-
-# The kernel, and how far its polynomials may be from it.
-KERNELS = {
-    "tent": (lambda x: np.maximum(0.0, 1 - abs(x)), 1e-7),
-    "bspline2": (bspline2, 1e-7),
-    "mitchell": (mitchell, 1e-7),
-    "lanczos2": (lanczos(2), 1e-5),
-    "lanczos3": (lanczos(3), 1e-5),
-    "gaussian": (lambda x: np.where(abs(x) < 2, np.exp(-np.pi * x**2), 0.0), 5e-6),
-}
-
-
-def folded(weights, reach, size, wrap):
-    """The weights of texels -reach ... size + reach as those of the image's own."""
-    result = np.zeros((len(weights), size))
-    for i in range(-reach, size + reach):
-        if wrap == "clamp":
-            result[:, min(max(i, 0), size - 1)] += weights[:, i + reach]
-        elif wrap == "repeat" or 0 <= i < size:
-            result[:, i % size] += weights[:, i + reach]
-    return result
-
-
 def axis_weights(filter, size, target, wrap):
     if size == target:
         return np.eye(size)
-    ratio = size / target
-    reach = 4 * int(np.ceil(max(ratio, 1)))
-    texel = np.arange(-reach, size + reach)
-    centre = (np.arange(target)[:, None] + 0.5) * ratio
-    if filter == "box":
-        low = np.maximum(texel, centre - ratio / 2)
-        weights = np.maximum(0.0, np.minimum(texel + 1, centre + ratio / 2) - low)
-    else:
-        weights = KERNELS[filter][0]((texel + 0.5 - centre) / max(1.0, ratio))
-    return folded(weights / weights.sum(axis=1, keepdims=True), reach, size, wrap)
+    return weights_of_texels(filter, size, target, wrap)
 
 
-@pytest.mark.parametrize("filter", ["box", *KERNELS])
+@pytest.mark.parametrize("filter", FILTERS)
 def test_kernels_are_their_closed_forms(filter):
-    tolerance = 2e-7 + (KERNELS[filter][1] if filter in KERNELS else 0.0)
     for k, (width, height, new_width, new_height) in enumerate(SIZES):
         image = image_of(width, height, 1 + k % 4)
         for wrap in product(WRAPS, WRAPS):
@@ -83,7 +36,7 @@ def test_kernels_are_their_closed_forms(filter):
                 image, new_width, new_height, filter=filter, wrap=wrap, premultiplied=True
             )
             assert found.dtype == np.float32
-            np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance)
+            np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance_of(filter))
 
 
 def jinc(r, radius):
@@ -219,7 +172,7 @@ def test_an_image_of_the_same_size_stays(filter, channels):
     np.testing.assert_array_equal(clipped, image.clip(0, 1))
 
 
-@pytest.mark.parametrize("filter", ["box", *KERNELS])
+@pytest.mark.parametrize("filter", FILTERS)
 def test_an_axis_whose_size_stays_is_left_alone(filter):
     row = image_of(9, 1, 3)
     image = np.broadcast_to(row, (6, 9, 3))

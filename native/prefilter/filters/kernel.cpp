@@ -5,6 +5,9 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <string>
+
+#include "prefilter/base/error.h"
 
 namespace prefilter {
 namespace {
@@ -133,6 +136,16 @@ const Kernel* find_kernel(std::string_view name) {
     if (kernel.name() == name) return &kernel;
   }
   return nullptr;
+}
+
+const Kernel& kernel_named(std::string_view name) {
+  if (const Kernel* kernel = find_kernel(name)) return *kernel;
+  std::string names;
+  for (const Kernel& kernel : kernels()) {
+    if (!names.empty()) names += ", ";
+    names += kernel.name();
+  }
+  throw_invalid("filter: '" + std::string(name) + "' is not one of " + names);
 }
 
 const Kernel& box_kernel() {

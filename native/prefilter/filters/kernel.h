@@ -58,6 +58,9 @@ std::span<const Kernel> kernels();
 /// The kernel of a name, or none.
 const Kernel* find_kernel(std::string_view name);
 
+/// The same for an argument called filter; throws Error where there is none.
+const Kernel& kernel_named(std::string_view name);
+
 /// The one that the means over texels are.
 const Kernel& box_kernel();
 

@@ -101,14 +101,7 @@ void check_shape(const TableShape& shape) {
                     " is needed");
     }
   };
-  if (find_kernel(shape.filter) == nullptr) {
-    std::string names;
-    for (const Kernel& kernel : kernels()) {
-      if (!names.empty()) names += ", ";
-      names += kernel.name();
-    }
-    throw_invalid("filter: '" + shape.filter + "' is not one of " + names);
-  }
+  kernel_named(shape.filter);
   check("texels", shape.texels, kFewestTexels, kMostTexels);
   check("subdomains", shape.grid, 1, kMostParts);
   check("subdomains", shape.slices, 1, kMostParts);

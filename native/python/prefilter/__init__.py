@@ -11,6 +11,7 @@ from ._svg.warnings import SvgWarning
 from .color import to_linear, to_srgb
 from .contours import contour
 from .cutout import keep_coverage
+from .filtered_levels import SAMPLING_FILTERS, FilteredLevels, sampling_levels
 from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
 from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
@@ -34,8 +35,10 @@ __all__ = [
     "POINT_EXTENSIONS",
     "RASTER_FILTERS",
     "RESIZE_FILTERS",
+    "SAMPLING_FILTERS",
     "Cancelled",
     "ClosedMesh",
+    "FilteredLevels",
     "MipmapFilter",
     "NearestPoints",
     "Octree",
@@ -65,6 +68,7 @@ __all__ = [
     "reconstruct",
     "reconstruct_file",
     "resize",
+    "sampling_levels",
     "seam_contrast",
     "texel_weights",
     "to_linear",

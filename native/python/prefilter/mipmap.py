@@ -20,6 +20,7 @@ from ._border.arguments import (
     is_srgb,
 )
 from ._border.arrays import as_bytes, as_image, as_threads
+from .filtered_levels import FilteredLevels
 from .surface import Surface, as_surfaces
 
 
@@ -56,7 +57,7 @@ def mipmaps(
     seam_weight: float = ...,
     progress: ProgressCallback | None = ...,
     threads: int = ...,
-) -> list[npt.NDArray[np.float32]]: ...
+) -> FilteredLevels[np.float32]: ...
 @overload
 def mipmaps(
     image: npt.ArrayLike,
@@ -72,7 +73,7 @@ def mipmaps(
     seam_weight: float = ...,
     progress: ProgressCallback | None = ...,
     threads: int = ...,
-) -> list[npt.NDArray[np.float32]] | list[npt.NDArray[np.uint8]]: ...
+) -> FilteredLevels[np.float32] | FilteredLevels[np.uint8]: ...
 def mipmaps(
     image: npt.ArrayLike,
     surface: Surface | Sequence[Surface] | None = None,
@@ -87,7 +88,7 @@ def mipmaps(
     seam_weight: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
-) -> list[npt.NDArray[np.float32]] | list[npt.NDArray[np.uint8]]:
+) -> FilteredLevels[np.float32] | FilteredLevels[np.uint8]:
     """The levels of an image's mipmap, each fitted to the surface that uses it.
 
     "pam-bilinear" minimises, level by level, the integral over the surface of the squared
@@ -129,7 +130,7 @@ def mipmaps(
 
     Returns:
         The levels, (height, width, channels), level 0 first; it is a copy of the image. They are
-            float32, or for an image of bytes uint8.
+            float32, or for an image of bytes uint8, in a list that knows its filter.
         Each has half the sides of the one before, rounded down, never less than 1.
 
     Raises:
@@ -154,7 +155,7 @@ def mipmaps(
     if isinstance(image, np.ndarray) and image.dtype == np.uint8:
         stored = as_bytes("image", image)
         byte_levels = _native.coarser_byte_levels(stored, srgb, *arguments)
-        return [stored.copy(), *byte_levels]
+        return FilteredLevels([stored.copy(), *byte_levels], filter)
     if srgb:
         raise ValueError(
             "encoding: 'srgb' goes with images of bytes (uint8); decode others with to_linear"
@@ -162,7 +163,7 @@ def mipmaps(
     stored = as_image("image", image)
     float_levels = _native.coarser_levels(stored, *arguments)
     # Copied once the memory for filtering is free again.
-    return [stored.copy(), *float_levels]
+    return FilteredLevels([stored.copy(), *float_levels], filter)
 
 
 def mipmap_error(

@@ -9,6 +9,9 @@ import numpy.typing as npt
 # What the native module takes as an int; larger counts mean the same to it.
 _LARGEST_INT = 2**30
 
+# What can be filtered without overflow.
+_LARGEST_VALUE = np.float32(1e30)
+
 FloatArray: TypeAlias = npt.NDArray[np.float32]
 
 
@@ -45,12 +48,30 @@ def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:
     return image
 
 
+def as_float_image(name: str, array: npt.ArrayLike) -> np.ndarray:
+    """A float32 image of shape (height, width, channels); bytes (uint8) stand for a 255th each."""
+    if isinstance(array, np.ndarray) and array.dtype == np.uint8:
+        return as_bytes(name, array) / np.float32(255)
+    return as_image(name, array)
+
+
 def as_bytes(name: str, image: np.ndarray) -> np.ndarray:
     """An uint8 image of shape (height, width, channels)."""
     check_shape(name, image, ("height", "width", "channels"))
     if 0 in image.shape:
         raise ValueError(f"{name}: shape {image.shape} holds no pixels; at least one is needed")
     return np.ascontiguousarray(image)
+
+
+def check_texels(name: str, image: np.ndarray) -> None:
+    """Raises ValueError where a value is not finite or beyond 1e30."""
+    beyond = ~(np.abs(image) <= _LARGEST_VALUE)
+    if beyond.any():
+        row, column, channel = np.argwhere(beyond)[0]
+        raise ValueError(
+            f"{name}: the texel in row {row}, column {column} holds {image[row, column, channel]:g}"
+            f" in channel {channel}; texels must be finite, and at most 1e30"
+        )
 
 
 def check_shape(name: str, array: np.ndarray, shape: Sequence[int | str]) -> None:

@@ -1,0 +1,77 @@
+// Section 6.2: texels that are the filter itself, at whole mip values and texel centres.
+#include "prefilter/sampling/sampling_levels.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/filterable.h"
+#include "prefilter/base/memory.h"
+#include "prefilter/filters/filtered_image.h"
+#include "prefilter/filters/separable.h"
+#include "prefilter/texels/levels.h"
+
+namespace prefilter {
+namespace {
+
+void check_arguments(const ImageView& image, const SamplingLevelsOptions& options) {
+  check_channels(image);
+  const int most = full_level_count(image.width, image.height);
+  if (options.levels < 0 || options.levels > most) {
+    throw_invalid("levels: " + std::to_string(options.levels) + "; an image of " +
+                  std::to_string(image.width) + " x " + std::to_string(image.height) +
+                  " texels has 1 to " + std::to_string(most));
+  }
+  check_memory("image: levels of " + std::to_string(image.width) + " x " +
+                   std::to_string(image.height) + " texels",
+               4.0 * 3.0 * static_cast<double>(image.value_count()));
+}
+
+// Whether the image is what the kernel makes of it at its own size.
+bool interpolates(const Kernel& kernel) {
+  const Taps taps = kernel_taps(kernel, 0.5, 1.0);
+  for (std::size_t i = 0; i < taps.weights.size(); ++i) {
+    const bool is_own = taps.first + static_cast<int>(i) == 0;
+    if (std::abs(taps.weights[i] - (is_own ? 1.0 : 0.0)) > 1e-9) return false;
+  }
+  return true;
+}
+
+// None where the texels stay what they are.
+AxisTaps level_taps(const Kernel& kernel, int size, int level) {
+  const int target = level_size(size, level);
+  if (target == size && interpolates(kernel)) return {};
+  const double ratio = static_cast<double>(size) / target;
+  AxisTaps taps;
+  for (int j = 0; j < target; ++j) taps.push_back(resampling_taps(kernel, ratio, j));
+  return taps;
+}
+
+}  // namespace
+
+std::vector<Image> sampling_levels(const ImageView& image, const SamplingLevelsOptions& options) {
+  check_arguments(image, options);
+  const int count =
+      options.levels == 0 ? full_level_count(image.width, image.height) : options.levels;
+  const bool has_alpha = !options.premultiplied && (image.channels == 2 || image.channels == 4);
+  const TexelSource source(image);
+  const FilteredImage filtered(
+      source, [&] { return std::vector<unsigned char>(image.texel_count(), 1); },
+      {.alpha = has_alpha ? std::optional<int>(image.channels - 1) : std::nullopt,
+       .threads = options.threads,
+       .progress = options.progress.part(0.0, 0.1)});
+  std::vector<Image> levels;
+  for (int level = 0; level < count; ++level) {
+    const auto done = [&](int number) { return 0.1 + 0.9 * number / count; };
+    levels.push_back(
+        filter_separably(filtered.floats(), level_taps(*options.kernel, image.width, level),
+                         level_taps(*options.kernel, image.height, level), options.wrap,
+                         options.progress.part(done(level), done(level + 1)), options.threads));
+  }
+  options.progress.report(1.0);
+  return levels;
+}
+
+}  // namespace prefilter

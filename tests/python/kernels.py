@@ -1,0 +1,66 @@
+"""Filter kernels in closed form, and their weights of texels, independent of the library's."""
+
+import numpy as np
+
+
+def mitchell(x):
+    x = abs(x)
+    near = (7 * x**3 - 12 * x**2 + 16 / 3) / 6
+    far = (-7 / 3 * x**3 + 12 * x**2 - 20 * x + 32 / 3) / 6
+    return np.where(x < 1, near, np.where(x < 2, far, 0.0))
+
+
+def bspline2(x):
+    x = abs(x)
+    return np.where(x < 0.5, 0.75 - x**2, np.where(x < 1.5, (1.5 - x) ** 2 / 2, 0.0))
+
+
+def lanczos(radius):
+    return lambda x: np.where(abs(x) < radius, np.sinc(x) * np.sinc(x / radius), 0.0)
+
+
+# The kernel, and how far its polynomials may be from it.
+KERNELS = {
+    "tent": (lambda x: np.maximum(0.0, 1 - abs(x)), 1e-7),
+    "bspline2": (bspline2, 1e-7),
+    "mitchell": (mitchell, 1e-7),
+    "lanczos2": (lanczos(2), 1e-5),
+    "lanczos3": (lanczos(3), 1e-5),
+    "gaussian": (lambda x: np.where(abs(x) < 2, np.exp(-np.pi * x**2), 0.0), 5e-6),
+}
+FILTERS = ("box", *KERNELS)
+
+
+def tolerance_of(filter):
+    """How far weighted means of values in [0, 1] may be off."""
+    return 2e-7 + (KERNELS[filter][1] if filter in KERNELS else 0.0)
+
+
+def folded(weights, reach, size, wrap):
+    """The weights of texels -reach ... size + reach as those of the image's own."""
+    result = np.zeros((len(weights), size))
+    for i in range(-reach, size + reach):
+        if wrap == "clamp":
+            result[:, min(max(i, 0), size - 1)] += weights[:, i + reach]
+        elif wrap == "repeat" or 0 <= i < size:
+            result[:, i % size] += weights[:, i + reach]
+    return result
+
+
+def weights_at(filter, centres, width, size, wrap):
+    """Of the texels along an axis, a row for each centre, where the unit is `width` texels wide."""
+    centre = np.atleast_1d(np.asarray(centres, float))[:, None]
+    reach = int(np.ceil(3 * max(width, 1) + abs(centre).max())) + 1
+    texel = np.arange(-reach, size + reach)
+    if filter == "box":
+        low = np.maximum(texel, centre - width / 2)
+        weights = np.maximum(0.0, np.minimum(texel + 1, centre + width / 2) - low)
+    else:
+        weights = KERNELS[filter][0]((texel + 0.5 - centre) / max(1.0, width))
+    return folded(weights / weights.sum(axis=1, keepdims=True), reach, size, wrap)
+
+
+def weights_of_texels(filter, size, target, wrap):
+    """Of each of the texels that an axis is resampled to."""
+    ratio = size / target
+    return weights_at(filter, (np.arange(target) + 0.5) * ratio, ratio, size, wrap)
