@@ -1,0 +1,144 @@
+#include "prefilter/sampling/sample.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/image.h"
+#include "prefilter/sampling/build_table.h"
+
+namespace prefilter {
+namespace {
+
+using Coordinates = std::vector<std::array<double, 2>>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Levels of random values.
+struct Levels {
+  std::vector<Image> floats;
+  std::vector<std::vector<std::uint8_t>> bytes;
+
+  Levels(int width, int height, int channels) {
+    std::mt19937 random(static_cast<unsigned>(width * height));
+    for (;; width = std::max(1, width / 2), height = std::max(1, height / 2)) {
+      Image& image = floats.emplace_back(width, height, channels);
+      for (float& value : image.data) {
+        bytes.resize(floats.size());
+        bytes.back().push_back(static_cast<std::uint8_t>(random() & 255U));
+        value = static_cast<float>(bytes.back().back()) / 255.0F;
+      }
+      if (width == 1 && height == 1) return;
+    }
+  }
+
+  Pyramid view(bool of_bytes = false) const {
+    Pyramid pyramid{{}, floats[0].channels, of_bytes};
+    for (std::size_t i = 0; i < floats.size(); ++i) {
+      const void* texels = of_bytes ? static_cast<const void*>(bytes[i].data())
+                                    : static_cast<const void*>(floats[i].data.data());
+      pyramid.levels.push_back({texels, floats[i].width, floats[i].height});
+    }
+    return pyramid;
+  }
+};
+
+SamplingTable table_of(const char* filter, int texels, int grid, int slices, int degree) {
+  BuildTableOptions options;
+  options.shape = {filter, texels, grid, slices, degree};
+  return build_sampling_table(options);
+}
+
+Coordinates random_coordinates(std::size_t count) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> coordinate(-0.7, 1.7);
+  Coordinates found(count);
+  for (auto& [u, v] : found) {
+    u = coordinate(random);
+    v = coordinate(random);
+  }
+  return found;
+}
+
+std::vector<double> random_scales(std::size_t count) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> mip_value(-1.0, 8.0);
+  std::vector<double> found(count);
+  for (double& scale : found) scale = std::exp2(mip_value(random));
+  return found;
+}
+
+std::vector<float> sampled(const Pyramid& pyramid, const SamplingTable* table,
+                           const Coordinates& coordinates, const std::vector<double>& scales,
+                           WrapModes wrap, int threads = 1) {
+  std::vector<float> result(coordinates.size() * static_cast<std::size_t>(pyramid.channels));
+  SampleOptions options;
+  options.wrap = wrap;
+  options.threads = threads;
+  sample(pyramid, table, coordinates, scales, options, result);
+  return result;
+}
+
+TEST(Sample, IsTheSameForAnyNumberOfThreads) {
+  const Levels levels(37, 21, 3);
+  const SamplingTable table = table_of("tent", 5, 3, 2, 1);
+  const Coordinates coordinates = random_coordinates(20000);
+  const std::vector<double> scales = random_scales(20000);
+  for (const SamplingTable* one : {&table, static_cast<const SamplingTable*>(nullptr)}) {
+    const WrapModes wrap{Wrap::kRepeat, Wrap::kClamp};
+    EXPECT_EQ(sampled(levels.view(), one, coordinates, scales, wrap, 1),
+              sampled(levels.view(), one, coordinates, scales, wrap, 4));
+  }
+}
+
+TEST(Sample, OfBytesIsThatOfFloats) {
+  const SamplingTable table = table_of("tent", 6, 4, 2, 1);
+  const Coordinates coordinates = random_coordinates(3000);
+  const std::vector<double> scales = random_scales(3000);
+  for (int channels = 1; channels <= 5; ++channels) {
+    const Levels levels(64, 64, channels);
+    for (const SamplingTable* one : {&table, static_cast<const SamplingTable*>(nullptr)}) {
+      const auto floats = sampled(levels.view(), one, coordinates, scales, {});
+      const auto bytes = sampled(levels.view(true), one, coordinates, scales, {});
+      for (std::size_t i = 0; i < floats.size(); ++i) EXPECT_NEAR(bytes[i], floats[i], 1e-6);
+    }
+  }
+}
+
+TEST(Sample, OneScaleIsThatScaleForEach) {
+  const Levels levels(32, 16, 2);
+  const SamplingTable table = table_of("tent", 4, 2, 1, 1);
+  const Coordinates coordinates = random_coordinates(500);
+  for (const double scale : {0.0, 1.0, 1.5, 2.0, 7.0, 1e300}) {
+    EXPECT_EQ(sampled(levels.view(), &table, coordinates, {scale}, {}),
+              sampled(levels.view(), &table, coordinates, std::vector<double>(500, scale), {}));
+  }
+}
+
+TEST(Sample, RefusesWhatItCannotTake) {
+  const Levels levels(8, 8, 1);
+  const Coordinates one{{0.5, 0.5}};
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    EXPECT_THROW(sampled(levels.view(), nullptr, {{bad, 0.0}}, {1.0}, {}), Error);
+    EXPECT_THROW(sampled(levels.view(), nullptr, {{0.0, bad}}, {1.0}, {}), Error);
+    EXPECT_THROW(sampled(levels.view(), nullptr, one, {bad}, {}), Error);
+  }
+  EXPECT_THROW(sampled(levels.view(), nullptr, one, {-1.0}, {}), Error);
+  EXPECT_THROW(sampled(levels.view(), nullptr, one, {1.0, 2.0}, {}), Error);
+  EXPECT_THROW(sampled(Pyramid{{}, 1, false}, nullptr, one, {1.0}, {}), Error);
+  Pyramid wrong = levels.view();
+  wrong.levels[1].width = 3;
+  EXPECT_THROW(sampled(wrong, nullptr, one, {1.0}, {}), Error);
+  SamplingTable no_table;
+  EXPECT_THROW(sampled(levels.view(), &no_table, one, {1.0}, {}), Error);
+  EXPECT_TRUE(sampled(levels.view(), nullptr, {}, {}, {}).empty());
+}
+
+}  // namespace
+}  // namespace prefilter
