@@ -12,6 +12,7 @@
 #include "prefilter/base/outline.h"
 #include "prefilter/raster/paint.h"
 #include "prefilter/reconstruct/reconstruct.h"
+#include "prefilter/sampling/sampling_table.h"
 #include "prefilter/scan/point_source.h"
 #include "prefilter/spatial/nearest.h"
 #include "prefilter/surface/surface.h"
@@ -58,6 +59,10 @@ class pybind11::detail::type_caster<prefilter::Paint>
 template <>
 class pybind11::detail::type_caster<prefilter::PointSource>
     : public prefilter::python::InstanceCaster<prefilter::PointSource> {};
+
+template <>
+class pybind11::detail::type_caster<prefilter::SamplingTable>
+    : public prefilter::python::InstanceCaster<prefilter::SamplingTable> {};
 
 template <>
 class pybind11::detail::type_caster<prefilter::Surface>

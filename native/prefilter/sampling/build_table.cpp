@@ -1,6 +1,7 @@
 #include "prefilter/sampling/build_table.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numeric>
@@ -16,6 +17,10 @@
 
 namespace prefilter {
 namespace {
+
+// Coefficients are whole numbers divided by this. A texel's weight, about 1, is a float in the end,
+// and files are shorter.
+constexpr double kCoefficientSteps = 1e9;
 
 TableSection empty_section(const TableShape& shape, int levels) {
   TableSection section;
@@ -45,6 +50,9 @@ void store(const SubdomainSystem& system, const FittedSet& set, const TableShape
       for (std::size_t q = 0; q < terms; ++q) {
         coefficients[q] += set.weights[i * polynomials + p] * system.basis.coefficients[p][q];
       }
+    }
+    for (std::size_t q = 0; q < terms; ++q) {
+      coefficients[q] = std::round(coefficients[q] * kCoefficientSteps) / kCoefficientSteps;
     }
   }
 }

@@ -34,6 +34,13 @@ void check_section(const TableShape& shape, const TableSection& section, int lev
                         std::to_string(subdomains * texels) + " and " +
                         std::to_string(subdomains * texels * terms) + " are needed");
   }
+  if (section.errors.size() != subdomains || section.trilinear_errors.size() != subdomains ||
+      (!section.gaps.empty() && section.gaps.size() != subdomains)) {
+    refuse(section, "found " + std::to_string(section.errors.size()) + " and " +
+                        std::to_string(section.trilinear_errors.size()) + " errors and " +
+                        std::to_string(section.gaps.size()) + " gaps of " +
+                        std::to_string(subdomains) + " subdomains");
+  }
   for (const TexelOffset& texel : section.texels) {
     if (texel.finer < 0 || texel.finer >= levels || std::abs(texel.x) > kFarthestOffset ||
         std::abs(texel.y) > kFarthestOffset) {

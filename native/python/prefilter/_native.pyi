@@ -51,6 +51,49 @@ class NearestPoints:
         self, points: npt.NDArray[np.float64], progress: ProgressCallback | None, threads: int
     ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
 
+class SamplingTable:
+    def __init__(
+        self,
+        filter: str,
+        texels: int,
+        grid: int,
+        slices: int,
+        degree: int,
+        sections: Sequence[tuple[np.ndarray, ...]],
+    ) -> None: ...
+    @property
+    def filter(self) -> str: ...
+    @property
+    def texels(self) -> int: ...
+    @property
+    def grid(self) -> int: ...
+    @property
+    def slices(self) -> int: ...
+    @property
+    def degree(self) -> int: ...
+    def section(
+        self, levels: int
+    ) -> tuple[
+        npt.NDArray[np.int32],
+        npt.NDArray[np.float64],
+        npt.NDArray[np.float64],
+        npt.NDArray[np.float64],
+        npt.NDArray[np.float64],
+    ]: ...
+    def error_ratio(self, levels: int) -> float: ...
+
+def build_sampling_table(
+    filter: str,
+    texels: int,
+    grid: int,
+    slices: int,
+    degree: int,
+    certify: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> SamplingTable: ...
+def kernel_names() -> list[str]: ...
+
 class Outline:
     def __init__(self) -> None: ...
     def move_to(self, x: float, y: float) -> None: ...

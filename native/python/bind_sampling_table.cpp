@@ -1,0 +1,120 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "convert.h"
+#include "instances.h"
+#include "prefilter/filters/kernel.h"
+#include "prefilter/sampling/build_table.h"
+#include "prefilter/sampling/sampling_table.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+namespace {
+
+// Texels (subdomains, texels, 3), coefficients (subdomains, texels, terms); errors, trilinear
+// errors and gaps (subdomains), of the last none where the table is not certified.
+using SectionArrays =
+    std::tuple<Array<int>, Array<double>, Array<double>, Array<double>, Array<double>>;
+
+TableShape to_shape(const std::string& filter, int texels, int grid, int slices, int degree) {
+  return {filter, texels, grid, slices, degree};
+}
+
+SamplingTable bound_build(const std::string& filter, int texels, int grid, int slices, int degree,
+                          bool certify, const py::object& progress, int threads) {
+  BuildTableOptions options;
+  options.shape = to_shape(filter, texels, grid, slices, degree);
+  options.certify = certify;
+  options.progress = to_progress(progress);
+  options.threads = threads;
+  const py::gil_scoped_release unlocked;
+  return build_sampling_table(options);
+}
+
+std::vector<double> values_of(const Array<double>& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
+SamplingTable bound_make(const std::string& filter, int texels, int grid, int slices, int degree,
+                         const std::array<SectionArrays, 3>& sections) {
+  SamplingTable table;
+  table.shape = to_shape(filter, texels, grid, slices, degree);
+  check_shape(table.shape);
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const auto& [offsets, coefficients, errors, trilinear_errors, gaps] = sections[i];
+    TableSection& section = table.sections[i];
+    section.levels = 3 - static_cast<int>(i);
+    section.slices = section.levels == 1 ? 1 : slices;
+    for (py::ssize_t k = 0; k + 2 < offsets.size(); k += 3) {
+      const int* const offset = offsets.data() + k;
+      section.texels.push_back({offset[0], offset[1], offset[2]});
+    }
+    section.coefficients = values_of(coefficients);
+    section.errors = values_of(errors);
+    section.trilinear_errors = values_of(trilinear_errors);
+    section.gaps = values_of(gaps);
+  }
+  check_table(table);
+  return table;
+}
+
+SectionArrays bound_section(const SamplingTable& table, int levels) {
+  const TableSection& section = table.section(levels);
+  const py::ssize_t texels = table.shape.texels;
+  const py::ssize_t subdomains = static_cast<py::ssize_t>(section.texels.size()) / texels;
+  Array<int> offsets({subdomains, texels, py::ssize_t{3}});
+  int* offset = offsets.mutable_data();
+  for (const TexelOffset& texel : section.texels) {
+    *offset++ = texel.finer;
+    *offset++ = texel.x;
+    *offset++ = texel.y;
+  }
+  const auto count = [](const std::vector<double>& values) {
+    return static_cast<py::ssize_t>(values.size());
+  };
+  return {std::move(offsets),
+          to_array<double>(section.coefficients, {subdomains, texels, table.shape.terms()}),
+          to_array<double>(section.errors, {count(section.errors)}),
+          to_array<double>(section.trilinear_errors, {count(section.trilinear_errors)}),
+          to_array<double>(section.gaps, {count(section.gaps)})};
+}
+
+}  // namespace
+
+void bind_sampling_table(py::module_& m) {
+  py::class_<SamplingTable>(m, "SamplingTable")
+      .def(py::init(&bound_make), py::arg("filter"), py::arg("texels"), py::arg("grid"),
+           py::arg("slices"), py::arg("degree"), py::arg("sections"))
+      .def_property_readonly("filter",
+                             [](const SamplingTable& table) { return table.shape.filter; })
+      .def_property_readonly("texels",
+                             [](const SamplingTable& table) { return table.shape.texels; })
+      .def_property_readonly("grid", [](const SamplingTable& table) { return table.shape.grid; })
+      .def_property_readonly("slices",
+                             [](const SamplingTable& table) { return table.shape.slices; })
+      .def_property_readonly("degree",
+                             [](const SamplingTable& table) { return table.shape.degree; })
+      .def("section", &bound_section, py::arg("levels"))
+      .def(
+          "error_ratio",
+          [](const SamplingTable& table, int levels) { return error_ratio(table.section(levels)); },
+          py::arg("levels"));
+  m.def("build_sampling_table", &bound_build, py::arg("filter"), py::arg("texels"), py::arg("grid"),
+        py::arg("slices"), py::arg("degree"), py::arg("certify"), py::arg("progress"),
+        py::arg("threads"));
+  m.def("kernel_names", [] {
+    std::vector<std::string> names;
+    for (const Kernel& kernel : kernels()) names.emplace_back(kernel.name());
+    return names;
+  });
+}
+
+}  // namespace prefilter::python

@@ -1,0 +1,23 @@
+"""Makes the sampling tables that come with the package: run it where `prefilter` can be imported.
+
+usage: sampling_tables.py FOLDER    (native/python/prefilter/tables)
+"""
+
+import sys
+from pathlib import Path
+
+from prefilter import SAMPLING_FILTERS, SamplingTable
+from prefilter.sampling_tables import STANDARD_TEXELS
+
+
+def main(folder: Path) -> None:
+    """Writes a file for each filter and number of texels."""
+    for name in SAMPLING_FILTERS:
+        for texels in STANDARD_TEXELS:
+            table = SamplingTable.build(name, texels=texels)
+            table.save(folder / f"{name}-{texels}.json")
+            print(f"{name}, {texels} texels: {table.error_ratio:.4f} of trilinear")
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

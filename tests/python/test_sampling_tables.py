@@ -1,0 +1,73 @@
+"""Sampling tables: those that ship, what they are good for, and their files."""
+
+import numpy as np
+import prefilter
+import pytest
+from prefilter.sampling_tables import STANDARD_TEXELS
+
+SMALL = {"texels": 4, "subdomains": (2, 2, 1)}
+
+
+def assert_same(table, other):
+    assert repr(table) == repr(other)
+    for levels in (3, 2, 1):
+        for mine, theirs in zip(table.section(levels), other.section(levels), strict=True):
+            np.testing.assert_array_equal(mine, theirs)
+
+
+@pytest.mark.parametrize("filter", prefilter.SAMPLING_FILTERS)
+@pytest.mark.parametrize("texels", STANDARD_TEXELS)
+def test_a_standard_table_is_whole(filter, texels):
+    table = prefilter.SamplingTable.standard(filter, texels)
+    assert (table.filter, table.texels, table.subdomains, table.degree) == (
+        filter,
+        texels,
+        (4, 4, 2),
+        1,
+    )
+    for levels, subdomains in ((3, 6), (2, 6), (1, 3)):
+        section = table.section(levels)
+        assert section.offsets.shape == (subdomains, texels, 3)
+        sums = section.coefficients.sum(axis=1)
+        np.testing.assert_allclose(sums, np.eye(4)[:1].repeat(subdomains, 0), atol=1e-7)
+
+
+@pytest.mark.parametrize(("filter", "texels"), [("tent", 4), ("lanczos2", 8)])
+def test_a_standard_table_is_what_build_makes(filter, texels):
+    standard = prefilter.SamplingTable.standard(filter, texels)
+    assert_same(standard, prefilter.SamplingTable.build(filter, texels=texels))
+
+
+# Upper bounds asked of 8 texels, 4 x 4 x 2, linear, as shares of trilinear interpolation's error.
+@pytest.mark.parametrize(
+    ("filter", "most"), [("box", 0.586), ("tent", 0.237), ("gaussian", 0.220), ("lanczos2", 0.253)]
+)
+def test_eight_texels_are_better_than_trilinears_eight(filter, most):
+    assert 0.0 < prefilter.SamplingTable.standard(filter, 8).error_ratio <= most
+
+
+@pytest.mark.parametrize("filter", ["tent", "gaussian", "lanczos2"])
+def test_four_texels_are_no_worse_than_trilinears_eight(filter):
+    assert prefilter.SamplingTable.standard(filter, 4).error_ratio < 1.0
+
+
+@pytest.mark.parametrize("filter", ["box", "tent"])
+def test_magnified_boxes_and_tents_are_bilinear(filter):
+    table = prefilter.SamplingTable.standard(filter, 4)
+    assert table.error_ratios[1] == 0.0
+
+
+def test_results_do_not_depend_on_threads():
+    one, two = (prefilter.SamplingTable.build("tent", **SMALL, threads=n) for n in (1, 2))
+    assert_same(one, two)
+
+
+def test_a_file_holds_all_of_a_table(tmp_path):
+    table = prefilter.SamplingTable.build("mitchell", texels=3, subdomains=(3, 3, 2), degree=2)
+    table.save(tmp_path / "table.json")
+    assert_same(table, prefilter.SamplingTable.load(tmp_path / "table.json"))
+
+
+def test_building_can_be_cancelled():
+    with pytest.raises(prefilter.Cancelled):
+        prefilter.SamplingTable.build("lanczos3", progress=lambda fraction: False)
