@@ -785,18 +785,29 @@ def test_the_other_arguments_of_the_rows_are_good(function, folder):
 
 
 def test_every_function_is_there():
-    constants = {"MAX_DEPTH", "MIPMAP_FILTERS", "POINT_EXTENSIONS", "RASTER_FILTERS"}
-    constants |= {"RESIZE_FILTERS", "SAMPLING_FILTERS"}
-    classes = {"Cancelled", "ClosedMesh", "MipmapFilter", "NearestPoints", "Surface"}
-    classes |= {
+    constants = {
+        "MAX_DEPTH",
+        "MIPMAP_FILTERS",
+        "POINT_EXTENSIONS",
+        "RASTER_FILTERS",
+        "RESIZE_FILTERS",
+        "SAMPLING_FILTERS",
+    }
+    classes = {
+        "Cancelled",
+        "ClosedMesh",
+        "FilteredLevels",
+        "MipmapFilter",
+        "NearestPoints",
         "ReconstructionReport",
         "SamplingTable",
         "ScanPoints",
         "Shape",
+        "Surface",
         "SvgDrawing",
         "SvgWarning",
+        "TableSection",
     }
-    classes |= {"TableSection"}
     # In test_normals_of_points, test_face_normals, test_scan_files, test_scan_failures,
     # test_shape_arguments and test_svg_files.
     elsewhere = {"estimate_normals", "file_normals", "grid_normals", "mesh_normals"}
