@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/sampling/bordered_rows.h"
+
 namespace prefilter {
 namespace {
 
@@ -60,7 +62,6 @@ class Exchanges {
 
   // Adds the texel that lowers the error the most. Returns whether there is one.
   bool add() {
-    const double low = kDependent;
     std::fill(gains_.begin(), gains_.end(), 0.0);
     for (std::size_t p = 0; p < polynomials_; ++p) {
       const double* const residuals = residuals_.data() + p * candidates_;
@@ -69,7 +70,7 @@ class Exchanges {
     int best = -1;
     double best_gain = -1.0;
     for (std::size_t j = 0; j < candidates_; ++j) {
-      if (is_member_[j] != 0 || remainders_[j] < low * squares_[j]) continue;
+      if (is_member_[j] != 0 || remainders_[j] < kDependent * squares_[j]) continue;
       const double gain = gains_[j] / remainders_[j];
       if (gain > best_gain) {
         best_gain = gain;
@@ -127,42 +128,12 @@ class Exchanges {
  private:
   bool invert() {
     const std::size_t size = members_.size() + 1;
-    const std::size_t columns = 2 * size;
-    std::vector<double> rows(size * columns);
-    for (std::size_t i = 0; i < size; ++i) {
-      double* const row = rows.data() + i * columns;
-      row[size + i] = 1.0;
-      for (std::size_t j = 0; j < size; ++j) {
-        const bool is_border = i + 1 == size || j + 1 == size;
-        if (is_border) {
-          row[j] = i == j ? 0.0 : 1.0;
-        } else {
-          row[j] = system_.products_of(members_[i])[members_[j]];
-        }
-      }
-    }
-    for (std::size_t k = 0; k < size; ++k) {
-      std::size_t pivot = k;
-      for (std::size_t i = k + 1; i < size; ++i) {
-        if (std::abs(rows[i * columns + k]) > std::abs(rows[pivot * columns + k])) pivot = i;
-      }
-      if (!(std::abs(rows[pivot * columns + k]) > kDependent)) return false;
-      for (std::size_t j = 0; pivot != k && j < columns; ++j) {
-        std::swap(rows[k * columns + j], rows[pivot * columns + j]);
-      }
-      const double scale = 1.0 / rows[k * columns + k];
-      for (std::size_t j = 0; j < columns; ++j) rows[k * columns + j] *= scale;
-      for (std::size_t i = 0; i < size; ++i) {
-        const double factor = rows[i * columns + k];
-        if (i == k || factor == 0.0) continue;
-        for (std::size_t j = 0; j < columns; ++j) {
-          rows[i * columns + j] -= factor * rows[k * columns + j];
-        }
-      }
-    }
+    BorderedRows rows(system_, members_, size);
+    for (std::size_t i = 0; i < size; ++i) rows.side(i, i) = 1.0;
+    if (!rows.eliminate(kDependent)) return false;
     inverse_.resize(size * size);
     for (std::size_t i = 0; i < size; ++i) {
-      for (std::size_t j = 0; j < size; ++j) inverse_[i * size + j] = rows[i * columns + size + j];
+      for (std::size_t j = 0; j < size; ++j) inverse_[i * size + j] = rows.side(i, j);
     }
     return true;
   }

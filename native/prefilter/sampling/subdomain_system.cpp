@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "prefilter/sampling/bordered_rows.h"
 #include "prefilter/sampling/filter_products.h"
 
 namespace prefilter {
@@ -179,49 +180,24 @@ FittedSet fit_set(const SubdomainSystem& system, std::span<const int> members) {
   set.members.assign(members.begin(), members.end());
   std::sort(set.members.begin(), set.members.end());
   const std::size_t count = members.size();
-  const std::size_t size = count + 1;  // with the multiplier of the sum
-  const std::size_t sides = system.polynomials();
-  const std::size_t columns = size + sides;
-  std::vector<double> rows(size * columns);
-  for (std::size_t i = 0; i < count; ++i) {
-    double* const row = rows.data() + i * columns;
-    const double* const products = system.products_of(set.members[i]);
-    for (std::size_t j = 0; j < count; ++j) row[j] = products[set.members[j]];
-    row[count] = 1.0;
-    rows[count * columns + i] = 1.0;
-    std::copy_n(system.right_side_of(set.members[i]), sides, row + size);
+  const auto sides = static_cast<std::size_t>(system.polynomials());
+  BorderedRows rows(system, set.members, sides);
+  const auto right_side = [&](std::size_t i, std::size_t p) {
+    return i < count ? system.right_side_of(set.members[i])[p]
+                     : system.weight_sum(static_cast<int>(p));
+  };
+  for (std::size_t i = 0; i <= count; ++i) {
+    for (std::size_t p = 0; p < sides; ++p) rows.side(i, p) = right_side(i, p);
   }
-  for (std::size_t p = 0; p < sides; ++p) {
-    rows[count * columns + size + p] = system.weight_sum(static_cast<int>(p));
-  }
-  const std::vector<double> equations = rows;
-
-  // Gauss and Jordan's elimination: the matrix is small, and not definite.
-  for (std::size_t k = 0; k < size; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < size; ++i) {
-      if (std::abs(rows[i * columns + k]) > std::abs(rows[pivot * columns + k])) pivot = i;
-    }
-    std::swap_ranges(rows.begin() + static_cast<std::ptrdiff_t>(k * columns),
-                     rows.begin() + static_cast<std::ptrdiff_t>((k + 1) * columns),
-                     rows.begin() + static_cast<std::ptrdiff_t>(pivot * columns));
-    for (std::size_t i = 0; i < size; ++i) {
-      if (i == k) continue;
-      const double factor = rows[i * columns + k] / rows[k * columns + k];
-      for (std::size_t j = k; j < columns; ++j) {
-        rows[i * columns + j] -= factor * rows[k * columns + j];
-      }
-    }
-  }
+  if (!rows.eliminate(0.0)) return set;
 
   // Where the gradient vanishes, up to the multiplier, what is left of the square of the filter.
   set.error = system.filter_square;
   set.weights.resize(count * sides);
-  for (std::size_t i = 0; i < size; ++i) {
+  for (std::size_t i = 0; i <= count; ++i) {
     for (std::size_t p = 0; p < sides; ++p) {
-      const double solution = rows[i * columns + size + p] / rows[i * columns + i];
-      set.error -= solution * equations[i * columns + size + p];
-      if (i < count) set.weights[i * sides + p] = solution;
+      set.error -= rows.side(i, p) * right_side(i, p);
+      if (i < count) set.weights[i * sides + p] = rows.side(i, p);
     }
   }
   return set;

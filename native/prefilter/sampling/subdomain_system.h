@@ -4,6 +4,7 @@
 // right side for each polynomial, and the same products of texels for all.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -38,11 +39,12 @@ struct SubdomainSystem {
   double trilinear_error = 0.0;
 };
 
-/// The best weights of a set of texels, and equation 6.4's value.
+/// The best weights of a set of texels, and equation 6.4's value. Infinite, without weights, where
+/// texels of the set make up another one of it.
 struct FittedSet {
   std::vector<int> members;     // candidates, in rising order
   std::vector<double> weights;  // [member][polynomial]
-  double error = 0.0;
+  double error = std::numeric_limits<double>::infinity();
 };
 FittedSet fit_set(const SubdomainSystem& system, std::span<const int> members);
 
