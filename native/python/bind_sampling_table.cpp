@@ -10,7 +10,6 @@
 
 #include "convert.h"
 #include "instances.h"
-#include "prefilter/filters/kernel.h"
 #include "prefilter/sampling/build_table.h"
 #include "prefilter/sampling/sampling_table.h"
 
@@ -110,11 +109,6 @@ void bind_sampling_table(py::module_& m) {
   m.def("build_sampling_table", &bound_build, py::arg("filter"), py::arg("texels"), py::arg("grid"),
         py::arg("slices"), py::arg("degree"), py::arg("certify"), py::arg("progress"),
         py::arg("threads"));
-  m.def("kernel_names", [] {
-    std::vector<std::string> names;
-    for (const Kernel& kernel : kernels()) names.emplace_back(kernel.name());
-    return names;
-  });
 }
 
 }  // namespace prefilter::python

@@ -18,7 +18,7 @@ from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
 from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
 from .resizing import RESIZE_FILTERS, resize
-from .sampling_tables import SAMPLING_FILTERS, SamplingTable, TableSection
+from .sampling_tables import SamplingTable, TableSection
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .shapes import RASTER_FILTERS, Shape, rasterize
 from .surface import Surface

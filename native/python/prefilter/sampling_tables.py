@@ -12,9 +12,7 @@ from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_name, as_progress
 from ._border.arrays import as_threads
 from ._border.output import as_path, as_target, replace_file
-
-SAMPLING_FILTERS = tuple(_native.kernel_names())
-"""The filters that tables are made for."""
+from .filtered_levels import SAMPLING_FILTERS
 
 STANDARD_TEXELS = (4, 6, 8)
 """How many texels the tables have that come with the package, one for each filter."""
