@@ -21,6 +21,7 @@ void bind_raster(py::module_& m);
 void bind_reconstruct(py::module_& m);
 void bind_resample(py::module_& m);
 void bind_resize(py::module_& m);
+void bind_sampling(py::module_& m);
 void bind_sampling_table(py::module_& m);
 void bind_scan(py::module_& m);
 void bind_spatial(py::module_& m);
@@ -128,5 +129,6 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_raster(m);
   prefilter::python::bind_resample(m);
   prefilter::python::bind_resize(m);
+  prefilter::python::bind_sampling(m);
   prefilter::python::bind_sampling_table(m);
 }

@@ -26,6 +26,8 @@ NAN = np.nan
 BOX = box()
 CLOUD = sphere(1000)
 ONES = np.ones(1000)
+TENT = prefilter.SamplingTable.standard("tent", 4)
+TENT_LEVELS = prefilter.sampling_levels(IMAGE, "tent")
 OCTREE = prefilter.voxelize(BOX.positions, BOX.triangles, depth=3)
 
 
@@ -100,6 +102,10 @@ FUNCTIONS = {
     "contour": (prefilter.contour, {"grid": np.ones((2, 2, 2))}),
     "Octree": (octree_method, {"name": "union", "other": OCTREE}),
     "resize": (prefilter.resize, {"image": IMAGE, "width": 5, "height": 7}),
+    "sample": (
+        prefilter.sample,
+        {"levels": TENT_LEVELS, "table": TENT, "coordinates": np.zeros((3, 2)), "scales": 1.5},
+    ),
     "sampling_levels": (prefilter.sampling_levels, {"image": IMAGE}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
@@ -536,6 +542,55 @@ ROWS = [
         "fill_unused",
         {"surface": AWAY, "wrap": "border"},
         ["surface: none of it lies inside of the image"],
+    ),
+    *(
+        ("sample", arguments, words)
+        for arguments, words in (
+            ({"levels": IMAGE}, ["levels: a ndarray", "a list of arrays is needed"]),
+            ({"levels": []}, ["levels: there are none"]),
+            (
+                {"levels": [IMAGE, IMAGE[:4, :8]]},
+                ["levels: level 1 has 8 x 4 texels", "half as many", "16 x 16"],
+            ),
+            (
+                {"levels": [IMAGE, IMAGE[:8, :8, :2]]},
+                ["levels: level 1 has 2 channels of float32", "3 of float32"],
+            ),
+            (
+                {"levels": [IMAGE, np.zeros((8, 8, 3), np.uint8)]},
+                ["levels: level 1 has 3 channels of uint8", "3 of float32"],
+            ),
+            ({"levels": [IMAGE[0]]}, ["levels: level 0: shape (16, 3)"]),
+            ({"levels": [IMAGE.astype(int)]}, ["levels: level 0: dtype int64", FLOATS]),
+            ({"table": "bilinear"}, ["table: 'bilinear'", "a SamplingTable is needed"]),
+            ({"table": None}, ["table: None", "or 'trilinear'"]),
+            (
+                {"table": prefilter.SamplingTable.standard("box", 4)},
+                ["table: it reproduces 'box'", "filtered by 'tent'"],
+            ),
+            (
+                {"levels": prefilter.mipmaps(IMAGE, filter="box")},
+                ["table: it reproduces 'tent'", "filtered by 'box'"],
+            ),
+            ({"coordinates": np.zeros(2)}, ["coordinates: shape (2,)", "(samples, 2) is needed"]),
+            ({"coordinates": np.zeros((3, 3))}, ["coordinates: shape (3, 3)"]),
+            ({"coordinates": np.zeros((3, 2), int)}, ["coordinates: dtype int64", FLOATS]),
+            (
+                {"coordinates": changed(np.zeros((3, 2)), (2, 1), NAN)},
+                ["coordinates: found nan in row 2", "finite"],
+            ),
+            ({"coordinates": np.full((3, 2), -np.inf)}, ["coordinates: found -inf in row 0"]),
+            ({"scales": np.ones(2)}, ["scales: shape (2,)", "(3,) is needed"]),
+            ({"scales": np.ones((3, 1))}, ["scales: shape (3, 1)", "(3,) is needed"]),
+            ({"scales": "1"}, ["scales: dtype <U1", "numbers"]),
+            ({"scales": None}, ["scales: dtype object", "numbers"]),
+            ({"scales": -1.0}, ["scales: found -1", "at least 0"]),
+            ({"scales": [1.0, NAN, 1.0]}, ["scales: found nan at 1", "at least 0"]),
+            ({"scales": np.inf}, ["scales: found inf", "finite"]),
+            ({"wrap": "mirror"}, ["wrap: 'mirror'", WRAPS]),
+            ({"progress": 1}, ["progress: 1", "a callable"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+        )
     ),
     *(
         ("sampling_levels", arguments, words)

@@ -18,6 +18,7 @@ from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
 from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
 from .resizing import RESIZE_FILTERS, resize
+from .sampling import sample
 from .sampling_tables import SamplingTable, TableSection
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .shapes import RASTER_FILTERS, Shape, rasterize
@@ -71,6 +72,7 @@ __all__ = [
     "reconstruct",
     "reconstruct_file",
     "resize",
+    "sample",
     "sampling_levels",
     "seam_contrast",
     "texel_weights",

@@ -92,6 +92,15 @@ def build_sampling_table(
     progress: ProgressCallback | None,
     threads: int,
 ) -> SamplingTable: ...
+def sample(
+    levels: Sequence[np.ndarray],
+    table: SamplingTable | None,
+    coordinates: npt.NDArray[np.float64],
+    scales: npt.NDArray[np.float64],
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
 
 class Outline:
     def __init__(self) -> None: ...

@@ -1,0 +1,42 @@
+"""Levels, and the places of samples, checked once, here at the border."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .arrays import as_array, as_bytes, as_floats, as_image, check_shape
+
+
+def as_pyramid(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
+    """Levels, level 0 first: all of float32 or all of uint8, and all of as many channels."""
+    if not isinstance(levels, Sequence) or isinstance(levels, str | bytes):
+        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
+    found = [_as_level(f"levels: level {k}", level) for k, level in enumerate(levels)]
+    for k, level in enumerate(found):
+        if (level.dtype, level.shape[2]) != (found[0].dtype, found[0].shape[2]):
+            raise ValueError(
+                f"levels: level {k} has {level.shape[2]} channels of {level.dtype}; as level 0 has,"
+                f" {found[0].shape[2]} of {found[0].dtype} are needed"
+            )
+    return found
+
+
+def _as_level(name: str, level: npt.ArrayLike) -> np.ndarray:
+    if isinstance(level, np.ndarray) and level.dtype == np.uint8:
+        return as_bytes(name, level)
+    return as_image(name, level)
+
+
+def as_coordinates(coordinates: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    return as_floats("coordinates", coordinates, ("samples", 2), np.float64)
+
+
+def as_scales(scales: npt.ArrayLike, samples: int) -> npt.NDArray[np.float64]:
+    """One for each sample, or a single one for all of them."""
+    found = as_array("scales", scales)
+    if found.dtype.kind not in "iuf":
+        raise ValueError(f"scales: dtype {found.dtype}; numbers are needed")
+    if found.ndim > 0:
+        check_shape("scales", found, (samples,))
+    return np.ascontiguousarray(found, np.float64)
