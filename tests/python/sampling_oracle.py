@@ -1,0 +1,379 @@
+"""Chapter 6 by brute force: filters as dense arrays over the plane, and a sample at a time.
+
+Nothing here knows inner products in closed form, orthonormal polynomials or exchanges of texels:
+the integral of equation 6.3 is a sum over a fine grid of the plane, and equation 6.4 a dense system
+with all coefficients of a subdomain as its unknowns.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import combinations
+
+import numpy as np
+from kernels import KERNELS
+
+RADII = {
+    "box": 0.5,
+    "tent": 1.0,
+    "bspline2": 1.5,
+    "mitchell": 2.0,
+    "lanczos2": 2.0,
+    "lanczos3": 3.0,
+    "gaussian": 2.0,
+}
+
+
+def _form(filter, x):
+    if filter == "box":
+        return np.where(np.abs(x) < 0.5, 1.0, 0.0)
+    return KERNELS[filter][0](x)
+
+
+@cache
+def _integral(filter):
+    return 2 * _form(filter, (np.arange(400_000) + 0.5) / 100_000).sum() / 100_000
+
+
+def kernel(filter, x):
+    """The kernel at x, of integral 1."""
+    return _form(filter, x) / _integral(filter)
+
+
+def taps(filter, centre, width, first, last):
+    """The weights of texels `first` to `last` under a kernel whose unit is `width` texels."""
+    texel = np.arange(first, last + 1)
+    if filter == "box":
+        low = np.maximum(texel, centre - width / 2)
+        weights = np.maximum(0.0, np.minimum(texel + 1, centre + width / 2) - low)
+    else:
+        weights = kernel(filter, (texel + 0.5 - centre) / max(1.0, width))
+    return weights / weights.sum()
+
+
+def filter_width(levels, f):
+    """The width of a sample's filter, in cells."""
+    return 1.0 if levels == 1 else 2.0 ** (f - 1)
+
+
+def _gauss(low, high, panels, count):
+    nodes, weights = np.polynomial.legendre.leggauss(count)
+    edges = np.linspace(low, high, panels + 1)
+    middle, half = (edges[1:] + edges[:-1]) / 2, np.diff(edges) / 2
+    return (
+        (middle[:, None] + half[:, None] * nodes).ravel(),
+        (half[:, None] * weights).ravel(),
+    )
+
+
+def line(filter, levels, texels, x, f):
+    """Along an axis: the sample's filter, those of texels (finer, index), and weights of places.
+
+    For three levels places are nodes of quadrature on the line, for fewer the texels of level 0.
+    """
+    width = filter_width(levels, f)
+    reach = RADII[filter]
+    low = min([x - reach * width] + [(i + 0.5 - reach) / 2**d for d, i in texels])
+    high = max([x + reach * width] + [(i + 0.5 + reach) / 2**d for d, i in texels])
+    if levels == 3:
+        # Whatever the texels, their kernels are smooth between multiples of 1/16 of a cell.
+        step = min(width, 1) / 2 if RADII[filter] > 0.5 else width
+        own = x - reach * width + step * np.arange(round(2 * reach * width / step) + 1)
+        grid = np.arange(np.floor(16 * low), np.ceil(16 * high) + 1) / 16
+        edges = np.unique(np.concatenate([grid, own]))
+        edges = edges[np.concatenate([[True], np.diff(edges) > 1e-12])]
+        nodes, weights = np.polynomial.legendre.leggauss(2)
+        half = np.diff(edges) / 2
+        place = ((edges[1:] + edges[:-1])[:, None] / 2 + half[:, None] * nodes).ravel()
+        sample = kernel(filter, (place - x) / width) / width
+        of_texels = [kernel(filter, place * 2**d - i - 0.5) * 2**d for d, i in texels]
+        return sample, np.array(of_texels), (half[:, None] * weights).ravel()
+    first, last = int(np.floor(low * levels)) - 1, int(np.ceil(high * levels)) + 1
+    sample = taps(filter, x * levels, width * levels, first, last)
+    of_texels = [
+        taps(filter, (i + 0.5) * levels / 2**d, levels / 2**d, first, last) for d, i in texels
+    ]
+    return sample, np.array(of_texels), np.ones(last - first + 1)
+
+
+@dataclass
+class Fields:
+    """The filter of a sample and those of texels, over the plane."""
+
+    sample: np.ndarray  # (y, x)
+    texels: np.ndarray  # (texel, y, x)
+    weights: np.ndarray  # (y, x)
+
+    def error(self, coefficients):
+        """Equation 6.3."""
+        difference = self.sample - np.einsum("i,iyx->yx", coefficients, self.texels)
+        return float((self.weights * difference**2).sum())
+
+
+def fields(filter, levels, offsets, x, y, f):
+    """Those of a place, for texels (finer, x, y)."""
+    along_x = line(filter, levels, [(d, i) for d, i, _ in offsets], x, f)
+    along_y = line(filter, levels, [(d, j) for d, _, j in offsets], y, f)
+    return Fields(
+        np.multiply.outer(along_y[0], along_x[0]),
+        along_y[1][:, :, None] * along_x[1][:, None, :],
+        np.multiply.outer(along_y[2], along_x[2]),
+    )
+
+
+def terms(degree, x, y, f):
+    """The powers that coefficients are of."""
+    if degree == 1:
+        return np.array([1, x, y, f])
+    return np.array([1, x, y, f, x * x, y * y, f * f, x * y, x * f, y * f])
+
+
+@dataclass(frozen=True)
+class Subdomain:
+    """A part of the folded cell, and of the way from level to level."""
+
+    i: int
+    j: int
+    slice: int
+    grid: int
+    slices: int
+    levels: int
+
+    def nodes(self, panels, count):
+        """Places (x, y, f) in it, and their weights. Where there is one level f is xy."""
+        edge = [min(k / self.grid, 0.5) for k in (self.i, self.i + 1, self.j, self.j + 1)]
+        along_x = _gauss(edge[0], edge[1], panels, count)
+        low, high = self.slice / self.slices, (self.slice + 1) / self.slices
+        along_f = _gauss(low, high, panels, count)
+        found = []
+        for x, weight_x in zip(*along_x, strict=True):
+            top = x if self.i == self.j else edge[3]
+            for y, weight_y in zip(*_gauss(edge[2], top, panels, count), strict=True):
+                if self.levels == 1:
+                    found.append((x, y, x * y, weight_x * weight_y))
+                    continue
+                for f, weight_f in zip(*along_f, strict=True):
+                    found.append((x, y, f, weight_x * weight_y * weight_f))
+        return found
+
+
+def subdomains(grid, slices, levels):
+    """All of a section, in the order of tables."""
+    columns = (grid + 1) // 2
+    slices = 1 if levels == 1 else slices
+    return [
+        Subdomain(i, j, k, grid, slices, levels)
+        for k in range(slices)
+        for i in range(columns)
+        for j in range(i + 1)
+    ]
+
+
+def table_error(filter, degree, part, offsets, coefficients, panels=1, count=4):
+    """Equation 6.4 of weights that are polynomials."""
+    return sum(
+        weight
+        * fields(filter, part.levels, offsets, x, y, f).error(coefficients @ terms(degree, x, y, f))
+        for x, y, f, weight in part.nodes(panels, count)
+    )
+
+
+def trilinear_texels(levels, x, y, f):
+    """The texels of trilinear interpolation, and their weights."""
+    result = {}
+    # Of the cell's level and the one below; of the image alone where it is the only one.
+    shares = [(0, 1.0)] if levels == 1 else [(0, f), (1, 1 - f)]
+    for finer, share in shares:
+        px, py = x * 2**finer - 0.5, y * 2**finer - 0.5
+        i, j = int(np.floor(px)), int(np.floor(py))
+        for di in (0, 1):
+            for dj in (0, 1):
+                weight = (px - i if di else 1 - px + i) * (py - j if dj else 1 - py + j)
+                result[finer, i + di, j + dj] = share * weight
+    return list(result), np.array(list(result.values()))
+
+
+def trilinear_error(filter, part, panels=1, count=4):
+    """The same of trilinear interpolation."""
+    total = 0.0
+    for x, y, f, weight in part.nodes(panels, count):
+        offsets, weights = trilinear_texels(part.levels, x, y, f)
+        total += weight * fields(filter, part.levels, offsets, x, y, f).error(weights)
+    return total
+
+
+class System:
+    """Equation 6.4 with all coefficients of all of these texels unknown."""
+
+    def __init__(self, filter, degree, part, offsets, panels=1, count=4):
+        """Integrates all products by brute force."""
+        size, powers = len(offsets), 10 if degree == 2 else 4
+        self.moments = np.zeros((powers, powers))
+        self.right = np.zeros((size, powers))
+        self.square = 0.0
+        for x, y, f, weight in part.nodes(panels, count):
+            sample_x, texels_x, along_x = line(
+                filter, part.levels, [(d, i) for d, i, _ in offsets], x, f
+            )
+            sample_y, texels_y, along_y = line(
+                filter, part.levels, [(d, j) for d, _, j in offsets], y, f
+            )
+            found = terms(degree, x, y, f)
+            inner = (texels_x @ (along_x * sample_x)) * (texels_y @ (along_y * sample_y))
+            self.right += weight * inner[:, None] * found
+            self.moments += weight * found[:, None] * found
+            own = (along_x @ sample_x**2) * (along_y @ sample_y**2)
+            self.square += weight * own
+        self.products = ((texels_x * along_x) @ texels_x.T) * ((texels_y * along_y) @ texels_y.T)
+
+    def solve(self, members):
+        """The coefficients (member, term) with the least error, and that error."""
+        members = list(members)
+        count, powers = len(members), len(self.moments)
+        products = self.products[np.ix_(members, members)]
+        right = self.right[members].ravel()
+        size = count * powers
+        matrix = np.zeros((size + powers, size + powers))
+        matrix[:size, :size] = np.kron(products, self.moments)
+        matrix[size:, :size] = np.kron(np.ones(count), np.eye(powers))
+        matrix[:size, size:] = matrix[size:, :size].T
+        sums = np.zeros(powers)
+        sums[0] = 1.0
+        # Where there is one level, f and xy are the same.
+        found = np.linalg.lstsq(matrix, np.concatenate([right, sums]), rcond=1e-13)[0][:size]
+        error = self.square - 2 * found @ right + found @ matrix[:size, :size] @ found
+        return found.reshape(count, powers), error
+
+    def best_set(self, count):
+        """The set of so many texels with the least error, of all there are, and that error."""
+        sets = np.array(list(combinations(range(len(self.right)), count)))
+        # A root of the moments splits the system by polynomials.
+        root = np.linalg.cholesky(self.moments)
+        right = np.linalg.solve(root, self.right.T).T
+        sums = root[0]  # 1 is the first power, and a multiple of the first polynomial.
+        least, best = np.inf, None
+        for part in np.array_split(sets, max(1, len(sets) // 20_000)):
+            inverse = np.linalg.inv(self.products[part[:, :, None], part[:, None, :]])
+            free = inverse @ right[part]
+            row = inverse.sum(axis=1)
+            multiplier = (sums - free.sum(axis=1)) / row.sum(axis=1)[:, None]
+            # At the least, c' G c - 2 c' b is -b' G^-1 b + (what the sum lacks)^2 / (1' G^-1 1).
+            errors = (
+                self.square
+                - (free * right[part]).sum(axis=(1, 2))
+                + (multiplier**2).sum(axis=1) * row.sum(axis=1)
+            )
+            if errors.min() < least:
+                least, best = errors.min(), part[errors.argmin()]
+        return best, least
+
+
+def candidates(filter, part):
+    """All texels that the filter overlaps somewhere in a subdomain."""
+    edge = [min(k / part.grid, 0.5) for k in (part.i, part.i + 1, part.j, part.j + 1)]
+    widest = filter_width(part.levels, (part.slice + 1) / part.slices)
+
+    def along(finer, low, high):
+        reach = RADII[filter] * (widest + 2.0**-finer) - 1e-9
+        return [i for i in range(-40, 41) if low - reach < (i + 0.5) / 2**finer < high + reach]
+
+    return [
+        (finer, i, j)
+        for finer in range(part.levels)
+        for j in along(finer, edge[2], edge[3])
+        for i in along(finer, edge[0], edge[1])
+    ]
+
+
+def wrapped(i, size, wrap):
+    """The index that texel i reads, or None."""
+    if wrap == "repeat":
+        return i % size
+    if wrap == "clamp":
+        return min(max(i, 0), size - 1)
+    return i if 0 <= i < size else None
+
+
+def read(level, i, j, wrap):
+    """A texel, of bytes as 255ths."""
+    wrap = (wrap, wrap) if isinstance(wrap, str) else wrap
+    row, column = wrapped(j, level.shape[0], wrap[1]), wrapped(i, level.shape[1], wrap[0])
+    if row is None or column is None:
+        return np.zeros(level.shape[2])
+    values = level[row, column].astype(float)
+    return values / 255 if level.dtype == np.uint8 else values
+
+
+def levels_of(scale, count):
+    """The cell's level, how many levels there are with it and below, and f."""
+    mip = np.log2(max(scale, 1.0))
+    if mip <= 0 or count == 1:
+        return 0, 1, 0.0
+    below = min(int(np.ceil(mip)) - 1, count - 2)
+    return below + 1, min(below + 2, 3), min(mip - below, 1.0)
+
+
+def _folded(x, y):
+    mirror_x, mirror_y = x > 0.5, y > 0.5
+    x, y = min(x, 1 - x), min(y, 1 - y)
+    return max(x, y), min(x, y), mirror_x, mirror_y, y > x
+
+
+def sample(levels, table, u, v, scale, wrap="clamp"):
+    """One sample by a table, or by trilinear interpolation."""
+    number, available, f = levels_of(scale, len(levels))
+    cell = levels[number]
+    p, q = u * cell.shape[1], v * cell.shape[0]
+    i, j = int(np.floor(p)), int(np.floor(q))
+    x, y = p - i, q - j
+    if isinstance(table, str):
+        return _trilinear(levels, number, u, v, f, wrap)
+    section = table.section(available)
+    a, b, mirror_x, mirror_y, swapped = _folded(x, y)
+    f = a * b if available == 1 else f
+    grid, _, slices = table.subdomains
+    last = (grid + 1) // 2 - 1
+    column, row = min(int(a * grid), last), min(int(b * grid), last)
+    slices = 1 if available == 1 else slices
+    part = min(int(f * slices), slices - 1) * ((last + 1) * (last + 2) // 2)
+    part += column * (column + 1) // 2 + row
+    weights = section.coefficients[part] @ terms(table.degree, a, b, f)
+    total = 0.0
+    for (finer, dx, dy), weight in zip(section.offsets[part], weights, strict=True):
+        dx, dy = (dy, dx) if swapped else (dx, dy)
+        side = 2**finer - 1
+        dx, dy = side - dx if mirror_x else dx, side - dy if mirror_y else dy
+        level = levels[number - finer]
+        base_x = int(np.floor(u * level.shape[1] - 2**finer * x + 0.5))
+        base_y = int(np.floor(v * level.shape[0] - 2**finer * y + 0.5))
+        total = total + weight * read(level, base_x + dx, base_y + dy, wrap)
+    return total
+
+
+def _trilinear(levels, number, u, v, f, wrap):
+    shares = [(0, 1.0)] if number == 0 else [(number, f), (number - 1, 1 - f)]
+    total = 0.0
+    for chosen, share in shares:
+        level = levels[chosen]
+        p, q = u * level.shape[1] - 0.5, v * level.shape[0] - 0.5
+        i, j = int(np.floor(p)), int(np.floor(q))
+        for dy, weight_y in ((0, 1 - q + j), (1, q - j)):
+            for dx, weight_x in ((0, 1 - p + i), (1, p - i)):
+                total = total + share * weight_y * weight_x * read(level, i + dx, j + dy, wrap)
+    return total
+
+
+def exact(image, u, v, scale, filter, wrap="clamp"):
+    """One sample by the filter itself."""
+    width = max(scale, 1.0)
+    p, q = u * image.shape[1], v * image.shape[0]
+    reach = int(np.ceil(RADII[filter] * width)) + 1
+    first_x, first_y = int(np.floor(p)) - reach, int(np.floor(q)) - reach
+    along_x = taps(filter, p, width, first_x, first_x + 2 * reach + 1)
+    along_y = taps(filter, q, width, first_y, first_y + 2 * reach + 1)
+    total = 0.0
+    for j, weight_y in enumerate(along_y):
+        for i, weight_x in enumerate(along_x):
+            if weight_x * weight_y:
+                value = read(image, first_x + i, first_y + j, wrap)
+                total = total + weight_x * weight_y * value
+    return total
