@@ -12,6 +12,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/filters/kernel.h"
+#include "prefilter/sampling/certify.h"
 #include "prefilter/sampling/exchange_search.h"
 #include "prefilter/sampling/subdomain_system.h"
 
@@ -21,6 +22,11 @@ namespace {
 // Coefficients are whole numbers divided by this. A texel's weight, about 1, is a float in the end,
 // and files are shorter.
 constexpr double kCoefficientSteps = 1e9;
+
+// Of the search for a proof, for each subdomain: seconds for tents, up to minutes for Lanczos
+// filters.
+constexpr std::int64_t kNodesToCertify = 8'000'000;
+constexpr double kShareOfSearch = 0.1;  // of the progress, before proofs
 
 TableSection empty_section(const TableShape& shape, int levels) {
   TableSection section;
@@ -46,6 +52,7 @@ void store(const SubdomainSystem& system, const FittedSet& set, const TableShape
   for (std::size_t i = 0; i < set.members.size(); ++i) {
     section->texels[first + i] = system.texels[set.members[i]];
     double* const coefficients = section->coefficients.data() + (first + i) * terms;
+    std::fill_n(coefficients, terms, 0.0);
     for (std::size_t p = 0; p < polynomials; ++p) {
       for (std::size_t q = 0; q < terms; ++q) {
         coefficients[q] += set.weights[i * polynomials + p] * system.basis.coefficients[p][q];
@@ -73,7 +80,9 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
       subdomains.emplace_back(3 - levels, static_cast<int>(index));
     }
   }
-  parallel_for(static_cast<std::int64_t>(subdomains.size()), options.threads, options.progress,
+  std::vector<FittedSet> sets(subdomains.size());
+  parallel_for(static_cast<std::int64_t>(subdomains.size()), options.threads,
+               options.progress.part(0.0, options.certify ? kShareOfSearch : 1.0),
                [&](std::int64_t i) {
                  const auto [number, index] = subdomains[i];
                  TableSection& section = table.sections[number];
@@ -83,8 +92,23 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
                                  std::to_string(system.candidates()) + " candidates only");
                  }
                  const int texels = std::min(shape.texels, system.candidates());
-                 store(system, find_set(system, texels, Progress()), shape, index, &section);
+                 sets[i] = find_set(system, texels, Progress());
+                 store(system, sets[i], shape, index, &section);
                });
+  if (!options.certify) return table;
+  const auto count = static_cast<double>(subdomains.size());
+  for (std::size_t i = 0; i < subdomains.size(); ++i) {
+    const auto [number, index] = subdomains[i];
+    TableSection& section = table.sections[number];
+    const SubdomainSystem system(kernel, shape, section, index);
+    const auto done = static_cast<double>(i);
+    const Progress progress =
+        options.progress.part(kShareOfSearch, 1.0).part(done / count, (done + 1.0) / count);
+    const CertifiedSet certified =
+        certify_set(system, sets[i], {kNodesToCertify, progress, options.threads});
+    store(system, certified.set, shape, index, &section);
+    section.gaps.push_back(certified.gap);
+  }
   return table;
 }
 

@@ -1,0 +1,137 @@
+#include "prefilter/sampling/certify.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "prefilter/base/error.h"
+#include "prefilter/filters/kernel.h"
+#include "prefilter/sampling/exchange_search.h"
+
+namespace prefilter {
+namespace {
+
+SubdomainSystem system_of(const TableShape& shape, int levels, int index) {
+  TableSection section;
+  section.levels = levels;
+  section.slices = levels == 1 ? 1 : shape.slices;
+  return {*find_kernel(shape.filter), shape, section, index};
+}
+
+// The candidates that are listed first: nothing that a search would settle for.
+FittedSet poor_set(const SubdomainSystem& system, int texels) {
+  std::vector<int> members(texels);
+  std::iota(members.begin(), members.end(), 0);
+  return fit_set(system, members);
+}
+
+double least_error_of_all_sets(const SubdomainSystem& system, int texels) {
+  std::vector<int> members(texels);
+  std::iota(members.begin(), members.end(), 0);
+  double least = system.filter_square;
+  while (true) {
+    least = std::min(least, fit_set(system, members).error);
+    int place = texels - 1;
+    while (place >= 0 && members[place] == system.candidates() - texels + place) --place;
+    if (place < 0) return least;
+    ++members[place];
+    std::iota(members.begin() + place + 1, members.end(), members[place] + 1);
+  }
+}
+
+CertifyOptions enough() { return {1'000'000, Progress(), 2}; }
+
+void expect_least_of_all(const SubdomainSystem& system, int texels) {
+  const double least = least_error_of_all_sets(system, texels);
+  for (const FittedSet& start : {poor_set(system, texels), find_set(system, texels, Progress())}) {
+    const CertifiedSet certified = certify_set(system, start, enough());
+    EXPECT_EQ(certified.gap, 0.0);
+    EXPECT_NEAR(certified.set.error, least, 1e-8 * least);
+    EXPECT_EQ(certified.set.members.size(), start.members.size());
+  }
+}
+
+TEST(CertifySet, FindsTheLeastErrorOfAllPairs) {
+  for (int index = 0; index < 6; ++index) {
+    expect_least_of_all(system_of({"tent", 2, 4, 2, 1}, 3, index), 2);
+  }
+}
+
+TEST(CertifySet, FindsTheLeastErrorOfAllTriples) {
+  expect_least_of_all(system_of({"tent", 3, 4, 2, 1}, 3, 2), 3);
+}
+
+TEST(CertifySet, FindsTheLeastErrorOfAllSetsOfFewCandidates) {
+  for (const Kernel& kernel : kernels()) {
+    TableShape shape{"", 4, 2, 1, 2};
+    shape.filter = kernel.name();
+    const SubdomainSystem system = system_of(shape, 2, 1);
+    expect_least_of_all(system, system.candidates() < 25 ? 4 : 2);
+  }
+  // A texel of the cell's level is the sum of four of the next one.
+  expect_least_of_all(system_of({"box", 4, 4, 2, 1}, 3, 5), 4);
+  expect_least_of_all(system_of({"box", 4, 1, 1, 2}, 3, 0), 3);
+}
+
+TEST(CertifySet, ProvesEverySubdomainOfTheTent) {
+  for (const int texels : {4, 8}) {
+    for (int index = 0; index < 6; ++index) {
+      const SubdomainSystem system = system_of({"tent", texels, 4, 2, 1}, 3, index);
+      const FittedSet found = find_set(system, texels, Progress());
+      const CertifiedSet certified = certify_set(system, found, enough());
+      EXPECT_EQ(certified.gap, 0.0) << texels << " " << index;
+      EXPECT_LE(certified.set.error, found.error);
+    }
+  }
+}
+
+TEST(CertifySet, LeavesAGapThatTheBestSetIsWithin) {
+  const SubdomainSystem system = system_of({"gaussian", 5, 4, 2, 1}, 3, 4);
+  const FittedSet start = poor_set(system, 5);
+  const CertifiedSet best = certify_set(system, start, enough());
+  ASSERT_EQ(best.gap, 0.0);
+  double last_gap = 1.0;
+  for (const int nodes : {1, 3000, 20000}) {
+    const CertifiedSet certified = certify_set(system, start, {nodes, Progress(), 1});
+    EXPECT_GE(certified.set.error, best.set.error * (1.0 - 1e-8));
+    EXPECT_LE(certified.set.error * (1.0 - certified.gap), best.set.error * (1.0 + 1e-8));
+    EXPECT_LE(certified.gap, last_gap);
+    last_gap = certified.gap;
+  }
+  EXPECT_LT(last_gap, 1.0);
+}
+
+TEST(CertifySet, IsTheSameOnAnyNumberOfThreads) {
+  const SubdomainSystem system = system_of({"lanczos2", 6, 4, 2, 1}, 3, 1);
+  const FittedSet start = poor_set(system, 6);
+  const CertifiedSet one = certify_set(system, start, {20000, Progress(), 1});
+  EXPECT_GT(one.gap, 0.0);
+  for (const int threads : {2, 5}) {
+    const CertifiedSet other = certify_set(system, start, {20000, Progress(), threads});
+    EXPECT_EQ(other.set.members, one.set.members);
+    EXPECT_EQ(other.set.weights, one.set.weights);
+    EXPECT_EQ(other.gap, one.gap);
+  }
+}
+
+TEST(CertifySet, HasNothingToProveWhereAllCandidatesAreIn) {
+  const SubdomainSystem system = system_of({"tent", 4, 4, 2, 1}, 1, 0);
+  ASSERT_EQ(system.candidates(), 4);
+  const CertifiedSet certified = certify_set(system, poor_set(system, 4), enough());
+  EXPECT_EQ(certified.gap, 0.0);
+  EXPECT_EQ(certified.set.members, (std::vector<int>{0, 1, 2, 3}));
+}
+
+TEST(CertifySet, IsCancelled) {
+  const SubdomainSystem system = system_of({"lanczos2", 8, 4, 2, 1}, 3, 1);
+  int calls = 0;
+  CertifyOptions options = enough();
+  options.progress = Progress([&](double) { return ++calls < 3; });
+  EXPECT_THROW(certify_set(system, poor_set(system, 8), options), Error);
+  EXPECT_EQ(calls, 3);
+}
+
+}  // namespace
+}  // namespace prefilter
