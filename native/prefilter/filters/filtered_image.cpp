@@ -36,7 +36,8 @@ FilteredImage::FilteredImage(const TexelSource& source, const FindRead& find_rea
     : source_(source), floats_(source.floats()), alpha_(options.alpha.value_or(0)) {
   assert(!options.alpha || *options.alpha == source.channels - 1);
   if (source.has_bytes()) {
-    if (!options.needs_floats && (!options.alpha || is_opaque(source, alpha_))) {
+    if (!options.needs_floats &&
+        (!options.alpha || (options.stays_opaque && is_opaque(source, alpha_)))) {
       floats_ = {nullptr, source.width, source.height, source.channels};
       return;
     }
@@ -85,10 +86,10 @@ void FilteredImage::multiply_by_alpha(const FindRead& find_read, const Options& 
   };
   std::size_t i = 0;
   while (i < floats_.texel_count() && opaque(i)) ++i;
-  if (i == floats_.texel_count()) return;
+  if (i == floats_.texel_count() && options.stays_opaque) return;
   const std::vector<unsigned char> read = find_read();
   while (i < read.size() && (read[i] == 0 || opaque(i))) ++i;
-  if (i == read.size()) return;
+  if (i == read.size() && options.stays_opaque) return;
 
   is_multiplied_ = true;
   Image& copy = own_copy();

@@ -23,6 +23,9 @@ class FilteredImage {
     // The channel, the last of two to four, that is coverage and which the others are not
     // multiplied by yet; none where every channel is filtered as it stands.
     std::optional<int> alpha;
+    // Whether what is filtered is opaque where the image is: not where a border of nothing counts.
+    // Colours are multiplied by alpha, and divided, only where it may be less than 1.
+    bool stays_opaque = true;
     // Whether bytes have to be floats, also where alpha plays no part.
     bool needs_floats = true;
     const char* name = "image";  // what errors call it
@@ -39,7 +42,7 @@ class FilteredImage {
   /// The same; no data where bytes are read as they are.
   const ImageView& floats() const { return floats_; }
 
-  /// Whether colours were multiplied by an alpha that is not 1 everywhere.
+  /// Whether colours were multiplied by an alpha that is not 1 everywhere, or does not stay so.
   bool is_multiplied() const { return is_multiplied_; }
 
   /// What a channel may be while it is solved for, `bounds` being what it may be in the end. Where
