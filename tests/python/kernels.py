@@ -38,13 +38,12 @@ def tolerance_of(filter):
 
 def folded(weights, reach, size, wrap):
     """The weights of texels -reach ... size + reach as those of the image's own."""
-    result = np.zeros((len(weights), size))
-    for i in range(-reach, size + reach):
-        if wrap == "clamp":
-            result[:, min(max(i, 0), size - 1)] += weights[:, i + reach]
-        elif wrap == "repeat" or 0 <= i < size:
-            result[:, i % size] += weights[:, i + reach]
-    return result
+    texel = np.arange(-reach, size + reach)
+    read = np.clip(texel, 0, size - 1) if wrap == "clamp" else texel % size
+    counts = (wrap != "border") | (read == texel)
+    result = np.zeros((size, len(weights)))
+    np.add.at(result, read[counts], weights.T[counts])
+    return result.T
 
 
 def weights_at(filter, centres, width, size, wrap):

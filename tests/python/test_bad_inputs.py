@@ -106,6 +106,40 @@ FUNCTIONS = {
         prefilter.sample,
         {"levels": TENT_LEVELS, "table": TENT, "coordinates": np.zeros((3, 2)), "scales": 1.5},
     ),
+    "sample_exact": (
+        prefilter.sample_exact,
+        {"image": IMAGE, "coordinates": np.zeros((3, 2)), "scales": 1.5},
+    ),
+    "sample_ewa": (
+        prefilter.sample_ewa,
+        {"image": IMAGE, "coordinates": np.zeros((3, 2)), "jacobians": np.ones((3, 2, 2))},
+    ),
+    "sample_anisotropic": (
+        prefilter.sample_anisotropic,
+        {
+            "levels": TENT_LEVELS,
+            "table": TENT,
+            "coordinates": np.zeros((3, 2)),
+            "jacobians": np.ones((3, 2, 2)),
+        },
+    ),
+    **{
+        function.__name__: (
+            function,
+            {
+                "levels": TENT_LEVELS,
+                "table": TENT,
+                "coordinates": np.zeros((3, 2)),
+                "scales": 1.5,
+                "numbers": np.zeros(3),
+            },
+        )
+        for function in (prefilter.sample_stochastic, prefilter.pick_texels)
+    },
+    "resample": (
+        prefilter.resample,
+        {"image": IMAGE, "transform": np.eye(3), "width": 4, "height": 4},
+    ),
     "sampling_levels": (prefilter.sampling_levels, {"image": IMAGE}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
@@ -593,6 +627,122 @@ ROWS = [
         )
     ),
     *(
+        (function, arguments, words)
+        for function in (
+            "sample_exact",
+            "sample_ewa",
+            "sample_anisotropic",
+            "sample_stochastic",
+            "pick_texels",
+        )
+        for arguments, words in (
+            ({"coordinates": np.zeros(2)}, ["coordinates: shape (2,)", "(samples, 2) is needed"]),
+            ({"coordinates": np.zeros((3, 2), int)}, ["coordinates: dtype int64", FLOATS]),
+            (
+                {"coordinates": changed(np.zeros((3, 2)), (1, 0), np.inf)},
+                ["coordinates: found inf in row 1", "finite numbers are needed"],
+            ),
+            ({"wrap": "mirror"}, ["wrap: 'mirror'", WRAPS]),
+            ({"progress": 1}, ["progress: 1", "a callable"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+        )
+    ),
+    *(
+        (function, arguments, words)
+        for function in ("sample_exact", "sample_stochastic", "pick_texels")
+        for arguments, words in (
+            ({"scales": [1.0, 2.0]}, ["scales: shape (2,)", "(3,) is needed"]),
+            ({"scales": -1}, ["scales: found -1 at 0", "at least 0 are needed"]),
+            ({"scales": [1.0, NAN, 1.0]}, ["scales: found nan at 1", "at least 0 are needed"]),
+            ({"scales": [1.0, 1.0, np.inf]}, ["scales: found inf at 2", "finite numbers"]),
+            ({"scales": "wide"}, ["scales: dtype <U4", "numbers are needed"]),
+        )
+    ),
+    *(
+        (function, arguments, words)
+        for function in ("sample_ewa", "sample_anisotropic")
+        for arguments, words in (
+            ({"jacobians": np.eye(2)}, ["jacobians: shape (2, 2)", "(3, 2, 2) is needed"]),
+            (
+                {"jacobians": changed(np.ones((3, 2, 2)), (2, 0, 1), NAN)},
+                ["jacobians: found nan in that of sample 2", "finite numbers are needed"],
+            ),
+        )
+    ),
+    *(
+        (function, arguments, words)
+        for function in ("sample_exact", "sample_ewa")
+        for arguments, words in (
+            ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
+            ({"image": IMAGE[:, :0]}, ["image: shape (16, 0, 3)", "at least one"]),
+            (
+                {"image": changed(IMAGE, (2, 3, 1), NAN)},
+                ["image: the texel in row 2, column 3 holds nan in channel 1", "at most 1e30"],
+            ),
+        )
+    ),
+    ("sample_exact", {"filter": "tents"}, ["filter: 'tents' is not one of box, tent"]),
+    *(
+        (function, arguments, words)
+        for function in ("sample_anisotropic", "sample_stochastic", "pick_texels")
+        for arguments, words in (
+            ({"levels": []}, ["levels: there are none"]),
+            ({"table": "linear"}, ["table: 'linear'", "a SamplingTable is needed"]),
+            (
+                {"levels": prefilter.sampling_levels(IMAGE, "box")},
+                ["table: it reproduces 'tent'", "filtered by 'box'"],
+            ),
+        )
+    ),
+    *(
+        (function, {"max_probes": count}, [f"max_probes: {count}", "from 1 to 256 is needed"])
+        for function in ("sample_anisotropic", "resample")
+        for count in (0, 257, 2.5, True, 10**30)
+    ),
+    *(
+        (function, arguments, words)
+        for function in ("sample_stochastic", "pick_texels")
+        for arguments, words in (
+            ({"numbers": 0.5}, ["numbers: shape ()", "(3,) is needed"]),
+            ({"numbers": np.zeros(2)}, ["numbers: shape (2,)", "(3,) is needed"]),
+            (
+                {"numbers": np.array([0.0, 1.0, 0.5])},
+                ["numbers: found 1 at 1", "numbers from 0 to below 1 are needed"],
+            ),
+            (
+                {"numbers": np.array([NAN, 0.0, 0.5])},
+                ["numbers: found nan at 0", "from 0 to below"],
+            ),
+        )
+    ),
+    *(
+        ("resample", arguments, words)
+        for arguments, words in (
+            ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
+            ({"image": np.zeros((4, 4, 3), int)}, ["image: dtype int64", FLOATS]),
+            ({"image": changed(IMAGE, (2, 3, 1), NAN)}, ["image: the texel in row 2, column 3"]),
+            ({"transform": np.eye(4)}, ["transform: shape (4, 4)", "(3, 3) or (2, 3) is needed"]),
+            ({"transform": "turn"}, ["transform: dtype <U4", "numbers are needed"]),
+            (
+                {"transform": changed(np.eye(3), (0, 2), np.inf)},
+                ["transform: found inf", "finite numbers are needed"],
+            ),
+            ({"width": 0}, ["width: 0", f"from 1 to {2**20} is needed"]),
+            ({"height": 2**20 + 1}, [f"height: {2**20 + 1}", f"from 1 to {2**20} is needed"]),
+            ({"filter": "tents"}, ["filter: 'tents' is not one of box, tent"]),
+            ({"filter": "tents", "table": "trilinear"}, ["filter: 'tents' is not one of box"]),
+            ({"table": "bilinear"}, ["table: 'bilinear'", "a SamplingTable is needed"]),
+            ({"table": TENT, "exact": True}, ["table: <SamplingTable", "None is needed"]),
+            (
+                {"exact": True, "max_probes": 4},
+                ["max_probes: 4 with exact and filter 'lanczos2'", "1 is needed", "'gaussian'"],
+            ),
+            ({"wrap": "mirror"}, ["wrap: 'mirror'", WRAPS]),
+            ({"progress": 1}, ["progress: 1", "a callable"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+        )
+    ),
+    *(
         ("sampling_levels", arguments, words)
         for arguments, words in (
             ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
@@ -854,6 +1004,7 @@ def test_every_function_is_there():
         "FilteredLevels",
         "MipmapFilter",
         "NearestPoints",
+        "PickedTexels",
         "ReconstructionReport",
         "SamplingTable",
         "ScanPoints",

@@ -8,20 +8,24 @@ and what is allowed.
 
 from ._native import Cancelled
 from ._svg.warnings import SvgWarning
+from .anisotropic_sampling import sample_anisotropic
 from .color import to_linear, to_srgb
 from .contours import contour
 from .cutout import keep_coverage
+from .exact_sampling import sample_ewa, sample_exact
 from .filtered_levels import SAMPLING_FILTERS, FilteredLevels, sampling_levels
 from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
 from .nearest import NearestPoints, nearest_points
 from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
 from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
+from .resampling import resample
 from .resizing import RESIZE_FILTERS, resize
 from .sampling import sample
 from .sampling_tables import SamplingTable, TableSection
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .shapes import RASTER_FILTERS, Shape, rasterize
+from .stochastic_sampling import PickedTexels, pick_texels, sample_stochastic
 from .surface import Surface
 from .svg import SvgDrawing, read_svg
 from .texture_use import fill_transparent, fill_unused, texel_weights
@@ -44,6 +48,7 @@ __all__ = [
     "MipmapFilter",
     "NearestPoints",
     "Octree",
+    "PickedTexels",
     "ReconstructionReport",
     "SamplingTable",
     "ScanPoints",
@@ -66,13 +71,19 @@ __all__ = [
     "mipmaps",
     "nearest_points",
     "normal_mipmaps",
+    "pick_texels",
     "rasterize",
     "read_points",
     "read_svg",
     "reconstruct",
     "reconstruct_file",
+    "resample",
     "resize",
     "sample",
+    "sample_anisotropic",
+    "sample_ewa",
+    "sample_exact",
+    "sample_stochastic",
     "sampling_levels",
     "seam_contrast",
     "texel_weights",

@@ -101,6 +101,69 @@ def sample(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float32]: ...
+def sample_exact(
+    image: npt.NDArray[np.float32],
+    coordinates: npt.NDArray[np.float64],
+    scales: npt.NDArray[np.float64],
+    filter: str,
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
+def sample_ewa(
+    image: npt.NDArray[np.float32],
+    coordinates: npt.NDArray[np.float64],
+    jacobians: npt.NDArray[np.float64],
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
+def sample_anisotropic(
+    levels: Sequence[np.ndarray],
+    table: SamplingTable | None,
+    coordinates: npt.NDArray[np.float64],
+    jacobians: npt.NDArray[np.float64],
+    max_probes: int,
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
+def sample_stochastic(
+    levels: Sequence[np.ndarray],
+    table: SamplingTable | None,
+    bilinear: bool,
+    coordinates: npt.NDArray[np.float64],
+    scales: npt.NDArray[np.float64],
+    numbers: npt.NDArray[np.float64],
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
+def pick_texels(
+    levels: Sequence[np.ndarray],
+    table: SamplingTable | None,
+    bilinear: bool,
+    coordinates: npt.NDArray[np.float64],
+    scales: npt.NDArray[np.float64],
+    numbers: npt.NDArray[np.float64],
+    wrap: tuple[str, str],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.float64]]: ...
+def resample(
+    image: npt.NDArray[np.float32],
+    transform: npt.NDArray[np.float64],
+    width: int,
+    height: int,
+    table: SamplingTable | None,
+    filter: str,
+    exact: bool,
+    max_probes: int,
+    wrap: tuple[str, str],
+    premultiplied: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.float32]: ...
 
 class Outline:
     def __init__(self) -> None: ...

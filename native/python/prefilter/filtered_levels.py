@@ -12,16 +12,13 @@ from ._border.arguments import (
     Wrap,
     as_level_count,
     as_name,
-    as_progress,
     as_wrap,
-    progress_part,
 )
-from ._border.arrays import FloatArray, as_float_image, as_threads, check_texels
+from ._border.arrays import as_float_image, as_threads
+from ._border.channels import in_channel_groups
 
 SAMPLING_FILTERS = tuple(_native.sampling_filters())
 """The kernels that sampling tables and `sampling_levels` are made for."""
-
-_CHANNELS_AT_ONCE = 4
 
 Value = TypeVar("Value", bound=np.generic)
 
@@ -79,30 +76,22 @@ def sampling_levels(
         MemoryError: The levels do not fit into memory.
         Cancelled: The progress callback returned False.
     """
-    stored = as_float_image("image", image)
-    channels = stored.shape[2]
-    groups = range(0, channels, _CHANNELS_AT_ONCE)
-    if len(groups) > 1:
-        check_texels("image", stored)  # here, where channels have their own numbers
-    parts = []
-    for begin in groups:
-        end = begin + _CHANNELS_AT_ONCE
-        parts.append(
-            _native.sampling_levels(
-                stored if channels <= end - begin else np.ascontiguousarray(stored[..., begin:end]),
-                as_name("filter", filter),
-                as_wrap(wrap),
-                as_level_count(levels),
-                bool(premultiplied) or len(groups) > 1,
-                progress_part(progress, begin / channels, min(end / channels, 1.0))
-                if len(groups) > 1
-                else as_progress(progress),
-                as_threads(threads),
-            )
-        )
-    joined: list[FloatArray] = (
-        parts[0]
-        if len(parts) == 1
-        else [np.concatenate(level, axis=2) for level in zip(*parts, strict=True)]
+    found = in_channel_groups(
+        as_float_image("image", image),
+        bool(premultiplied),
+        lambda part, multiplied, reports: _native.sampling_levels(
+            part,
+            as_name("filter", filter),
+            as_wrap(wrap),
+            as_level_count(levels),
+            multiplied,
+            reports,
+            as_threads(threads),
+        ),
+        progress,
     )
+    joined = [
+        level[0] if len(level) == 1 else np.concatenate(level, axis=2)
+        for level in zip(*found, strict=True)
+    ]
     return FilteredLevels(joined, filter)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from .arguments import as_int
 from .arrays import as_array, as_bytes, as_floats, as_image, check_shape
 
 
@@ -40,3 +41,11 @@ def as_scales(scales: npt.ArrayLike, samples: int) -> npt.NDArray[np.float64]:
     if found.ndim > 0:
         check_shape("scales", found, (samples,))
     return np.ascontiguousarray(found, np.float64)
+
+
+def as_jacobians(jacobians: npt.ArrayLike, samples: int) -> npt.NDArray[np.float64]:
+    return as_floats("jacobians", jacobians, (samples, 2, 2), np.float64)
+
+
+def as_probe_count(max_probes: int) -> int:
+    return as_int("max_probes", max_probes, "a whole number from 1 to 256 is needed")

@@ -1,0 +1,122 @@
+// McCormack, Perry, Farkas and Jouppi, "Feline: Fast Elliptical Lines for Anisotropic Texture
+// Mapping", 1999, with other probes.
+//
+// The ellipse's Gaussian is that of a probe convolved with a Gaussian along the major axis, of
+// width sqrt(major^2 - probe^2). Probes sample the latter: their weights are its values. Their
+// distance makes the squared error of the sum least: closer together they do not reach far enough,
+// farther apart they can be told from each other. The error, as a share of the elliptical
+// Gaussian's norm, is 0.086 at the most and 0.054 on average over ratios up to 32. As printed, the
+// distance lets the outermost probes end where the ellipse does, and the number is round(2 ratio) -
+// 1: 0.56 and 0.18.
+#include "prefilter/sampling/anisotropic.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+namespace {
+
+// A single probe, of the mean width, is off by 0.046 at this ratio of the axes; two are by less
+// beyond it.
+constexpr double kNearlyRound = 1.1;
+
+// Fitted to the distances of least error for 2 to 63 probes; theirs is at most 5 % less.
+double best_spacing(double ratio, int count) {
+  return std::sqrt(2.0 * (ratio * ratio - 1.0) / (ratio * count)) * (0.92 - 0.22 / count);
+}
+
+// Probes of some samples, and how much each counts.
+struct Probes {
+  std::vector<TexturePlace> coordinates;
+  std::vector<double> scales;
+  std::vector<double> weights;
+  std::vector<std::size_t> ends;  // of each sample's
+};
+
+void add_probes(const TexturePlace& place, const Footprint& footprint, int max_probes,
+                const PyramidLevel& image, Probes* probes) {
+  const ProbeRow row = probe_row(footprint, max_probes);
+  const std::size_t begin = probes->weights.size();
+  double sum = 0.0;
+  for (int k = 0; k < row.count; ++k) {
+    const double distance = (k - 0.5 * (row.count - 1)) * row.spacing;
+    probes->coordinates.push_back({place[0] + distance * footprint.direction_x / image.width,
+                                   place[1] + distance * footprint.direction_y / image.height});
+    probes->scales.push_back(row.width);
+    probes->weights.push_back(std::exp(-row.falloff * distance * distance));
+    sum += probes->weights.back();
+  }
+  for (std::size_t i = begin; i < probes->weights.size(); ++i) probes->weights[i] /= sum;
+  probes->ends.push_back(probes->weights.size());
+}
+
+}  // namespace
+
+ProbeRow probe_row(const Footprint& footprint, int max_probes) {
+  const double widest_ratio = 0.5 * (max_probes + 1);
+  const double width = std::max(footprint.minor, footprint.major / widest_ratio);
+  const double ratio = std::max(1.0, footprint.major / width);
+  if (max_probes == 1 || ratio <= kNearlyRound) return {1, width * std::sqrt(ratio), 0.0, 0.0};
+  constexpr double kRounding = 1e-9;
+  ProbeRow row;
+  row.count = std::clamp(static_cast<int>(std::ceil(2.0 * ratio - kRounding)) - 1, 2, max_probes);
+  row.width = width;
+  row.spacing = width * best_spacing(ratio, row.count);
+  row.falloff = std::numbers::pi / (width * width * (ratio * ratio - 1.0));
+  return row;
+}
+
+void sample_anisotropically(const Pyramid& pyramid, const SamplingTable* table,
+                            std::span<const TexturePlace> coordinates,
+                            std::span<const TextureJacobian> jacobians,
+                            const AnisotropicOptions& options, std::span<float> result) {
+  check_pyramid(pyramid);
+  check_coordinates(coordinates);
+  check_jacobians(jacobians, coordinates.size());
+  if (options.max_probes < 1 || options.max_probes > kMostProbes) {
+    throw_invalid("max_probes: " + std::to_string(options.max_probes) +
+                  "; a whole number from 1 to " + std::to_string(kMostProbes) + " is needed");
+  }
+  const int last_level = static_cast<int>(pyramid.levels.size()) - 1;
+  const auto channels = static_cast<std::size_t>(pyramid.channels);
+  constexpr std::int64_t kSamplesAtOnce = 1 << 10;
+  parallel_ranges(static_cast<std::int64_t>(coordinates.size()), kSamplesAtOnce, options.threads,
+                  options.progress, [&](std::int64_t range_begin, std::int64_t range_end) {
+                    const auto begin = static_cast<std::size_t>(range_begin);
+                    const auto end = static_cast<std::size_t>(range_end);
+                    Probes probes;
+                    for (std::size_t i = begin; i < end; ++i) {
+                      add_probes(coordinates[i], footprint_of(jacobians[i], last_level),
+                                 options.max_probes, pyramid.levels[0], &probes);
+                    }
+                    std::vector<float> values(probes.weights.size() * channels);
+                    SampleOptions probe_options;
+                    probe_options.wrap = options.wrap;
+                    probe_options.threads = 1;
+                    sample(pyramid, table, probes.coordinates, probes.scales, probe_options,
+                           values);
+                    std::vector<double> sums(channels);
+                    std::size_t probe = 0;
+                    for (std::size_t i = begin; i < end; ++i) {
+                      std::fill(sums.begin(), sums.end(), 0.0);
+                      for (; probe < probes.ends[i - begin]; ++probe) {
+                        for (std::size_t c = 0; c < channels; ++c) {
+                          sums[c] += probes.weights[probe] * values[probe * channels + c];
+                        }
+                      }
+                      for (std::size_t c = 0; c < channels; ++c) {
+                        result[i * channels + c] = static_cast<float>(sums[c]);
+                      }
+                    }
+                  });
+  options.progress.report(1.0);
+}
+
+}  // namespace prefilter

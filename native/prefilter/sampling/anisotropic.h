@@ -1,0 +1,41 @@
+// Anisotropic samples of a pyramid: isotropic ones in a row (section 6.3, figure 6.12).
+#pragma once
+
+#include <span>
+
+#include "prefilter/sampling/footprint.h"
+#include "prefilter/sampling/sample.h"
+
+namespace prefilter {
+
+inline constexpr int kMostProbes = 256;
+
+/// Isotropic Gaussians along the major axis of an ellipse, centred on it, whose weighted sum comes
+/// close to the elliptical one. Probe k lies (k - (count - 1) / 2) * spacing from the centre and
+/// has the weight exp(-falloff * that distance squared), but for a common factor.
+struct ProbeRow {
+  int count = 1;
+  double width = 1.0;    // the scale of each [texels of level 0]
+  double spacing = 0.0;  // [texels of level 0]
+  double falloff = 0.0;  // [1 / texels^2]
+};
+
+/// At most `max_probes`, 1 to kMostProbes. They are as wide as the ellipse's minor axis; wider,
+/// where it is so narrow that as many do not reach along it: at least 2 / (max_probes + 1) of the
+/// major axis. So one probe is as wide as that.
+ProbeRow probe_row(const Footprint& footprint, int max_probes);
+
+struct AnisotropicOptions : SampleOptions {
+  int max_probes = 16;
+};
+
+/// As `sample`, with the Jacobian of each sample in the place of its scale.
+///
+/// Throws Error as `sample` does, for Jacobians that check_jacobians refuses, and for max_probes
+/// out of range.
+void sample_anisotropically(const Pyramid& pyramid, const SamplingTable* table,
+                            std::span<const TexturePlace> coordinates,
+                            std::span<const TextureJacobian> jacobians,
+                            const AnisotropicOptions& options, std::span<float> result);
+
+}  // namespace prefilter

@@ -1,0 +1,35 @@
+#include "prefilter/sampling/footprint.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace prefilter {
+
+Footprint singular_values(const TextureJacobian& jacobian) {
+  double largest = 0.0;
+  for (const double value : jacobian) largest = std::max(largest, std::abs(value));
+  if (largest == 0.0) return {0.0, 0.0, 1.0, 0.0};
+  const double xi = jacobian[0] / largest;
+  const double xj = jacobian[1] / largest;
+  const double yi = jacobian[2] / largest;
+  const double yj = jacobian[3] / largest;
+  // Of J J^T: half the sum and half the difference of the diagonal, and what is beside it.
+  const double mean = 0.5 * (xi * xi + xj * xj + yi * yi + yj * yj);
+  const double half = 0.5 * (xi * xi + xj * xj - yi * yi - yj * yj);
+  const double beside = xi * yi + xj * yj;
+  const double major = std::sqrt(mean + std::hypot(half, beside));
+  const double angle = 0.5 * std::atan2(beside, half);
+  // The smaller one by the determinant: no difference of near equals.
+  const double minor = std::min(major, std::abs(xi * yj - xj * yi) / major);
+  return {major * largest, minor * largest, std::cos(angle), std::sin(angle)};
+}
+
+Footprint footprint_of(const TextureJacobian& jacobian, int last_level) {
+  Footprint footprint = singular_values(jacobian);
+  const double widest = std::ldexp(1.0, last_level);
+  footprint.major = std::clamp(footprint.major, 1.0, widest);
+  footprint.minor = std::clamp(footprint.minor, 1.0, widest);
+  return footprint;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,220 @@
+// Section 6.3: the filter at the place and the scale that each pixel has in the image.
+#include "prefilter/sampling/resample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/filterable.h"
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/memory.h"
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/text.h"
+#include "prefilter/filters/filtered_image.h"
+#include "prefilter/sampling/anisotropic.h"
+#include "prefilter/sampling/elliptical.h"
+#include "prefilter/sampling/exact.h"
+#include "prefilter/sampling/footprint.h"
+#include "prefilter/sampling/sample.h"
+#include "prefilter/sampling/sampling_levels.h"
+
+namespace prefilter {
+namespace {
+
+using Method = ResampleOptions::Method;
+
+constexpr int kMostPixels = 1 << 20;  // along a side
+
+void check_size(const char* name, int size) {
+  if (size >= 1 && size <= kMostPixels) return;
+  throw_invalid(std::string(name) + ": " + std::to_string(size) + "; a whole number from 1 to " +
+                std::to_string(kMostPixels) + " is needed");
+}
+
+void check_arguments(const ImageView& image, const Homography& transform, int width, int height,
+                     const ResampleOptions& options) {
+  check_channels(image);
+  for (const double value : transform) {
+    if (std::isfinite(value)) continue;
+    throw_invalid("transform: found " + to_text(value) + "; finite numbers are needed");
+  }
+  check_size("width", width);
+  check_size("height", height);
+  if (options.max_probes < 1 || options.max_probes > kMostProbes) {
+    throw_invalid("max_probes: " + std::to_string(options.max_probes) +
+                  "; a whole number from 1 to " + std::to_string(kMostProbes) + " is needed");
+  }
+  if (options.method == Method::kExact && options.max_probes > 1 &&
+      options.kernel->name() != "gaussian") {
+    throw_invalid("max_probes: " + std::to_string(options.max_probes) + " with exact and filter '" +
+                  std::string(options.kernel->name()) +
+                  "'; 1 is needed, as only 'gaussian' is exact in other shapes than squares");
+  }
+  const double pixels = static_cast<double>(width) * height;
+  constexpr double kCopies = 3.0;  // of the image, with its levels
+  check_memory(
+      "width, height: an image of " + std::to_string(width) + " x " + std::to_string(height) +
+          " pixels",
+      4.0 * image.channels * (pixels + kCopies * static_cast<double>(image.texel_count())));
+}
+
+// Samples of an image, of any places and shapes, one batch after another.
+class Sampler {
+ public:
+  Sampler(const ImageView& image, const ResampleOptions& options, const Progress& progress)
+      : image_(image), options_(options) {
+    if (options.method == Method::kExact) return;
+    SamplingLevelsOptions level_options;
+    level_options.kernel = options.kernel;
+    level_options.wrap = options.wrap;
+    level_options.premultiplied = true;
+    level_options.threads = options.threads;
+    level_options.progress = progress;
+    levels_ = sampling_levels(image, level_options);
+    pyramid_.channels = image.channels;
+    for (const Image& level : levels_) {
+      pyramid_.levels.push_back({level.data.data(), level.width, level.height});
+    }
+  }
+
+  // How many pixels take as long as a cancel may wait.
+  std::int64_t batch() const {
+    constexpr std::int64_t kManyPixels = 1 << 12;
+    constexpr std::int64_t kTexelsAtOnce = 1 << 22;
+    if (options_.method != Method::kExact) return kManyPixels;
+    return std::clamp<std::int64_t>(kTexelsAtOnce / static_cast<std::int64_t>(image_.texel_count()),
+                                    1, 64);
+  }
+
+  void operator()(std::span<const TexturePlace> coordinates,
+                  std::span<const TextureJacobian> jacobians, std::span<float> values) const {
+    if (options_.max_probes > 1) {
+      if (options_.method == Method::kExact) {
+        const std::vector<float> found = sample_elliptically(
+            image_, coordinates, jacobians, {.wrap = options_.wrap, .threads = 1, .progress = {}});
+        std::copy(found.begin(), found.end(), values.begin());
+        return;
+      }
+      AnisotropicOptions options;
+      options.wrap = options_.wrap;
+      options.threads = 1;
+      options.max_probes = options_.max_probes;
+      sample_anisotropically(pyramid_, table(), coordinates, jacobians, options, values);
+      return;
+    }
+    std::vector<double> scales;
+    for (const TextureJacobian& jacobian : jacobians) {
+      scales.push_back(singular_values(jacobian).major);
+    }
+    if (options_.method == Method::kExact) {
+      for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        sample_exactly(image_, *options_.kernel, options_.wrap, coordinates[i], scales[i],
+                       values.data() + i * static_cast<std::size_t>(image_.channels));
+      }
+      return;
+    }
+    SampleOptions options;
+    options.wrap = options_.wrap;
+    options.threads = 1;
+    sample(pyramid_, table(), coordinates, scales, options, values);
+  }
+
+ private:
+  const SamplingTable* table() const {
+    return options_.method == Method::kTable ? options_.table : nullptr;
+  }
+
+  const ImageView image_;
+  const ResampleOptions& options_;
+  std::vector<Image> levels_;
+  Pyramid pyramid_;
+};
+
+// Pixels from `begin` to `end`, row by row; what is beyond the horizon stays as it is.
+void resample_pixels(const Sampler& sampler, const ImageView& image, const Homography& transform,
+                     std::int64_t begin, std::int64_t end, Image* result) {
+  std::vector<TexturePlace> coordinates;
+  std::vector<TextureJacobian> jacobians;
+  std::vector<std::int64_t> pixels;
+  for (std::int64_t pixel = begin; pixel < end; ++pixel) {
+    const PixelPlace place =
+        pixel_place(transform, static_cast<int>(pixel % result->width),
+                    static_cast<int>(pixel / result->width), image.width, image.height);
+    if (!place.is_visible) continue;
+    coordinates.push_back(place.coordinates);
+    jacobians.push_back(place.jacobian);
+    pixels.push_back(pixel);
+  }
+  const auto channels = static_cast<std::size_t>(image.channels);
+  std::vector<float> values(pixels.size() * channels);
+  sampler(coordinates, jacobians, values);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    std::copy_n(values.data() + i * channels, channels,
+                result->data.data() + static_cast<std::size_t>(pixels[i]) * channels);
+  }
+}
+
+void clear_beyond_horizon(const ImageView& image, const Homography& transform, int threads,
+                          Image* result) {
+  parallel_for(result->height, threads, Progress(), [&](std::int64_t row) {
+    for (int column = 0; column < result->width; ++column) {
+      const int y = static_cast<int>(row);
+      if (pixel_place(transform, column, y, image.width, image.height).is_visible) continue;
+      std::fill_n(result->texel(column, y), result->channels, 0.0F);
+    }
+  });
+}
+
+bool has_border(WrapModes wrap) { return wrap.u == Wrap::kBorder || wrap.v == Wrap::kBorder; }
+
+}  // namespace
+
+PixelPlace pixel_place(const Homography& transform, int column, int row, int image_width,
+                       int image_height) {
+  const double i = column + 0.5;
+  const double j = row + 0.5;
+  const auto& t = transform;
+  const double w = t[6] * i + t[7] * j + t[8];
+  if (!(w > 0.0)) return {};
+  const double x = (t[0] * i + t[1] * j + t[2]) / w;
+  const double y = (t[3] * i + t[4] * j + t[5]) / w;
+  PixelPlace place;
+  place.coordinates = {x / image_width, y / image_height};
+  place.jacobian = {(t[0] - x * t[6]) / w, (t[1] - x * t[7]) / w, (t[3] - y * t[6]) / w,
+                    (t[4] - y * t[7]) / w};
+  const auto is_usable = [](double value) { return std::abs(value) <= kLargestCoordinate; };
+  place.is_visible = std::all_of(place.coordinates.begin(), place.coordinates.end(), is_usable) &&
+                     std::all_of(place.jacobian.begin(), place.jacobian.end(), is_usable);
+  return place;
+}
+
+Image resample(const ImageView& image, const Homography& transform, int width, int height,
+               const ResampleOptions& options) {
+  check_arguments(image, transform, width, height, options);
+  const bool has_alpha = !options.premultiplied && (image.channels == 2 || image.channels == 4);
+  const TexelSource source(image);
+  const FilteredImage filtered(
+      source, [&] { return std::vector<unsigned char>(image.texel_count(), 1); },
+      {.alpha = has_alpha ? std::optional<int>(image.channels - 1) : std::nullopt,
+       .stays_opaque = !has_border(options.wrap),
+       .threads = options.threads,
+       .progress = options.progress.part(0.0, 0.05)});
+  const Sampler sampler(filtered.floats(), options, options.progress.part(0.05, 0.25));
+  Image result(width, height, image.channels);
+  parallel_ranges(static_cast<std::int64_t>(width) * height, sampler.batch(), options.threads,
+                  options.progress.part(0.25, 0.9), [&](std::int64_t begin, std::int64_t end) {
+                    resample_pixels(sampler, filtered.floats(), transform, begin, end, &result);
+                  });
+  if (filtered.is_multiplied()) {
+    filtered.divide_by_alpha(WrapModes(), options.progress.part(0.9, 1.0), options.threads,
+                             &result);
+    clear_beyond_horizon(image, transform, options.threads, &result);
+  }
+  options.progress.report(1.0);
+  return result;
+}
+
+}  // namespace prefilter

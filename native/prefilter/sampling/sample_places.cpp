@@ -1,0 +1,52 @@
+#include "prefilter/sampling/sample_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "prefilter/base/error.h"
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/text.h"
+
+namespace prefilter {
+
+void check_coordinates(std::span<const TexturePlace> coordinates) {
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    for (const double value : coordinates[i]) {
+      if (std::abs(value) <= kLargestCoordinate) continue;
+      throw_invalid("coordinates: found " + to_text(value) + " in row " + std::to_string(i) +
+                    "; finite numbers are needed");
+    }
+  }
+}
+
+void check_places(const SamplePlaces& places) {
+  check_coordinates(places.coordinates);
+  if (places.scales.size() != 1 && places.scales.size() != places.coordinates.size()) {
+    throw_invalid("scales: found " + std::to_string(places.scales.size()) + "; " +
+                  std::to_string(places.coordinates.size()) +
+                  ", as many as coordinates, or one are needed");
+  }
+  for (std::size_t i = 0; i < places.scales.size(); ++i) {
+    const double scale = places.scales[i];
+    if (std::isfinite(scale) && scale >= 0.0) continue;
+    throw_invalid("scales: found " + to_text(scale) + " at " + std::to_string(i) +
+                  "; finite numbers of at least 0 are needed");
+  }
+}
+
+void check_jacobians(std::span<const TextureJacobian> jacobians, std::size_t samples) {
+  if (jacobians.size() != samples) {
+    throw_invalid("jacobians: " + std::to_string(jacobians.size()) + " for " +
+                  std::to_string(samples) + " samples; one for each is needed");
+  }
+  for (std::size_t i = 0; i < jacobians.size(); ++i) {
+    for (const double value : jacobians[i]) {
+      if (std::isfinite(value)) continue;
+      throw_invalid("jacobians: found " + to_text(value) + " in that of sample " +
+                    std::to_string(i) + "; finite numbers are needed");
+    }
+  }
+}
+
+}  // namespace prefilter

@@ -1,0 +1,37 @@
+"""Images of any number of channels, for native functions that take up to four."""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+
+from .arguments import ProgressCallback, as_progress, progress_part
+from .arrays import FloatArray, check_texels
+
+_CHANNELS_AT_ONCE = 4
+
+Found = TypeVar("Found")
+
+
+def in_channel_groups(
+    image: FloatArray,
+    premultiplied: bool,
+    filtered: Callable[[FloatArray, bool, ProgressCallback | None], Found],
+    progress: ProgressCallback | None,
+) -> list[Found]:
+    """What `filtered` makes of up to four channels at a time.
+
+    It is given the channels, whether they are to be filtered as they stand, and what to tell its
+    progress. Images of more than four channels have no alpha.
+    """
+    channels = image.shape[2]
+    if channels <= _CHANNELS_AT_ONCE:
+        return [filtered(image, premultiplied, as_progress(progress))]
+    check_texels("image", image)  # here, where channels have their own numbers
+    found = []
+    for begin in range(0, channels, _CHANNELS_AT_ONCE):
+        end = min(begin + _CHANNELS_AT_ONCE, channels)
+        part = np.ascontiguousarray(image[..., begin:end])
+        reports = progress_part(progress, begin / channels, end / channels)
+        found.append(filtered(part, True, reports))
+    return found
