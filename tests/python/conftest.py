@@ -28,6 +28,7 @@ SAME_IN_ANY_PYTHON = {
     "test_rasterize_oracle.py",
     "test_reader.py",
     "test_resize.py",
+    "test_sampling_laws.py",
     "test_sampling_oracle.py",
     "test_sampling_sample.py",
     "test_scan_files.py",
