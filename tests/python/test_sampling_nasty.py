@@ -47,12 +47,12 @@ def section_of(table, name, value):
 
 
 CHANGES = [
-    (lambda t: t.update(format="prefilter"), ["format", "prefilter sampling table"]),
+    (lambda t: t.update(format="prefilter"), ["'prefilter'", "prefilter sampling table"]),
     (lambda t: t.update(version=2), ["version 2"]),
     (lambda t: t.update(version="1"), ["version"]),
     (lambda t: t.update(filter="sinc"), ["filter", "sinc"]),
     (lambda t: t.update(filter=None), ["filter"]),
-    (lambda t: t.update(texels=4), ["texels"]),
+    (lambda t: t.update(texels=4), ["offsets", "4"]),
     (lambda t: t.update(texels=-1), []),
     (lambda t: t.update(texels=1e300), []),
     (lambda t: t.update(texels=10**30), []),

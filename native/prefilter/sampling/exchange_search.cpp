@@ -78,9 +78,12 @@ class Exchanges {
       }
     }
     if (best < 0) return false;
+    const std::vector<int> old_members = members_;
     std::vector<int> members = members_;
     members.push_back(best);
-    return set_members(std::move(members));
+    if (set_members(std::move(members))) return true;
+    set_members(old_members);
+    return false;
   }
 
   // Makes the exchange that lowers the error the most. Returns whether there is one.
@@ -242,10 +245,12 @@ FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& pr
   double best_error = std::numeric_limits<double>::infinity();
   for (int start = 0; start <= kRandomStarts; ++start) {
     progress.report(static_cast<double>(start) / (kRandomStarts + 1));
-    bool is_solved =
-        exchanges.set_members(start == 0 ? std::vector<int>{order[0]} : drawn(pool, count, random));
-    while (is_solved && exchanges.members().size() < count) is_solved = exchanges.add();
-    if (!is_solved) continue;
+    if (!exchanges.set_members(start == 0 ? std::vector<int>{order[0]}
+                                          : drawn(pool, count, random))) {
+      continue;
+    }
+    while (exchanges.members().size() < count && exchanges.add()) {
+    }
     while (exchanges.exchange()) {
     }
     if (exchanges.error() < best_error) {

@@ -8,7 +8,8 @@ namespace prefilter {
 
 /// The best set of `texels` candidates that exchanges lead to, from a greedy start and from random
 /// ones that are the same in every run: no exchange of one of its texels for another lowers its
-/// error. The system has at least that many candidates.
+/// error. The system has at least that many candidates; the set has fewer where all others are sums
+/// of its own.
 FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& progress);
 
 }  // namespace prefilter

@@ -300,11 +300,16 @@ def _parsed(data: bytes) -> _native.SamplingTable:
         grid,
         slices,
         degree,
-        tuple(_section(section, texels) for section in sections),
+        tuple(
+            _section(section, levels, texels)
+            for section, levels in zip(sections, _LEVELS, strict=True)
+        ),
     )
 
 
-def _section(found: Any, texels: int) -> tuple[np.ndarray, ...]:
+def _section(found: Any, levels: int, texels: int) -> tuple[np.ndarray, ...]:
+    if _member(found, "levels", int) != levels:
+        raise ValueError(f"levels: found {found['levels']}, in the place of {levels}")
     offsets = _array(found, "offsets")
     if not np.array_equal(offsets, np.rint(offsets)) or np.abs(offsets).max(initial=0) > 2**15:
         raise ValueError("offsets: small whole numbers are needed")
