@@ -58,9 +58,20 @@ std::vector<Subdomain::Node> Subdomain::quadrature(int panels) const {
   std::vector<Node> nodes;
   const std::vector<LineNode> along_f =
       has_f_ ? line_quadrature(f_low_, f_high_, panels) : std::vector<LineNode>{{0.0, 1.0}};
-  for (const LineNode& x : line_quadrature(x_low_, x_high_, panels)) {
-    const double y_end = is_triangle_ ? x.x : y_high_;
-    for (const LineNode& y : line_quadrature(y_low_, y_end, panels)) {
+  const std::vector<LineNode> along_x = line_quadrature(x_low_, x_high_, panels);
+  const std::vector<LineNode> along_y = line_quadrature(y_low_, y_high_, panels);
+  const double panel_width = (y_high_ - y_low_) / panels;
+  for (std::size_t i = 0; i < along_x.size(); ++i) {
+    const LineNode& x = along_x[i];
+    std::vector<LineNode> below = along_y;
+    if (is_triangle_) {  // panels below the diagonal, and the part below it of the one on it
+      const std::size_t panel = i / kNodes;
+      below.resize(panel * kNodes);
+      const double begin = y_low_ + static_cast<double>(panel) * panel_width;
+      const std::vector<LineNode> last = line_quadrature(begin, x.x, 1);
+      below.insert(below.end(), last.begin(), last.end());
+    }
+    for (const LineNode& y : below) {
       for (const LineNode& f : along_f) {
         nodes.push_back({x.x, y.x, has_f_ ? f.x : x.x * y.x, x.weight * y.weight * f.weight});
       }

@@ -73,32 +73,72 @@ LinearWeights linear_weights(int finer, double x) {
   return {static_cast<int>(first), {first + 1.0 - position, position - first}};
 }
 
-double trilinear_error(const FilterProducts& filters, const Subdomain& subdomain) {
-  struct Texel {
-    int finer;
-    int x;
-    int y;
-    double weight;
+// Products along an axis of linear interpolation in the cell's level and the finer one.
+class InterpolationProducts {
+ public:
+  explicit InterpolationProducts(const FilterProducts& filters)
+      : filters_(filters), levels_(std::min(filters.levels(), 2)) {}
+
+  struct WithSample {
+    double of_sample = 0.0;
+    std::array<double, 2> of_levels{};
   };
-  double error = 0.0;
-  for (const Subdomain::Node& node : subdomain.quadrature(2)) {
-    std::vector<Texel> texels;
-    for (int finer = 0; finer < std::min(filters.levels(), 2); ++finer) {
-      const double share = filters.levels() == 1 ? 1.0 : (finer == 0 ? node.f : 1.0 - node.f);
-      const LinearWeights along_x = linear_weights(finer, node.x);
-      const LinearWeights along_y = linear_weights(finer, node.y);
-      for (int i = 0; i < 4; ++i) {
-        texels.push_back({finer, along_x.first + i % 2, along_y.first + i / 2,
-                          share * along_x.weights[i % 2] * along_y.weights[i / 2]});
+  const WithSample& with_sample(double x, double f) {
+    const auto [found, is_new] = with_samples_.try_emplace({x, f});
+    WithSample& products = found->second;
+    if (!is_new) return products;
+    products.of_sample = filters_.of_sample(x, f);
+    for (int finer = 0; finer < levels_; ++finer) {
+      const LinearWeights linear = linear_weights(finer, x);
+      for (int i = 0; i < 2; ++i) {
+        products.of_levels[finer] +=
+            linear.weights[i] * filters_.with_sample(finer, linear.first + i, x, f);
       }
     }
-    double value = filters.of_sample(node.x, node.f) * filters.of_sample(node.y, node.f);
-    for (const Texel& a : texels) {
-      value -= 2.0 * a.weight * filters.with_sample(a.finer, a.x, node.x, node.f) *
-               filters.with_sample(a.finer, a.y, node.y, node.f);
-      for (const Texel& b : texels) {
-        value += a.weight * b.weight * filters.of_texels(a.finer, a.x, b.finer, b.x) *
-                 filters.of_texels(a.finer, a.y, b.finer, b.y);
+    return products;
+  }
+
+  using OfLevels = std::array<std::array<double, 2>, 2>;
+  const OfLevels& of_levels(double x) {
+    const auto [found, is_new] = of_levels_.try_emplace(x);
+    OfLevels& products = found->second;
+    for (int a = 0; is_new && a < levels_; ++a) {
+      for (int b = 0; b < levels_; ++b) {
+        const LinearWeights left = linear_weights(a, x);
+        const LinearWeights right = linear_weights(b, x);
+        for (int k = 0; k < 4; ++k) {
+          const int i = k / 2;
+          const int j = k % 2;
+          products[a][b] += left.weights[i] * right.weights[j] *
+                            filters_.of_texels(a, left.first + i, b, right.first + j);
+        }
+      }
+    }
+    return products;
+  }
+
+ private:
+  const FilterProducts& filters_;
+  int levels_;
+  std::map<std::pair<double, double>, WithSample> with_samples_;
+  std::map<double, OfLevels> of_levels_;
+};
+
+double trilinear_error(const FilterProducts& filters, const Subdomain& subdomain, int panels) {
+  InterpolationProducts axis(filters);
+  double error = 0.0;
+  for (const Subdomain::Node& node : subdomain.quadrature(panels)) {
+    const auto& along_x = axis.with_sample(node.x, node.f);
+    const auto& along_y = axis.with_sample(node.y, node.f);
+    const auto& of_levels_x = axis.of_levels(node.x);
+    const auto& of_levels_y = axis.of_levels(node.y);
+    const bool has_finer = filters.levels() > 1;
+    const std::array<double, 2> shares = {has_finer ? node.f : 1.0, has_finer ? 1.0 - node.f : 0.0};
+    double value = along_x.of_sample * along_y.of_sample;
+    for (int a = 0; a < 2; ++a) {
+      value -= 2.0 * shares[a] * along_x.of_levels[a] * along_y.of_levels[a];
+      for (int b = 0; b < 2; ++b) {
+        value += shares[a] * shares[b] * of_levels_x[a][b] * of_levels_y[a][b];
       }
     }
     error += node.weight * value;
@@ -114,7 +154,10 @@ SubdomainSystem::SubdomainSystem(const Kernel& kernel, const TableShape& shape,
   basis = orthonormal_basis(subdomain, shape.degree);
   unit = std::sqrt(subdomain.volume());
   const FilterProducts filters(kernel, section.levels);
-  trilinear_error = prefilter::trilinear_error(filters, subdomain);
+  // Boxes meet at edges, where their product has a kink; sums have one where a texel of level 0
+  // comes into a filter's reach, and bilinear interpolation between texels.
+  const int panels = kernel.degree() == 0 ? 4 : (section.levels == 3 ? 1 : 3);
+  trilinear_error = prefilter::trilinear_error(filters, subdomain, std::max(panels, 2));
 
   AxisProducts axis(filters, subdomain);
   std::vector<std::pair<int, int>> numbers;  // of the candidates, along x and along y
@@ -133,8 +176,6 @@ SubdomainSystem::SubdomainSystem(const Kernel& kernel, const TableShape& shape,
 
   const std::size_t count = all.size();
   std::vector<double> sides(count * basis.count);
-  // Boxes meet at edges, where their product has a kink.
-  const int panels = kernel.degree() == 0 ? 4 : 1;
   for (const Subdomain::Node& node : subdomain.quadrature(panels)) {
     const Terms terms = terms_at(node.x, node.y, node.f);
     std::array<double, kMostTerms> polynomials{};
