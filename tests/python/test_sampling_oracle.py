@@ -7,7 +7,7 @@ import sampling_oracle as oracle
 from kernels import FILTERS
 
 # As shares of errors, by how many levels there are. Kernels are fitted to 1e-5; with two levels,
-# texels enter the filter one by one, and neither side's quadrature heeds the kinks.
+# texels enter the filter one by one, and this side's quadrature does not heed the kinks.
 TOLERANCES = {3: 2e-3, 2: 1e-2, 1: 1e-3}
 # Below that an error is rounding.
 NO_ERROR = 1e-9
@@ -34,6 +34,8 @@ def parts_of(table, levels):
 
 def rule(filter, levels):
     """Panels, and nodes in each."""
+    if levels == 2 and filter == "tent":  # Where errors are small the kinks matter most.
+        return 4, 4
     return (2, 3) if levels == 3 and filter != "box" else (2, 4)
 
 
@@ -166,7 +168,7 @@ def test_standard_tables_are_within_the_errors_that_they_state(filter):
                 part,
                 offsets.tolist(),
                 coefficients,
-                *((2, 4) if filter == "box" else (1, 4)),
+                *(rule(filter, levels) if filter in ("box", "tent") else (1, 4)),
             )
             assert section.errors[index] == pytest.approx(
                 expected, rel=TOLERANCES[levels], abs=NO_ERROR
