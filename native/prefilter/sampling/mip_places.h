@@ -1,0 +1,10 @@
+// Between which levels samples lie, many at a time.
+#pragma once
+
+namespace prefilter {
+
+/// Of `count` scales in [0, inf), in texels of level 0: what place_between_levels says, the cell's
+/// level and f, to the precision of floats. f rises with the scale, and is 1 at powers of 2.
+void place_between_levels(const double* scales, int count, int levels, int* cell_levels, float* f);
+
+}  // namespace prefilter

@@ -1,0 +1,41 @@
+// Samples that are worked out together, step by step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "prefilter/base/lanes.h"
+#include "prefilter/sampling/texel_plan.h"
+
+namespace prefilter {
+
+inline constexpr int kBlockSamples = 128;
+
+struct SampleBlock {
+  int count = 0;
+  std::array<Pair, kBlockSamples> coordinates;  // as wrap_coordinate returns them
+  std::array<int, kBlockSamples> cell_levels;   // see MipPlace
+  std::array<float, kBlockSamples> f;
+};
+
+/// Numbers of samples of a block.
+struct SampleList {
+  int count = 0;
+  std::array<std::int16_t, kBlockSamples> numbers;
+
+  /// Adds a number, or leaves the list as it is, in the same time.
+  void add(int number, bool is_member) {
+    numbers[count] = static_cast<std::int16_t>(number);
+    count += static_cast<int>(is_member);
+  }
+};
+
+/// Writes the samples that read no texel outside of its level, and lists the others.
+void sample_block(const TexelPlan& plan, const Pyramid& pyramid, const SampleBlock& block,
+                  float* result, SampleList& others);
+
+/// The same by trilinear interpolation.
+void sample_block_trilinearly(const Pyramid& pyramid, const SampleBlock& block, float* result,
+                              SampleList& others);
+
+}  // namespace prefilter
