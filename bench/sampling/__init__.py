@@ -1,0 +1,1 @@
+"""Samples of mipmaps: throughput beside other samplers."""
