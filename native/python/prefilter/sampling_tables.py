@@ -208,6 +208,24 @@ class SamplingTable:
         return {levels: self._native.error_ratio(levels) for levels in _LEVELS}
 
     @property
+    def largest_jump(self) -> float:
+        """The largest step of a sample across a border of subdomains, with three levels available.
+
+        Sets of texels change from subdomain to subdomain, so samples are not quite continuous. This
+        is the largest step there is for any image with values from 0 to 1: for the image that fits
+        the difference of both sets' filters best. In photographs steps are far smaller.
+        """
+        return self._native.largest_jump(3)
+
+    @property
+    def largest_jumps(self) -> dict[int, float]:
+        """`largest_jump` where three, two and one levels are available.
+
+        The borders where one level more becomes available count for the fewer ones.
+        """
+        return {levels: self._native.largest_jump(levels) for levels in _LEVELS}
+
+    @property
     def gaps(self) -> npt.NDArray[np.float64] | None:
         """`TableSection.gaps` where three levels are available."""
         return self.section(3).gaps
