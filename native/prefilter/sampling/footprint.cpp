@@ -4,6 +4,21 @@
 #include <cmath>
 
 namespace prefilter {
+namespace {
+
+// Where a width is a power of two, as rotations have it all over an image, tables change from some
+// texels to others. It is not left to rounding which of them a sample takes.
+double steady(double width) {
+  if (width == 0.0) return width;
+  constexpr double kRounding = 1e-9;
+  int exponent = 0;
+  const double fraction = std::frexp(width, &exponent);  // 1/2 to 1
+  if (fraction < 0.5 * (1.0 + kRounding)) return std::ldexp(0.5, exponent);
+  if (fraction > 1.0 - kRounding) return std::ldexp(1.0, exponent);
+  return width;
+}
+
+}  // namespace
 
 Footprint singular_values(const TextureJacobian& jacobian) {
   double largest = 0.0;
@@ -21,7 +36,7 @@ Footprint singular_values(const TextureJacobian& jacobian) {
   const double angle = 0.5 * std::atan2(beside, half);
   // The smaller one by the determinant: no difference of near equals.
   const double minor = std::min(major, std::abs(xi * yj - xj * yi) / major);
-  return {major * largest, minor * largest, std::cos(angle), std::sin(angle)};
+  return {steady(major * largest), steady(minor * largest), std::cos(angle), std::sin(angle)};
 }
 
 Footprint footprint_of(const TextureJacobian& jacobian, int last_level) {

@@ -14,7 +14,8 @@ struct Footprint {
   double direction_y = 0.0;
 };
 
-/// The singular values of a Jacobian, whose values are finite, and its direction; as they are.
+/// The singular values of a Jacobian, whose values are finite, and its direction. Those that are a
+/// power of two but for rounding are that power.
 Footprint singular_values(const TextureJacobian& jacobian);
 
 /// The same with widths of at least 1, and at most that of a texel of level `last_level`: no filter
