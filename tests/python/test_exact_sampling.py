@@ -101,7 +101,7 @@ def test_samples_at_texels_are_the_levels(filter):
 
 
 def brute_force_ewa(image, place, jacobian, wrap):
-    height, width, channels = image.shape
+    height, width, _ = image.shape
     u, sizes, _ = np.linalg.svd(jacobian)
     last = max(width, height).bit_length() - 1
     sizes = np.clip(sizes, 1.0, 2.0**last)
