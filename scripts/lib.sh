@@ -31,8 +31,10 @@ host_packages=(ca-certificates cmake ninja-build g++ libgtest-dev python3-dev py
 # Debian's Blender comes without OpenImageIO's and OpenVDB's Python modules, without fonts and without a screen.
 blender_packages=(python3-openimageio openimageio-tools python3-numpy python3-scipy python3-pytest
   python3-pil python3-openvdb fonts-dejavu-core xvfb xauth)
+# Tests of shaders compile them, and run them on Mesa's software renderer.
+shader_packages=(glslang-tools libegl1 python3-moderngl)
 declare -A root_packages=(
-  [trixie]="blender ${blender_packages[*]} python3-dev pybind11-dev ca-certificates"
+  [trixie]="blender ${blender_packages[*]} ${shader_packages[*]} python3-dev pybind11-dev ca-certificates"
   [sid]="blender ${blender_packages[*]} python3-dev pybind11-dev ca-certificates python3-cattr python3-requests"
 )
 

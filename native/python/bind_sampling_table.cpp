@@ -11,6 +11,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/sampling/build_table.h"
+#include "prefilter/sampling/jumps.h"
 #include "prefilter/sampling/sampling_table.h"
 
 namespace py = pybind11;
@@ -105,7 +106,9 @@ void bind_sampling_table(py::module_& m) {
       .def(
           "error_ratio",
           [](const SamplingTable& table, int levels) { return error_ratio(table.section(levels)); },
-          py::arg("levels"));
+          py::arg("levels"))
+      .def("largest_jump", &largest_jump, py::arg("levels"),
+           py::call_guard<py::gil_scoped_release>());
   m.def("build_sampling_table", &bound_build, py::arg("filter"), py::arg("texels"), py::arg("grid"),
         py::arg("slices"), py::arg("degree"), py::arg("certify"), py::arg("progress"),
         py::arg("threads"));

@@ -12,6 +12,7 @@ from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_name, as_progress
 from ._border.arrays import as_threads
 from ._border.output import as_path, as_target, replace_file
+from ._shaders import gpu, osl
 from .filtered_levels import SAMPLING_FILTERS
 
 STANDARD_TEXELS = (4, 6, 8)
@@ -208,6 +209,24 @@ class SamplingTable:
         return {levels: self._native.error_ratio(levels) for levels in _LEVELS}
 
     @property
+    def largest_jump(self) -> float:
+        """The largest step of a sample across a border of subdomains, with three levels available.
+
+        Sets of texels change from subdomain to subdomain, so samples are not quite continuous. This
+        is the largest step there is for any image with values from 0 to 1: for the image that fits
+        the difference of both sets' filters best. In photographs steps are far smaller.
+        """
+        return self._native.largest_jump(3)
+
+    @property
+    def largest_jumps(self) -> dict[int, float]:
+        """`largest_jump` where three, two and one levels are available.
+
+        The borders where one level more becomes available count for the fewer ones.
+        """
+        return {levels: self._native.largest_jump(levels) for levels in _LEVELS}
+
+    @property
     def gaps(self) -> npt.NDArray[np.float64] | None:
         """`TableSection.gaps` where three levels are available."""
         return self.section(3).gaps
@@ -223,6 +242,37 @@ class SamplingTable:
         offsets, coefficients, errors, trilinear_errors, gaps = self._native.section(levels)
         certified = gaps if len(gaps) > 0 else None
         return TableSection(levels, offsets, coefficients, errors, trilinear_errors, certified)
+
+    def glsl(self, *, name: str = "prefilter") -> str:
+        """GLSL source that samples textures by this table, to be included in shaders.
+
+        For GLSL 3.30 and ES 3.00, and later. It declares functions (`prefilter_sample`,
+        `prefilter_mip_value`, `prefilter_pick`), constants and macros, and neither a version nor
+        uniforms; a comment at its beginning describes them. Its use is free of any conditions.
+
+        Args:
+            name: What all its names begin with, macros in upper case, so that a shader can hold
+                several tables. Letters, digits and single underscores, beginning with a letter.
+
+        Raises:
+            ValueError: That is no such name.
+        """
+        return gpu.glsl(self, name)
+
+    def hlsl(self, *, name: str = "prefilter") -> str:
+        """HLSL source for shader model 4.0 and later; see `glsl`."""
+        return gpu.hlsl(self, name)
+
+    def osl(self, *, name: str = "prefilter") -> str:
+        """The source of an OSL shader, called `name`, that samples picture files by this table.
+
+        One file holds one level; a comment at its beginning describes the shader's parameters. Its
+        use is free of any conditions.
+
+        Raises:
+            ValueError: `name` is no name as `glsl` takes it.
+        """
+        return osl.osl(self, name)
 
     def __repr__(self) -> str:
         """What tells it from other tables."""

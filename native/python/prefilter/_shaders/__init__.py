@@ -1,0 +1,1 @@
+"""Shader source that samples textures by a table: GLSL, HLSL and OSL with the table's numbers."""

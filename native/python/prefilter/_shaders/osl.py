@@ -1,0 +1,166 @@
+"""OSL: a shader that reads texels from files, one file a level."""
+
+from string import Template
+
+from .table_numbers import Table, TableNumbers, checked_name, commented, number, wrapped
+
+_ABOUT = """
+Samples a texture at any scale from $texels texels of its mipmap, by a table for the filter
+"$filter": $about.
+
+Written by Prefilter. Prefilter's license does not extend to this text: use, change and pass it on
+as you like. It comes without any warranty.
+
+Every level is a picture file of its own, named Levels, number, Extension: wood.0.exr, wood.1.exr
+and so on, level 0 first. OSL has no way to ask for a level of one file, so that is what works in
+every renderer. The levels must be those of the same filter, each the floor of half of the one
+before it: prefilter.sampling_levels(image, filter="$filter") makes them. Files should be
+scene-linear, with premultiplied alpha; texels are read as the renderer decodes them.
+
+  Levels     the files' names up to the number, with their folder: "/textures/wood."
+  Extension  what follows the number
+  Count      how many levels there are; 0: down to 1 x 1
+  Vector     u and v; (0, 0) is the lower left corner of the picture, (1, 1) the upper right
+  Scale      the width of the filter's unit (a pixel, usually) in texels of level 0; 0: from how u
+             and v change from pixel to pixel, by the longer axis of the pixel's footprint
+  WrapU, WrapV  what lies outside of the picture: 0 its nearest texel, 1 the picture again, 2 zero
+"""
+
+_SHADER = """
+struct ${name}_Level {
+  int number;
+  int width;
+  int height;
+  int x;  // the texel that an offset of 0 and 0 is packed for
+  int y;
+};
+
+${name}_Level ${name}_level(int number, int width, int height, float u, float v, float x, float y,
+    int mirror_x, int mirror_y, int cell)
+{
+  ${name}_Level level;
+  level.number = max(number, 0);
+  level.width = max(width >> level.number, 1);
+  level.height = max(height >> level.number, 1);
+  level.x = (int)floor(u * level.width - cell * x + 0.5) - 64 + (mirror_x & (128 + cell));
+  level.y = (int)floor(v * level.height - cell * y + 0.5) - 64 + (mirror_y & (128 + cell));
+  return level;
+}
+
+int ${name}_wrap(int i, int size, int wrap)
+{
+  if (wrap == 1) {
+    return i - size * (int)floor((i + 0.5) / size);
+  }
+  return clamp(i, 0, size - 1);
+}
+
+shader $name(
+    string Levels = "",
+    string Extension = ".exr",
+    int Count = 0,
+    point Vector = point(u, v, 0),
+    float Scale = 0,
+    int WrapU = 1,
+    int WrapV = 1,
+    output color Color = 0,
+    output float Alpha = 0)
+{
+  int offsets[$rows] = {
+$offsets};
+  float coefficients[$numbers] = {
+$coefficients};
+
+  int size[2] = {1, 1};
+  gettextureinfo(concat(Levels, "0", Extension), "resolution", size);
+  int last = Count > 0 ? Count - 1 : (int)log2(max(size[0], size[1]) + 0.5);
+
+  float scale = Scale;
+  if (scale <= 0) {
+    // The larger singular value of the pixel's Jacobian.
+    vector a = Dx(Vector) * vector(size[0], size[1], 0);
+    vector b = Dy(Vector) * vector(size[0], size[1], 0);
+    float half_sum = 0.5 * (dot(a, a) + dot(b, b));
+    scale = sqrt(half_sum + hypot(0.5 * (dot(a, a) - dot(b, b)), dot(a, b)));
+  }
+  float mip = clamp(log2(max(scale, 1)), 0, last);
+  int cell_level = (int)ceil(mip);
+  float f = mip - max(cell_level - 1, 0);
+
+  // Farther out nothing changes, and whole numbers stay small.
+  float s = clamp(WrapU == 1 ? Vector[0] - floor(Vector[0]) : Vector[0], -128, 129);
+  float t = clamp(WrapV == 1 ? Vector[1] - floor(Vector[1]) : Vector[1], -128, 129);
+  float x = s * max(size[0] >> cell_level, 1);
+  float y = t * max(size[1] >> cell_level, 1);
+  x -= floor(x);
+  y -= floor(y);
+  int mirror_x = x > 0.5 ? -1 : 0;
+  int mirror_y = y > 0.5 ? -1 : 0;
+  ${name}_Level levels[3];
+  for (int finer = 0; finer < 3; ++finer) {
+    levels[finer] = ${name}_level(cell_level - finer, size[0], size[1], s, t, x, y, mirror_x,
+        mirror_y, 1 << finer);
+  }
+
+  float folded_x = 0.5 - abs(x - 0.5);
+  float folded_y = 0.5 - abs(y - 0.5);
+  int shift_x = folded_y > folded_x ? 8 : 0;
+  float p = max(folded_x, folded_y);
+  float q = min(folded_x, folded_y);
+  int slice = clamp((int)(f * $slices), 0, $last_slice);
+  int i = clamp((int)(p * $grid), 0, $last_column);
+  int j = clamp((int)(q * $grid), 0, i);
+  int section = cell_level == 0 ? 0 : (cell_level == 1 ? 1 : 1 + $slices);
+  if (cell_level == 0) {
+    f = p * q;
+  }
+  int row = $texels * ((section + slice) * $subdomains_of_slice + i * (i + 1) / 2 + j);
+
+  Color = 0;
+  Alpha = 0;
+  for (int texel = row; texel < row + $texels; ++texel) {
+    ${name}_Level level = levels[offsets[texel] >> 16];
+    int at_x = (((offsets[texel] >> shift_x) & 255) ^ mirror_x) + level.x;
+    int at_y = (((offsets[texel] >> (8 - shift_x)) & 255) ^ mirror_y) + level.y;
+    int read_x = ${name}_wrap(at_x, level.width, WrapU);
+    int read_y = ${name}_wrap(at_y, level.height, WrapV);
+    if ((WrapU != 2 || read_x == at_x) && (WrapV != 2 || read_y == at_y)) {
+      int term = $terms * texel;
+$weight
+      float alpha = 1;
+      color read = texture(concat(Levels, format("%d", level.number), Extension),
+          (read_x + 0.5) / level.width, 1 - (read_y + 0.5) / level.height, 0, 0, 0, 0,
+          "interp", "closest", "wrap", "clamp", "alpha", alpha);
+      Color += weight * read;
+      Alpha += weight * alpha;
+    }
+  }
+}
+"""
+
+# In the order of the terms (sampling_table.h).
+_MONOMIALS = ("1", "p", "q", "f", "p * p", "q * q", "f * f", "p * q", "p * f", "q * f")
+
+
+def osl(table: Table, name: str) -> str:
+    """OSL whose shader is called `name`."""
+    numbers = TableNumbers.of(table)
+    terms = numbers.coefficients.shape[1]
+    weight = " +\n          ".join(
+        f"coefficients[term + {term}] * {_MONOMIALS[term]}".removesuffix(" * 1")
+        for term in range(terms)
+    )
+    words = {
+        **numbers.constants(),
+        "name": checked_name(name),
+        "filter": numbers.filter,
+        "about": numbers.about(),
+        "numbers": numbers.coefficients.size,
+        "terms": terms,
+        "offsets": wrapped(str(offset) for offset in numbers.offsets),
+        "coefficients": wrapped(map(number, numbers.coefficients.ravel())),
+        "weight": f"      float weight = {weight};",
+    }
+    return "\n".join(
+        [commented(Template(_ABOUT).substitute(words)), Template(_SHADER).substitute(words)]
+    )
