@@ -7,8 +7,8 @@
 #include <span>
 
 #include "prefilter/base/wrap.h"
-#include "prefilter/sampling/pyramid.h"
 #include "prefilter/sampling/sampling_table.h"
+#include "prefilter/sampling/wrapped_pyramid.h"
 
 namespace prefilter {
 
@@ -18,8 +18,8 @@ class TexelPlan;
 /// Samples are the sums of its texels but for the rounding of floats.
 class PyramidSampler {
  public:
-  /// `table` may be nullptr: trilinear interpolation. The table and the pyramid's texels must
-  /// outlive the sampler. Throws Error for a pyramid or a table that is none.
+  /// `table` may be nullptr: trilinear interpolation. The pyramid's texels must outlive
+  /// the sampler. Throws Error for a pyramid or a table that is none.
   PyramidSampler(const Pyramid& pyramid, const SamplingTable* table, const WrapModes& wrap);
   ~PyramidSampler();
   PyramidSampler(const PyramidSampler&) = delete;
@@ -32,9 +32,7 @@ class PyramidSampler {
               float* result) const;
 
  private:
-  Pyramid pyramid_;
-  const SamplingTable* table_;
-  WrapModes wrap_;
+  WrappedPyramid pyramid_;
   std::unique_ptr<const TexelPlan> plan_;  // where there is a table
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <utility>
 
 #include "prefilter/sampling/texel_sums.h"
@@ -11,6 +12,10 @@ namespace prefilter {
 namespace {
 
 using Four [[gnu::vector_size(16)]] = std::int32_t;
+
+// How many samples ahead of their sums texels are asked for, where caches do not hold them all.
+constexpr int kSamplesAhead = 8;
+constexpr std::size_t kCachedBytes = std::size_t{8} << 20;
 
 /// Where samples are in their cells and where those are in memory, for all of a block.
 struct CellPlaces {
@@ -22,8 +27,13 @@ struct CellPlaces {
   std::array<std::array<std::uintptr_t, 4>, kBlockSamples> corners;  // by level below the cells'
 };
 
-void find_cells(const TexelPlan& plan, const SampleBlock& block, CellPlaces& places,
-                SampleList& inside, SampleList& others) {
+/// Samples of a block whose texels are all inside of their levels, and the others.
+struct Sides {
+  SampleList inside;
+  SampleList outside;
+};
+
+void find_cells(const TexelPlan& plan, const SampleBlock& block, CellPlaces& places, Sides& sides) {
   for (int i = 0; i < block.count; ++i) {
     const PlannedCells& cells = plan.cells()[block.cell_levels[i]];
     const Pair uv = block.coordinates[i];
@@ -33,13 +43,10 @@ void find_cells(const TexelPlan& plan, const SampleBlock& block, CellPlaces& pla
     places.x[i] = static_cast<float>(in_cell[0]);
     places.y[i] = static_cast<float>(in_cell[1]);
     const bool is_inside = is_between(cells.low, cell, cells.high);
-    inside.add(i, is_inside);
-    others.add(i, !is_inside);
+    sides.inside.add(i, is_inside);
+    sides.outside.add(i, !is_inside);
     for (int finer = 0; finer < 3; ++finer) {
-      const double texels = 1 << finer;
-      const Pair corner = cells.nests || finer == 0
-                              ? cell * texels
-                              : floor_pair(uv * cells.sizes[finer] - in_cell * texels + 0.5);
+      const Pair corner = cells.corner(finer, uv, cell, in_cell);
       places.corners[i][finer] = cells.texels[finer] + distance(corner, cells.pitches[finer]);
     }
   }
@@ -96,107 +103,172 @@ inline Lanes weights_of_four(const float* c, int padded, Lanes x, Lanes y, Lanes
   return sum;
 }
 
-/// What a sample sums up.
+/// The texels of a sample that are all inside of their levels.
 struct TexelSet {
   const std::uintptr_t* corners;
   const std::uint8_t* finer;
-  const std::int32_t* offsets;
+  const std::int32_t* distances;
+
+  TexelSet(const PlannedCells& cells, const CellPlaces& places, int padded, int sample)
+      : corners(places.corners[sample].data()),
+        finer(cells.finer + places.subdomains[sample] * padded),
+        distances(cells.distances + places.tiles[sample] * padded) {}
 
   template <typename Value>
   const Value* texel(int i) const {
     return reinterpret_cast<const Value*>(corners[finer[i]] +
-                                          static_cast<std::uintptr_t>(std::int64_t{offsets[i]}));
+                                          static_cast<std::uintptr_t>(std::int64_t{distances[i]}));
   }
 };
 
-template <typename Value, int kTexels>
-inline void sum_four_channels(const TexelSet& set, const Lanes* weights, int texels,
-                              float* result) {
+/// Any texels.
+struct TexelList {
+  std::array<const void*, kMostTexels> texels;
+
+  template <typename Value>
+  const Value* texel(int i) const {
+    return static_cast<const Value*>(texels[i]);
+  }
+};
+
+template <typename Value, int kTexels, typename Set>
+inline void sum_four_channels(const Set& set, const Lanes* weights, int texels, float* result) {
+  const auto weighted = [&](int i) {
+    return all_lanes(weights[i / 4][i % 4]) * load_lanes(set.template texel<Value>(i));
+  };
   Lanes sum{};
   if constexpr (kTexels > 0) {
-    [&]<std::size_t... i>(std::index_sequence<i...>) {
-      ((sum += all_lanes(weights[i / 4][i % 4]) * load_lanes(set.texel<Value>(i))), ...);
-    }
+    [&]<std::size_t... i>(std::index_sequence<i...>) { ((sum += weighted(i)), ...); }
     (std::make_index_sequence<kTexels>());
   } else {
-    for (int i = 0; i < texels; ++i) {
-      sum += all_lanes(weights[i / 4][i % 4]) * load_lanes(set.texel<Value>(i));
-    }
+    for (int i = 0; i < texels; ++i) sum += weighted(i);
   }
   std::memcpy(result, &sum, sizeof sum);
 }
 
-template <typename Value>
-inline void sum_channels(const TexelSet& set, const Lanes* weights, int texels, int channels,
+template <typename Value, typename Set>
+inline void sum_channels(const Set& set, const Lanes* weights, int texels, int channels,
                          float* result) {
   std::fill_n(result, channels, 0.0F);
   for (int i = 0; i < texels; ++i) {
     const float weight = weights[i / 4][i % 4];
-    const Value* texel = set.texel<Value>(i);
+    const Value* texel = set.template texel<Value>(i);
     for (int c = 0; c < channels; ++c) result[c] += weight * static_cast<float>(texel[c]);
   }
 }
 
-/// kTexels is 0 where the number is not known ahead.
+/// A block, and what is known of it. kTexels is 0 where the number is not known ahead.
 template <typename Value, int kTexels, int kDegree>
-void sum_block(const TexelPlan& plan, int channels, const SampleBlock& block,
-               const CellPlaces& places, const SampleList& inside, float* result) {
-  const int texels = kTexels > 0 ? kTexels : plan.shape().texels;
-  const int padded = (texels + 3) / 4 * 4;
-  constexpr int kTerms = kDegree == 1 ? 4 : 10;
-  for (int k = 0; k < inside.count; ++k) {
-    const int i = inside.numbers[k];
-    const PlannedCells& cells = plan.cells()[block.cell_levels[i]];
-    const float* coefficients = cells.weights + places.subdomains[i] * (kTerms * padded);
+struct BlockSums {
+  const TexelPlan& plan;
+  int channels;
+  const SampleBlock& block;
+  const CellPlaces& places;
+  float* result;
+
+  int texels() const { return kTexels > 0 ? kTexels : plan.shape().texels; }
+  int padded() const { return (texels() + 3) / 4 * 4; }
+  const PlannedCells& cells(int sample) const { return plan.cells()[block.cell_levels[sample]]; }
+
+  template <typename Set>
+  void sum(int sample, const Set& set) const {
+    constexpr int kTerms = kDegree == 1 ? 4 : 10;
+    const float* coefficients =
+        cells(sample).weights + places.subdomains[sample] * (kTerms * padded());
     std::array<Lanes, kMostTexels / 4> weights;
-    const Lanes x = all_lanes(places.x[i]);
-    const Lanes y = all_lanes(places.y[i]);
-    const Lanes f = all_lanes(places.f[i]);
-    for (int four = 0; four < padded / 4; ++four) {
-      weights[four] = weights_of_four<kDegree>(coefficients + 4 * four, padded, x, y, f);
+    const Lanes x = all_lanes(places.x[sample]);
+    const Lanes y = all_lanes(places.y[sample]);
+    const Lanes f = all_lanes(places.f[sample]);
+    for (int four = 0; four < padded() / 4; ++four) {
+      weights[four] = weights_of_four<kDegree>(coefficients + 4 * four, padded(), x, y, f);
     }
-    const TexelSet set{places.corners[i].data(), cells.finer + places.subdomains[i] * padded,
-                       cells.offsets + places.tiles[i] * padded};
-    float* const values = result + static_cast<std::ptrdiff_t>(i) * channels;
+    float* const values = result + static_cast<std::ptrdiff_t>(sample) * channels;
     if (channels == 4) {
-      sum_four_channels<Value, kTexels>(set, weights.data(), texels, values);
+      sum_four_channels<Value, kTexels>(set, weights.data(), texels(), values);
     } else {
-      sum_channels<Value>(set, weights.data(), texels, channels, values);
+      sum_channels<Value>(set, weights.data(), texels(), channels, values);
     }
+  }
+
+  template <bool kPrefetches>
+  void sum_inside(const SampleList& samples) const {
+    for (int k = 0; k < samples.count; ++k) {
+      if (kPrefetches && k + kSamplesAhead < samples.count) {
+        const int ahead = samples.numbers[k + kSamplesAhead];
+        const TexelSet set(cells(ahead), places, padded(), ahead);
+        for (int i = 0; i < texels(); ++i) __builtin_prefetch(set.texel<Value>(i));
+      }
+      const int sample = samples.numbers[k];
+      sum(sample, TexelSet(cells(sample), places, padded(), sample));
+    }
+  }
+};
+
+/// The texels of a sample, read as the wrap modes say.
+TexelList wrapped_texels(const TexelPlan& plan, const WrappedPyramid& pyramid,
+                         const SampleBlock& block, int tile, int sample) {
+  const int cell_level = block.cell_levels[sample];
+  const PlannedCells& cells = plan.cells()[cell_level];
+  const Pair uv = block.coordinates[sample];
+  const Pair at = uv * cells.sizes[0];
+  const Pair cell = floor_pair(at);
+  std::array<std::array<int, 2>, 3> corners;
+  for (int finer = 0; finer < cells.available; ++finer) {
+    const Pair corner = cells.corner(finer, uv, cell, at - cell);
+    corners[finer] = {static_cast<int>(corner[0]), static_cast<int>(corner[1])};
+  }
+  const TexelOffset* const offsets = cells.unfolded + tile * plan.padded_texels();
+  TexelList list;
+  for (int i = 0; i < plan.shape().texels; ++i) {
+    const auto& [finer, x, y] = offsets[i];
+    list.texels[i] =
+        pyramid.texel(cell_level - finer, corners[finer][0] + x, corners[finer][1] + y);
+  }
+  return list;
+}
+
+template <typename Value, int kTexels, int kDegree>
+void sum_block(const TexelPlan& plan, const WrappedPyramid& pyramid, const SampleBlock& block,
+               const CellPlaces& places, const Sides& sides, float* result) {
+  const BlockSums<Value, kTexels, kDegree> sums{plan, pyramid.pyramid.channels, block, places,
+                                                result};
+  if (plan.bytes() > kCachedBytes) {
+    sums.template sum_inside<true>(sides.inside);
+  } else {
+    sums.template sum_inside<false>(sides.inside);
+  }
+  for (int k = 0; k < sides.outside.count; ++k) {
+    const int sample = sides.outside.numbers[k];
+    sums.sum(sample, wrapped_texels(plan, pyramid, block, places.tiles[sample], sample));
   }
 }
 
 template <typename Value>
-void sum_texels(const TexelPlan& plan, int channels, const SampleBlock& block,
-                const CellPlaces& places, const SampleList& inside, float* result) {
-  const auto sum = [&](auto function) { function(plan, channels, block, places, inside, result); };
-  if (plan.shape().degree == 2) {
-    sum(sum_block<Value, 0, 2>);
-  } else if (plan.shape().texels == 8) {
-    sum(sum_block<Value, 8, 1>);
-  } else if (plan.shape().texels == 6) {
-    sum(sum_block<Value, 6, 1>);
-  } else if (plan.shape().texels == 4) {
-    sum(sum_block<Value, 4, 1>);
-  } else {
-    sum(sum_block<Value, 0, 1>);
+auto block_function(const TableShape& shape) {
+  if (shape.degree == 2) return &sum_block<Value, 0, 2>;
+  switch (shape.texels) {
+    case 4:
+      return &sum_block<Value, 4, 1>;
+    case 6:
+      return &sum_block<Value, 6, 1>;
+    case 8:
+      return &sum_block<Value, 8, 1>;
+    default:
+      return &sum_block<Value, 0, 1>;
   }
 }
 
 }  // namespace
 
-void sample_block(const TexelPlan& plan, const Pyramid& pyramid, const SampleBlock& block,
-                  float* result, SampleList& others) {
+void sample_block(const TexelPlan& plan, const WrappedPyramid& pyramid, const SampleBlock& block,
+                  float* result) {
   CellPlaces places;
-  SampleList inside;
-  others.count = 0;
-  find_cells(plan, block, places, inside, others);
+  Sides sides;
+  find_cells(plan, block, places, sides);
   find_subdomains(plan, block, places);
-  if (pyramid.bytes) {
-    sum_texels<std::uint8_t>(plan, pyramid.channels, block, places, inside, result);
-  } else {
-    sum_texels<float>(plan, pyramid.channels, block, places, inside, result);
-  }
+  const auto sum = pyramid.pyramid.bytes ? block_function<std::uint8_t>(plan.shape())
+                                         : block_function<float>(plan.shape());
+  sum(plan, pyramid, block, places, sides, result);
 }
 
 }  // namespace prefilter

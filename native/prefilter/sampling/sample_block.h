@@ -4,8 +4,9 @@
 #include <array>
 #include <cstdint>
 
-#include "prefilter/base/lanes.h"
+#include "prefilter/sampling/pairs.h"
 #include "prefilter/sampling/texel_plan.h"
+#include "prefilter/sampling/wrapped_pyramid.h"
 
 namespace prefilter {
 
@@ -30,12 +31,12 @@ struct SampleList {
   }
 };
 
-/// Writes the samples that read no texel outside of its level, and lists the others.
-void sample_block(const TexelPlan& plan, const Pyramid& pyramid, const SampleBlock& block,
-                  float* result, SampleList& others);
+/// Writes the samples of a block, by the table that the plan was made of.
+void sample_block(const TexelPlan& plan, const WrappedPyramid& pyramid, const SampleBlock& block,
+                  float* result);
 
 /// The same by trilinear interpolation.
-void sample_block_trilinearly(const Pyramid& pyramid, const SampleBlock& block, float* result,
-                              SampleList& others);
+void sample_block_trilinearly(const WrappedPyramid& pyramid, const SampleBlock& block,
+                              float* result);
 
 }  // namespace prefilter

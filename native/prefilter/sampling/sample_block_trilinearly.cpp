@@ -8,106 +8,98 @@
 namespace prefilter {
 namespace {
 
-/// The four texels of a level that a sample lies between.
+/// The four texels of a level that a sample lies between, and how far it is to the others.
 struct Square {
-  std::uintptr_t corner;  // the one that is lowest along x and y
-  std::uintptr_t row;     // how far the next row is [bytes]
-  float x;                // shares of the other ones along x and y
+  std::array<std::array<const void*, 2>, 2> texels;  // [y][x]
+  float x;
   float y;
 };
 
-/// Those of a sample; the coarser level's first. Where it magnifies both are those of level 0.
-struct Squares {
-  std::array<Square, 2> of_level;
-};
+/// Those of a sample, the coarser level's first. Where it magnifies both are those of level 0.
+using Squares = std::array<Square, 2>;
 
-/// Whether all texels are inside of the level.
-inline bool find_square(const Pyramid& pyramid, int level, Pair uv, Square& square) {
-  const PyramidLevel& texels = pyramid.levels[level];
+inline void find_square(const WrappedPyramid& pyramid, int level, Pair uv, Square& square) {
+  const PyramidLevel& texels = pyramid.pyramid.levels[level];
   const Pair size{static_cast<double>(texels.width), static_cast<double>(texels.height)};
-  const auto texel_size = static_cast<double>(pyramid.texel_size());
   const Pair at = uv * size - 0.5;
   const Pair low = floor_pair(at);
   const Pair share = at - low;
-  square.row = pyramid.texel_size() * static_cast<std::size_t>(texels.width);
-  square.corner = reinterpret_cast<std::uintptr_t>(texels.texels) +
-                  distance(low, Pair{texel_size, texel_size * size[0]});
   square.x = static_cast<float>(share[0]);
   square.y = static_cast<float>(share[1]);
-  return is_between(Pair{}, low, size - 2.0);
+  if (is_between(Pair{}, low, size - 2.0)) {
+    const std::size_t pitch = pyramid.pyramid.texel_size();
+    const std::size_t row = pitch * static_cast<std::size_t>(texels.width);
+    const auto* const corner = static_cast<const std::byte*>(texels.texels) +
+                               static_cast<std::size_t>(low[1]) * row +
+                               static_cast<std::size_t>(low[0]) * pitch;
+    square.texels = {{{corner, corner + pitch}, {corner + row, corner + row + pitch}}};
+    return;
+  }
+  const int x = static_cast<int>(low[0]);
+  const int y = static_cast<int>(low[1]);
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      square.texels[j][i] = pyramid.texel(level, x + i, y + j);
+    }
+  }
 }
-
-template <typename Value>
-struct FourChannels {
-  static constexpr std::size_t kPitch = 4 * sizeof(Value);
-
-  static Lanes texel(std::uintptr_t address) {
-    return load_lanes(reinterpret_cast<const Value*>(address));
-  }
-  static Lanes mix(Lanes a, Lanes b, float share) { return a + all_lanes(share) * (b - a); }
-  static Lanes bilinear(const Square& square) {
-    const std::uintptr_t next = square.corner + square.row;
-    return mix(mix(texel(square.corner), texel(square.corner + kPitch), square.x),
-               mix(texel(next), texel(next + kPitch), square.x), square.y);
-  }
-};
 
 inline float mix(float a, float b, float share) { return a + share * (b - a); }
+inline Lanes mix(Lanes a, Lanes b, float share) { return a + all_lanes(share) * (b - a); }
 
-template <typename Value>
-inline float bilinear(const Square& square, int channel, int channels) {
-  const auto texel = [&](std::uintptr_t row, int x) {
-    return static_cast<float>(reinterpret_cast<const Value*>(row)[x * channels + channel]);
-  };
-  const std::uintptr_t next = square.corner + square.row;
-  return mix(mix(texel(square.corner, 0), texel(square.corner, 1), square.x),
-             mix(texel(next, 0), texel(next, 1), square.x), square.y);
+/// Between four texels, whose values `value` gives.
+template <typename Values>
+inline auto mix_square(const Square& square, const Values& value) {
+  const auto& [low, high] = square.texels;
+  return mix(mix(value(low[0]), value(low[1]), square.x),
+             mix(value(high[0]), value(high[1]), square.x), square.y);
+}
+
+template <typename Values>
+inline auto mix_levels(const Squares& squares, bool magnifies, float f, const Values& value) {
+  const auto& [coarse, fine] = squares;
+  const auto found = mix_square(fine, value);
+  return magnifies ? found : mix(found, mix_square(coarse, value), f);
 }
 
 template <typename Value>
-void mix_levels(int channels, const SampleBlock& block, const Squares* squares,
-                const SampleList& inside, float* result) {
+void mix_block(const Pyramid& pyramid, const SampleBlock& block, const Squares* squares,
+               float* result) {
   constexpr float kUnit = sizeof(Value) == 1 ? 1.0F / 255.0F : 1.0F;
-  for (int k = 0; k < inside.count; ++k) {
-    const int i = inside.numbers[k];
-    const auto& [coarse, fine] = squares[i].of_level;
+  for (int i = 0; i < block.count; ++i) {
     const bool magnifies = block.cell_levels[i] == 0;
-    float* const values = result + static_cast<std::ptrdiff_t>(i) * channels;
-    if (channels == 4) {
-      using Four = FourChannels<Value>;
-      Lanes value = Four::bilinear(fine);
-      if (!magnifies) value = Four::mix(value, Four::bilinear(coarse), block.f[i]);
-      value *= kUnit;
-      std::memcpy(values, &value, sizeof value);
+    if (pyramid.channels == 4) {
+      const Lanes value = mix_levels(squares[i], magnifies, block.f[i], [](const void* texel) {
+        return load_lanes(static_cast<const Value*>(texel));
+      });
+      const Lanes scaled = value * kUnit;
+      std::memcpy(result, &scaled, sizeof scaled);
     } else {
-      for (int c = 0; c < channels; ++c) {
-        float value = bilinear<Value>(fine, c, channels);
-        if (!magnifies) value = mix(value, bilinear<Value>(coarse, c, channels), block.f[i]);
-        values[c] = value * kUnit;
+      for (int c = 0; c < pyramid.channels; ++c) {
+        result[c] = kUnit * mix_levels(squares[i], magnifies, block.f[i], [c](const void* texel) {
+                      return static_cast<float>(static_cast<const Value*>(texel)[c]);
+                    });
       }
     }
+    result += pyramid.channels;
   }
 }
 
 }  // namespace
 
-void sample_block_trilinearly(const Pyramid& pyramid, const SampleBlock& block, float* result,
-                              SampleList& others) {
+void sample_block_trilinearly(const WrappedPyramid& pyramid, const SampleBlock& block,
+                              float* result) {
   std::array<Squares, kBlockSamples> squares;
-  SampleList inside;
-  others.count = 0;
   for (int i = 0; i < block.count; ++i) {
     const int level = block.cell_levels[i];
-    auto& [coarse, fine] = squares[i].of_level;
-    bool is_inside = find_square(pyramid, level, block.coordinates[i], coarse);
-    is_inside &= find_square(pyramid, std::max(level - 1, 0), block.coordinates[i], fine);
-    inside.add(i, is_inside);
-    others.add(i, !is_inside);
+    auto& [coarse, fine] = squares[i];
+    find_square(pyramid, level, block.coordinates[i], coarse);
+    find_square(pyramid, std::max(level - 1, 0), block.coordinates[i], fine);
   }
-  if (pyramid.bytes) {
-    mix_levels<std::uint8_t>(pyramid.channels, block, squares.data(), inside, result);
+  if (pyramid.pyramid.bytes) {
+    mix_block<std::uint8_t>(pyramid.pyramid, block, squares.data(), result);
   } else {
-    mix_levels<float>(pyramid.channels, block, squares.data(), inside, result);
+    mix_block<float>(pyramid.pyramid, block, squares.data(), result);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -26,39 +27,53 @@ struct PlannedCells {
   // Cells from `low` to `high`, both included, read no texel outside of its level.
   Pair low{};
   Pair high{};
-  const float* weights = nullptr;         // see SectionPlan
-  const std::uint8_t* finer = nullptr;    // likewise
-  const std::int32_t* offsets = nullptr;  // [subdomain][symmetry][texel]: from the cell's low
-                                          // corner in the texel's level [bytes]
+  const float* weights = nullptr;           // [subdomain][term][texel]; bytes' are of their value
+  const std::uint8_t* finer = nullptr;      // [subdomain][texel]
+  const TexelOffset* unfolded = nullptr;    // [subdomain][symmetry][texel]
+  const std::int32_t* distances = nullptr;  // likewise: from the cell's low corner [bytes]
+
+  /// The texel in the cell's low corner, in the level so much finer than the cell's.
+  Pair corner(int level, Pair uv, Pair cell, Pair in_cell) const {
+    const double texels_of_cell = 1 << level;
+    if (nests || level == 0) return cell * texels_of_cell;
+    return floor_pair(uv * sizes[level] - in_cell * texels_of_cell + 0.5);
+  }
 };
 
 /// All that a sampler looks up in a table, in the order in which it is needed. There are so many
 /// texels that vectors of four hold them; those beyond the table's weigh nothing.
 class TexelPlan {
  public:
+  /// The pyramid's texels must outlive the plan.
   TexelPlan(const Pyramid& pyramid, const SamplingTable& table);
   TexelPlan(const TexelPlan&) = delete;
   TexelPlan& operator=(const TexelPlan&) = delete;
 
   const TableShape& shape() const { return shape_; }
   int padded_texels() const { return padded_; }
-  const PlannedCells& cells(int level) const { return cells_[level]; }
-  const PlannedCells* cells() const { return cells_.data(); }
+  std::size_t bytes() const { return bytes_; }                 // of all texels
+  const PlannedCells* cells() const { return cells_.data(); }  // by level
 
  private:
-  struct SectionPlan {
-    std::vector<Lanes> weights;       // [subdomain][term][texel]; bytes' are those of their value
-    std::vector<std::uint8_t> finer;  // [subdomain][texel]
+  struct Section {
+    std::vector<Lanes> weights;
+    std::vector<std::uint8_t> finer;
+    std::vector<TexelOffset> unfolded;
+    // Of the unfolded texels of each level, along x and y.
+    std::array<std::array<int, 2>, 3> least{};
+    std::array<std::array<int, 2>, 3> most{};
   };
 
-  void plan_section(const TableSection& section, float unit, SectionPlan& plan) const;
-  PlannedCells plan_cells(const Pyramid& pyramid, const SamplingTable& table, int level);
+  void plan_section(const TableSection& section, float unit, Section& plan) const;
+  void plan_distances(PlannedCells& cells, const Section& section);
+  PlannedCells plan_cells(const Pyramid& pyramid, int level);
 
   TableShape shape_;
   int padded_;
-  std::array<SectionPlan, 3> sections_;  // by available levels - 1
-  std::vector<std::vector<std::int32_t>> offsets_;
-  std::vector<PlannedCells> cells_;  // by level
+  std::size_t bytes_ = 0;
+  std::array<Section, 3> sections_;  // by available levels - 1
+  std::vector<std::vector<std::int32_t>> distances_;
+  std::vector<PlannedCells> cells_;
 };
 
 }  // namespace prefilter

@@ -1,0 +1,32 @@
+// Levels that go on beyond their edges.
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "prefilter/base/wrap.h"
+#include "prefilter/sampling/pyramid.h"
+
+namespace prefilter {
+
+struct WrappedPyramid {
+  Pyramid pyramid;
+  WrapModes wrap;
+  std::vector<std::byte> border;  // a texel of zeros
+
+  WrappedPyramid(Pyramid pyramid_, const WrapModes& wrap_)
+      : pyramid(std::move(pyramid_)), wrap(wrap_), border(pyramid.texel_size()) {}
+
+  /// What texel (x, y) of a level reads, which may lie outside of it.
+  const void* texel(int level, int x, int y) const {
+    const PyramidLevel& texels = pyramid.levels[level];
+    const int column = wrap_index(x, texels.width, wrap.u);
+    const int row = wrap_index(y, texels.height, wrap.v);
+    if (column < 0 || row < 0) return border.data();
+    return static_cast<const std::byte*>(texels.texels) +
+           (static_cast<std::size_t>(row) * texels.width + column) * pyramid.texel_size();
+  }
+};
+
+}  // namespace prefilter
