@@ -47,13 +47,13 @@ Texture::Texture() {
 }
 
 Pyramid Texture::view(bool of_bytes) const {
-  Pyramid pyramid{{}, kChannels, of_bytes};
+  std::vector<PyramidLevel> views;
   for (std::size_t i = 0; i < floats.size(); ++i) {
     const void* texels = of_bytes ? static_cast<const void*>(bytes[i].data())
                                   : static_cast<const void*>(floats[i].data());
-    pyramid.levels.push_back({texels, kSide >> i, kSide >> i});
+    views.push_back({texels, kSide >> i, kSide >> i});
   }
-  return pyramid;
+  return {std::move(views), kChannels, of_bytes};
 }
 
 std::vector<Samples> samples_of_scenes(std::size_t count) {

@@ -1,6 +1,7 @@
 // Levels in, of whichever type, without a copy.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "convert.h"
@@ -11,14 +12,13 @@ namespace prefilter::python {
 /// A view of arrays of shape (height, width, channels), C-contiguous, all of float32 or all of
 /// uint8, and all of as many channels.
 inline Pyramid pyramid_of(const std::vector<pybind11::array>& levels) {
-  Pyramid pyramid;
+  std::vector<PyramidLevel> views;
   for (const pybind11::array& level : levels) {
-    pyramid.bytes = level.itemsize() == 1;
-    pyramid.channels = static_cast<int>(level.shape(2));
-    pyramid.levels.push_back(
+    views.push_back(
         {level.data(), static_cast<int>(level.shape(1)), static_cast<int>(level.shape(0))});
   }
-  return pyramid;
+  const auto channels = levels.empty() ? 1 : static_cast<int>(levels[0].shape(2));
+  return {std::move(views), channels, !levels.empty() && levels[0].itemsize() == 1};
 }
 
 }  // namespace prefilter::python

@@ -7,15 +7,18 @@ from itertools import product
 import numpy as np
 import prefilter
 import pytest
-from kernels import FILTERS, tolerance_of, weights_of_texels
+from kernels import FILTERS, tolerance_of, weights_at
 from scenes import random_image
 
 WRAPS = ("clamp", "repeat", "border")
 SIZES = [(8, 8), (13, 6), (1, 7), (5, 1), (1, 1)]
 
 
-def halved(size, level):
-    return max(1, size >> level)
+def weights_of_nested(filter, size, level, wrap):
+    """Of texels 2^level as wide, as many as reach over all of an axis."""
+    width = 2**level
+    centers = (np.arange(-(-size // width)) + 0.5) * width
+    return weights_at(filter, centers, width, size, wrap)
 
 
 def test_there_is_a_filter_for_each_kernel():
@@ -29,12 +32,12 @@ def test_levels_are_the_kernel_at_the_centers_of_their_texels(filter):
         for wrap in product(WRAPS, WRAPS):
             levels = prefilter.sampling_levels(image, filter, wrap=wrap, premultiplied=True)
             assert levels.filter == filter
-            assert len(levels) == max(width, height).bit_length()
+            assert len(levels) == (max(width, height) - 1).bit_length() + 1
             for level, found in enumerate(levels):
                 expected = np.einsum(
                     "jy,ix,yxc->jic",
-                    weights_of_texels(filter, height, halved(height, level), wrap[1]),
-                    weights_of_texels(filter, width, halved(width, level), wrap[0]),
+                    weights_of_nested(filter, height, level, wrap[1]),
+                    weights_of_nested(filter, width, level, wrap[0]),
                     image.astype(float),
                 )
                 assert found.dtype == np.float32
@@ -53,7 +56,7 @@ def test_where_sizes_change_they_are_the_mipmaps_of_the_kernel(filter):
     image = random_image(1, 12, 16, 3)
     levels = prefilter.sampling_levels(image, filter)
     for ours, theirs in zip(
-        levels[1:4], prefilter.mipmaps(image, filter=filter, bounds=None)[1:4], strict=True
+        levels[1:3], prefilter.mipmaps(image, filter=filter, bounds=None)[1:3], strict=True
     ):
         np.testing.assert_array_equal(ours, theirs)
 

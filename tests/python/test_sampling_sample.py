@@ -33,13 +33,29 @@ def scales_of(count, levels, seed=1):
     return 2 ** np.random.default_rng(seed).uniform(-1, levels + 0.5, count)
 
 
-def texel(level, x, y, wrap):
+def extents_of(levels):
+    """How many texels of each level the image takes along x and y: sides rounded up nest."""
+    sides = np.array([level.shape[1::-1] for level in levels])
+    steps = 2.0 ** np.arange(len(levels))[:, None]
+    nest = (sides == np.ceil(sides[0] / steps)).all(axis=0)
+    return np.where(nest, sides[0] / steps, sides)
+
+
+def texel(level, extent, x, y, wrap):
     index = []
-    for place, size, mode in ((y, level.shape[0], wrap[1]), (x, level.shape[1], wrap[0])):
-        if mode == "border" and not 0 <= place < size:
+    for axis, place in ((1, y), (0, x)):
+        size, mode = level.shape[1 - axis], wrap[axis]
+        inside = 0 <= place < size
+        if mode == "border" and not inside:
             return np.zeros(level.shape[2])
-        index.append(place % size if mode == "repeat" else min(max(place, 0), size - 1))
+        if mode == "repeat" and not inside:
+            place = floor((place + 0.5) % extent[axis])  # the nearest where no period fits
+        index.append(min(max(place, 0), size - 1))
     return level[tuple(index)].astype(float)
+
+
+def in_image(place, wrap):
+    return np.where(np.array(wrap) == "repeat", place % 1.0, place)
 
 
 def mip_place(scale, last):
@@ -61,7 +77,9 @@ def by_table(levels, table, place, scale, wrap):
     grid, _, slices = table.subdomains
     columns = (grid + 1) // 2
     slices = 1 if available == 1 else slices
-    at = place * levels[cell].shape[1::-1]
+    extents = extents_of(levels)
+    place = in_image(place, wrap)
+    at = place * extents[cell]
     inside = at - np.floor(at)
     # Around the cell's center the symmetries are signs and a swap.
     signs = np.where(inside > 0.5, -1, 1)
@@ -76,27 +94,30 @@ def by_table(levels, table, place, scale, wrap):
     for (finer, *offset), weight in zip(section.offsets[subdomain], weights, strict=True):
         center = (np.array(offset) + 0.5) / 2**finer - 0.5
         center = 0.5 + (center[::-1] if swapped else center) * signs
-        level = levels[cell - finer]
-        base = np.floor(place * level.shape[1::-1] - 2**finer * inside + 0.5)
+        level, extent = levels[cell - finer], extents[cell - finer]
+        base = np.floor(place * extent - 2**finer * inside + 0.5)
         corner = base + np.floor(center * 2**finer)
-        found += weight * texel(level, *corner.astype(int), wrap)
+        found += weight * texel(level, extent, *corner.astype(int), wrap)
     return found
 
 
-def bilinear(level, place, wrap):
-    x, y = place * level.shape[1::-1] - 0.5
+def bilinear(level, extent, place, wrap):
+    x, y = place * extent - 0.5
     found = np.zeros(level.shape[2])
     for i, j in product(range(floor(x), floor(x) + 2), range(floor(y), floor(y) + 2)):
-        found += (1 - abs(x - i)) * (1 - abs(y - j)) * texel(level, i, j, wrap)
+        found += (1 - abs(x - i)) * (1 - abs(y - j)) * texel(level, extent, i, j, wrap)
     return found
 
 
 def trilinear(levels, place, scale, wrap):
     coarse, available, f = mip_place(scale, len(levels) - 1)
+    place = in_image(place, wrap)
+    of_level = [
+        bilinear(*pair, place, wrap) for pair in zip(levels, extents_of(levels), strict=True)
+    ]
     if available == 1:
-        return bilinear(levels[0], place, wrap)
-    finer = bilinear(levels[coarse - 1], place, wrap)
-    return f * bilinear(levels[coarse], place, wrap) + (1 - f) * finer
+        return of_level[0]
+    return f * of_level[coarse] + (1 - f) * of_level[coarse - 1]
 
 
 @pytest.mark.parametrize("size", SIZES)

@@ -77,7 +77,6 @@ void sample_anisotropically(const Pyramid& pyramid, const SamplingTable* table,
                             std::span<const TexturePlace> coordinates,
                             std::span<const TextureJacobian> jacobians,
                             const AnisotropicOptions& options, std::span<float> result) {
-  check_pyramid(pyramid);
   check_coordinates(coordinates);
   check_jacobians(jacobians, coordinates.size());
   if (options.max_probes < 1 || options.max_probes > kMostProbes) {

@@ -12,7 +12,6 @@ namespace prefilter {
 PyramidSampler::PyramidSampler(const Pyramid& pyramid, const SamplingTable* table,
                                const WrapModes& wrap)
     : pyramid_(pyramid, wrap) {
-  check_pyramid(pyramid);
   if (table == nullptr) return;
   check_table(*table);
   plan_ = std::make_unique<const TexelPlan>(pyramid, *table);

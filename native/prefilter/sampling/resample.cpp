@@ -74,10 +74,11 @@ class Sampler {
     level_options.threads = options.threads;
     level_options.progress = progress;
     levels_ = sampling_levels(image, level_options);
-    pyramid_.channels = image.channels;
+    std::vector<PyramidLevel> views;
     for (const Image& level : levels_) {
-      pyramid_.levels.push_back({level.data.data(), level.width, level.height});
+      views.push_back({level.data.data(), level.width, level.height});
     }
+    pyramid_.emplace(std::move(views), image.channels, false);
   }
 
   // How many pixels take as long as a cancel may wait.
@@ -102,7 +103,7 @@ class Sampler {
       options.wrap = options_.wrap;
       options.threads = 1;
       options.max_probes = options_.max_probes;
-      sample_anisotropically(pyramid_, table(), coordinates, jacobians, options, values);
+      sample_anisotropically(*pyramid_, table(), coordinates, jacobians, options, values);
       return;
     }
     std::vector<double> scales;
@@ -119,7 +120,7 @@ class Sampler {
     SampleOptions options;
     options.wrap = options_.wrap;
     options.threads = 1;
-    sample(pyramid_, table(), coordinates, scales, options, values);
+    sample(*pyramid_, table(), coordinates, scales, options, values);
   }
 
  private:
@@ -130,7 +131,7 @@ class Sampler {
   const ImageView image_;
   const ResampleOptions& options_;
   std::vector<Image> levels_;
-  Pyramid pyramid_;
+  std::optional<Pyramid> pyramid_;  // none where samples are exact
 };
 
 // Pixels from `begin` to `end`, row by row; what is beyond the horizon stays as it is.

@@ -37,7 +37,7 @@ void find_cells(const TexelPlan& plan, const SampleBlock& block, CellPlaces& pla
   for (int i = 0; i < block.count; ++i) {
     const PlannedCells& cells = plan.cells()[block.cell_levels[i]];
     const Pair uv = block.coordinates[i];
-    const Pair at = uv * cells.sizes[0];
+    const Pair at = uv * cells.extents[0];
     const Pair cell = floor_pair(at);
     const Pair in_cell = at - cell;
     places.x[i] = static_cast<float>(in_cell[0]);
@@ -210,7 +210,7 @@ TexelList wrapped_texels(const TexelPlan& plan, const WrappedPyramid& pyramid,
   const int cell_level = block.cell_levels[sample];
   const PlannedCells& cells = plan.cells()[cell_level];
   const Pair uv = block.coordinates[sample];
-  const Pair at = uv * cells.sizes[0];
+  const Pair at = uv * cells.extents[0];
   const Pair cell = floor_pair(at);
   std::array<std::array<int, 2>, 3> corners;
   for (int finer = 0; finer < cells.available; ++finer) {

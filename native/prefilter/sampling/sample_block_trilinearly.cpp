@@ -21,7 +21,7 @@ using Squares = std::array<Square, 2>;
 inline void find_square(const WrappedPyramid& pyramid, int level, Pair uv, Square& square) {
   const PyramidLevel& texels = pyramid.pyramid.levels[level];
   const Pair size{static_cast<double>(texels.width), static_cast<double>(texels.height)};
-  const Pair at = uv * size - 0.5;
+  const Pair at = uv * Pair{texels.columns, texels.rows} - 0.5;
   const Pair low = floor_pair(at);
   const Pair share = at - low;
   square.x = static_cast<float>(share[0]);

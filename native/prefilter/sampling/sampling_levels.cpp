@@ -11,14 +11,22 @@
 #include "prefilter/base/memory.h"
 #include "prefilter/filters/filtered_image.h"
 #include "prefilter/filters/separable.h"
-#include "prefilter/texels/levels.h"
 
 namespace prefilter {
 namespace {
 
+// Of a level, along an axis: whole texels of the level that reach over all of the image.
+int nested_size(int size, int level) { return (size - 1) / (1 << level) + 1; }
+
+int nested_level_count(const ImageView& image) {
+  int count = 1;
+  while (nested_size(std::max(image.width, image.height), count - 1) > 1) ++count;
+  return count;
+}
+
 void check_arguments(const ImageView& image, const SamplingLevelsOptions& options) {
   check_channels(image);
-  const int most = full_level_count(image.width, image.height);
+  const int most = nested_level_count(image);
   if (options.levels < 0 || options.levels > most) {
     throw_invalid("levels: " + std::to_string(options.levels) + "; an image of " +
                   std::to_string(image.width) + " x " + std::to_string(image.height) +
@@ -41,11 +49,12 @@ bool interpolates(const Kernel& kernel) {
 
 // None where the texels stay what they are.
 AxisTaps level_taps(const Kernel& kernel, int size, int level) {
-  const int target = level_size(size, level);
-  if (target == size && interpolates(kernel)) return {};
-  const double ratio = static_cast<double>(size) / target;
+  if (level == 0 && interpolates(kernel)) return {};
+  const double width = std::ldexp(1.0, level);
   AxisTaps taps;
-  for (int j = 0; j < target; ++j) taps.push_back(resampling_taps(kernel, ratio, j));
+  for (int j = 0; j < nested_size(size, level); ++j) {
+    taps.push_back(kernel_taps(kernel, (j + 0.5) * width, width));
+  }
   return taps;
 }
 
@@ -53,8 +62,7 @@ AxisTaps level_taps(const Kernel& kernel, int size, int level) {
 
 std::vector<Image> sampling_levels(const ImageView& image, const SamplingLevelsOptions& options) {
   check_arguments(image, options);
-  const int count =
-      options.levels == 0 ? full_level_count(image.width, image.height) : options.levels;
+  const int count = options.levels == 0 ? nested_level_count(image) : options.levels;
   const bool has_alpha = !options.premultiplied && (image.channels == 2 || image.channels == 4);
   const TexelSource source(image);
   const FilteredImage filtered(

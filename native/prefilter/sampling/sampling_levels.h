@@ -21,9 +21,10 @@ struct SamplingLevelsOptions {
   Progress progress;
 };
 
-/// Level k is the image filtered by the kernel, its unit a texel of the level wide; half as wide
-/// and high as the one before, rounded down, and never less than 1. Level 0 is the image where the
-/// kernel is 0 at all whole numbers but 0, else the image filtered. Nothing is clipped.
+/// Level k is the image filtered by the kernel, its unit a texel of the level wide, which is 2^k
+/// texels of the image; half as wide and high as the one before, rounded up, so that its last
+/// texels may reach beyond the image. Level 0 is the image where the kernel is 0 at all whole
+/// numbers but 0, else the image filtered. Nothing is clipped.
 ///
 /// Throws Error where channels are not 1 to 4, levels are more than the image has, memory does not
 /// hold them, or a texel is not finite or beyond 1e30; and, from the progress callback, when

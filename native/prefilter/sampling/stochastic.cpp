@@ -75,7 +75,6 @@ void store(const Pyramid& pyramid, const WeightedTexel& picked, double unit, flo
 std::vector<WeightedTexel> pick_texels(const Pyramid& pyramid, const TexelChoice& choice,
                                        const SamplePlaces& places, std::span<const double> numbers,
                                        const SampleOptions& options) {
-  check_pyramid(pyramid);
   const bool by_table = choice.kind == TexelChoice::Kind::kTable;
   if (by_table) check_table(*choice.table);
   check_places(places);

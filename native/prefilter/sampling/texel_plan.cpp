@@ -11,11 +11,11 @@ FoldedPlace place_of_symmetry(int symmetry) {
   return {0.0, 0.0, (symmetry & 1) != 0, (symmetry & 2) != 0, (symmetry & 4) != 0};
 }
 
-/// The cells along an axis between which no offset from `least` to `most` leaves a level that has
-/// `size` texels where there are `cells` of them.
-void narrow(double size, double cells, int texels_of_cell, int least, int most, double& low,
-            double& high) {
-  const double ratio = size / cells;
+/// The cells along an axis between which no offset from `least` to `most` leaves a level of `size`
+/// texels, of which the image takes `extent` where it takes `cells` cells.
+void narrow(int size, double extent, double cells, int texels_of_cell, int least, int most,
+            double& low, double& high) {
+  const double ratio = extent / cells;
   // A cell's low corner is rounded from somewhere within a texel of cell * ratio; where levels nest
   // it is that.
   const double slack = ratio == texels_of_cell ? 0.0 : std::abs(ratio - texels_of_cell) + 0.5;
@@ -92,18 +92,23 @@ PlannedCells TexelPlan::plan_cells(const Pyramid& pyramid, int level) {
   const auto texel_size = static_cast<double>(pyramid.texel_size());
   for (int finer = 0; finer < 3; ++finer) {
     const PyramidLevel& texels = pyramid.levels[level - std::min(finer, cells.available - 1)];
-    cells.sizes[finer] =
-        Pair{static_cast<double>(texels.width), static_cast<double>(texels.height)};
+    cells.extents[finer] = Pair{texels.columns, texels.rows};
     cells.pitches[finer] = Pair{texel_size, texel_size * texels.width};
     cells.texels[finer] = reinterpret_cast<std::uintptr_t>(texels.texels);
   }
   cells.nests = true;
   for (int axis = 0; axis < 2; ++axis) {
     double low = 0.0;
-    double high = cells.sizes[0][axis] - 1;
+    const auto size = [&](int finer) {
+      const PyramidLevel& texels = pyramid.levels[level - finer];
+      return axis == 0 ? texels.width : texels.height;
+    };
+    double high = size(0) - 1;
     for (int finer = 0; finer < cells.available; ++finer) {
-      cells.nests &= cells.sizes[finer][axis] == cells.sizes[0][axis] * (1 << finer);
-      narrow(cells.sizes[finer][axis], cells.sizes[0][axis], 1 << finer, section.least[finer][axis],
+      const double extent = cells.extents[finer][axis];
+      const double image_cells = cells.extents[0][axis];
+      cells.nests &= extent == image_cells * (1 << finer);
+      narrow(size(finer), extent, image_cells, 1 << finer, section.least[finer][axis],
              section.most[finer][axis], low, high);
     }
     cells.low[axis] = low;

@@ -21,7 +21,7 @@ struct PlannedCells {
   int available = 0;   // levels, see TableSection
   bool nests = false;  // whether a cell is 2 x 2 and 4 x 4 texels of the levels below it
   // Of the cells' level and of the ones below it, as far as there are any, else of the last one:
-  std::array<Pair, 3> sizes{};    // texels
+  std::array<Pair, 3> extents{};  // of the image, in texels
   std::array<Pair, 3> pitches{};  // from one texel to the next, and from row to row [bytes]
   std::array<std::uintptr_t, 3> texels{};
   // Cells from `low` to `high`, both included, read no texel outside of its level.
@@ -36,7 +36,7 @@ struct PlannedCells {
   Pair corner(int level, Pair uv, Pair cell, Pair in_cell) const {
     const double texels_of_cell = 1 << level;
     if (nests || level == 0) return cell * texels_of_cell;
-    return floor_pair(uv * sizes[level] - in_cell * texels_of_cell + 0.5);
+    return floor_pair(uv * extents[level] - in_cell * texels_of_cell + 0.5);
   }
 };
 

@@ -13,14 +13,13 @@ constexpr double kFarOutside = 1024.0;
 void add(WeightedTexels& found, const Pyramid& pyramid, const WrapModes& wrap, int level, int x,
          int y, double weight) {
   const PyramidLevel& size = pyramid.levels[level];
-  found.texels[found.count++] = {level, wrap_index(x, size.width, wrap.u),
-                                 wrap_index(y, size.height, wrap.v), weight};
+  found.texels[found.count++] = {level, size.column_of(x, wrap.u), size.row_of(y, wrap.v), weight};
 }
 
 void add_bilinear(WeightedTexels& found, const Pyramid& pyramid, const WrapModes& wrap, int level,
                   double u, double v, double weight) {
-  const double x = u * pyramid.levels[level].width - 0.5;
-  const double y = v * pyramid.levels[level].height - 0.5;
+  const double x = u * pyramid.levels[level].columns - 0.5;
+  const double y = v * pyramid.levels[level].rows - 0.5;
   const int low_x = static_cast<int>(std::floor(x));
   const int low_y = static_cast<int>(std::floor(y));
   for (int j = 0; j < 2; ++j) {
@@ -36,8 +35,8 @@ WeightedTexels weigh_by_table(const Pyramid& pyramid, const SamplingTable& table
                               const WrapModes& wrap, double u, double v, double scale) {
   const MipPlace mip = place_between_levels(scale, static_cast<int>(pyramid.levels.size()));
   const PyramidLevel& cells = pyramid.levels[mip.cell_level];
-  const double x = u * cells.width - std::floor(u * cells.width);
-  const double y = v * cells.height - std::floor(v * cells.height);
+  const double x = u * cells.columns - std::floor(u * cells.columns);
+  const double y = v * cells.rows - std::floor(v * cells.rows);
   const TableSection& section = table.section(mip.available);
   const FoldedPlace folded = fold_place(x, y);
   const double f = mip.available == 1 ? folded.x * folded.y : mip.f;
@@ -50,8 +49,8 @@ WeightedTexels weigh_by_table(const Pyramid& pyramid, const SamplingTable& table
     const int level = mip.cell_level - offset.finer;
     const int texels_of_cell = 1 << offset.finer;
     // Where levels nest this is the cell's low corner, exactly.
-    const double base_x = std::floor(u * pyramid.levels[level].width - texels_of_cell * x + 0.5);
-    const double base_y = std::floor(v * pyramid.levels[level].height - texels_of_cell * y + 0.5);
+    const double base_x = std::floor(u * pyramid.levels[level].columns - texels_of_cell * x + 0.5);
+    const double base_y = std::floor(v * pyramid.levels[level].rows - texels_of_cell * y + 0.5);
     add(found, pyramid, wrap, level, static_cast<int>(base_x) + offset.x,
         static_cast<int>(base_y) + offset.y,
         weight_at(&section.coefficients[index * table.shape.terms()], table.shape.degree, folded.x,

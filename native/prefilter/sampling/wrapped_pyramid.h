@@ -21,8 +21,8 @@ struct WrappedPyramid {
   /// What texel (x, y) of a level reads, which may lie outside of it.
   const void* texel(int level, int x, int y) const {
     const PyramidLevel& texels = pyramid.levels[level];
-    const int column = wrap_index(x, texels.width, wrap.u);
-    const int row = wrap_index(y, texels.height, wrap.v);
+    const int column = texels.column_of(x, wrap.u);
+    const int row = texels.row_of(y, wrap.v);
     if (column < 0 || row < 0) return border.data();
     return static_cast<const std::byte*>(texels.texels) +
            (static_cast<std::size_t>(row) * texels.width + column) * pyramid.texel_size();

@@ -47,10 +47,10 @@ def sampling_levels(
 ) -> FilteredLevels[np.float32]:
     """The levels that a sampling table of the same filter fits.
 
-    Level k is the image under the kernel with its unit as wide as a texel of the level: what the
-    exact filter gives at the texels' centres. Level 0 is the image itself where the kernel
-    interpolates ("box", "tent", "lanczos2", "lanczos3"); the others blur it. Nothing is clipped:
-    kernels with negative lobes leave the range of the image.
+    Level k is the image under the kernel with its unit as wide as a texel of the level, which is
+    2^k texels of the image: what the exact filter gives at the texels' centres. Level 0 is the
+    image itself where the kernel interpolates ("box", "tent", "lanczos2", "lanczos3"); the others
+    blur it. Nothing is clipped: kernels with negative lobes leave the range of the image.
 
     Args:
         image: (height, width, channels) of any number, scene-linear, row 0 at v = 0. Bytes (uint8)
@@ -68,8 +68,10 @@ def sampling_levels(
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The levels, float32 (height, width, channels). Each has half the sides of the one before,
-        rounded down, never less than 1.
+        The levels, float32 (height, width, channels), down to 1 x 1. Each has half the sides of
+        the one before, rounded up: texels nest, and where sides are no powers of two the last ones
+        reach beyond the image. (Those of `mipmaps`, as graphics cards have them, are rounded down;
+        they do not nest, and tables lose by that what they gain.)
 
     Raises:
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.

@@ -39,13 +39,13 @@ struct Levels {
   }
 
   Pyramid view(bool of_bytes = false) const {
-    Pyramid pyramid{{}, floats[0].channels, of_bytes};
+    std::vector<PyramidLevel> views;
     for (std::size_t i = 0; i < floats.size(); ++i) {
       const void* texels = of_bytes ? static_cast<const void*>(bytes[i].data())
                                     : static_cast<const void*>(floats[i].data.data());
-      pyramid.levels.push_back({texels, floats[i].width, floats[i].height});
+      views.push_back({texels, floats[i].width, floats[i].height});
     }
-    return pyramid;
+    return {std::move(views), floats[0].channels, of_bytes};
   }
 };
 
@@ -131,10 +131,10 @@ TEST(Sample, RefusesWhatItCannotTake) {
   }
   EXPECT_THROW(sampled(levels.view(), nullptr, one, {-1.0}, {}), Error);
   EXPECT_THROW(sampled(levels.view(), nullptr, one, {1.0, 2.0}, {}), Error);
-  EXPECT_THROW(sampled(Pyramid{{}, 1, false}, nullptr, one, {1.0}, {}), Error);
-  Pyramid wrong = levels.view();
-  wrong.levels[1].width = 3;
-  EXPECT_THROW(sampled(wrong, nullptr, one, {1.0}, {}), Error);
+  EXPECT_THROW((Pyramid{{}, 1, false}), Error);
+  std::vector<PyramidLevel> wrong = levels.view().levels;
+  wrong[1].width = 3;
+  EXPECT_THROW((Pyramid{wrong, 1, false}), Error);
   SamplingTable no_table;
   EXPECT_THROW(sampled(levels.view(), &no_table, one, {1.0}, {}), Error);
   EXPECT_TRUE(sampled(levels.view(), nullptr, {}, {}, {}).empty());
