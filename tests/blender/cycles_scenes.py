@@ -45,7 +45,8 @@ def shown_on(image: bpy.types.Image, uvs=scenes.UNIT_SQUARE, name="Quad") -> bpy
 def set_up(scene: bpy.types.Scene) -> None:
     """Sets Cycles up to render the unit square head on, with a box as wide as a pixel."""
     scene.render.engine = "CYCLES"
-    scene.render.use_auto_generate_texture_cache = False
+    if hasattr(scene.render, "use_auto_generate_texture_cache"):
+        scene.render.use_auto_generate_texture_cache = False
     scene.render.dither_intensity = 0
     scene.render.image_settings.file_format = "OPEN_EXR"
     scene.render.image_settings.color_depth = "32"
