@@ -1,6 +1,7 @@
 #include "prefilter/sampling/exchange_search.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -14,9 +15,10 @@
 namespace prefilter {
 namespace {
 
-constexpr int kRandomStarts = 40;
-constexpr std::size_t kPoolOfTexel =
-    6;                                // texels that random sets are drawn from, for each of theirs
+constexpr int kRandomStarts = 99;
+// Texels that random sets are drawn from, for each of theirs: in turns, as some of the best sets
+// have only texels that are good by themselves, and others some from far down the list.
+constexpr std::array<std::size_t, 3> kPoolsOfTexel = {3, 8, 24};
 constexpr double kLeastGain = 1e-12;  // of the filter's square
 // A texel that the others make up to this share of its own square is not told from them.
 constexpr double kDependent = 1e-9;
@@ -237,16 +239,16 @@ std::vector<int> drawn(std::vector<int> pool, std::size_t count, std::mt19937& r
 FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& progress) {
   const auto count = static_cast<std::size_t>(texels);
   const std::vector<int> order = by_own_error(system);
-  std::vector<int> pool = order;
-  pool.resize(std::min(pool.size(), count * kPoolOfTexel));
   std::mt19937 random(1);
   Exchanges exchanges(system);
   std::vector<int> best;
   double best_error = std::numeric_limits<double>::infinity();
   for (int start = 0; start <= kRandomStarts; ++start) {
     progress.report(static_cast<double>(start) / (kRandomStarts + 1));
+    std::vector<int> pool = order;
+    pool.resize(std::min(pool.size(), count * kPoolsOfTexel[start % kPoolsOfTexel.size()]));
     if (!exchanges.set_members(start == 0 ? std::vector<int>{order[0]}
-                                          : drawn(pool, count, random))) {
+                                          : drawn(std::move(pool), count, random))) {
       continue;
     }
     while (exchanges.members().size() < count && exchanges.add()) {
