@@ -6,11 +6,14 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/image.h"
 #include "prefilter/sampling/build_table.h"
+#include "prefilter/sampling/mip_places.h"
+#include "prefilter/sampling/weigh_texels.h"
 
 namespace prefilter {
 namespace {
@@ -94,6 +97,67 @@ TEST(Sample, IsTheSameForAnyNumberOfThreads) {
     const WrapModes wrap{Wrap::kRepeat, Wrap::kClamp};
     EXPECT_EQ(sampled(levels.view(), one, coordinates, scales, wrap, 1),
               sampled(levels.view(), one, coordinates, scales, wrap, 4));
+  }
+}
+
+/// The sum of what weigh_texels gives.
+std::vector<double> weighed(const Levels& levels, const SamplingTable* table, WrapModes wrap,
+                            const std::array<double, 2>& place, double scale) {
+  const WeightedTexels found = weigh_texels(levels.view(), table, wrap, place[0], place[1], scale);
+  std::vector<double> sums(static_cast<std::size_t>(levels.floats[0].channels));
+  for (int i = 0; i < found.count; ++i) {
+    const auto& [level, x, y, weight] = found.texels[i];
+    if (x < 0 || y < 0) continue;
+    for (std::size_t c = 0; c < sums.size(); ++c) {
+      sums[c] += weight * levels.floats[level].texel(x, y)[c];
+    }
+  }
+  return sums;
+}
+
+TEST(Sample, IsTheSumOfWhatItsTexelsWeigh) {
+  const std::array<SamplingTable, 4> tables{
+      table_of("tent", 8, 4, 2, 1), table_of("box", 6, 1, 1, 1), table_of("tent", 4, 2, 3, 2),
+      table_of("lanczos2", 13, 3, 1, 1)};
+  std::vector<const SamplingTable*> all{nullptr};
+  for (const SamplingTable& table : tables) all.push_back(&table);
+  const Coordinates coordinates = random_coordinates(300);
+  const std::vector<double> scales = random_scales(300);
+  constexpr std::array<Wrap, 3> kWraps{Wrap::kClamp, Wrap::kRepeat, Wrap::kBorder};
+  int seed = 0;
+  for (const auto& [width, height] : {std::pair{64, 64}, {37, 53}, {40, 3}, {1, 17}, {1, 1}}) {
+    const Levels levels(width, height, 1 + seed % 5);
+    for (const SamplingTable* table : all) {
+      const WrapModes wrap{kWraps[seed % 3], kWraps[seed / 3 % 3]};
+      ++seed;
+      const auto found = sampled(levels.view(), table, coordinates, scales, wrap);
+      std::size_t value = 0;
+      for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        for (const double sum : weighed(levels, table, wrap, coordinates[i], scales[i])) {
+          EXPECT_NEAR(found[value++], sum, 2e-6) << width << " x " << height << ", " << i;
+        }
+      }
+    }
+  }
+}
+
+TEST(Sample, LiesBetweenTheLevelsAroundItsScale) {
+  std::vector<double> scales{0.0, 0.5, 1.0, 1e-300, 1e300, std::nextafter(1.0F, 2.0F)};
+  for (int i = -2; i < 12; ++i) scales.push_back(std::exp2(i));
+  for (const double scale : random_scales(10000)) scales.push_back(static_cast<float>(scale));
+  const int count = static_cast<int>(scales.size());
+  std::vector<int> cells(scales.size());
+  std::vector<float> f(scales.size());
+  for (const int levels : {1, 2, 7, 21}) {
+    place_between_levels(scales.data(), count, levels, cells.data(), f.data());
+    for (int i = 0; i < count; ++i) {
+      const MipPlace expected = place_between_levels(scales[i], levels);
+      EXPECT_EQ(cells[i], expected.cell_level) << scales[i];
+      EXPECT_NEAR(f[i], expected.f, 2e-7) << scales[i];
+      if (std::exp2(std::round(std::log2(scales[i]))) == scales[i]) {
+        EXPECT_EQ(f[i], expected.f) << scales[i];
+      }
+    }
   }
 }
 
