@@ -1,7 +1,6 @@
 #include "prefilter/sampling/sample_block.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <utility>
@@ -131,30 +130,21 @@ struct TexelList {
   }
 };
 
-template <typename Value, int kTexels, typename Set>
-inline void sum_four_channels(const Set& set, const Lanes* weights, int texels, float* result) {
+/// Sums of as many channels as Sum has, from `channel` on.
+template <typename Value, int kTexels, typename Sum, typename Set>
+inline void sum_channels(const Set& set, const Lanes* weights, int texels, int channel,
+                         float* result) {
   const auto weighted = [&](int i) {
-    return all_lanes(weights[i / 4][i % 4]) * load_lanes(set.template texel<Value>(i));
+    return Sum::load(set.template texel<Value>(i) + channel) * weights[i / 4][i % 4];
   };
-  Lanes sum{};
+  Sum sum{};
   if constexpr (kTexels > 0) {
     [&]<std::size_t... i>(std::index_sequence<i...>) { ((sum += weighted(i)), ...); }
     (std::make_index_sequence<kTexels>());
   } else {
     for (int i = 0; i < texels; ++i) sum += weighted(i);
   }
-  std::memcpy(result, &sum, sizeof sum);
-}
-
-template <typename Value, typename Set>
-inline void sum_channels(const Set& set, const Lanes* weights, int texels, int channels,
-                         float* result) {
-  std::fill_n(result, channels, 0.0F);
-  for (int i = 0; i < texels; ++i) {
-    const float weight = weights[i / 4][i % 4];
-    const Value* texel = set.template texel<Value>(i);
-    for (int c = 0; c < channels; ++c) result[c] += weight * static_cast<float>(texel[c]);
-  }
+  sum.store(result + channel);
 }
 
 /// A block, and what is known of it. kTexels is 0 where the number is not known ahead.
@@ -183,11 +173,9 @@ struct BlockSums {
       weights[four] = weights_of_four<kDegree>(coefficients + 4 * four, padded(), x, y, f);
     }
     float* const values = result + static_cast<std::ptrdiff_t>(sample) * channels;
-    if (channels == 4) {
-      sum_four_channels<Value, kTexels>(set, weights.data(), texels(), values);
-    } else {
-      sum_channels<Value>(set, weights.data(), texels(), channels, values);
-    }
+    for_channels(channels, [&]<typename Sum>(int channel) {
+      sum_channels<Value, kTexels, Sum>(set, weights.data(), texels(), channel, values);
+    });
   }
 
   template <bool kPrefetches>

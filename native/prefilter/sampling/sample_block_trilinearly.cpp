@@ -44,22 +44,15 @@ inline void find_square(const WrappedPyramid& pyramid, int level, Pair uv, Squar
   }
 }
 
-inline float mix(float a, float b, float share) { return a + share * (b - a); }
-inline Lanes mix(Lanes a, Lanes b, float share) { return a + all_lanes(share) * (b - a); }
-
-/// Between four texels, whose values `value` gives.
-template <typename Values>
-inline auto mix_square(const Square& square, const Values& value) {
+/// Between four texels, from a channel on.
+template <typename Channels, typename Value>
+inline Channels mix_square(const Square& square, int channel) {
+  const auto load = [channel](const void* texel) {
+    return Channels::load(static_cast<const Value*>(texel) + channel);
+  };
   const auto& [low, high] = square.texels;
-  return mix(mix(value(low[0]), value(low[1]), square.x),
-             mix(value(high[0]), value(high[1]), square.x), square.y);
-}
-
-template <typename Values>
-inline auto mix_levels(const Squares& squares, bool magnifies, float f, const Values& value) {
-  const auto& [coarse, fine] = squares;
-  const auto found = mix_square(fine, value);
-  return magnifies ? found : mix(found, mix_square(coarse, value), f);
+  return mix(mix(load(low[0]), load(low[1]), square.x), mix(load(high[0]), load(high[1]), square.x),
+             square.y);
 }
 
 template <typename Value>
@@ -67,20 +60,13 @@ void mix_block(const Pyramid& pyramid, const SampleBlock& block, const Squares* 
                float* result) {
   constexpr float kUnit = sizeof(Value) == 1 ? 1.0F / 255.0F : 1.0F;
   for (int i = 0; i < block.count; ++i) {
+    const auto& [coarse, fine] = squares[i];
     const bool magnifies = block.cell_levels[i] == 0;
-    if (pyramid.channels == 4) {
-      const Lanes value = mix_levels(squares[i], magnifies, block.f[i], [](const void* texel) {
-        return load_lanes(static_cast<const Value*>(texel));
-      });
-      const Lanes scaled = value * kUnit;
-      std::memcpy(result, &scaled, sizeof scaled);
-    } else {
-      for (int c = 0; c < pyramid.channels; ++c) {
-        result[c] = kUnit * mix_levels(squares[i], magnifies, block.f[i], [c](const void* texel) {
-                      return static_cast<float>(static_cast<const Value*>(texel)[c]);
-                    });
-      }
-    }
+    for_channels(pyramid.channels, [&]<typename Channels>(int channel) {
+      Channels value = mix_square<Channels, Value>(fine, channel);
+      if (!magnifies) value = mix(value, mix_square<Channels, Value>(coarse, channel), block.f[i]);
+      (value * kUnit).store(result + channel);
+    });
     result += pyramid.channels;
   }
 }
