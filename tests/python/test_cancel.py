@@ -41,6 +41,9 @@ BALL = sphere(0.45, 6, (0.5, 0.5, 0.5))
 OPEN = BALL.without(range(0, len(BALL.triangles), 37))
 BOUNDS = ((0.0,) * 3, (1.0,) * 3)
 POINTS = np.random.default_rng(1).random((10_000, 3))
+MANY = np.random.default_rng(5).random((100_000, 2))
+# A plane that ends between the rows of the result.
+HORIZON = np.array([(512.0, 0.0, 0.0), (0.0, 512.0, 0.0), (0.0, 1.0, -12.0)])
 # Noise so large that there are many patches of normals, and as many votes as there can be.
 CLOUD = BALL.positions + np.random.default_rng(2).normal(scale=0.01, size=BALL.positions.shape)
 
@@ -135,6 +138,27 @@ WORK = {
         )
         for filter in ("lanczos3", "radial3")
     },
+    "sampling_levels": lambda **options: prefilter.sampling_levels(RGBA, threads=1, **options),
+    **{
+        f"resample, {name}": lambda ways=ways, **options: prefilter.resample(
+            RGBA, HORIZON, 24, 24, wrap="repeat", threads=1, **ways, **options
+        )
+        for name, ways in {
+            "table": {},
+            "probes": {"filter": "gaussian", "max_probes": 16},
+            "exact": {"exact": True},
+        }.items()
+    },
+    # Few pixels of many texels.
+    "resample, ellipses": lambda **options: prefilter.resample(
+        RGBA, HORIZON, 2, 20, filter="gaussian", max_probes=2, exact=True, threads=1, **options
+    ),
+    "sample_anisotropic": lambda levels, **options: prefilter.sample_anisotropic(
+        levels, "trilinear", MANY, np.tile([(9.0, 5.0), (0.0, 2.0)], (len(MANY), 1, 1)), **options
+    ),
+    "sample_stochastic": lambda levels, **options: prefilter.sample_stochastic(
+        levels, "trilinear", MANY, 3.0, MANY[:, 0], **options
+    ),
     "subdivision": lambda **options: prefilter.Surface.from_subdivision(
         POSITIONS,
         np.full(len(QUADS), 4),

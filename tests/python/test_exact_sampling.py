@@ -103,7 +103,7 @@ def test_samples_at_texels_are_the_levels(filter):
 def brute_force_ewa(image, place, jacobian, wrap):
     height, width, _ = image.shape
     u, sizes, _ = np.linalg.svd(jacobian)
-    last = max(width, height).bit_length() - 1
+    last = (max(width, height) - 1).bit_length()
     sizes = np.clip(sizes, 1.0, 2.0**last)
     inverse = u @ np.diag(sizes**-2.0) @ u.T
     reach = int(3 * sizes.max()) + 2

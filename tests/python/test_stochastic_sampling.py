@@ -12,7 +12,7 @@ TABLES = {
     "tent": prefilter.SamplingTable.standard("tent", 4),
     "trilinear": "trilinear",
 }
-PLACES = np.array([(0.31, 0.62), (0.5, 0.5), (0.99, 0.02), (-0.2, 3.3)])
+PLACES = np.array([(0.31, 0.62), (0.5, 0.5), (0.99, 0.03), (-0.2, 3.3)])
 SCALES = (0.5, 1.0, 1.9, 3.3, 30.0)
 
 
@@ -40,7 +40,7 @@ def test_the_mean_is_the_sample(name, wrap):
 
 @pytest.mark.parametrize("wrap", ["clamp", "repeat", "border"])
 def test_bilinear_reads_the_nearest_level(wrap):
-    levels = levels_for("tent", wrap=wrap)
+    levels = prefilter.sampling_levels(random_image(1, 32, 32, 3), "tent", wrap=wrap)
     for scale, level in ((0.0, 0), (1.4, 0), (1.5, 1), (2.8, 1), (3.0, 2), (1e9, 5)):
         for place in PLACES:
             places = np.tile(place, (NUMBERS, 1))
@@ -53,6 +53,17 @@ def test_bilinear_reads_the_nearest_level(wrap):
             np.testing.assert_allclose(found.mean(axis=0), expected[0], atol=4 / NUMBERS)
             picked = prefilter.pick_texels(levels, "bilinear", places, scale, STRATA, wrap=wrap)
             assert (picked.texels[:, 0] == level).all()
+
+
+def test_bilinear_reads_levels_where_they_lie():
+    """Also those whose last texels reach beyond the image: of a slope, samples are places."""
+    slope = np.arange(21, dtype=np.float32)[None, :, None] + 0.5
+    levels = prefilter.sampling_levels(slope, "box")
+    for scale, u in ((1.0, 0.4), (2.0, 0.3), (4.0, 0.3)):
+        found = prefilter.sample_stochastic(
+            levels, "bilinear", np.tile((u, 0.5), (NUMBERS, 1)), scale, STRATA
+        )
+        np.testing.assert_allclose(found.mean(), 21 * u, atol=0.02)
 
 
 @pytest.mark.parametrize("name", TABLES)

@@ -11,7 +11,6 @@
 #include "prefilter/sampling/anisotropic.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -38,17 +37,24 @@ struct Probes {
   std::vector<double> scales;
   std::vector<double> weights;
   std::vector<std::size_t> ends;  // of each sample's
+
+  void clear() {
+    coordinates.clear();
+    scales.clear();
+    weights.clear();
+    ends.clear();
+  }
 };
 
-void add_probes(const TexturePlace& place, const Footprint& footprint, int max_probes,
-                const PyramidLevel& image, Probes* probes) {
-  const ProbeRow row = probe_row(footprint, max_probes);
+void add_probes(const TexturePlace& place, const Footprint& footprint, const ProbedPyramid& pyramid,
+                Probes* probes) {
+  const ProbeRow row = probe_row(footprint, pyramid.max_probes);
   const std::size_t begin = probes->weights.size();
   double sum = 0.0;
   for (int k = 0; k < row.count; ++k) {
     const double distance = (k - 0.5 * (row.count - 1)) * row.spacing;
-    probes->coordinates.push_back({place[0] + distance * footprint.direction_x / image.width,
-                                   place[1] + distance * footprint.direction_y / image.height});
+    probes->coordinates.push_back({place[0] + distance * footprint.direction_x / pyramid.width,
+                                   place[1] + distance * footprint.direction_y / pyramid.height});
     probes->scales.push_back(row.width);
     probes->weights.push_back(std::exp(-row.falloff * distance * distance));
     sum += probes->weights.back();
@@ -73,47 +79,59 @@ ProbeRow probe_row(const Footprint& footprint, int max_probes) {
   return row;
 }
 
+void check_probe_count(int max_probes) {
+  if (max_probes >= 1 && max_probes <= kMostProbes) return;
+  throw_invalid("max_probes: " + std::to_string(max_probes) + "; a whole number from 1 to " +
+                std::to_string(kMostProbes) + " is needed");
+}
+
+void ProbedPyramid::sample(std::span<const TexturePlace> coordinates,
+                           std::span<const TextureJacobian> jacobians, float* result) const {
+  constexpr std::size_t kSamplesAtOnce = 256;
+  Probes probes;
+  std::vector<float> values;
+  std::vector<double> sums(static_cast<std::size_t>(channels));
+  for (std::size_t begin = 0; begin < coordinates.size(); begin += kSamplesAtOnce) {
+    const std::size_t end = std::min(begin + kSamplesAtOnce, coordinates.size());
+    probes.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      add_probes(coordinates[i], footprint_of(jacobians[i], levels - 1), *this, &probes);
+    }
+    values.resize(probes.weights.size() * sums.size());
+    sampler.sample(probes.coordinates, probes.scales, values.data());
+    const float* value = values.data();
+    std::size_t probe = 0;
+    for (const std::size_t last : probes.ends) {
+      std::fill(sums.begin(), sums.end(), 0.0);
+      for (; probe < last; ++probe) {
+        for (double& sum : sums) sum += probes.weights[probe] * *value++;
+      }
+      for (const double sum : sums) *result++ = static_cast<float>(sum);
+    }
+  }
+}
+
 void sample_anisotropically(const Pyramid& pyramid, const SamplingTable* table,
                             std::span<const TexturePlace> coordinates,
                             std::span<const TextureJacobian> jacobians,
                             const AnisotropicOptions& options, std::span<float> result) {
+  const PyramidSampler sampler(pyramid, table, options.wrap);
   check_coordinates(coordinates);
   check_jacobians(jacobians, coordinates.size());
-  if (options.max_probes < 1 || options.max_probes > kMostProbes) {
-    throw_invalid("max_probes: " + std::to_string(options.max_probes) +
-                  "; a whole number from 1 to " + std::to_string(kMostProbes) + " is needed");
-  }
-  const int last_level = static_cast<int>(pyramid.levels.size()) - 1;
-  const auto channels = static_cast<std::size_t>(pyramid.channels);
+  check_probe_count(options.max_probes);
+  const ProbedPyramid probed{sampler,
+                             pyramid.levels[0].width,
+                             pyramid.levels[0].height,
+                             static_cast<int>(pyramid.levels.size()),
+                             pyramid.channels,
+                             options.max_probes};
   constexpr std::int64_t kSamplesAtOnce = 1 << 10;
   parallel_ranges(static_cast<std::int64_t>(coordinates.size()), kSamplesAtOnce, options.threads,
-                  options.progress, [&](std::int64_t range_begin, std::int64_t range_end) {
-                    const auto begin = static_cast<std::size_t>(range_begin);
-                    const auto end = static_cast<std::size_t>(range_end);
-                    Probes probes;
-                    for (std::size_t i = begin; i < end; ++i) {
-                      add_probes(coordinates[i], footprint_of(jacobians[i], last_level),
-                                 options.max_probes, pyramid.levels[0], &probes);
-                    }
-                    std::vector<float> values(probes.weights.size() * channels);
-                    SampleOptions probe_options;
-                    probe_options.wrap = options.wrap;
-                    probe_options.threads = 1;
-                    sample(pyramid, table, probes.coordinates, probes.scales, probe_options,
-                           values);
-                    std::vector<double> sums(channels);
-                    std::size_t probe = 0;
-                    for (std::size_t i = begin; i < end; ++i) {
-                      std::fill(sums.begin(), sums.end(), 0.0);
-                      for (; probe < probes.ends[i - begin]; ++probe) {
-                        for (std::size_t c = 0; c < channels; ++c) {
-                          sums[c] += probes.weights[probe] * values[probe * channels + c];
-                        }
-                      }
-                      for (std::size_t c = 0; c < channels; ++c) {
-                        result[i * channels + c] = static_cast<float>(sums[c]);
-                      }
-                    }
+                  options.progress, [&](std::int64_t begin, std::int64_t end) {
+                    const auto count = static_cast<std::size_t>(end - begin);
+                    probed.sample(coordinates.subspan(begin, count),
+                                  jacobians.subspan(begin, count),
+                                  result.data() + begin * pyramid.channels);
                   });
   options.progress.report(1.0);
 }

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "prefilter/sampling/footprint.h"
+#include "prefilter/sampling/pyramid_sampler.h"
 #include "prefilter/sampling/sample.h"
 
 namespace prefilter {
@@ -24,6 +25,23 @@ struct ProbeRow {
 /// where it is so narrow that as many do not reach along it: at least 2 / (max_probes + 1) of the
 /// major axis. So one probe is as wide as that.
 ProbeRow probe_row(const Footprint& footprint, int max_probes);
+
+/// Throws Error unless max_probes is in range.
+void check_probe_count(int max_probes);
+
+/// A pyramid that is sampled by probes, in any number of threads at once.
+struct ProbedPyramid {
+  const PyramidSampler& sampler;
+  int width;  // texels of level 0
+  int height;
+  int levels;
+  int channels;
+  int max_probes;
+
+  /// Writes samples at finite coordinates, with finite Jacobians, channel by channel.
+  void sample(std::span<const TexturePlace> coordinates, std::span<const TextureJacobian> jacobians,
+              float* result) const;
+};
 
 struct AnisotropicOptions : SampleOptions {
   int max_probes = 16;

@@ -3,12 +3,13 @@
 #include "prefilter/sampling/elliptical.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/sampling/footprint.h"
-#include "prefilter/texels/levels.h"
 
 namespace prefilter {
 namespace {
@@ -19,7 +20,7 @@ constexpr double kRadius = 2.0 * std::numbers::sqrt2;
 // Where a coordinate is read, near the image; the same texels lie around it, as far from it.
 double near_axis(double place, double reach, int size, Wrap mode) {
   if (mode == Wrap::kRepeat) return (place - std::floor(place)) * size;
-  const double x = place * size;
+  const double x = std::clamp(place, -kLargestCoordinate, kLargestCoordinate) * size;
   const double texel = std::floor(x);
   const double outside = std::ceil(reach) + 2.0;
   return std::clamp(texel, -outside, size + outside) + (x - texel);
@@ -92,15 +93,18 @@ void add_row(const ImageView& image, const Gaussian& gaussian, WrapModes wrap, i
 void add_samples(const ImageView& image, std::span<const TexturePlace> coordinates,
                  std::span<const TextureJacobian> jacobians, const EllipticalOptions& options,
                  const Progress& progress, float* values) {
-  constexpr std::size_t kTexelsOfBand = 1 << 18;
-  constexpr std::int64_t kItemsAtOnce = 8;
-  const int last_level = full_level_count(image.width, image.height) - 1;
+  constexpr std::size_t kTexelsOfBand = 1 << 17;
+  constexpr std::size_t kTexelsAtOnce = 1 << 16;
+  const auto longest = static_cast<unsigned>(std::max(image.width, image.height));
+  const int last_level = static_cast<int>(std::bit_width(longest - 1));  // of sampling_levels
   const auto channels = static_cast<std::size_t>(image.channels);
   const auto bands = static_cast<std::int64_t>(1 + image.texel_count() / kTexelsOfBand);
   const auto items = static_cast<std::int64_t>(coordinates.size()) * bands;
+  const auto at_once = static_cast<std::int64_t>(
+      std::clamp<std::size_t>(kTexelsAtOnce / image.texel_count(), 1, 64));
   std::vector<double> sums(static_cast<std::size_t>(items) * (channels + 1));
   parallel_ranges(
-      items, kItemsAtOnce, options.threads, progress, [&](std::int64_t begin, std::int64_t end) {
+      items, at_once, options.threads, progress, [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t item = begin; item < end; ++item) {
           const auto sample = static_cast<std::size_t>(item / bands);
           const Gaussian gaussian(image, coordinates[sample],

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/sampling/axis_weights.h"
 
@@ -42,10 +43,12 @@ void add_channels(const ImageView& image, const AxisWeights& along_x, const Axis
 void sample_exactly(const ImageView& image, const Kernel& kernel, WrapModes wrap,
                     const TexturePlace& place, double scale, float* values) {
   const double width = std::max(1.0, scale);
-  const AxisWeights along_x =
-      axis_weights(kernel, place[0] * image.width, width, image.width, wrap.u);
-  const AxisWeights along_y =
-      axis_weights(kernel, place[1] * image.height, width, image.height, wrap.v);
+  const auto along = [&](double coordinate, int size, Wrap mode) {
+    const double near = std::clamp(coordinate, -kLargestCoordinate, kLargestCoordinate);
+    return axis_weights(kernel, near * size, width, size, mode);
+  };
+  const AxisWeights along_x = along(place[0], image.width, wrap.u);
+  const AxisWeights along_y = along(place[1], image.height, wrap.v);
   std::vector<double> sums(static_cast<std::size_t>(image.channels));
   switch (image.channels) {
     case 1:

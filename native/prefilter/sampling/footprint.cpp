@@ -18,25 +18,47 @@ double steady(double width) {
   return width;
 }
 
+// J, and J J^T, in units of the largest of J's values: half the sum and half the difference of its
+// diagonal, and what is beside it.
+struct Squares {
+  double largest = 0.0;
+  double determinant = 0.0;  // of J
+  double mean = 0.0;
+  double half = 0.0;
+  double beside = 0.0;
+
+  explicit Squares(const TextureJacobian& jacobian) {
+    for (const double value : jacobian) largest = std::max(largest, std::abs(value));
+    if (largest == 0.0) return;
+    const double xi = jacobian[0] / largest;
+    const double xj = jacobian[1] / largest;
+    const double yi = jacobian[2] / largest;
+    const double yj = jacobian[3] / largest;
+    determinant = xi * yj - xj * yi;
+    mean = 0.5 * (xi * xi + xj * xj + yi * yi + yj * yj);
+    half = 0.5 * (xi * xi + xj * xj - yi * yi - yj * yj);
+    beside = xi * yi + xj * yj;
+  }
+
+  double larger() const { return std::sqrt(mean + std::sqrt(half * half + beside * beside)); }
+};
+
 }  // namespace
 
 Footprint singular_values(const TextureJacobian& jacobian) {
-  double largest = 0.0;
-  for (const double value : jacobian) largest = std::max(largest, std::abs(value));
-  if (largest == 0.0) return {0.0, 0.0, 1.0, 0.0};
-  const double xi = jacobian[0] / largest;
-  const double xj = jacobian[1] / largest;
-  const double yi = jacobian[2] / largest;
-  const double yj = jacobian[3] / largest;
-  // Of J J^T: half the sum and half the difference of the diagonal, and what is beside it.
-  const double mean = 0.5 * (xi * xi + xj * xj + yi * yi + yj * yj);
-  const double half = 0.5 * (xi * xi + xj * xj - yi * yi - yj * yj);
-  const double beside = xi * yi + xj * yj;
-  const double major = std::sqrt(mean + std::hypot(half, beside));
-  const double angle = 0.5 * std::atan2(beside, half);
-  // The smaller one by the determinant: no difference of near equals.
-  const double minor = std::min(major, std::abs(xi * yj - xj * yi) / major);
-  return {steady(major * largest), steady(minor * largest), std::cos(angle), std::sin(angle)};
+  const Squares squares(jacobian);
+  if (squares.largest == 0.0) return {0.0, 0.0, 1.0, 0.0};
+  const double major = squares.larger();
+  // By the determinant: no difference of near equals.
+  const double minor = std::min(major, std::abs(squares.determinant) / major);
+  const double angle = 0.5 * std::atan2(squares.beside, squares.half);
+  return {steady(major * squares.largest), steady(minor * squares.largest), std::cos(angle),
+          std::sin(angle)};
+}
+
+double larger_singular_value(const TextureJacobian& jacobian) {
+  const Squares squares(jacobian);
+  return steady(squares.larger() * squares.largest);
 }
 
 Footprint footprint_of(const TextureJacobian& jacobian, int last_level) {

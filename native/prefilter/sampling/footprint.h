@@ -18,8 +18,11 @@ struct Footprint {
 /// power of two but for rounding are that power.
 Footprint singular_values(const TextureJacobian& jacobian);
 
-/// The same with widths of at least 1, and at most that of a texel of level `last_level`: no filter
-/// is narrower than a texel, and none wider than those of the coarsest level.
+/// The larger one of them.
+double larger_singular_value(const TextureJacobian& jacobian);
+
+/// singular_values with widths of at least 1, and at most that of a texel of level `last_level`: no
+/// filter is narrower than a texel, and none wider than those of the coarsest level.
 Footprint footprint_of(const TextureJacobian& jacobian, int last_level);
 
 }  // namespace prefilter

@@ -18,7 +18,7 @@
 #include "prefilter/sampling/elliptical.h"
 #include "prefilter/sampling/exact.h"
 #include "prefilter/sampling/footprint.h"
-#include "prefilter/sampling/sample.h"
+#include "prefilter/sampling/pyramid_sampler.h"
 #include "prefilter/sampling/sampling_levels.h"
 
 namespace prefilter {
@@ -43,10 +43,7 @@ void check_arguments(const ImageView& image, const Homography& transform, int wi
   }
   check_size("width", width);
   check_size("height", height);
-  if (options.max_probes < 1 || options.max_probes > kMostProbes) {
-    throw_invalid("max_probes: " + std::to_string(options.max_probes) +
-                  "; a whole number from 1 to " + std::to_string(kMostProbes) + " is needed");
-  }
+  check_probe_count(options.max_probes);
   if (options.method == Method::kExact && options.max_probes > 1 &&
       options.kernel->name() != "gaussian") {
     throw_invalid("max_probes: " + std::to_string(options.max_probes) + " with exact and filter '" +
@@ -62,9 +59,9 @@ void check_arguments(const ImageView& image, const Homography& transform, int wi
 }
 
 // Samples of an image, of any places and shapes, one batch after another.
-class Sampler {
+class ImageSampler {
  public:
-  Sampler(const ImageView& image, const ResampleOptions& options, const Progress& progress)
+  ImageSampler(const ImageView& image, const ResampleOptions& options, const Progress& progress)
       : image_(image), options_(options) {
     if (options.method == Method::kExact) return;
     SamplingLevelsOptions level_options;
@@ -78,65 +75,72 @@ class Sampler {
     for (const Image& level : levels_) {
       views.push_back({level.data.data(), level.width, level.height});
     }
-    pyramid_.emplace(std::move(views), image.channels, false);
+    const Pyramid pyramid(std::move(views), image.channels, false);
+    sampler_.emplace(pyramid, options.method == Method::kTable ? options.table : nullptr,
+                     options.wrap);
   }
 
-  // How many pixels take as long as a cancel may wait.
+  // Whether one pixel may take so long that its own work is shared among threads.
+  bool is_elliptical() const {
+    return options_.method == Method::kExact && options_.max_probes > 1;
+  }
+
+  // How many pixels are sampled at once.
   std::int64_t batch() const {
     constexpr std::int64_t kManyPixels = 1 << 12;
     constexpr std::int64_t kTexelsAtOnce = 1 << 22;
-    if (options_.method != Method::kExact) return kManyPixels;
+    if (options_.method != Method::kExact || is_elliptical()) return kManyPixels;
     return std::clamp<std::int64_t>(kTexelsAtOnce / static_cast<std::int64_t>(image_.texel_count()),
                                     1, 64);
   }
 
+  // Tells its progress where is_elliptical().
   void operator()(std::span<const TexturePlace> coordinates,
-                  std::span<const TextureJacobian> jacobians, std::span<float> values) const {
-    if (options_.max_probes > 1) {
-      if (options_.method == Method::kExact) {
-        const std::vector<float> found = sample_elliptically(
-            image_, coordinates, jacobians, {.wrap = options_.wrap, .threads = 1, .progress = {}});
-        std::copy(found.begin(), found.end(), values.begin());
-        return;
-      }
-      AnisotropicOptions options;
-      options.wrap = options_.wrap;
-      options.threads = 1;
-      options.max_probes = options_.max_probes;
-      sample_anisotropically(*pyramid_, table(), coordinates, jacobians, options, values);
-      return;
-    }
-    std::vector<double> scales;
-    for (const TextureJacobian& jacobian : jacobians) {
-      scales.push_back(singular_values(jacobian).major);
-    }
-    if (options_.method == Method::kExact) {
+                  std::span<const TextureJacobian> jacobians, const Progress& progress,
+                  float* values) const {
+    if (is_elliptical()) {
+      const std::vector<float> found = sample_elliptically(
+          image_, coordinates, jacobians,
+          {.wrap = options_.wrap, .threads = options_.threads, .progress = progress});
+      std::copy(found.begin(), found.end(), values);
+    } else if (options_.method == Method::kExact) {
       for (std::size_t i = 0; i < coordinates.size(); ++i) {
-        sample_exactly(image_, *options_.kernel, options_.wrap, coordinates[i], scales[i],
-                       values.data() + i * static_cast<std::size_t>(image_.channels));
+        sample_exactly(image_, *options_.kernel, options_.wrap, coordinates[i],
+                       larger_singular_value(jacobians[i]), values + i * image_.channels);
       }
-      return;
+    } else if (options_.max_probes > 1) {
+      const ProbedPyramid probed{*sampler_,       image_.width,
+                                 image_.height,   static_cast<int>(levels_.size()),
+                                 image_.channels, options_.max_probes};
+      probed.sample(coordinates, jacobians, values);
+    } else {
+      sampler_->sample(coordinates, scales_of(jacobians), values);
     }
-    SampleOptions options;
-    options.wrap = options_.wrap;
-    options.threads = 1;
-    sample(*pyramid_, table(), coordinates, scales, options, values);
   }
 
  private:
-  const SamplingTable* table() const {
-    return options_.method == Method::kTable ? options_.table : nullptr;
+  // Those of affine maps are all the same.
+  static std::vector<double> scales_of(std::span<const TextureJacobian> jacobians) {
+    std::vector<double> scales;
+    scales.reserve(jacobians.size());
+    for (std::size_t i = 0; i < jacobians.size(); ++i) {
+      scales.push_back(i > 0 && jacobians[i] == jacobians[i - 1]
+                           ? scales.back()
+                           : larger_singular_value(jacobians[i]));
+    }
+    return scales;
   }
 
   const ImageView image_;
   const ResampleOptions& options_;
   std::vector<Image> levels_;
-  std::optional<Pyramid> pyramid_;  // none where samples are exact
+  std::optional<PyramidSampler> sampler_;  // none where samples are exact
 };
 
 // Pixels from `begin` to `end`, row by row; what is beyond the horizon stays as it is.
-void resample_pixels(const Sampler& sampler, const ImageView& image, const Homography& transform,
-                     std::int64_t begin, std::int64_t end, Image* result) {
+void resample_pixels(const ImageSampler& sampler, const ImageView& image,
+                     const Homography& transform, std::int64_t begin, std::int64_t end,
+                     const Progress& progress, Image* result) {
   std::vector<TexturePlace> coordinates;
   std::vector<TextureJacobian> jacobians;
   std::vector<std::int64_t> pixels;
@@ -151,7 +155,7 @@ void resample_pixels(const Sampler& sampler, const ImageView& image, const Homog
   }
   const auto channels = static_cast<std::size_t>(image.channels);
   std::vector<float> values(pixels.size() * channels);
-  sampler(coordinates, jacobians, values);
+  sampler(coordinates, jacobians, progress, values.data());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     std::copy_n(values.data() + i * channels, channels,
                 result->data.data() + static_cast<std::size_t>(pixels[i]) * channels);
@@ -203,12 +207,26 @@ Image resample(const ImageView& image, const Homography& transform, int width, i
        .stays_opaque = !has_border(options.wrap),
        .threads = options.threads,
        .progress = options.progress.part(0.0, 0.05)});
-  const Sampler sampler(filtered.floats(), options, options.progress.part(0.05, 0.25));
+  const ImageSampler sampler(filtered.floats(), options, options.progress.part(0.05, 0.25));
   Image result(width, height, image.channels);
-  parallel_ranges(static_cast<std::int64_t>(width) * height, sampler.batch(), options.threads,
-                  options.progress.part(0.25, 0.9), [&](std::int64_t begin, std::int64_t end) {
-                    resample_pixels(sampler, filtered.floats(), transform, begin, end, &result);
-                  });
+  const std::int64_t pixels = static_cast<std::int64_t>(width) * height;
+  const Progress sampling = options.progress.part(0.25, 0.9);
+  const auto resample_range = [&](std::int64_t begin, std::int64_t end, const Progress& progress) {
+    resample_pixels(sampler, filtered.floats(), transform, begin, end, progress, &result);
+  };
+  if (sampler.is_elliptical()) {
+    const auto done = [&](std::int64_t pixel) {
+      return static_cast<double>(pixel) / static_cast<double>(pixels);
+    };
+    for (std::int64_t begin = 0; begin < pixels; begin += sampler.batch()) {
+      const std::int64_t end = std::min(begin + sampler.batch(), pixels);
+      resample_range(begin, end, sampling.part(done(begin), done(end)));
+    }
+  } else {
+    parallel_ranges(
+        pixels, sampler.batch(), options.threads, sampling,
+        [&](std::int64_t begin, std::int64_t end) { resample_range(begin, end, Progress()); });
+  }
   if (filtered.is_multiplied()) {
     filtered.divide_by_alpha(WrapModes(), options.progress.part(0.9, 1.0), options.threads,
                              &result);

@@ -1,12 +1,12 @@
 // Isotropic samples of a pyramid (section 6.2).
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/sampling/pyramid.h"
+#include "prefilter/sampling/sample_places.h"
 #include "prefilter/sampling/sampling_table.h"
 
 namespace prefilter {
@@ -28,7 +28,7 @@ struct SampleOptions {
 /// that is negative or not finite, or numbers of coordinates, scales and results that disagree;
 /// and, from the progress callback, when cancelled.
 void sample(const Pyramid& pyramid, const SamplingTable* table,
-            std::span<const std::array<double, 2>> coordinates, std::span<const double> scales,
+            std::span<const TexturePlace> coordinates, std::span<const double> scales,
             const SampleOptions& options, std::span<float> result);
 
 }  // namespace prefilter

@@ -20,14 +20,21 @@ struct SamplePlaces {
   double scale(std::size_t sample) const { return scales[scales.size() == 1 ? 0 : sample]; }
 };
 
-/// Throws Error unless all coordinates are finite.
-void check_coordinates(std::span<const TexturePlace> coordinates);
+// These throw Error. `first` is the number of the first sample, which messages count from.
 
-/// Throws Error unless all coordinates and scales are finite, and no scale is negative; and unless
-/// there is one scale, or one for each sample.
+/// Unless all coordinates are finite.
+void check_coordinates(std::span<const TexturePlace> coordinates, std::size_t first = 0);
+
+/// Unless all scales are finite, and none is negative.
+void check_scales(std::span<const double> scales, std::size_t first = 0);
+
+/// Unless there is one scale, or one for each sample.
+void check_scale_count(const SamplePlaces& places);
+
+/// All of these.
 void check_places(const SamplePlaces& places);
 
-/// Throws Error unless there is a Jacobian for each sample, and all are finite.
+/// Unless there is a Jacobian for each sample, and all are finite.
 void check_jacobians(std::span<const TextureJacobian> jacobians, std::size_t samples);
 
 }  // namespace prefilter

@@ -25,9 +25,12 @@ void check_numbers(std::span<const double> numbers, std::size_t samples) {
   }
 }
 
-// Level `level` alone.
+// Level `level` alone, spread over the image as it is in the pyramid.
 Pyramid one_level(const Pyramid& pyramid, int level) {
-  return {{pyramid.levels[static_cast<std::size_t>(level)]}, pyramid.channels, pyramid.bytes};
+  const PyramidLevel& found = pyramid.levels[static_cast<std::size_t>(level)];
+  Pyramid alone({found}, pyramid.channels, pyramid.bytes);
+  alone.levels[0] = found;
+  return alone;
 }
 
 WeightedTexel pick(const WeightedTexels& found, double number) {
