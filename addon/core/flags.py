@@ -37,6 +37,8 @@ def add_flags(
             more |= {"type": partial(_read, default, found), "metavar": found.metavar}
             if isinstance(default, tuple) and found.choices:
                 more["nargs"] = "+"
+            elif isinstance(default, tuple) and found.subtype != "COLOR":
+                more["nargs"] = len(default)
             notes = [found.allowed] if found.has_limits else []
             # What a color is without its flag is another option's to say.
             if default != "" and found.subtype != "COLOR" and name not in without_default:
@@ -84,8 +86,9 @@ def _read(default: Any, declaration: Option, text: str) -> Any:
     elif declaration.subtype == "COLOR":
         value = from_hex(text) or ()
     else:
+        kind = float if isinstance(default, tuple) else type(default)
         try:
-            value = type(default)(text)
+            value = kind(text)
         except ValueError:
             value = math.nan
         if declaration.subtype == "ANGLE":

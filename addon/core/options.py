@@ -77,6 +77,8 @@ class Option:
             return chosen <= self.choices.keys()
         if self.subtype == "COLOR":
             return len(value) == 4 and all(0.0 <= one <= 1.0 + _ROUNDING for one in value)
+        if isinstance(value, tuple):
+            return all(self.allows(one) for one in value)
         if not isinstance(value, int | float):
             return True
         # Blender keeps numbers in single precision.
@@ -92,7 +94,7 @@ class Option:
         if self.subtype == "COLOR":
             return to_hex(value)
         if isinstance(value, tuple):
-            return " ".join(value)
+            return " ".join(self.shown(one) for one in value)
         return str(value)
 
 
@@ -109,6 +111,11 @@ def one_of(
 
 def number(default: float, label: str, description: str, **more: Any) -> Any:
     """Declares an option that is a number: whole if the default is."""
+    return _declared(default, Option(label, description, **more))
+
+
+def numbers(default: tuple[float, ...], label: str, description: str, **more: Any) -> Any:
+    """Declares an option that is as many numbers as the default has."""
     return _declared(default, Option(label, description, **more))
 
 

@@ -37,12 +37,12 @@ def single_property(settings: type, name: str, **more: Any) -> Any:
 def values(source: Any, settings: type) -> Any:
     """Returns the settings that properties have; paths are absolute."""
     found = {}
-    for name, _, declaration in declared(settings):
+    for name, default, declaration in declared(settings):
         if declaration.label:
             value = getattr(source, name)
             if declaration.subtype == "FILE_PATH":
                 value = bpy.path.abspath(value)
-            elif declaration.subtype == "COLOR":
+            elif isinstance(default, tuple) and not declaration.choices:
                 value = tuple(value)
             found[name] = value
     return settings(**found)
@@ -77,4 +77,6 @@ def _property(default: Any, declaration: Option, **more: Any) -> Any:
     low = declaration.low + _ABOVE if declaration.is_above else declaration.low
     limits = {"min": low, "max": declaration.high}
     common = {name: value for name, value in limits.items() if math.isfinite(value)} | common
+    if isinstance(default, tuple):
+        return FloatVectorProperty(size=len(default), **common)
     return (IntProperty if isinstance(default, int) else FloatProperty)(**common)

@@ -31,6 +31,9 @@ def settings(addon):
         ink: tuple[float, ...] = options.rgba(
             (1.0, 1.0, 1.0, 0.5), "Ink", "Its color", metavar="COLOR"
         )
+        place: tuple[float, ...] = options.numbers(
+            (0.0, 1.0), "Place", "Where", low=-9.0, high=9.0, metavar="N"
+        )
         threads: int = options.threads()
 
     return Settings
@@ -71,6 +74,7 @@ def test_flags(read, settings):
     assert read("--share", "1").share == 1.0
     half = ((0x80 / 255 + 0.055) / 1.055) ** 2.4
     assert read("--ink", "#0080ff").ink == pytest.approx((0, half, 1, 1))
+    assert read("--place", "-1.5", "2").place == (-1.5, 2.0)
     assert read("--ink", "0080FF33").ink == pytest.approx((0, half, 1, 0.2))
 
 
@@ -90,6 +94,9 @@ def test_flags(read, settings):
         (["--threads", "inf"], "--threads: found 'inf'; allowed: 0 and up"),
         (["--ink", "#fff"], "--ink: found '#fff'; allowed: #RRGGBB or #RRGGBBAA"),
         (["--ink", "#00000g"], "--ink: found '#00000g'; allowed: #RRGGBB or #RRGGBBAA"),
+        (["--place", "1"], "--place: expected 2 arguments"),
+        (["--place", "1", "10"], "--place: found '10'; allowed: -9 to 9"),
+        (["--place", "1", "nan"], "--place: found 'nan'; allowed: -9 to 9"),
         (["--hidden", "1"], "unrecognized arguments: --hidden 1"),
     ],
 )
@@ -109,6 +116,7 @@ def test_wrong_values(read, capsys, arguments, message):
         ({"bend": -1.0}, "Bend: found -57.29578; allowed: 0 to 180"),
         ({"ink": (0, 0, 2, 1)}, "Ink: found #0000ff; allowed: #RRGGBB or #RRGGBBAA.*"),
         ({"ink": (0, math.nan, 0, 1)}, "Ink: found .*; allowed: #RRGGBB or #RRGGBBAA.*"),
+        ({"place": (1.0, math.inf)}, "Place: found 1 inf; allowed: -9 to 9"),
         ({"threads": -1}, "threads: found -1; allowed: 0 and up"),
     ],
 )
@@ -128,7 +136,7 @@ def test_help(addon, settings):
     assert "100% at most (above 0, up to 1; default: 0.5)" in text
     assert "how far (0 to 180; default: 30)" in text
     assert "--no-it leave it" in text
-    assert "--ink COLOR its color --threads" in text
+    assert "--ink COLOR its color --place N N where (-9 to 9; default: 0 1) --threads" in text
     assert flags.tables(settings, "kind") == [
         "--kind:\n  a                 Round\n  b-c               Long"
     ]
@@ -137,10 +145,11 @@ def test_help(addon, settings):
 def test_table(addon, settings):
     rows = addon("core.options").table(settings).splitlines()
     assert rows[0] == "| Setting | Default | Meaning |"
-    assert len(rows) == 2 + 10
+    assert len(rows) == 2 + 11
     assert rows[2] == (
         "| Kind | Apple | What it is.<br>**Apple** (`a`): Round.<br>**Bean** (`b-c`): Long. |"
     )
     assert rows[6] == "| Bend | 30° | How far. Allowed: 0 to 180. |"
     assert rows[7] == "| It | on | Use it. |"
     assert rows[11] == "| Ink | #ffffff80 | Its color. |"
+    assert rows[12] == "| Place | 0 1 | Where. Allowed: -9 to 9. |"
