@@ -7,3 +7,11 @@ def show(context: bpy.types.Context, image: bpy.types.Image) -> None:
     """Shows an image in the editor that the operator was called from."""
     if context.area is not None and context.area.type == "IMAGE_EDITOR":
         context.space_data.image = image
+
+
+def redraw() -> None:
+    """Has every Image editor drawn again."""
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "IMAGE_EDITOR":
+                area.tag_redraw()

@@ -55,7 +55,7 @@ class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
         preview.keep(result)
         editors.show(context, images.find(self._name))
         context.window_manager.prefilter_view.use_preview = True
-        preview.redraw()
+        editors.redraw()
         return f"Computed levels 0 to {result.last_level}"
 
 
@@ -78,5 +78,5 @@ class PREFILTER_OT_end_preview(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Forgets them."""
         preview.drop(context.space_data.image)
-        preview.redraw()
+        editors.redraw()
         return {"FINISHED"}

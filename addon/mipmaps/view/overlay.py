@@ -8,13 +8,12 @@ is how the editor shows an image unless its View as Render is on.
 
 import math
 
-import blf
 import bpy
 import gpu
-import numpy as np
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
+from ...bridge.drawing import COLOR_FUNCTIONS, draw_wipe, uploaded
 from ..choices import FILTERS
 from . import preview
 from .preview import Preview
@@ -24,8 +23,6 @@ _DEPTH = 0.5
 _CHANNELS = {"COLOR_ALPHA": 0, "COLOR": 1, "ALPHA": 2, "RED": 3, "GREEN": 4, "BLUE": 5}
 # Whether the editor multiplies light by alpha: 5.2 does, 4.3 does not.
 _MULTIPLIES_LIGHT = bpy.app.version >= (5, 0, 0)
-_LINE_WIDTH = 2  # In pixels.
-_LABEL_SIZE, _LABEL_GAP = 13, 10
 
 _VERTEX = """
 void main()
@@ -40,26 +37,6 @@ int wrapped(int index, int size, int mode)
 {
   return mode == 1 ? index - size * int(floor(float(index) / float(size)))
                    : clamp(index, 0, size - 1);
-}
-
-float encoded(float light)
-{
-  return light <= 0.0031308 ? light * 12.92 : 1.055 * pow(light, 1.0 / 2.4) - 0.055;
-}
-
-float decoded(float value)
-{
-  return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
-}
-
-vec3 encoded(vec3 light)
-{
-  return vec3(encoded(light.r), encoded(light.g), encoded(light.b));
-}
-
-vec3 decoded(vec3 value)
-{
-  return vec3(decoded(value.r), decoded(value.g), decoded(value.b));
 }
 
 vec4 texel(sampler2D level, ivec2 index)
@@ -194,7 +171,7 @@ def _compiled() -> gpu.types.GPUShader:
         info.fragment_out(0, "VEC4", "color")
         info.vertex_source(_VERTEX)
         info.define("MULTIPLIES_LIGHT", str(_MULTIPLIES_LIGHT).lower())
-        info.fragment_source(_FRAGMENT)
+        info.fragment_source(COLOR_FUNCTIONS + _FRAGMENT)
         _shader = gpu.shader.create_from_info(info)
     return _shader
 
@@ -205,17 +182,9 @@ def _textures(shown: Preview, wanted: list[tuple[str, int]]) -> list[gpu.types.G
     kept = {key: shown.textures[key] for key in keys if key in shown.textures}
     for key, (name, level) in zip(keys, wanted, strict=True):
         if key not in kept:
-            kept[key] = _upload(shown.levels[name][level])
+            kept[key] = uploaded(shown.levels[name][level])
     shown.textures = kept
     return [kept[key] for key in keys]
-
-
-def _upload(level: np.ndarray) -> gpu.types.GPUTexture:
-    height, width = level.shape[:2]
-    rgba = np.ones((height, width, 4), np.float32)
-    rgba[..., : level.shape[2]] = level
-    values = gpu.types.Buffer("FLOAT", rgba.size, rgba.ravel())
-    return gpu.types.GPUTexture((width, height), format="RGBA16F", data=values)
 
 
 def _shown_here() -> tuple[Preview, tuple[str, str], float] | None:
@@ -253,31 +222,9 @@ def _draw_labels() -> None:
     if found is None:
         return
     shown, (left, right), wipe = found
-    scale = bpy.context.preferences.system.ui_scale
-    height = bpy.context.region.height
     mip_value = min(bpy.context.window_manager.prefilter_view.mip_value, shown.last_level)
-    # The header may lie over the region's upper edge.
-    y = _LABEL_GAP * scale
-    blf.size(0, _LABEL_SIZE * scale)
-    blf.enable(0, blf.SHADOW)
-    blf.shadow(0, 5, 0.0, 0.0, 0.0, 1.0)
-    blf.color(0, 1.0, 1.0, 1.0, 1.0)
-    x = wipe * bpy.context.region.width
-    text = f"{FILTERS[right].label}, mip value {mip_value:g}"
-    blf.position(0, x + _LABEL_GAP * scale, y, 0)
-    blf.draw(0, text)
-    if left != right:
-        text = FILTERS[left].label
-        blf.position(0, x - blf.dimensions(0, text)[0] - _LABEL_GAP * scale, y, 0)
-        blf.draw(0, text)
-        shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-        half = _LINE_WIDTH * scale / 2
-        corners = [(x - half, 0), (x + half, 0), (x + half, height), (x - half, height)]
-        line = batch_for_shader(shader, "TRI_FAN", {"pos": corners})
-        shader.bind()
-        shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
-        line.draw(shader)
-    blf.disable(0, blf.SHADOW)
+    left_label = FILTERS[left].label if left != right else ""
+    draw_wipe(wipe, left_label, f"{FILTERS[right].label}, mip value {mip_value:g}")
 
 
 def register() -> None:

@@ -1,15 +1,10 @@
-"""The levels that editors draw in the place of an image: computed, kept, and when they are stale.
-
-They are kept by the image's session_uid, which an undo does not change, and no datablock is held.
-"""
+"""The levels that editors draw in the place of an image: computed, and kept."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
-import bpy
-from bpy.app.handlers import persistent
-
 from ...bridge.images import FloatArray
+from ...bridge.previews import Previews
 from ...core.alpha import associated
 from ...core.jobs import Progress, parts
 from ..bake import Bake
@@ -44,6 +39,10 @@ class Preview:
     is_stale: bool = False
     textures: dict[tuple[str, int], object] = field(default_factory=dict)
 
+    def depends_on(self, name: str) -> bool:
+        """Tells whether an object wears the image."""
+        return name in self.objects
+
     @property
     def last_level(self) -> int:
         """The number of the coarsest level."""
@@ -55,7 +54,9 @@ class Preview:
         return _WRAPS.index(self.wrap[0]), _WRAPS.index(self.wrap[1])
 
 
-_previews: dict[int, Preview] = {}
+_previews: Previews[Preview] = Previews()
+keep, find, drop = _previews.keep, _previews.find, _previews.drop
+register, unregister = _previews.register, _previews.unregister
 
 
 def settings_for_preview(settings: Settings) -> Settings:
@@ -93,61 +94,3 @@ def compute(source: Bake, image_uid: int, filters: Iterable[str], progress: Prog
         decodes_after=source.reader != "linear",
         objects=frozenset(source.objects),
     )
-
-
-def keep(preview: Preview) -> None:
-    """Makes editors draw a preview in the place of its image."""
-    _previews[preview.image_uid] = preview
-
-
-def find(image: bpy.types.Image | None) -> Preview | None:
-    """Returns the preview of an image, if there is one."""
-    return None if image is None else _previews.get(image.session_uid)
-
-
-def drop(image: bpy.types.Image) -> None:
-    """Forgets the preview of an image."""
-    _previews.pop(image.session_uid, None)
-
-
-def redraw() -> None:
-    """Has every Image editor drawn again."""
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "IMAGE_EDITOR":
-                area.tag_redraw()
-
-
-@persistent
-def _drop_all(*_: object) -> None:
-    _previews.clear()
-
-
-@persistent
-def _mark_stale(_: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    if not _previews:
-        return
-    for update in depsgraph.updates:
-        changed = update.id.original
-        if isinstance(changed, bpy.types.Image):
-            preview = find(changed)
-            if preview is not None:
-                preview.is_stale = True
-        elif isinstance(changed, bpy.types.Object) and (
-            update.is_updated_geometry or update.is_updated_transform
-        ):
-            for preview in _previews.values():
-                preview.is_stale |= changed.name in preview.objects
-
-
-def register() -> None:
-    """Adds the handlers."""
-    bpy.app.handlers.load_pre.append(_drop_all)
-    bpy.app.handlers.depsgraph_update_post.append(_mark_stale)
-
-
-def unregister() -> None:
-    """Removes the handlers and forgets the previews."""
-    bpy.app.handlers.depsgraph_update_post.remove(_mark_stale)
-    bpy.app.handlers.load_pre.remove(_drop_all)
-    _drop_all()

@@ -3,14 +3,14 @@
 import bpy
 from bpy.props import BoolProperty, FloatProperty, PointerProperty
 
+from ...bridge import editors
 from ...core.properties import single_property
 from ..choices import PlotSettings, PreviewSettings
-from . import preview
 
 
 def _redraw(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
     del settings, context
-    preview.redraw()
+    editors.redraw()
 
 
 class PREFILTER_PG_view(bpy.types.PropertyGroup):

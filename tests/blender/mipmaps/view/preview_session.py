@@ -192,7 +192,7 @@ def offscreen(preview: object, image: bpy.types.Image, name: str) -> Iterator[No
         target.free()
 
     handle = bpy.types.SpaceImageEditor.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL")
-    preview.redraw()
+    importlib.import_module(f"{PACKAGE}.bridge.editors").redraw()
     yield from until(lambda: f"{name} 3" in found)
     bpy.types.SpaceImageEditor.draw_handler_remove(handle, "WINDOW")
 

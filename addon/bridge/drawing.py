@@ -1,0 +1,79 @@
+"""What is drawn in editors with the graphics card: colors, textures, and a wipe with its labels."""
+
+import blf
+import bpy
+import gpu
+import numpy as np
+from gpu_extras.batch import batch_for_shader
+
+from .images import FloatArray
+
+COLOR_FUNCTIONS = """
+float encoded(float light)
+{
+  return light <= 0.0031308 ? light * 12.92 : 1.055 * pow(light, 1.0 / 2.4) - 0.055;
+}
+
+float decoded(float value)
+{
+  return value <= 0.04045 ? value / 12.92 : pow((value + 0.055) / 1.055, 2.4);
+}
+
+vec3 encoded(vec3 light)
+{
+  return vec3(encoded(light.r), encoded(light.g), encoded(light.b));
+}
+
+vec3 decoded(vec3 value)
+{
+  return vec3(decoded(value.r), decoded(value.g), decoded(value.b));
+}
+"""
+"""GLSL: between light and sRGB values."""
+
+_LINE_WIDTH = 2  # In pixels.
+_LABEL_SIZE, _LABEL_GAP = 13, 10
+
+
+def uploaded(pixels: FloatArray) -> gpu.types.GPUTexture:
+    """Returns a texture of 16-bit floats; where there are three channels, alpha is 1."""
+    height, width = pixels.shape[:2]
+    rgba = np.ones((height, width, 4), np.float32)
+    rgba[..., : pixels.shape[2]] = pixels
+    values = gpu.types.Buffer("FLOAT", rgba.size, rgba.ravel())
+    return gpu.types.GPUTexture((width, height), format="RGBA16F", data=values)
+
+
+def draw_wipe(share: float, left: str, right: str) -> None:
+    """Draws a line from the bottom to the top of the region, and labels beside it.
+
+    Args:
+        share: Where it is, as a share of the region's width.
+        left: What is to the left of it; empty for no line.
+        right: What is to the right of it.
+    """
+    scale = bpy.context.preferences.system.ui_scale
+    x = share * bpy.context.region.width
+    # The header may lie over the region's upper edge.
+    y = _LABEL_GAP * scale
+    blf.size(0, _LABEL_SIZE * scale)
+    blf.enable(0, blf.SHADOW)
+    blf.shadow(0, 5, 0.0, 0.0, 0.0, 1.0)
+    blf.color(0, 1.0, 1.0, 1.0, 1.0)
+    blf.position(0, x + _LABEL_GAP * scale, y, 0)
+    blf.draw(0, right)
+    if left:
+        blf.position(0, x - blf.dimensions(0, left)[0] - _LABEL_GAP * scale, y, 0)
+        blf.draw(0, left)
+        _draw_line(x, _LINE_WIDTH * scale / 2)
+    blf.disable(0, blf.SHADOW)
+
+
+def _draw_line(x: float, half: float) -> None:
+    shader = gpu.shader.from_builtin("UNIFORM_COLOR")
+    height = bpy.context.region.height
+    corners = [(x - half, 0), (x + half, 0), (x + half, height), (x - half, height)]
+    line = batch_for_shader(shader, "TRI_FAN", {"pos": corners})
+    shader.bind()
+    shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
+    line.draw(shader)
