@@ -181,6 +181,16 @@ def _has_integer_file(image: bpy.types.Image) -> bool:
         return openimageio.holds_integers(copy)
 
 
+def with_coverage(picture: Picture) -> Picture:
+    """Returns the picture with an alpha of 1, unless it has one or its channels are independent."""
+    height, width, channels = picture.stored.shape
+    if channels == 4 or picture.is_data or picture.alpha_mode in _INDEPENDENT:
+        return picture
+    stored = np.ones((height, width, 4), np.float32)
+    stored[..., :3] = picture.stored
+    return replace(picture, stored=stored)
+
+
 def check_untiled(image: bpy.types.Image) -> None:
     """Raises ValueError where the image has UDIM tiles."""
     if image.source == "TILED":

@@ -1,6 +1,6 @@
-"""Images of other sizes."""
+"""Images of other sizes and in other places."""
 
 from ..core.registration import registration
-from . import operators, panel, properties
+from . import operators, panels, properties
 
-register, unregister = registration(properties, operators, panel)
+register, unregister = registration(properties, operators, panels)

@@ -1,9 +1,11 @@
-"""What a user may set for an image of another size."""
+"""What a user may set for images that are resized and resampled, and for sampling tables."""
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 from ..core.choices import Choice
-from ..core.options import number, one_of, switch, threads
+from ..core.options import number, numbers, one_of, switch, threads
 
 SIZES = {
     "percent": Choice("Percent", "A share of the width and height of the image"),
@@ -32,6 +34,82 @@ WRAPS = {
     "repeat": Choice("Repeat", "The image tiles the plane"),
     "border": Choice("Border", "Black and transparent"),
 }
+WARPS = {
+    "affine": Choice("Scale and Rotate", "Scale and rotate the image about its center"),
+    "corners": Choice("Corner Pins", "Put the corners of the image at four places of the result"),
+    "rectify": Choice(
+        "Rectify",
+        "Put four places of the image, such as the corners of a window, at the corners "
+        "of the result",
+    ),
+}
+RESULT_SIZES = {
+    "fit": Choice("Fit", "As large as what comes out"),
+    "image": Choice("Image", "As large as the image"),
+    "pixels": Choice("Pixels", "A width and a height"),
+}
+TABLE_FILTERS = {
+    key: FILTERS[key]
+    for key in ("lanczos3", "lanczos2", "mitchell", "gaussian", "bspline2", "tent", "box")
+}
+METHODS = {
+    "exact": Choice("Exact", "Every pixel under the filter. The best, and the slowest"),
+    "8": Choice("8 Texels", "8 texels of the mipmap a pixel, weighted by a sampling table"),
+    "6": Choice("6 Texels", "6 texels a pixel, with a sampling table"),
+    "4": Choice("4 Texels", "4 texels a pixel, with a sampling table"),
+    "trilinear": Choice(
+        "Trilinear", "8 texels of the mipmap, interpolated as graphics cards do, to compare"
+    ),
+}
+CORNERS = ("lower_left", "lower_right", "upper_right", "upper_left")
+"""The options that are corners, in their order around the image."""
+LONGEST_SIDE = 1 << 20
+"""The greatest width and height of an image, in pixels."""
+
+_SIDE: dict[str, Any] = {
+    "low": 1,
+    "high": LONGEST_SIDE,
+    "subtype": "PIXEL",
+    "display": {"soft_max": 16384},
+    "metavar": "PIXELS",
+}
+
+
+def _factor(label: str, description: str) -> Any:
+    return number(
+        1.0,
+        label,
+        description,
+        low=-1000.0,
+        high=1000.0,
+        display={"soft_min": 0.01, "soft_max": 8.0, "precision": 3, "step": 1},
+        metavar="FACTOR",
+    )
+
+
+def _offset(label: str, description: str) -> Any:
+    return number(
+        0.0,
+        label,
+        description,
+        low=-1e6,
+        high=1e6,
+        subtype="PIXEL",
+        display={"soft_min": -4096.0, "soft_max": 4096.0},
+        metavar="PIXELS",
+    )
+
+
+def _corner(default: tuple[float, float], label: str) -> Any:
+    return numbers(
+        default,
+        label,
+        "Where this corner is, as shares of the width and height, from the lower left",
+        low=-1e6,
+        high=1e6,
+        display={"soft_min": -1.0, "soft_max": 2.0, "precision": 3, "step": 1},
+        flag="",
+    )
 
 
 @dataclass(frozen=True)
@@ -53,23 +131,15 @@ class ResizeSettings:
         1024,
         "Width",
         "The new width in pixels",
-        low=1,
-        high=1 << 20,
-        subtype="PIXEL",
-        display={"soft_max": 16384},
+        **_SIDE,
         flag_description="The new width in pixels; without --height, the height follows from it",
-        metavar="PIXELS",
     )
     height: int = number(
         1024,
         "Height",
         "The new height in pixels",
-        low=1,
-        high=1 << 20,
-        subtype="PIXEL",
-        display={"soft_max": 16384},
+        **_SIDE,
         flag_description="The new height in pixels; without --width, the width follows from it",
-        metavar="PIXELS",
     )
     use_aspect: bool = switch(
         True,
@@ -101,6 +171,63 @@ class ResizeSettings:
         if self.use_aspect:
             return self.width, _scaled(height, self.width / width)
         return self.width, self.height
+
+
+@dataclass(frozen=True)
+class ResampleSettings:
+    """What `prefilter.resample` does, and where the image goes."""
+
+    warp: str = one_of("affine", "Warp", "How to move the pixels", WARPS, flag="")
+    scale_x: float = _factor("Scale X", "The factor along x; below 0 mirrors")
+    scale_y: float = _factor("Scale Y", "The factor along y; below 0 mirrors")
+    rotation: float = number(
+        0.0,
+        "Rotation",
+        "The angle to turn by, counterclockwise",
+        low=-2 * math.pi,
+        high=2 * math.pi,
+        subtype="ANGLE",
+        flag="--rotate",
+        metavar="DEGREES",
+    )
+    offset_x: float = _offset("Offset X", "How far to move to the right, in pixels of the result")
+    offset_y: float = _offset("Offset Y", "How far to move upwards, in pixels of the result")
+    lower_left: tuple[float, float] = _corner((0.0, 0.0), "Lower Left")
+    lower_right: tuple[float, float] = _corner((1.0, 0.0), "Lower Right")
+    upper_right: tuple[float, float] = _corner((1.0, 1.0), "Upper Right")
+    upper_left: tuple[float, float] = _corner((0.0, 1.0), "Upper Left")
+    use_pixels: bool = switch(
+        False, "", "Corners are in pixels, from the lower left, instead of in shares of the size"
+    )
+    size: str = one_of("fit", "Size", "How large the result is", RESULT_SIZES, metavar="SIZE")
+    width: int = number(1024, "Width", "The width of the result in pixels", **_SIDE)
+    height: int = number(1024, "Height", "The height of the result in pixels", **_SIDE)
+    filter: str = one_of(
+        "lanczos2",
+        "Filter",
+        "How the new pixels are computed from the old ones",
+        TABLE_FILTERS,
+        metavar="FILTER",
+    )
+    method: str = one_of(
+        "exact",
+        "Method",
+        "What the filter is computed from",
+        METHODS,
+        metavar="METHOD",
+    )
+    max_probes: int = number(
+        1,
+        "Max Probes",
+        "How many samples in a row make up a pixel where the image is squeezed more in one "
+        "direction than in the other, as toward a horizon. 1 blurs there, more are sharper. For "
+        "Gaussian",
+        low=1,
+        high=64,
+        metavar="N",
+    )
+    wrap: str = one_of("border", "Wrap", "What lies outside the image", WRAPS, metavar="MODE")
+    threads: int = threads()
 
 
 def _scaled(size: int, factor: float) -> int:

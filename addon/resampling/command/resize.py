@@ -3,13 +3,14 @@
 import argparse
 from typing import Any
 
-from ..bridge import images
-from ..bridge.files import pictures, staging
-from ..core import command
-from ..core.flags import add_flags, given, tables
-from ..core.wording import either
-from .choices import ResizeSettings
-from .resizing import Resizing, read
+from ...bridge import images
+from ...bridge.files import pictures, staging
+from ...core import command
+from ...core.flags import add_flags, given, tables
+from ...core.wording import either
+from ..choices import ResizeSettings
+from ..new_picture import read
+from ..resizing import Resizing
 
 _HELP = "make a picture larger or smaller"
 _SIZES = ("percent", "width", "height")

@@ -2,6 +2,9 @@
 
 import bpy
 
+from .resample_image import PREFILTER_OT_resample_image
 from .resize_image import PREFILTER_OT_resize_image
 
-register, unregister = bpy.utils.register_classes_factory((PREFILTER_OT_resize_image,))
+register, unregister = bpy.utils.register_classes_factory(
+    (PREFILTER_OT_resize_image, PREFILTER_OT_resample_image)
+)

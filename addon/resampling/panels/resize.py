@@ -2,10 +2,10 @@
 
 import bpy
 
-from ..core.menus import PREFILTER_MT_image
-from ..core.properties import copy
-from .choices import ResizeSettings
-from .operators.resize_image import PREFILTER_OT_resize_image
+from ...core.menus import PREFILTER_MT_image
+from ...core.properties import copy
+from ..choices import ResizeSettings
+from ..operators.resize_image import PREFILTER_OT_resize_image
 
 
 class PREFILTER_PT_resize(bpy.types.Panel):

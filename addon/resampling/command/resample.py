@@ -1,0 +1,111 @@
+"""The command `resample`."""
+
+import argparse
+from typing import Any
+
+import numpy as np
+
+from ...bridge import images
+from ...bridge.files import pictures, staging
+from ...core import command
+from ...core.flags import add_flags, given, tables
+from ...core.options import check
+from ...core.wording import either
+from ..choices import CORNERS, ResampleSettings
+from ..new_picture import read
+from ..resampling import Resampling
+
+_HELP = "scale, rotate, or warp a picture between corners"
+_SIZES = ("width", "height")
+_TRANSFORM = {
+    "--rotate": "rotation",
+    "--scale": "scale",
+    "--scale-x": "scale_x",
+    "--scale-y": "scale_y",
+    "--offset-x": "offset_x",
+    "--offset-y": "offset_y",
+}
+_WITHOUT_DEFAULT = ("rotation", "scale_x", "scale_y", "offset_x", "offset_y", *_SIZES)
+_NOTES = """\
+Corners are eight numbers, x and y of the lower left, lower right, upper right and upper left one:
+shares of the width and height of OUTPUT, or for --rectify and where the size is fitted those of
+INPUT; with --pixels they are pixels. x goes to the right and y upwards.
+
+INPUT is any picture that Blender reads. Colors are filtered as light, with alpha as coverage. PNG
+files get 8 bits, or 16 where INPUT has more than 8, and straight alpha; OpenEXR files are
+scene-linear, with premultiplied alpha.
+
+examples:
+  prefilter resample photo.png turned.png --rotate 30 --scale 0.5
+  prefilter resample poster.png pinned.png --size image --corners 0.1 0 1 0.1 0.9 0.9 0 1
+  prefilter resample facade.png front.png --pixels --rectify 310 95 902 140 881 700 295 655"""
+
+
+def add(commands: Any) -> None:
+    """Adds the command."""
+    parser = command.add_command(commands, "resample", _HELP, *tables(ResampleSettings), _NOTES)
+    parser.add_argument("source", metavar="INPUT", help="a picture file")
+    parser.add_argument(
+        "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
+    )
+    parser.add_argument(
+        "--data",
+        action="store_true",
+        help="filter values as they are stored, each channel by itself: roughness, masks, normals",
+    )
+    parser.add_argument(
+        "--corners",
+        nargs=8,
+        type=float,
+        metavar="N",
+        help="where the corners of INPUT go in OUTPUT",
+    )
+    parser.add_argument(
+        "--rectify",
+        nargs=8,
+        type=float,
+        metavar="N",
+        help="which places of INPUT go to the corners of OUTPUT",
+    )
+    parser.add_argument(
+        "--scale", type=float, metavar="FACTOR", help="the factor along both x and y"
+    )
+    add_flags(parser, ResampleSettings, without_default=_WITHOUT_DEFAULT)
+    parser.set_defaults(execute=_resample, usage_error=parser.error)
+
+
+def _resample(options: argparse.Namespace) -> None:
+    command.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
+    settings = _settings(options)
+    target = staging.check_output(options.target)
+    picture = read(images.load("INPUT", options.source, is_data=options.data))
+    command.tell(command.done(Resampling(picture, settings, target=target)))
+
+
+def _settings(options: argparse.Namespace) -> ResampleSettings:
+    found = given(options, ResampleSettings)
+    warps = [name for name in ("corners", "rectify") if getattr(options, name) is not None]
+    moves = [flag for flag, name in _TRANSFORM.items() if getattr(options, name, None) is not None]
+    if len(warps + moves[:1]) > 1:
+        first, second = [*(f"--{name}" for name in warps), *moves][:2]
+        options.usage_error(f"{first}: not allowed with {second}")
+    if found.get("use_pixels") and not warps:
+        options.usage_error("--pixels: give --corners or --rectify too")
+    sizes = [name for name in _SIZES if name in found]
+    if sizes and "size" in found and found["size"] != "pixels":
+        options.usage_error(f"--{sizes[0]}: not allowed with --size {found['size']}")
+    if len(sizes) == 1 or (found.get("size") == "pixels" and not sizes):
+        options.usage_error("give both --width and --height")
+    if sizes:
+        found["size"] = "pixels"
+    if options.scale is not None:
+        found = {"scale_x": options.scale, "scale_y": options.scale, **found}
+    for name in warps:
+        corners = np.reshape(getattr(options, name), (4, 2)).tolist()
+        found |= {"warp": name, **dict(zip(CORNERS, map(tuple, corners), strict=True))}
+    settings = ResampleSettings(**found)
+    try:
+        check(settings)
+    except ValueError as error:
+        options.usage_error(str(error))
+    return settings

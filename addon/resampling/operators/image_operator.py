@@ -1,0 +1,80 @@
+"""What the operators share that make a new image of an image."""
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+
+from ...bridge import editors, images
+from ...bridge.images import Picture
+from ...core.operator import WorkOperator
+from ..new_picture import NewPicture, read
+
+
+class ImageOperator(WorkOperator):
+    """A mixin: a new image, beside the old one or in its place.
+
+    A subclass has `doing` and `work_on`.
+    """
+
+    image: StringProperty(
+        name="Image",
+        description="The image to work on; the image of the editor if empty",
+        options={"SKIP_SAVE"},
+    )
+    use_in_place: BoolProperty(
+        name="Use Copy Everywhere",
+        description="Have materials, and whatever else uses the image, use the copy instead",
+        default=False,
+    )
+
+    work: NewPicture | None = None
+
+    def work_on(self, picture: Picture) -> NewPicture:
+        """Returns what is to do to an image."""
+        raise NotImplementedError
+
+    def draw_in(self, layout: bpy.types.UILayout) -> None:
+        """Draws the settings."""
+        raise NotImplementedError
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there is an image."""
+        if cls.may_be_redone(context):
+            return True
+        if context.area is not None and context.area.type == "IMAGE_EDITOR":
+            if context.space_data.image is None:
+                cls.poll_message_set("Open an image in this editor first")
+                return False
+        elif not bpy.data.images:
+            cls.poll_message_set("There is no image in this file")
+            return False
+        return True
+
+    def read_work(self, context: bpy.types.Context) -> NewPicture:
+        """Copies the image."""
+        shown = getattr(context.space_data, "image", None)
+        image = images.find(self.image) if self.image else shown
+        if image is None:
+            raise ValueError("image: no name is given, and the editor shows no image")
+        # The editor will show the copy, and nothing once that is undone to be done again.
+        self.image = image.name
+        return self.work_on(read(image))
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Makes the new image, and shows it in the editor that the operator was called from."""
+        del result
+        assert self.work is not None
+        outcome = self.work.write()
+        editors.show(context, bpy.data.images[outcome.images[0]])
+        return self.tell(outcome)
+
+    def load(self) -> tuple[int, int]:
+        """Returns the size of the image."""
+        assert self.work is not None
+        return self.work.old_size
+
+    def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+        """Draws the settings."""
+        del context
+        self.draw_in(layout)
+        layout.prop(self, "use_in_place")

@@ -1,0 +1,29 @@
+"""`prefilter.resample_image`: an image scaled, rotated, in perspective, or out of it."""
+
+import bpy
+
+from ...bridge.images import Picture
+from ..properties import ResampleProperties
+from ..resampling import Resampling, effort
+from .image_operator import ImageOperator
+
+
+class PREFILTER_OT_resample_image(ResampleProperties, ImageOperator, bpy.types.Operator):
+    """Resamples an image."""
+
+    bl_idname = "prefilter.resample_image"
+    bl_label = "Resample Image"
+    bl_description = (
+        "Make a copy of the image that is scaled and rotated, pinned by its corners or freed from "
+        "perspective, filtered in linear light, with colors weighted by alpha"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Resampling"
+
+    def work_on(self, picture: Picture) -> Resampling:
+        """Returns what is to do to an image."""
+        return Resampling(picture, self.to_settings(), in_place=self.use_in_place)
+
+    def effort(self, load: tuple[int, int]) -> float:
+        """Returns about how long it takes."""
+        return effort(self.to_settings(), *load)

@@ -1,0 +1,66 @@
+"""Resampling: a panel in the Image editor's sidebar, and an entry in Image > Prefilter."""
+
+import bpy
+
+from ...core.menus import PREFILTER_MT_image
+from ...core.properties import copy
+from ..choices import ResampleSettings
+from ..operators.resample_image import PREFILTER_OT_resample_image
+from ..placement import placement
+
+
+class PREFILTER_PT_resample(bpy.types.Panel):
+    """Settings and button."""
+
+    bl_label = "Resample"
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Prefilter"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        settings = context.scene.prefilter_resample
+        settings.draw_in(self.layout)
+        image = context.space_data.image
+        if image is not None and all(image.size):
+            self.layout.label(**_what_comes_out(settings.to_settings(), *image.size))
+        row = self.layout.row()
+        row.scale_y = 1.5
+        _draw_resample(row, context)
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (PREFILTER_PT_resample,)
+)
+
+
+def register() -> None:
+    """Registers the panel and the menu entry."""
+    _register_classes()
+    PREFILTER_MT_image.append(_draw_image_menu)
+
+
+def unregister() -> None:
+    """Removes them."""
+    PREFILTER_MT_image.remove(_draw_image_menu)
+    _unregister_classes()
+
+
+def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    _draw_resample(menu.layout, context)
+
+
+def _draw_resample(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    operator = layout.operator(PREFILTER_OT_resample_image.bl_idname, icon="MOD_LATTICE")
+    copy(context.scene.prefilter_resample, operator, ResampleSettings)
+
+
+def _what_comes_out(settings: ResampleSettings, width: int, height: int) -> dict[str, str]:
+    """Returns the size of the result, or what is wrong, as arguments of a label."""
+    try:
+        placed = placement(settings, width, height)
+    except ValueError as error:
+        return {"text": str(error), "icon": "ERROR"}
+    return {"text": f"{width} x {height} to {placed.width} x {placed.height}", "icon": "INFO"}

@@ -1,0 +1,186 @@
+"""Where an image goes in its result: projective transforms of pixel coordinates.
+
+A point (x, y) of an image is in pixels from its lower left corner, with y upwards. A transform is
+a 3 x 3 matrix that takes (x, y, 1) to a multiple of (x', y', 1).
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .choices import CORNERS, LONGEST_SIDE, ResampleSettings
+
+Matrix = NDArray[np.float64]
+
+_ROUNDING = 1e-6  # In pixels: what an extent may be above a whole number by rounding.
+_PLACES = 16  # Along x and y, for a mean over the result.
+_FLATTEST = 1e-9  # Twice the area at a corner, by the square of the longest side.
+
+
+@dataclass(frozen=True)
+class Placement:
+    """A result, and where it comes from.
+
+    Attributes:
+        transform: From pixels of the result to those of the image; the factor of (x', y', 1) is
+            above 0 where the image is, and below it beyond the horizon.
+        width: Of the result, in pixels.
+        height: Of the result, in pixels.
+    """
+
+    transform: Matrix
+    width: int
+    height: int
+
+
+def placement(settings: ResampleSettings, width: int, height: int) -> Placement:
+    """Returns where an image of this size goes.
+
+    Raises:
+        ValueError: The settings make it flat, fold it, or make it too large.
+    """
+    if settings.warp == "rectify":
+        return _rectified(settings, width, height)
+    if settings.warp == "corners":
+        unit = (width, height) if settings.size == "fit" else _size(settings, width, height)
+        forward = homography(_rectangle(width, height), _corners(settings, unit))
+    else:
+        forward = scaled_and_rotated(settings.scale_x, settings.scale_y, settings.rotation)
+        forward = forward @ moved(-width / 2, -height / 2)
+    if settings.size == "fit":
+        return _fitted(forward, width, height)
+    new_width, new_height = _size(settings, width, height)
+    if settings.warp == "affine":
+        center = (new_width / 2 + settings.offset_x, new_height / 2 + settings.offset_y)
+        forward = moved(*center) @ forward
+    return Placement(np.linalg.inv(forward), new_width, new_height)
+
+
+def moved(x: float, y: float) -> Matrix:
+    """Returns the transform that moves."""
+    return np.array([[1.0, 0.0, x], [0.0, 1.0, y], [0.0, 0.0, 1.0]])
+
+
+def scaled_and_rotated(scale_x: float, scale_y: float, angle: float) -> Matrix:
+    """Returns the transform that scales along x and y, and then turns counterclockwise.
+
+    Args:
+        scale_x: The factor along x; below 0 it mirrors.
+        scale_y: Along y.
+        angle: In radians; quarter turns are exact.
+
+    Raises:
+        ValueError: A factor is 0.
+    """
+    for label, scale in (("Scale X", scale_x), ("Scale Y", scale_y)):
+        if scale == 0.0:
+            raise ValueError(f"{label}: found 0; the image would vanish")
+    cosine, sine = math.cos(angle), math.sin(angle)
+    quarters = angle / (math.pi / 2)
+    # Blender keeps angles in single precision.
+    if math.isclose(quarters, round(quarters), rel_tol=1e-6, abs_tol=1e-6):
+        cosine, sine = float(round(cosine)), float(round(sine))
+    return np.array(
+        [
+            [cosine * scale_x, -sine * scale_y, 0.0],
+            [sine * scale_x, cosine * scale_y, 0.0],
+            [0.0, 0.0, 1.0],
+        ]
+    )
+
+
+def homography(source: ArrayLike, target: ArrayLike) -> Matrix:
+    """Returns the projective transform that takes four points to four others.
+
+    Args:
+        source: (4, 2) points, around a convex quadrilateral.
+        target: (4, 2) points, likewise, either way around.
+
+    Raises:
+        ValueError: Points of `source` or `target` are not around a convex quadrilateral.
+    """
+    return _from_unit_square(target) @ np.linalg.inv(_from_unit_square(source))
+
+
+def applied(transform: Matrix, points: ArrayLike) -> NDArray[np.float64]:
+    """Returns where a transform takes (n, 2) points."""
+    points = np.asarray(points, np.float64)
+    homogeneous = points @ transform[:, :2].T + transform[:, 2]
+    return homogeneous[:, :2] / homogeneous[:, 2:]
+
+
+def squeeze(placed: Placement) -> float:
+    """Returns how many pixels of the image an upright square has, in the mean, that is as wide as
+    the filter of a pixel of the result is; at least 1 everywhere."""
+    grid = (np.arange(_PLACES) + 0.5) / _PLACES
+    x, y = (axis.ravel() for axis in np.meshgrid(grid * placed.width, grid * placed.height))
+    rows = placed.transform @ np.stack([x, y, np.ones_like(x)])
+    places = rows[:2] / rows[2]
+    slopes = placed.transform[:2, :2, None] - places[:, None] * placed.transform[2, :2, None]
+    widths = np.linalg.norm(slopes / rows[2], ord=2, axis=(0, 1))
+    return float(np.mean(np.clip(widths, 1.0, LONGEST_SIDE) ** 2))
+
+
+def check_convex(corners: ArrayLike) -> None:
+    """Raises ValueError unless four points are around a convex quadrilateral."""
+    points = np.asarray(corners, np.float64)
+    sides = np.roll(points, -1, axis=0) - points
+    onwards = np.roll(sides, -1, axis=0)
+    turns = sides[:, 0] * onwards[:, 1] - sides[:, 1] * onwards[:, 0]
+    least = _FLATTEST * float(np.max(np.sum(sides**2, axis=1)))
+    if not (np.all(turns > least) or np.all(turns < -least)):
+        shown = ", ".join(f"({x:.4g}, {y:.4g})" for x, y in points)
+        raise ValueError(
+            f"Corners: found {shown}; they must go around a quadrilateral without dents, in the "
+            "order lower left, lower right, upper right, upper left"
+        )
+
+
+def _from_unit_square(corners: ArrayLike) -> Matrix:
+    """Returns the transform from (0, 0), (1, 0), (1, 1), (0, 1) to corners (Heckbert, 1989)."""
+    check_convex(corners)
+    p0, p1, p2, p3 = np.asarray(corners, np.float64)
+    across = np.stack([p1 - p2, p3 - p2], axis=1)
+    g, h = np.linalg.solve(across, p0 - p1 + p2 - p3)
+    columns = (p1 - p0 + g * p1, p3 - p0 + h * p3, p0)
+    return np.vstack([np.stack(columns, axis=1), [g, h, 1.0]])
+
+
+def _fitted(forward: Matrix, width: int, height: int) -> Placement:
+    """Returns a result that is just as large as needed, with the image in its middle."""
+    corners = applied(forward, _rectangle(width, height))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    sizes = [_whole(float(extent)) for extent in high - low]
+    shift = (np.array(sizes) - (low + high)) / 2
+    return Placement(np.linalg.inv(moved(*shift) @ forward), *sizes)
+
+
+def _rectified(settings: ResampleSettings, width: int, height: int) -> Placement:
+    corners = _corners(settings, (width, height))
+    check_convex(corners)
+    new_size = _size(settings, width, height)
+    if settings.size == "fit":
+        sides = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+        new_size = (_whole(max(sides[0], sides[2])), _whole(max(sides[1], sides[3])))
+    return Placement(homography(_rectangle(*new_size), corners), *new_size)
+
+
+def _corners(settings: ResampleSettings, unit: tuple[int, int]) -> NDArray[np.float64]:
+    corners = np.array([getattr(settings, name) for name in CORNERS], np.float64)
+    return corners if settings.use_pixels else corners * unit
+
+
+def _size(settings: ResampleSettings, width: int, height: int) -> tuple[int, int]:
+    return (settings.width, settings.height) if settings.size == "pixels" else (width, height)
+
+
+def _rectangle(width: float, height: float) -> NDArray[np.float64]:
+    return np.array([(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)])
+
+
+def _whole(extent: float) -> int:
+    if not extent <= LONGEST_SIDE:
+        raise ValueError(f"the result would be {extent:.0f} pixels long; allowed: {LONGEST_SIDE}")
+    return max(1, math.ceil(extent - _ROUNDING))
