@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..core.choices import Choice
-from ..core.options import number, numbers, one_of, switch, threads
+from ..core.options import number, numbers, one_of, switch, text, threads
 
 SIZES = {
     "percent": Choice("Percent", "A share of the width and height of the image"),
@@ -57,9 +57,16 @@ METHODS = {
     "8": Choice("8 Texels", "8 texels of the mipmap a pixel, weighted by a sampling table"),
     "6": Choice("6 Texels", "6 texels a pixel, with a sampling table"),
     "4": Choice("4 Texels", "4 texels a pixel, with a sampling table"),
+    "table": Choice("Table File", "Texels and weights of a table that Make Sampling Table saved"),
     "trilinear": Choice(
         "Trilinear", "8 texels of the mipmap, interpolated as graphics cards do, to compare"
     ),
+}
+LANGUAGES = {
+    "glsl": Choice("GLSL", "Shader code for OpenGL and Vulkan"),
+    "hlsl": Choice("HLSL", "Shader code for Direct3D"),
+    "osl": Choice("OSL", "Shader code for renderers that have Open Shading Language"),
+    "json": Choice("Table", "The table itself, to be loaded again"),
 }
 CORNERS = ("lower_left", "lower_right", "upper_right", "upper_left")
 """The options that are corners, in their order around the image."""
@@ -216,6 +223,13 @@ class ResampleSettings:
         METHODS,
         metavar="METHOD",
     )
+    table: str = text(
+        "",
+        "Table",
+        "The file of the table, for Table File. The filter is that of the table",
+        subtype="FILE_PATH",
+        metavar="FILE",
+    )
     max_probes: int = number(
         1,
         "Max Probes",
@@ -228,6 +242,74 @@ class ResampleSettings:
     )
     wrap: str = one_of("border", "Wrap", "What lies outside the image", WRAPS, metavar="MODE")
     threads: int = threads()
+
+
+@dataclass(frozen=True)
+class TableSettings:
+    """What `prefilter.SamplingTable.build` does, and what is made of the table."""
+
+    filter: str = one_of(
+        "lanczos2", "Filter", "The filter that is reproduced", TABLE_FILTERS, metavar="FILTER"
+    )
+    texels: int = number(
+        8,
+        "Texels",
+        "How many texels of the mipmap make up a sample. Trilinear interpolation reads 8",
+        low=2,
+        high=16,
+        metavar="N",
+    )
+    grid: int = number(
+        4,
+        "Parts",
+        "Into how many parts a texel is divided along x and along y. Each part has a set of texels "
+        "of its own",
+        low=1,
+        high=16,
+        metavar="N",
+    )
+    slices: int = number(
+        2,
+        "Slices",
+        "Into how many parts the step from one level to the next is divided",
+        low=1,
+        high=16,
+        metavar="N",
+    )
+    degree: int = number(
+        1,
+        "Degree",
+        "Of the weights, as polynomials of the place and the scale: 1 is linear, 2 quadratic",
+        low=1,
+        high=2,
+        metavar="N",
+    )
+    use_certify: bool = switch(
+        False,
+        "Certify",
+        "Prove how far from the best the sets of texels are at most. May take minutes",
+    )
+    language: str = one_of("glsl", "Language", "What to write", LANGUAGES, flag="")
+    filepath: str = text(
+        "",
+        "File",
+        "The file to write; a text of this .blend file if empty",
+        subtype="FILE_PATH",
+        flag="",
+    )
+    table: str = text(
+        "",
+        "Load",
+        "A table that was saved, to write it in another language; a table is built if empty",
+        subtype="FILE_PATH",
+        metavar="FILE",
+    )
+    threads: int = threads()
+
+    @property
+    def is_standard(self) -> bool:
+        """Whether the table comes with the package, if it comes at all."""
+        return (self.grid, self.slices, self.degree, self.use_certify) == (4, 2, 1, False)
 
 
 def _scaled(size: int, factor: float) -> int:

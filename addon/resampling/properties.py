@@ -1,10 +1,10 @@
-"""The settings of resizing and resampling as properties, of operators and of the scene."""
+"""The settings as properties, of operators and of the scene."""
 
 import bpy
 from bpy.props import PointerProperty
 
 from ..core.properties import properties, values
-from .choices import CORNERS, ResampleSettings, ResizeSettings
+from .choices import CORNERS, ResampleSettings, ResizeSettings, TableSettings
 
 
 class ResizeProperties:
@@ -60,7 +60,10 @@ class ResampleProperties:
             column.prop(self, "width")
             column.prop(self, "height")
         layout.prop(self, "method")
-        layout.prop(self, "filter")
+        if self.method == "table":
+            layout.prop(self, "table")
+        else:
+            layout.prop(self, "filter")
         if self.filter == "gaussian":
             layout.prop(self, "max_probes")
         layout.prop(self, "wrap")
@@ -77,6 +80,33 @@ class ResampleProperties:
         column.prop(self, "offset_y", text="Y")
 
 
+class TableProperties:
+    """The properties of `prefilter.sampling_table`."""
+
+    __annotations__ = properties(TableSettings)
+
+    def to_settings(self) -> TableSettings:
+        """Returns the settings."""
+        return values(self, TableSettings)
+
+    def draw_in(self, layout: bpy.types.UILayout) -> None:
+        """Draws the settings."""
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(self, "table")
+        column = layout.column()
+        column.active = not self.table
+        column.prop(self, "filter")
+        column.prop(self, "texels")
+        parts = column.column(align=True)
+        parts.prop(self, "grid")
+        parts.prop(self, "slices")
+        column.prop(self, "degree")
+        column.prop(self, "use_certify")
+        layout.prop(self, "language")
+        layout.prop(self, "filepath")
+
+
 class PREFILTER_PG_resize(ResizeProperties, bpy.types.PropertyGroup):
     """The settings of resizing that the panel shows; they stay with the scene."""
 
@@ -85,7 +115,15 @@ class PREFILTER_PG_resample(ResampleProperties, bpy.types.PropertyGroup):
     """The settings of resampling that the panel shows; they stay with the scene."""
 
 
-_GROUPS = {"prefilter_resize": PREFILTER_PG_resize, "prefilter_resample": PREFILTER_PG_resample}
+class PREFILTER_PG_sampling_table(TableProperties, bpy.types.PropertyGroup):
+    """The settings of sampling tables that the panel shows; they stay with the scene."""
+
+
+_GROUPS = {
+    "prefilter_resize": PREFILTER_PG_resize,
+    "prefilter_resample": PREFILTER_PG_resample,
+    "prefilter_sampling_table": PREFILTER_PG_sampling_table,
+}
 
 
 def register() -> None:

@@ -10,6 +10,7 @@ from ..core.jobs import Progress
 from .choices import METHODS, TABLE_FILTERS, ResampleSettings
 from .new_picture import NewPicture
 from .placement import placement, squeeze
+from .sampling_tables import load
 
 _SUFFIXES = {"affine": "transformed", "corners": "pinned", "rectify": "rectified"}
 _RADII = {"box": 0.5, "tent": 1.0, "bspline2": 1.5, "lanczos3": 3.0}
@@ -63,13 +64,15 @@ class Resampling(NewPicture):
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
         """Returns the pixels of the new image."""
         settings = self._settings
+        table = _table(settings)
+        own_filter = isinstance(table, prefilter.SamplingTable)
         return prefilter.resample(
             linear,
             self._placement.transform,
             self._placement.width,
             self._placement.height,
-            table=_table(settings),
-            filter=settings.filter,
+            table=table,
+            filter=table.filter if own_filter else settings.filter,
             exact=settings.method == "exact",
             max_probes=settings.max_probes,
             wrap=settings.wrap,
@@ -90,7 +93,7 @@ def effort(settings: ResampleSettings, width: int, height: int) -> float:
     if settings.method == "exact":
         reach = 2.0 * _RADII.get(settings.filter, 2.0)
         return made * reach**2 * squeeze(placed)
-    texels = 8 if settings.method == "trilinear" else int(settings.method)
+    texels = int(settings.method) if settings.method.isdigit() else 8
     mipmaps = _PER_TEXEL * width * height
     return mipmaps + made * texels * settings.max_probes
 
@@ -100,4 +103,6 @@ def _table(settings: ResampleSettings) -> "prefilter.SamplingTable | str | None"
         return None
     if settings.method == "trilinear":
         return "trilinear"
+    if settings.method == "table":
+        return load("Table", settings.table)
     return prefilter.SamplingTable.standard(settings.filter, texels=int(settings.method))

@@ -1,11 +1,12 @@
-"""The commands on pictures."""
+"""The commands."""
 
 from typing import Any
 
-from . import resample, resize
+from . import resample, resize, sampling_table
 
 
 def add(commands: Any) -> None:
     """Adds the commands."""
     resize.add(commands)
     resample.add(commands)
+    sampling_table.add(commands)

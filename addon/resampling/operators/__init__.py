@@ -1,10 +1,11 @@
-"""The operators on images, one a file."""
+"""The operators, one a file."""
 
 import bpy
 
 from .resample_image import PREFILTER_OT_resample_image
 from .resize_image import PREFILTER_OT_resize_image
+from .sampling_table import PREFILTER_OT_sampling_table
 
 register, unregister = bpy.utils.register_classes_factory(
-    (PREFILTER_OT_resize_image, PREFILTER_OT_resample_image)
+    (PREFILTER_OT_resize_image, PREFILTER_OT_resample_image, PREFILTER_OT_sampling_table)
 )

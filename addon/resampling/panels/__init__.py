@@ -1,6 +1,6 @@
-"""Where a user finds what is done to images: the Image editor's sidebar, and Image > Prefilter."""
+"""Where a user finds the operators: sidebars, and Image > Prefilter."""
 
 from ...core.registration import registration
-from . import resample, resize
+from . import resample, resize, sampling_table
 
-register, unregister = registration(resize, resample)
+register, unregister = registration(resize, resample, sampling_table)

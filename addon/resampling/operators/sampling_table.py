@@ -1,0 +1,52 @@
+"""`prefilter.sampling_table`: a sampling table as shader code or a file."""
+
+import bpy
+
+from ...bridge.files import staging
+from ...core.operator import WorkOperator
+from ..properties import TableProperties
+from ..sampling_tables import TableMaking, effort
+
+
+class PREFILTER_OT_sampling_table(TableProperties, WorkOperator, bpy.types.Operator):
+    """Makes a sampling table."""
+
+    bl_idname = "prefilter.sampling_table"
+    bl_label = "Make Sampling Table"
+    bl_description = (
+        "Find which few texels of a mipmap make up a filter of any place and size, and write that "
+        "as shader code, or as a file to use later"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Making a sampling table"
+
+    work: TableMaking | None = None
+
+    def read_work(self, context: bpy.types.Context) -> TableMaking:
+        """Looks at the file to write."""
+        del context
+        settings = self.to_settings()
+        if not settings.filepath:
+            return TableMaking(settings)
+        return TableMaking(
+            settings, [staging.check_plain_target(settings.filepath, f".{settings.language}")]
+        )
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Writes the table, and shows the text in the editor that the operator was called from."""
+        said = super().finish(context, result)
+        assert self.work is not None
+        text, area = self.work.text, context.area
+        if text is not None and area is not None and area.type == "TEXT_EDITOR":
+            context.space_data.text = text
+        return said
+
+    def effort(self, load: None) -> float:
+        """Returns about how long it takes."""
+        del load
+        return effort(self.to_settings())
+
+    def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+        """Draws the settings."""
+        del context
+        self.draw_in(layout)

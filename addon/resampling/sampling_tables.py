@@ -1,0 +1,165 @@
+"""Sampling tables: built or loaded anywhere, then written as texts of Blender or as files."""
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import bpy
+import prefilter
+
+from ..bridge.files import staging
+from ..core.jobs import Progress, go_on, share
+from ..core.outcome import Outcome
+from ..core.wording import listed
+from .choices import LANGUAGES, TABLE_FILTERS, TableSettings
+
+ENDINGS = tuple(f".{language}" for language in LANGUAGES)
+"""What files of tables may end in, which says what is written."""
+
+_BUILT = 0.9  # What the progress is once there is a table.
+_TEXT_KEY = "prefilter_sampling_table"
+
+
+def load(label: str, path: str) -> "prefilter.SamplingTable":
+    """Loads a table.
+
+    Args:
+        label: What the path is called in messages.
+        path: The file.
+
+    Raises:
+        ValueError: No file is named, or it holds no table.
+        OSError: It cannot be read.
+    """
+    if not path:
+        raise ValueError(f"{label}: no file is named")
+    try:
+        return prefilter.SamplingTable.load(path)
+    except ValueError as error:
+        raise ValueError(f"{label}: {error}") from error
+
+
+class TableMaking:
+    """One table, and what is written of it.
+
+    `write` belongs on the main thread; `compute` touches no Blender data and runs on any thread.
+    """
+
+    def __init__(self, settings: TableSettings, targets: Sequence[Path] = ()) -> None:
+        """Keeps the settings.
+
+        Args:
+            settings: The filter, the number of texels, and more.
+            targets: Files to write, each in the language that its ending says; if there is none, a
+                text is made in the language of the settings.
+        """
+        self.text: bpy.types.Text | None = None
+        self._settings = settings
+        self._targets = targets
+        self._table: prefilter.SamplingTable | None = None
+        self._source = ""
+        self._staged: list[staging.StagedFile] = []
+
+    def compute(self, progress: Progress) -> None:
+        """Builds or loads the table, and stages the files.
+
+        Raises:
+            prefilter.Cancelled: `progress` returned False.
+            ValueError: The settings ask for a table that cannot be, or the file holds none.
+            OSError: A file cannot be read or written.
+        """
+        go_on(progress, 0.0)
+        self._table = self._made(share(progress, 0.0, _BUILT))
+        go_on(progress, _BUILT)
+        for target in self._targets:
+            write = partial(_write, self._table, target.suffix.lower().removeprefix("."))
+            self._staged.append(staging.stage_with(target, write))
+        if not self._targets:
+            self._source = _source(self._table, self._settings.language)
+        go_on(progress, 1.0)
+
+    def write(self) -> Outcome:
+        """Puts the files into place, or writes the text.
+
+        Raises:
+            OSError: It cannot be.
+        """
+        table = self._table
+        assert table is not None
+        if self._targets:
+            staging.commit_all(self._staged)
+            where = listed(str(target) for target in self._targets)
+        else:
+            self.text = _write_text(f"{table.filter}-{table.texels}", self._settings, self._source)
+            where = f"'{self.text.name}'"
+        return Outcome(
+            f"Wrote {where}: {TABLE_FILTERS[table.filter].label} from {table.texels} texels, with "
+            f"{table.error_ratio:.3g} times the error of trilinear interpolation",
+            files=[str(target) for target in self._targets],
+            notes=_proof(table),
+        )
+
+    def discard(self) -> None:
+        """Removes files that were staged, if they were not put into place."""
+        for staged in self._staged:
+            staged.discard()
+
+    def _made(self, progress: Progress) -> "prefilter.SamplingTable":
+        settings = self._settings
+        if settings.table:
+            return load("Load", settings.table)
+        if settings.is_standard and settings.texels in prefilter.STANDARD_TEXELS:
+            return prefilter.SamplingTable.standard(settings.filter, settings.texels)
+        return prefilter.SamplingTable.build(
+            settings.filter,
+            texels=settings.texels,
+            subdomains=(settings.grid, settings.grid, settings.slices),
+            degree=settings.degree,
+            certify=settings.use_certify,
+            progress=progress,
+            threads=settings.threads,
+        )
+
+
+def effort(settings: TableSettings) -> float:
+    """Returns about how long it takes, in a unit of its own."""
+    columns = (settings.grid + 1) // 2
+    parts = columns * (columns + 1) / 2 * settings.slices
+    return parts * settings.texels**2 * settings.degree**3 * (30.0 if settings.use_certify else 1.0)
+
+
+def _proof(table: "prefilter.SamplingTable") -> list[str]:
+    """Returns what is known about how good the sets are."""
+    gaps = table.gaps
+    if gaps is None:
+        return []
+    proven = int((gaps == 0.0).sum())
+    if proven == len(gaps):
+        return [f"All {proven} sets of texels are proven to be the best"]
+    return [
+        f"{proven} of {len(gaps)} sets of texels are proven to be the best; the errors of others "
+        f"may be up to {100 * gaps.max():.2g} % too large"
+    ]
+
+
+def _source(table: "prefilter.SamplingTable", language: str) -> str:
+    written = {"glsl": table.glsl, "hlsl": table.hlsl, "osl": table.osl}
+    return written[language]()
+
+
+def _write(table: "prefilter.SamplingTable", language: str, path: Path) -> None:
+    if language == "json":
+        table.save(path)
+    else:
+        path.write_text(_source(table, language), encoding="utf-8")
+
+
+def _write_text(stem: str, settings: TableSettings, source: str) -> bpy.types.Text:
+    """Writes a text, over one that was written before."""
+    name = f"{stem}.{settings.language}"
+    found = bpy.data.texts.get(name)
+    if found is None or not found.get(_TEXT_KEY):
+        found = bpy.data.texts.new(name)
+        found[_TEXT_KEY] = True
+    found.from_string(source)
+    return found
