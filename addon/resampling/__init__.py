@@ -1,6 +1,6 @@
 """Images of other sizes and in other places."""
 
 from ..core.registration import registration
-from . import operators, panels, properties
+from . import operators, panels, properties, view
 
-register, unregister = registration(properties, operators, panels)
+register, unregister = registration(properties, view, operators, panels)

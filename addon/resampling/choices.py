@@ -312,5 +312,18 @@ class TableSettings:
         return (self.grid, self.slices, self.degree, self.use_certify) == (4, 2, 1, False)
 
 
+@dataclass(frozen=True)
+class PlaneSettings:
+    """What the preview plane shows."""
+
+    filter: str = one_of(
+        "lanczos2",
+        "Filter",
+        "How the levels of the mipmap are made, and what the table reproduces",
+        TABLE_FILTERS,
+        flag="",
+    )
+
+
 def _scaled(size: int, factor: float) -> int:
     return max(1, round(size * factor))

@@ -11,7 +11,7 @@ from ..bridge.files import staging
 from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
 from ..core.wording import listed
-from .choices import LANGUAGES, TABLE_FILTERS, TableSettings
+from .choices import LANGUAGES, METHODS, TABLE_FILTERS, TableSettings
 
 ENDINGS = tuple(f".{language}" for language in LANGUAGES)
 """What files of tables may end in, which says what is written."""
@@ -108,7 +108,7 @@ class TableMaking:
         settings = self._settings
         if settings.table:
             return load("Load", settings.table)
-        if settings.is_standard and settings.texels in prefilter.STANDARD_TEXELS:
+        if settings.is_standard and str(settings.texels) in METHODS:
             return prefilter.SamplingTable.standard(settings.filter, settings.texels)
         return prefilter.SamplingTable.build(
             settings.filter,

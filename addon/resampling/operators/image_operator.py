@@ -1,4 +1,4 @@
-"""What the operators share that make a new image of an image."""
+"""What the operators share that work on an image."""
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
@@ -9,17 +9,46 @@ from ...core.operator import WorkOperator
 from ..new_picture import NewPicture, read
 
 
-class ImageOperator(WorkOperator):
-    """A mixin: a new image, beside the old one or in its place.
-
-    A subclass has `doing` and `work_on`.
-    """
+class ImageOperator:
+    """A mixin: has an image."""
 
     image: StringProperty(
         name="Image",
         description="The image to work on; the image of the editor if empty",
         options={"SKIP_SAVE"},
     )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there is an image."""
+        if context.area is not None and context.area.type == "IMAGE_EDITOR":
+            if context.space_data.image is None:
+                cls.poll_message_set("Open an image in this editor first")
+                return False
+        elif not bpy.data.images:
+            cls.poll_message_set("There is no image in this file")
+            return False
+        return True
+
+    def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
+        """Returns the image that is named, or shown.
+
+        Raises:
+            ValueError: There is none.
+        """
+        shown = getattr(context.space_data, "image", None)
+        image = images.find(self.image) if self.image else shown
+        if image is None:
+            raise ValueError("image: no name is given, and the editor shows no image")
+        return image
+
+
+class NewImageOperator(ImageOperator, WorkOperator):
+    """A mixin: a new image, beside the old one or in its place.
+
+    A subclass has `doing` and `work_on`.
+    """
+
     use_in_place: BoolProperty(
         name="Use Copy Everywhere",
         description="Have materials, and whatever else uses the image, use the copy instead",
@@ -39,23 +68,11 @@ class ImageOperator(WorkOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there is an image."""
-        if cls.may_be_redone(context):
-            return True
-        if context.area is not None and context.area.type == "IMAGE_EDITOR":
-            if context.space_data.image is None:
-                cls.poll_message_set("Open an image in this editor first")
-                return False
-        elif not bpy.data.images:
-            cls.poll_message_set("There is no image in this file")
-            return False
-        return True
+        return cls.may_be_redone(context) or super().poll(context)
 
     def read_work(self, context: bpy.types.Context) -> NewPicture:
         """Copies the image."""
-        shown = getattr(context.space_data, "image", None)
-        image = images.find(self.image) if self.image else shown
-        if image is None:
-            raise ValueError("image: no name is given, and the editor shows no image")
+        image = self.chosen_image(context)
         # The editor will show the copy, and nothing once that is undone to be done again.
         self.image = image.name
         return self.work_on(read(image))

@@ -5,10 +5,10 @@ import bpy
 from ...bridge.images import Picture
 from ..properties import ResampleProperties
 from ..resampling import Resampling, effort
-from .image_operator import ImageOperator
+from .image_operator import NewImageOperator
 
 
-class PREFILTER_OT_resample_image(ResampleProperties, ImageOperator, bpy.types.Operator):
+class PREFILTER_OT_resample_image(ResampleProperties, NewImageOperator, bpy.types.Operator):
     """Resamples an image."""
 
     bl_idname = "prefilter.resample_image"

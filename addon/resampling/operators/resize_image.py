@@ -5,10 +5,10 @@ import bpy
 from ...bridge.images import Picture
 from ..properties import ResizeProperties
 from ..resizing import Resizing
-from .image_operator import ImageOperator
+from .image_operator import NewImageOperator
 
 
-class PREFILTER_OT_resize_image(ResizeProperties, ImageOperator, bpy.types.Operator):
+class PREFILTER_OT_resize_image(ResizeProperties, NewImageOperator, bpy.types.Operator):
     """Resizes an image."""
 
     bl_idname = "prefilter.resize_image"

@@ -1,6 +1,6 @@
 """Where a user finds the operators: sidebars, and Image > Prefilter."""
 
 from ...core.registration import registration
-from . import resample, resize, sampling_table
+from . import plane, resample, resize, sampling_table
 
-register, unregister = registration(resize, resample, sampling_table)
+register, unregister = registration(resize, resample, plane, sampling_table)

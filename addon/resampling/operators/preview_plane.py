@@ -1,0 +1,64 @@
+"""`prefilter.preview_plane` and `prefilter.end_plane`: trilinear beside few texels, on a plane."""
+
+import bpy
+
+from ...bridge import editors, images
+from ...core.operator import BackgroundOperator, Compute
+from ...core.properties import single_property
+from ..choices import PlaneSettings
+from ..new_picture import read
+from ..view import kept
+from .image_operator import ImageOperator
+
+
+class PREFILTER_OT_preview_plane(ImageOperator, BackgroundOperator, bpy.types.Operator):
+    """Computes the levels of an image for the editors to draw on a plane."""
+
+    bl_idname = "prefilter.preview_plane"
+    bl_label = "Preview Plane"
+    bl_description = (
+        "Draw a plane that is tiled with the image: to the left by trilinear interpolation of its "
+        "mipmap, to the right by a sampling table. The image itself is left as it is"
+    )
+    bl_options = {"REGISTER"}
+    doing = "Computing levels"
+
+    filter: single_property(PlaneSettings, "filter")
+
+    def read(self, context: bpy.types.Context) -> Compute:
+        """Copies the image."""
+        image = self.chosen_image(context)
+        self._name = image.name
+        picture, uid, filter_name = read(image), image.session_uid, self.filter
+        return lambda progress: kept.compute(picture, uid, filter_name, progress)
+
+    def finish(self, context: bpy.types.Context, result: kept.Plane) -> str:
+        """Has the editors draw the plane."""
+        kept.keep(result)
+        editors.show(context, images.find(self._name))
+        context.window_manager.prefilter_plane.use_plane = True
+        editors.redraw()
+        return f"Computed {result.level_count} levels of '{self._name}'"
+
+
+class PREFILTER_OT_end_plane(bpy.types.Operator):
+    """Forgets the plane of the editor's image."""
+
+    bl_idname = "prefilter.end_plane"
+    bl_label = "End Preview Plane"
+    bl_description = "Show the image itself again, and free the memory of its levels"
+    bl_options = {"REGISTER"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the editor draws a plane."""
+        if kept.find(getattr(context.space_data, "image", None)) is None:
+            cls.poll_message_set("The editor's image has no preview plane")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Forgets it."""
+        kept.drop(context.space_data.image)
+        editors.redraw()
+        return {"FINISHED"}

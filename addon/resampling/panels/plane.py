@@ -1,0 +1,74 @@
+"""The preview plane: a panel in the Image editor's sidebar, and entries in Image > Prefilter."""
+
+import bpy
+
+from ...core.menus import PREFILTER_MT_image
+from ..operators.preview_plane import PREFILTER_OT_end_plane, PREFILTER_OT_preview_plane
+from ..view import kept
+
+
+class PREFILTER_PT_plane(bpy.types.Panel):
+    """How the plane is drawn, and the buttons."""
+
+    bl_label = "Preview Plane"
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Prefilter"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw_header(self, context: bpy.types.Context) -> None:
+        """Draws the switch."""
+        if kept.find(context.space_data.image) is not None:
+            self.layout.prop(context.window_manager.prefilter_plane, "use_plane", text="")
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        settings = context.window_manager.prefilter_plane
+        shown = kept.find(context.space_data.image)
+        if shown is not None:
+            column = layout.column()
+            column.active = settings.use_plane
+            column.prop(settings, "texels")
+            column.prop(settings, "tilt")
+            column.prop(settings, "rotation")
+            column.prop(settings, "tiles")
+            column.prop(settings, "wipe", slider=True)
+            if shown.is_stale:
+                layout.label(text="The image has changed", icon="ERROR")
+            elif shown.filter != settings.filter:
+                layout.label(text="The filter has changed", icon="ERROR")
+        layout.prop(settings, "filter")
+        _draw_preview(layout, context, "Preview Plane" if shown is None else "Refresh")
+        if shown is not None:
+            layout.operator(PREFILTER_OT_end_plane.bl_idname, icon="X")
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((PREFILTER_PT_plane,))
+
+
+def register() -> None:
+    """Registers the panel and the menu entries."""
+    _register_classes()
+    PREFILTER_MT_image.append(_draw_image_menu)
+
+
+def unregister() -> None:
+    """Removes them."""
+    PREFILTER_MT_image.remove(_draw_image_menu)
+    _unregister_classes()
+
+
+def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    _draw_preview(menu.layout, context, "Preview Plane")
+    menu.layout.operator(PREFILTER_OT_end_plane.bl_idname, icon="X")
+
+
+def _draw_preview(layout: bpy.types.UILayout, context: bpy.types.Context, text: str) -> None:
+    operator = layout.operator(
+        PREFILTER_OT_preview_plane.bl_idname, text=text, icon="VIEW_PERSPECTIVE"
+    )
+    operator.filter = context.window_manager.prefilter_plane.filter

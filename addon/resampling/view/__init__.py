@@ -1,0 +1,6 @@
+"""Seeing sampling tables: a plane with the image on it, read trilinearly and by a table."""
+
+from ...core.registration import registration
+from . import kept, overlay, state
+
+register, unregister = registration(state, kept, overlay)

@@ -1,0 +1,83 @@
+"""How editors draw a plane, in all windows: no part of the scene, so no undo changes it."""
+
+import math
+
+import bpy
+from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty
+
+from ...bridge import editors
+from ...core.choices import items
+from ...core.properties import single_property
+from ..choices import METHODS, PlaneSettings
+
+
+def _redraw(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    del settings, context
+    editors.redraw()
+
+
+class PREFILTER_PG_plane(bpy.types.PropertyGroup):
+    """The settings of the panel."""
+
+    use_plane: BoolProperty(
+        name="Show Plane",
+        description="Draw the plane over the image",
+        default=True,
+        update=_redraw,
+    )
+    filter: single_property(PlaneSettings, "filter")
+    texels: EnumProperty(
+        name="Table",
+        description="How many texels of the mipmap make up a pixel to the right of the line",
+        items=items({key: METHODS[key] for key in ("8", "6", "4")}),
+        default="8",
+        update=_redraw,
+    )
+    tilt: FloatProperty(
+        name="Tilt",
+        description="Of the plane, away from the viewer",
+        subtype="ANGLE",
+        default=math.radians(75),
+        min=0.0,
+        max=math.radians(89.5),
+        update=_redraw,
+    )
+    rotation: FloatProperty(
+        name="Rotation",
+        description="Of the image in the plane",
+        subtype="ANGLE",
+        default=0.0,
+        update=_redraw,
+    )
+    tiles: FloatProperty(
+        name="Tiles",
+        description="How many times the image is repeated over the height of the editor, without "
+        "the tilt",
+        default=2.0,
+        min=0.01,
+        soft_min=0.1,
+        max=1000.0,
+        soft_max=50.0,
+        update=_redraw,
+    )
+    wipe: FloatProperty(
+        name="Position",
+        description="Where the line between the two halves is, from left to right",
+        subtype="FACTOR",
+        default=0.5,
+        min=0.0,
+        max=1.0,
+        update=_redraw,
+    )
+
+
+def register() -> None:
+    """Registers the settings on the window manager."""
+    bpy.utils.register_class(PREFILTER_PG_plane)
+    bpy.types.WindowManager.prefilter_plane = PointerProperty(type=PREFILTER_PG_plane)
+
+
+def unregister() -> None:
+    """Removes them."""
+    del bpy.types.WindowManager.prefilter_plane
+    bpy.utils.unregister_class(PREFILTER_PG_plane)

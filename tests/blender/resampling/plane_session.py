@@ -1,0 +1,122 @@
+"""Runs in a Blender with a window: draws the preview plane, and keeps what it shows.
+
+Usage: blender --factory-startup --enable-event-simulate --python plane_session.py -- RESULT.npz
+"""
+
+import importlib
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import addon_utils
+import bpy
+import gpu
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import scenes
+from window import idle, play, region, until
+
+PACKAGE = "bl_ext.user_default.prefilter"
+RESULT = sys.argv[sys.argv.index("--") + 1]
+WIDTH, HEIGHT = 64, 48  # Of an offscreen picture.
+VIEWS = ((0.0, 0.0, 0.4), (1.2, 0.3, 2.0), (1.45, 2.0, 6.0))  # Tilt, rotation, tiles.
+
+found: dict[str, object] = {}
+
+
+def session() -> Iterator[None]:
+    """Yields whenever Blender should draw and handle events before going on."""
+    assert addon_utils.enable(PACKAGE, default_set=True) is not None
+    kept = importlib.import_module(f"{PACKAGE}.resampling.view.kept")
+    panel = bpy.types.PREFILTER_PT_plane
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+    image = scenes.image("Wide", scenes.noise(24, 40))
+    other = scenes.image("High", scenes.noise(33, 7, alpha=True, seed=2))
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    area.type = "IMAGE_EDITOR"
+    area.spaces.active.image = image
+    area.spaces.active.show_region_ui = True
+    yield
+    sidebar = region(area, "UI")
+    yield from until(lambda: sidebar.active_panel_category != "UNSUPPORTED")
+    sidebar.active_panel_category = "Prefilter"
+    override = {"window": window, "area": area, "region": region(area, "WINDOW")}
+    with bpy.context.temp_override(**override):
+        found["end polls"] = bpy.ops.prefilter.end_plane.poll()
+        started = bpy.ops.prefilter.preview_plane("INVOKE_DEFAULT", filter="lanczos2")
+        found["started"] = sorted(started)
+    yield from until(idle)
+    yield
+    found["on screen"] = shown(area)
+    settings = bpy.context.window_manager.prefilter_plane
+    settings.use_plane = False
+    yield
+    yield
+    found["off screen"] = shown(area)
+    settings.use_plane = True
+
+    with bpy.context.temp_override(**override):
+        area.spaces.active.image = other
+        bpy.ops.prefilter.preview_plane(filter="tent")
+    for name, one in (("wide", image), ("high", other)):
+        for index, view in enumerate(VIEWS):
+            for texels in (4, 8):
+                yield from offscreen(kept.find(one), view, texels, f"{name} {index} {texels}")
+
+    found["stale before painting"] = kept.find(image).is_stale
+    image.pixels.foreach_set(scenes.noise(24, 40, seed=9).ravel())
+    image.update()
+    image.update_tag()
+    yield
+    found["stale after painting"] = kept.find(image).is_stale
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.end_plane()
+    found["ended"] = kept.find(other) is None
+    bpy.ops.wm.read_homefile(use_empty=True)
+    yield
+    found["kept in next file"] = len(kept._planes)
+    np.savez(RESULT, **found)
+
+
+def shown(area: bpy.types.Area) -> np.ndarray:
+    """Returns what the area's main region shows, row 0 at the bottom."""
+    seen = scenes.screen(os.environ["FRAMEBUFFER"])
+    part = region(area, "WINDOW")
+    return seen[part.y : part.y + part.height, part.x : part.x + part.width]
+
+
+def offscreen(plane: object, view: tuple[float, ...], texels: int, name: str) -> Iterator[None]:
+    """Draws a plane where nothing is rounded to bytes."""
+    overlay = importlib.import_module(f"{PACKAGE}.resampling.view.overlay")
+    camera = importlib.import_module(f"{PACKAGE}.resampling.view.camera")
+    matrix = camera.uv_of_picture(
+        *view,
+        picture_aspect=WIDTH / HEIGHT,
+        image_aspect=plane.size[0] / plane.size[1],
+    )
+
+    def draw() -> None:
+        if name in found:
+            return
+        target = gpu.types.GPUOffScreen(WIDTH, HEIGHT, format="RGBA32F")
+        with target.bind():
+            framebuffer = gpu.state.active_framebuffer_get()
+            framebuffer.clear(color=(0, 0, 0, 0))
+            overlay.draw_plane(plane, matrix, (WIDTH, HEIGHT), texels=texels, wipe=0.5)
+            pixels = framebuffer.read_color(0, 0, WIDTH, HEIGHT, 4, 0, "FLOAT")
+        found[name] = np.array(pixels.to_list())
+        target.free()
+
+    handle = bpy.types.SpaceImageEditor.draw_handler_add(draw, (), "WINDOW", "POST_PIXEL")
+    importlib.import_module(f"{PACKAGE}.bridge.editors").redraw()
+    yield from until(lambda: name in found)
+    bpy.types.SpaceImageEditor.draw_handler_remove(handle, "WINDOW")
+
+
+play(session())
