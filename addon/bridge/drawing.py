@@ -33,6 +33,7 @@ vec3 decoded(vec3 value)
 
 _LINE_WIDTH = 2  # In pixels.
 _LABEL_SIZE, _LABEL_GAP = 13, 10
+_SHADOW = 6 if bpy.app.version >= (4, 3, 0) else 5  # An outline, or a blur.
 
 
 def uploaded(pixels: FloatArray) -> gpu.types.GPUTexture:
@@ -58,7 +59,7 @@ def draw_wipe(share: float, left: str, right: str) -> None:
     y = _LABEL_GAP * scale
     blf.size(0, _LABEL_SIZE * scale)
     blf.enable(0, blf.SHADOW)
-    blf.shadow(0, 5, 0.0, 0.0, 0.0, 1.0)
+    blf.shadow(0, _SHADOW, 0.0, 0.0, 0.0, 1.0)
     blf.color(0, 1.0, 1.0, 1.0, 1.0)
     blf.position(0, x + _LABEL_GAP * scale, y, 0)
     blf.draw(0, right)

@@ -4,7 +4,8 @@ usage: python3 panel.py TARGET.png        (outside of Blender: starts Xvfb and B
 
 TARGET is named after what it shows: panel.png (the bake), preview.png (a level, with the wipe),
 weights.png (the weights of texels, with their legend), voxelize.png (a mesh with a hole, and
-voxelized, beside the settings) or rasterize.png (a text and a curve, and their image).
+voxelized, beside the settings), rasterize.png (a text and a curve, and their image) or plane.png
+(the preview plane).
 """
 
 import os
@@ -248,8 +249,54 @@ def show_shapes() -> None:
     bpy.app.timers.register(open_tab, first_interval=2.0)
 
 
+def show_plane() -> None:
+    """Inside Blender: a picture on the preview plane, with its panel in the sidebar."""
+    import bpy
+
+    sys.path.insert(0, str(Path(__file__).resolve().parent))
+    import prefilter
+    import resize
+
+    bpy.context.preferences.view.show_splash = False
+    encoded = prefilter.to_srgb(resize.drawn().clip(0, 1))
+    pixels = np.ones((*encoded.shape[:2], 4), np.float32)
+    pixels[..., :3] = encoded
+    image = bpy.data.images.new("Picture", *pixels.shape[1::-1])
+    image.pixels.foreach_set(pixels.ravel())
+    image.pack()
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    bpy.context.preferences.system.use_region_overlap = False
+    area.type = "IMAGE_EDITOR"
+    area.spaces.active.image = image
+    area.spaces.active.show_region_ui = True
+    close_panels("PREFILTER_PT_bake", "PREFILTER_PT_preview")
+    panel = bpy.types.PREFILTER_PT_plane
+    bpy.utils.unregister_class(panel)
+    panel.bl_options, panel.bl_order = set(), -1
+    bpy.utils.register_class(panel)
+
+    def open_tab() -> float | None:
+        sidebar = next(region for region in area.regions if region.type == "UI")
+        if sidebar.active_panel_category == "UNSUPPORTED":  # Until it is drawn for the first time.
+            return 0.5
+        sidebar.active_panel_category = "Prefilter"
+        region = next(region for region in area.regions if region.type == "WINDOW")
+        with bpy.context.temp_override(window=window, area=area, region=region):
+            bpy.ops.prefilter.preview_plane()
+        settings = bpy.context.window_manager.prefilter_plane
+        settings.tilt, settings.rotation, settings.tiles = 1.2, 0.2, 3.0
+        area.tag_redraw()
+        bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
+        return None
+
+    bpy.app.timers.register(open_tab, first_interval=2.0)
+
+
 if "bpy" in sys.modules:
-    if sys.argv[-1] == "voxelize":
+    if sys.argv[-1] == "plane":
+        show_plane()
+    elif sys.argv[-1] == "voxelize":
         show_voxels()
     elif sys.argv[-1] == "rasterize":
         show_shapes()

@@ -22,7 +22,7 @@ from window import idle, play, region, until
 PACKAGE = "bl_ext.user_default.prefilter"
 RESULT = sys.argv[sys.argv.index("--") + 1]
 WIDTH, HEIGHT = 64, 48  # Of an offscreen picture.
-VIEWS = ((0.0, 0.0, 0.4), (1.2, 0.3, 2.0), (1.45, 2.0, 6.0))  # Tilt, rotation, tiles.
+VIEWS = ((0.0, 0.1, 0.37), (1.2, 0.3, 2.0), (1.45, 2.0, 6.0))  # Tilt, rotation, tiles.
 
 found: dict[str, object] = {}
 
@@ -36,6 +36,8 @@ def session() -> Iterator[None]:
     panel.bl_options = set()
     bpy.utils.register_class(panel)
     image = scenes.image("Wide", scenes.noise(24, 40))
+    # Blender tells of changes to what the scene uses.
+    scenes.textured_quad(image)
     other = scenes.image("High", scenes.noise(33, 7, alpha=True, seed=2))
     window = bpy.context.window_manager.windows[0]
     area = max(window.screen.areas, key=lambda area: area.width * area.height)

@@ -10,7 +10,7 @@ import scenes
 
 SESSION = Path(__file__).with_name("plane_session.py")
 WIDTH, HEIGHT = 64, 48
-VIEWS = ((0.0, 0.0, 0.4), (1.2, 0.3, 2.0), (1.45, 2.0, 6.0))
+VIEWS = ((0.0, 0.1, 0.37), (1.2, 0.3, 2.0), (1.45, 2.0, 6.0))
 BACKDROP = 0.03
 
 
