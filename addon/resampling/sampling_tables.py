@@ -1,5 +1,6 @@
 """Sampling tables: built or loaded anywhere, then written as texts of Blender or as files."""
 
+import tempfile
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -90,7 +91,8 @@ class TableMaking:
             staging.commit_all(self._staged)
             where = listed(str(target) for target in self._targets)
         else:
-            self.text = _write_text(f"{table.filter}-{table.texels}", self._settings, self._source)
+            name = f"{table.filter}-{table.texels}.{self._settings.language}"
+            self.text = _write_text(name, self._source)
             where = f"'{self.text.name}'"
         return Outcome(
             f"Wrote {where}: {TABLE_FILTERS[table.filter].label} from {table.texels} texels, with "
@@ -143,23 +145,23 @@ def _proof(table: "prefilter.SamplingTable") -> list[str]:
 
 
 def _source(table: "prefilter.SamplingTable", language: str) -> str:
+    if language == "json":
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Path(folder) / "table.json"
+            table.save(copy)
+            return copy.read_text(encoding="utf-8")
     written = {"glsl": table.glsl, "hlsl": table.hlsl, "osl": table.osl}
     return written[language]()
 
 
 def _write(table: "prefilter.SamplingTable", language: str, path: Path) -> None:
-    if language == "json":
-        table.save(path)
-    else:
-        path.write_text(_source(table, language), encoding="utf-8")
+    path.write_text(_source(table, language), encoding="utf-8")
 
 
-def _write_text(stem: str, settings: TableSettings, source: str) -> bpy.types.Text:
-    """Writes a text, over one that was written before."""
-    name = f"{stem}.{settings.language}"
-    found = bpy.data.texts.get(name)
-    if found is None or not found.get(_TEXT_KEY):
-        found = bpy.data.texts.new(name)
-        found[_TEXT_KEY] = True
+def _write_text(name: str, source: str) -> bpy.types.Text:
+    """Writes a text, over the one that was written before under this name."""
+    ours = (text for text in bpy.data.texts if text.get(_TEXT_KEY) == name)
+    found = next(ours, None) or bpy.data.texts.new(name)
+    found[_TEXT_KEY] = name
     found.from_string(source)
     return found

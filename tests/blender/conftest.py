@@ -32,6 +32,7 @@ SAME_IN_ANY_BLENDER = {
     "mipmaps/view/test_canvas.py",
     "mipmaps/view/test_errors.py",
     "resampling/test_resize_commands.py",
+    "resampling/test_sampling_table_command.py",
     "scans/test_scan_commands.py",
     "shapes/test_shape_commands.py",
     "voxels/test_voxel_commands.py",
