@@ -233,11 +233,12 @@ class ResampleSettings:
     max_probes: int = number(
         1,
         "Max Probes",
-        "How many samples in a row make up a pixel where the image is squeezed more in one "
-        "direction than in the other, as toward a horizon. 1 blurs there, more are sharper. For "
-        "Gaussian",
+        "How many samples in a row may make up a pixel where the image is squeezed more in one "
+        "direction than in the other, as toward a horizon. 1 blurs there, more are sharper. Only "
+        "for Gaussian",
         low=1,
-        high=64,
+        high=256,
+        display={"soft_max": 32},
         metavar="N",
     )
     wrap: str = one_of("border", "Wrap", "What lies outside the image", WRAPS, metavar="MODE")

@@ -111,16 +111,28 @@ def applied(transform: Matrix, points: ArrayLike) -> NDArray[np.float64]:
     return homogeneous[:, :2] / homogeneous[:, 2:]
 
 
-def squeeze(placed: Placement) -> float:
+def squeeze(placed: Placement, width: int, height: int) -> float:
     """Returns how many pixels of the image an upright square has, in the mean, that is as wide as
-    the filter of a pixel of the result is; at least 1 everywhere."""
+    the filter of a pixel of the result.
+
+    Each is at least 1 and at most those of a square as long as the image; pixels of the result that
+    do not show the image have none.
+
+    Args:
+        placed: Where the image goes.
+        width: Of the image, in pixels.
+        height: Of the image, in pixels.
+    """
     grid = (np.arange(_PLACES) + 0.5) / _PLACES
     x, y = (axis.ravel() for axis in np.meshgrid(grid * placed.width, grid * placed.height))
     rows = placed.transform @ np.stack([x, y, np.ones_like(x)])
+    rows = rows[:, rows[2] > 0.0]
     places = rows[:2] / rows[2]
     slopes = placed.transform[:2, :2, None] - places[:, None] * placed.transform[2, :2, None]
     widths = np.linalg.norm(slopes / rows[2], ord=2, axis=(0, 1))
-    return float(np.mean(np.clip(widths, 1.0, LONGEST_SIDE) ** 2))
+    within = np.all((places >= 0.0) & (places <= [[width], [height]]), axis=0)
+    pixels = np.clip(widths, 1.0, max(width, height)) ** 2
+    return float(np.sum(pixels[within])) / _PLACES**2
 
 
 def check_convex(corners: ArrayLike) -> None:

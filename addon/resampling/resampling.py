@@ -14,7 +14,8 @@ from .sampling_tables import load
 
 _SUFFIXES = {"affine": "transformed", "corners": "pinned", "rectify": "rectified"}
 _RADII = {"box": 0.5, "tent": 1.0, "bspline2": 1.5, "lanczos3": 3.0}
-_PER_TEXEL = 8.0  # What a texel costs that mipmaps are made of, in texels read.
+_PER_PIXEL, _PER_WEIGHT = 8.0, 0.2  # What an exact filter costs, in texels read.
+_PER_TEXEL = 8.0  # What a texel costs that mipmaps are made of.
 _DONE = {"affine": "Scaled and rotated", "corners": "Pinned", "rectify": "Rectified"}
 
 
@@ -55,26 +56,28 @@ class Resampling(NewPicture):
     def summary(self) -> str:
         """What is done to the image, for the user."""
         settings = self._settings
+        means = METHODS[settings.method].label
+        if settings.method != "table":
+            means = f"{TABLE_FILTERS[settings.filter].label}, {means}"
         return (
             f"{_DONE[settings.warp]} '{self._picture.name}' to {self._placement.width} x "
-            f"{self._placement.height} pixels with {TABLE_FILTERS[settings.filter].label}, "
-            f"{METHODS[settings.method].label}"
+            f"{self._placement.height} pixels with {means}"
         )
 
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
         """Returns the pixels of the new image."""
         settings = self._settings
         table = _table(settings)
-        own_filter = isinstance(table, prefilter.SamplingTable)
+        filter = table.filter if isinstance(table, prefilter.SamplingTable) else settings.filter
         return prefilter.resample(
             linear,
             self._placement.transform,
             self._placement.width,
             self._placement.height,
             table=table,
-            filter=table.filter if own_filter else settings.filter,
+            filter=filter,
             exact=settings.method == "exact",
-            max_probes=settings.max_probes,
+            max_probes=settings.max_probes if filter == "gaussian" else 1,
             wrap=settings.wrap,
             premultiplied=not self._picture.alpha_is_straight,
             progress=progress,
@@ -83,7 +86,7 @@ class Resampling(NewPicture):
 
 
 def effort(settings: ResampleSettings, width: int, height: int) -> float:
-    """Returns about how many pixels are read for an image of this size.
+    """Returns about how many texels are read for an image of this size.
 
     Raises:
         ValueError: The settings make it flat, fold it, or make it too large.
@@ -92,10 +95,10 @@ def effort(settings: ResampleSettings, width: int, height: int) -> float:
     made = placed.width * placed.height
     if settings.method == "exact":
         reach = 2.0 * _RADII.get(settings.filter, 2.0)
-        return made * reach**2 * squeeze(placed)
+        return made * (_PER_PIXEL + _PER_WEIGHT * reach**2 * squeeze(placed, width, height))
     texels = int(settings.method) if settings.method.isdigit() else 8
-    mipmaps = _PER_TEXEL * width * height
-    return mipmaps + made * texels * settings.max_probes
+    probes = settings.max_probes if settings.filter == "gaussian" else 1
+    return made * texels * probes + _PER_TEXEL * width * height
 
 
 def _table(settings: ResampleSettings) -> "prefilter.SamplingTable | str | None":

@@ -182,8 +182,13 @@ def test_a_result_has_a_pixel_at_least(place):
 
 def test_squeeze(addon, place):
     squeeze = addon("resampling.placement").squeeze
-    assert squeeze(place()) == pytest.approx(1)
-    assert squeeze(place(scale_x=3.0)) == pytest.approx(1)
-    assert squeeze(place(scale_x=0.5, scale_y=0.25)) == pytest.approx(16)
+    assert squeeze(place(), 60, 40) == pytest.approx(1)
+    assert squeeze(place(scale_x=3.0), 60, 40) == pytest.approx(1)
+    assert squeeze(place(scale_x=0.5, scale_y=0.25), 60, 40) == pytest.approx(16)
+    half = place(scale_x=0.5, size="image")
+    assert squeeze(half, 60, 40) == pytest.approx(4 / 2)
     pinned = place(warp="corners", upper_left=(0.4, 1.0), upper_right=(0.6, 1.0))
-    assert 5 < squeeze(pinned) < 30
+    assert 2 < squeeze(pinned, 60, 40) < 5
+    # At most all of the image for a pixel.
+    tiny = place(scale_x=0.001, scale_y=0.001)
+    assert squeeze(tiny, 60, 40) <= 60**2
