@@ -12,6 +12,7 @@ ABSENT = {
     "trim": (0.0, None),
     "memory_limit": (0, None),
     "background": ("transparent", None),
+    "table": ("", None),
     # What lies over something hides it in Blender.
     "overlap": ("cover", "add"),
 }
@@ -32,6 +33,8 @@ def defaults(function):
         ("scans.choices.ScanSettings", prefilter.reconstruct, 8),
         ("scans.choices.ScanSettings", prefilter.reconstruct_file, 8),
         ("resampling.choices.ResizeSettings", prefilter.resize, 3),
+        ("resampling.choices.ResampleSettings", prefilter.resample, 4),
+        ("resampling.choices.TableSettings", prefilter.SamplingTable.build, 5),
         ("voxels.choices.VoxelSettings", prefilter.voxelize, 2),
         ("voxels.choices.VoxelSettings", prefilter.Octree.contour, 3),
     ],
