@@ -1,7 +1,7 @@
 """The levels of an image side by side in one texture, as Blender cannot upload levels.
 
-Level 0 is at (0, 0). The others follow along its longer side, level k at s - (s >> (k - 1)) of the
-s texels that it has: that leaves at least s >> k for each.
+Level 0 is at (0, 0). The others follow along its longer side of s texels, level k from
+s - (s >> (k - 1)) on.
 """
 
 from collections.abc import Sequence
@@ -35,8 +35,8 @@ def packed(levels: Sequence[FloatArray]) -> FloatArray:
     """Returns all levels in one array.
 
     Args:
-        levels: (height, width, channels), each with half the sides of the one before, rounded
-            down, and at least 1.
+        levels: (height, width, channels), each with half the sides of the one before, at least 1;
+            sides are powers of two.
     """
     height, width, channels = levels[0].shape
     rest = levels[1].shape[:2] if len(levels) > 1 else (0, 0)

@@ -1,10 +1,9 @@
 """The levels that editors draw on a plane: computed, and kept."""
 
-from collections.abc import Sequence
+import math
 from dataclasses import dataclass
 
 import gpu
-import numpy as np
 import prefilter
 
 from ...bridge import images
@@ -16,9 +15,9 @@ from ...core.jobs import Progress, go_on, share
 from .atlas import packed
 
 LONGEST_SIDE = 4096
-"""Of the finest level that is drawn; those of larger images start farther down."""
+"""Of the finest level that is drawn, in texels; a power of two."""
 
-_DECODED, _FILTERED = 0.2, 0.9  # What the progress is once these steps are done.
+_DECODED, _RESIZED, _FILTERED = 0.1, 0.3, 0.9  # What the progress is once these steps are done.
 
 
 @dataclass
@@ -28,7 +27,8 @@ class Plane:
     Attributes:
         image_uid: The image's session_uid.
         filter: What the levels were made with.
-        size: The width and height of the finest level.
+        size: The width and height of the finest level: powers of two.
+        aspect: The width of the image by its height.
         level_count: How many there are.
         atlas: All of them, see `atlas.packed`; empty once they are a texture.
         is_data: Whether values are shown as they are stored.
@@ -38,6 +38,7 @@ class Plane:
     image_uid: int
     filter: str
     size: tuple[int, int]
+    aspect: float
     level_count: int
     atlas: FloatArray | None
     is_data: bool
@@ -65,6 +66,9 @@ register, unregister = _planes.register, _planes.unregister
 def compute(picture: Picture, image_uid: int, filter: str, progress: Progress) -> Plane:
     """Computes the levels of an image that tiles the plane.
 
+    Sides are made powers of two first: only then each level has just half the texels of the one
+    before, which shaders take for granted.
+
     Args:
         picture: The image.
         image_uid: The session_uid of the image.
@@ -80,16 +84,26 @@ def compute(picture: Picture, image_uid: int, filter: str, progress: Progress) -
     if picture.alpha_is_straight:
         linear = associated(linear)
     go_on(progress, _DECODED)
-    levels: Sequence[FloatArray] = prefilter.sampling_levels(
+    height, width = linear.shape[:2]
+    size = (_power_of_two(width), _power_of_two(height))
+    linear = prefilter.resize(
+        linear,
+        *size,
+        wrap="repeat",
+        premultiplied=True,
+        progress=share(progress, _DECODED, _RESIZED),
+    )
+    levels = prefilter.sampling_levels(
         linear,
         filter,
         wrap="repeat",
         premultiplied=True,
-        progress=share(progress, _DECODED, _FILTERED),
+        progress=share(progress, _RESIZED, _FILTERED),
     )
-    first = next(k for k, level in enumerate(levels) if max(level.shape[:2]) <= LONGEST_SIDE)
-    levels = levels[first:]
-    atlas = packed([np.nan_to_num(level) for level in levels])
+    atlas = packed(levels)
     go_on(progress, 1.0)
-    height, width = levels[0].shape[:2]
-    return Plane(image_uid, filter, (width, height), len(levels), atlas, picture.is_data)
+    return Plane(image_uid, filter, size, width / height, len(levels), atlas, picture.is_data)
+
+
+def _power_of_two(side: int) -> int:
+    return min(2 ** round(math.log2(side)), LONGEST_SIDE)

@@ -144,13 +144,12 @@ def _draw() -> None:
     if shown is None or not settings.use_plane:
         return
     region = bpy.context.region
-    width, height = shown.size
     matrix = uv_of_picture(
         settings.tilt,
         settings.rotation,
         settings.tiles,
         picture_aspect=region.width / region.height,
-        image_aspect=width / height,
+        image_aspect=shown.aspect,
     )
     gpu.state.blend_set("NONE")
     gpu.state.depth_test_set("NONE")

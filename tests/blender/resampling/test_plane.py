@@ -51,8 +51,8 @@ def seen(tilt, rotation, tiles, image_aspect):
 @pytest.mark.parametrize(
     ("name", "filter", "pixels"),
     [
-        ("wide", "lanczos2", scenes.noise(24, 40)),
-        ("high", "tent", scenes.noise(33, 7, alpha=True, seed=2)),
+        ("wide", "lanczos2", scenes.noise(32, 64)),
+        ("high", "tent", scenes.noise(32, 8, alpha=True, seed=2)),
     ],
 )
 def test_samples_are_those_of_the_package(found, name, filter, pixels, view, texels):
@@ -82,7 +82,8 @@ def test_samples_are_those_of_the_package(found, name, filter, pixels, view, tex
     assert np.all(shown[..., 3] == 1)
     difference = np.abs(shown[..., :3] - scenes.to_srgb(expected)).max(axis=-1)
     # Next to the horizon single precision is far off, and a place may lie in the next subdomain.
-    assert np.quantile(difference[below], 0.98) < 2e-3
+    assert np.quantile(difference[below], 0.95) < 2e-3
+    assert np.quantile(difference[below], 0.99) < 1e-2
     assert np.median(difference) < 3e-4
     assert difference[~below].max(initial=0) < 1e-5
 
@@ -107,7 +108,7 @@ def test_window(found):
 
 def test_packed_levels_do_not_overlap(addon):
     packed = addon("resampling.view.atlas").packed
-    for size in ((1, 1), (2, 1), (1, 9), (17, 17), (64, 5), (5, 63), (100, 33)):
+    for size in ((1, 1), (2, 1), (1, 8), (16, 16), (64, 4), (4, 64), (128, 32)):
         levels, (height, width) = [], size
         while True:
             levels.append(np.full((height, width, 1), len(levels) + 1.0, np.float32))
@@ -129,12 +130,15 @@ def test_works_without_a_window(addon):
     assert [image.name for image in bpy.data.images] == ["Paint"]
 
 
-def test_large_images_start_farther_down(addon, monkeypatch):
+def test_sides_are_powers_of_two(addon, monkeypatch):
     kept = addon("resampling.view.kept")
-    monkeypatch.setattr(kept, "LONGEST_SIDE", 8)
-    scenes.image("Paint", scenes.noise(24, 16))
+    monkeypatch.setattr(kept, "LONGEST_SIDE", 16)
+    pixels = np.ones((25, 7, 4), np.float32) * (0.1, 0.2, 0.3, 1)
+    scenes.image("Paint", pixels, is_float=True)
     bpy.ops.prefilter.preview_plane(image="Paint", filter="box")
-    assert kept.find(bpy.data.images["Paint"]).size == (4, 6)
+    plane = kept.find(bpy.data.images["Paint"])
+    assert (plane.size, plane.aspect, plane.level_count) == ((8, 16), 7 / 25, 5)
+    np.testing.assert_allclose(plane.atlas[:, :8], np.full((16, 8, 3), (0.1, 0.2, 0.3)), rtol=1e-5)
 
 
 @pytest.mark.parametrize(
