@@ -1,7 +1,8 @@
 #include "prefilter/sampling/pyramid_sampler.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <cstddef>
+#include <memory>
 
 #include "prefilter/sampling/mip_places.h"
 #include "prefilter/sampling/sample_block.h"

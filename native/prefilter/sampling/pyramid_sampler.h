@@ -15,7 +15,8 @@ namespace prefilter {
 class TexelPlan;
 
 /// What weigh_texels says of a pyramid, a table and wrap modes, worked out ahead for all places.
-/// Samples are the sums of its texels but for the rounding of floats.
+/// Samples are the sums of its texels but
+/// for the rounding of floats, which may also move one across the border of a subdomain.
 class PyramidSampler {
  public:
   /// `table` may be nullptr: trilinear interpolation. The pyramid's texels must outlive

@@ -1,3 +1,4 @@
+// Section 6.2: the texels and weights of the subdomain that a sample lies in.
 #include "prefilter/sampling/weigh_texels.h"
 
 #include <algorithm>
