@@ -41,9 +41,9 @@ def main(folder: Path) -> None:
     sheet(cells, columns=3).save(folder / "resize.png")
 
 
-def drawn() -> Array:
+def drawn(size: int = SIZE) -> Array:
     """Letters, rays and rings, in scene-linear values."""
-    side = FINE * SIZE
+    side = FINE * size
     page = Image.new("RGB", (side, side), (255, 255, 255))
     draw = ImageDraw.Draw(page)
     for ray in range(24):
@@ -66,7 +66,7 @@ def drawn() -> Array:
     draw.text((0.04 * side, 0.04 * side), "Rg", font=font, fill=(0, 0, 0))
     draw.text((0.53 * side, 0.55 * side), "a&", font=font, fill=(0, 110, 60))
     fine = prefilter.to_linear(np.asarray(page)[::-1].astype(np.float32) / 255)
-    return prefilter.resize(fine, SIZE, SIZE, filter="box")
+    return prefilter.resize(fine, size, size, filter="box")
 
 
 def sheet(cells: list[tuple[Array, str]], columns: int) -> Image.Image:
