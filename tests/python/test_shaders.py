@@ -27,9 +27,13 @@ def table(request, tmp_path):
     return random_table(tmp_path / "table.json", **request.param)
 
 
-def random_levels(width, height, filter="lanczos2", seed=0):
-    image = np.random.default_rng(seed).random((height, width, 4), np.float32)
-    return prefilter.sampling_levels(image, filter)
+def random_image(width, height):
+    return np.random.default_rng(0).random((height, width, 4), np.float32)
+
+
+def random_levels(width, height):
+    """As textures have them: rounded down where sides are no powers of two."""
+    return prefilter.mipmaps(random_image(width, height), filter="lanczos2", bounds=None)
 
 
 def random_queries(levels, count=500, seed=1):
@@ -98,7 +102,7 @@ def test_places_and_scales_that_are_out_of_bounds(gpu):
     levels = random_levels(20, 30)
     texture = gpu.texture(levels)
     program = gpu.program(LANCZOS2.glsl(), SAMPLE)
-    far = np.array([[1e30, 1e30, 1.5], [-1e30, 1e9, 0.0], [np.inf, -np.inf, 2.0]])
+    far = np.array([[1e30, 1e30, 1.3], [-1e30, 1e9, 0.0], [np.inf, -np.inf, 2.0]])
     corners = np.array([[1.0, 1.0], [0.0, 1.0], [1.0, 0.0]]) * 100.0
     corners = np.column_stack([np.where(corners == 0.0, -100.0, corners), far[:, 2]])
     wanted = cpu_samples(levels, LANCZOS2, corners)
@@ -167,32 +171,35 @@ def test_tables_under_two_names_in_one_shader(gpu):
     np.testing.assert_allclose(got, wanted, rtol=0, atol=2e-5)
 
 
-def test_texels_that_the_program_reads_itself(gpu):
-    """All levels below each other in one image, as where mipmaps cannot be had."""
-    levels = random_levels(19, 26)
-    atlas = np.zeros((sum(len(level) for level in levels), 19, 4), np.float32)
+@pytest.mark.parametrize(("width", "height"), [(19, 26), (37, 100), (1, 7), (64, 32)])
+def test_texels_that_the_program_reads_itself(gpu, width, height):
+    """All levels below each other in one image: those of any image can be had so."""
+    levels = prefilter.sampling_levels(random_image(width, height), "lanczos2")
+    atlas = np.zeros((sum(len(level) for level in levels), width, 4), np.float32)
     top = 0
     for level in levels:
         atlas[top : top + level.shape[0], : level.shape[1]] = level
         top += level.shape[0]
-    macros = """uniform sampler2D atlas;
-    ivec2 size_of(int level) { return ivec2(max(19 >> level, 1), max(26 >> level, 1)); }
-    vec4 texel_of(int level, ivec2 texel) {
+    macros = f"""uniform sampler2D atlas;
+    ivec2 size_of(int level) {{ return (ivec2({width}, {height}) + (1 << level) - 1) >> level; }}
+    vec4 texel_of(int level, ivec2 texel) {{
       int top = 0;
       for (int i = 0; i < level; ++i) top += size_of(i).y;
       return texelFetch(atlas, ivec2(texel.x, texel.y + top), 0);
-    }
+    }}
     #define PREFILTER_FETCH(level, texel) texel_of(level, texel)
     #define PREFILTER_SIZE(level) size_of(level)
-    #define PREFILTER_LEVELS 5
+    #define PREFILTER_LEVELS {len(levels)}
     """
     program = gpu.program(
         macros + LANCZOS2.glsl(), "result = prefilter_sample(query.xy, query.z, wrap);"
     )
+    texture = gpu.texture([atlas])
     queries = random_queries(levels)
-    got = gpu.run(program, gpu.texture([atlas]), queries, wrap=(1, 2))
-    wanted = cpu_samples(levels, LANCZOS2, queries, ("repeat", "border"))
-    np.testing.assert_allclose(got, wanted, rtol=0, atol=5e-6)
+    for u, v in [(0, 0), (1, 1), (1, 2)]:
+        got = gpu.run(program, texture, queries, wrap=(u, v))
+        wanted = cpu_samples(levels, LANCZOS2, queries, (WRAP_MODES[u], WRAP_MODES[v]))
+        np.testing.assert_allclose(got, wanted, rtol=0, atol=5e-6)
 
 
 GLSL_MAIN = """

@@ -16,10 +16,11 @@ Samples a texture at any scale from $texels texels of its mipmap, by a table for
 Written by Prefilter. Prefilter's license does not extend to this text: use, change and pass it on
 as you like. It comes without any warranty.
 
-The levels must be those of the same filter, each the floor of half of the one before it, down to
-1 x 1: prefilter.sampling_levels(image, filter="$filter") makes them. Colors are filtered as the
-texture's format decodes them, so sRGB formats are filtered in linear light; alpha must be
-premultiplied. No sampler state matters.
+The levels must be those that prefilter.sampling_levels(image, filter="$filter") makes, and the
+sides of the texture powers of two. Of textures with other sides, whose levels graphics cards round
+down, prefilter.mipmaps(image, filter="$filter") makes the levels; they gain less. Colors are
+filtered as the texture's format decodes them, so sRGB formats are filtered in linear light; alpha
+must be premultiplied. No sampler state matters.
 
   vec4 ${name}_sample($texture levels, vec2 uv, float mip_value)
   vec4 ${name}_sample($texture levels, vec2 uv, float mip_value, ivec2 wrap)
@@ -39,9 +40,9 @@ premultiplied. No sampler state matters.
     The weight is negative for some texels of filters with negative lobes, and 0 in the border.
 
 To read texels in another way (from an array, an atlas, a buffer), define these before this text;
-the functions then have no parameter `levels`:
+the functions then have no parameter `levels`, and the image may have any sides:
   ${upper}_FETCH(level, texel)  the color of a texel; an int, and an ivec2 inside the level
-  ${upper}_SIZE(level)          an ivec2: the width and height of a level
+  ${upper}_SIZE(level)          an ivec2: the width and height of a level, as sampling_levels has it
   ${upper}_LEVELS               an int: how many levels there are
 $language_note
 """
@@ -62,13 +63,15 @@ precision highp sampler2D;
 #ifdef ${upper}_FETCH
 #define ${upper}_PARAMETER
 #define ${upper}_ARGUMENT
+#define ${upper}_EXTENT(level) (vec2(${upper}_SIZE(0)) / float(1 << (level)))
 #else
 #define ${upper}_OWN_TEXTURE
 #define ${upper}_PARAMETER sampler2D levels,
 #define ${upper}_ARGUMENT levels,
-// Mesa's llvmpipe takes the sizes of neighboring pixels' levels for each other.
 #define ${upper}_FETCH(level, texel) texelFetch(levels, texel, level)
+// Mesa's llvmpipe takes the sizes of neighboring pixels' levels for each other.
 #define ${upper}_SIZE(level) max(textureSize(levels, 0) >> (level), 1)
+#define ${upper}_EXTENT(level) ${name}_extent(textureSize(levels, 0), level)
 #ifndef ${upper}_LEVELS
 #define ${upper}_OWN_LEVELS
 #ifdef GL_ES
@@ -92,6 +95,7 @@ _HLSL_TEXTURE = """
 #ifdef ${upper}_FETCH
 #define ${upper}_PARAMETER
 #define ${upper}_ARGUMENT
+#define ${upper}_EXTENT(level) (vec2(${upper}_SIZE(0)) / float(1 << (level)))
 #else
 #define ${upper}_OWN_TEXTURE
 #define ${upper}_OWN_LEVELS
@@ -99,6 +103,7 @@ _HLSL_TEXTURE = """
 #define ${upper}_ARGUMENT levels,
 #define ${upper}_FETCH(level, texel) levels.Load(int3(texel, level))
 #define ${upper}_SIZE(level) max(${name}_size(levels).xy >> (level), 1)
+#define ${upper}_EXTENT(level) ${name}_extent(${name}_size(levels).xy, level)
 #define ${upper}_LEVELS ${name}_size(levels).z
 
 int3 ${name}_size(Texture2D<float4> levels)
@@ -111,6 +116,17 @@ int3 ${name}_size(Texture2D<float4> levels)
 """
 
 _BODY = """
+// How many texels of a level the image takes. Rounded down, a level is spread over the image.
+#ifdef ${upper}_OWN_TEXTURE
+vec2 ${name}_extent(ivec2 size, int level)
+{
+  ivec2 uneven = size & (size - 1);  // 0 for powers of two
+  vec2 nested = vec2(size) / float(1 << level);
+  vec2 spread = vec2(max(size >> level, 1));
+  return vec2(uneven.x == 0 ? nested.x : spread.x, uneven.y == 0 ? nested.y : spread.y);
+}
+#endif
+
 #define ${upper}_CLAMP 0
 #define ${upper}_REPEAT 1
 #define ${upper}_BORDER 2
@@ -130,10 +146,10 @@ struct ${name}_Place {
 
 ivec4 ${name}_level(${upper}_PARAMETER vec2 uv, vec2 x, ivec2 mirror, int level, int finer)
 {
-  ivec2 size = ${upper}_SIZE(max(level - finer, 0));
+  int available = max(level - finer, 0);
   int cell = 1 << finer;
-  ivec2 corner = ivec2(floor(uv * vec2(size) - float(cell) * x + 0.5));
-  return ivec4(corner - 64 + (mirror & (128 + cell)), size);
+  ivec2 corner = ivec2(floor(uv * ${upper}_EXTENT(available) - float(cell) * x + 0.5));
+  return ivec4(corner - 64 + (mirror & (128 + cell)), ${upper}_SIZE(available));
 }
 
 ${name}_Place ${name}_find(${upper}_PARAMETER vec2 uv, float mip_value, ivec2 wrap)
@@ -146,7 +162,7 @@ ${name}_Place ${name}_find(${upper}_PARAMETER vec2 uv, float mip_value, ivec2 wr
   // Farther out nothing changes, and whole numbers stay small.
   vec2 at = clamp(vec2(wrap.x == ${upper}_REPEAT ? uv.x - floor(uv.x) : uv.x,
                        wrap.y == ${upper}_REPEAT ? uv.y - floor(uv.y) : uv.y), -128.0, 129.0);
-  vec2 x = at * vec2(${upper}_SIZE(place.level));
+  vec2 x = at * ${upper}_EXTENT(place.level);
   x -= floor(x);
   place.mirror = ivec2(x.x > 0.5 ? -1 : 0, x.y > 0.5 ? -1 : 0);
   vec2 folded = 0.5 - abs(x - 0.5);
@@ -173,21 +189,25 @@ float ${name}_weight(${name}_Place place, int texel)
 $weight
 }
 
-int ${name}_wrap(int i, int size, int wrap)
+int ${name}_wrap(int i, int size, float extent, int wrap)
 {
-  return wrap == ${upper}_REPEAT ? i - size * int(floor((float(i) + 0.5) / float(size)))
-                                 : clamp(i, 0, size - 1);
+  float x = float(i) + 0.5;
+  bool repeated = wrap == ${upper}_REPEAT && (i < 0 || i >= size);
+  return clamp(repeated ? int(x - floor(x / extent) * extent) : i, 0, size - 1);
 }
 
 // x, y and level of a texel, and 0 for `inside` if it lies in a border of zeros, else 1.
-ivec3 ${name}_texel(${name}_Place place, int texel, ivec2 wrap, out float inside)
+ivec3 ${name}_texel(${upper}_PARAMETER ${name}_Place place, int texel, ivec2 wrap,
+    out float inside)
 {
   int offset = ${name}_offsets[place.row + texel];
   int finer = offset >> 16;
   ivec4 level = finer == 0 ? place.level_0 : (finer == 1 ? place.level_1 : place.level_2);
   ivec2 at = ivec2((offset >> place.shifts.x) & 255, (offset >> place.shifts.y) & 255);
   at = (at ^ place.mirror) + level.xy;
-  ivec2 read = ivec2(${name}_wrap(at.x, level.z, wrap.x), ${name}_wrap(at.y, level.w, wrap.y));
+  vec2 extent = ${upper}_EXTENT(place.level - finer);
+  ivec2 read = ivec2(${name}_wrap(at.x, level.z, extent.x, wrap.x),
+                     ${name}_wrap(at.y, level.w, extent.y, wrap.y));
   bool outside = (wrap.x == ${upper}_BORDER && read.x != at.x) ||
                  (wrap.y == ${upper}_BORDER && read.y != at.y);
   inside = outside ? 0.0 : 1.0;
@@ -200,7 +220,7 @@ vec4 ${name}_sample(${upper}_PARAMETER vec2 uv, float mip_value, ivec2 wrap)
   vec4 sum = vec4(0.0, 0.0, 0.0, 0.0);
   for (int i = 0; i < $texels; ++i) {
     float inside;
-    ivec3 texel = ${name}_texel(place, i, wrap, inside);
+    ivec3 texel = ${name}_texel(${upper}_ARGUMENT place, i, wrap, inside);
     sum += inside * ${name}_weight(place, i) * ${upper}_FETCH(texel.z, texel.xy);
   }
   return sum;
@@ -241,7 +261,7 @@ ivec3 ${name}_pick(${upper}_PARAMETER vec2 uv, float mip_value, ivec2 wrap, floa
     before += abs(w);
   }
   float inside;
-  ivec3 texel = ${name}_texel(place, picked, wrap, inside);
+  ivec3 texel = ${name}_texel(${upper}_ARGUMENT place, picked, wrap, inside);
   weight = inside * sign_of_picked * total;
   return texel;
 }
@@ -257,6 +277,7 @@ ivec3 ${name}_pick(${upper}_PARAMETER vec2 uv, float mip_value, ivec2 wrap, floa
 #endif
 #undef ${upper}_PARAMETER
 #undef ${upper}_ARGUMENT
+#undef ${upper}_EXTENT
 """
 
 # The terms of a polynomial (sampling_table.h) in vectors, and what these are multiplied by.
@@ -339,7 +360,7 @@ def _source(table: Table, name: str, language: _Language) -> str:
     return "\n".join(
         [
             language.translated(commented(Template(_ABOUT).substitute(words))),
-            Template(language.texture).substitute(words),
+            language.translated(Template(language.texture).substitute(words)),
             *[language.translated(text) for text in arrays],
             language.translated(Template(_BODY).substitute(words).lstrip("\n")),
         ]

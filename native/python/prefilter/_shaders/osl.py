@@ -13,9 +13,9 @@ as you like. It comes without any warranty.
 
 Every level is a picture file of its own, named Levels, number, Extension: wood.0.exr, wood.1.exr
 and so on, level 0 first. OSL has no way to ask for a level of one file, so that is what works in
-every renderer. The levels must be those of the same filter, each the floor of half of the one
-before it: prefilter.sampling_levels(image, filter="$filter") makes them. Files should be
-scene-linear, with premultiplied alpha; texels are read as the renderer decodes them.
+every renderer. The levels must be those that prefilter.sampling_levels(image, filter="$filter")
+makes, of a picture of any size. Files should be scene-linear, with premultiplied alpha; texels are
+read as the renderer decodes them.
 
   Levels     the files' names up to the number, with their folder: "/textures/wood."
   Extension  what follows the number
@@ -31,6 +31,8 @@ struct ${name}_Level {
   int number;
   int width;
   int height;
+  float columns;  // how many of its texels the picture takes
+  float rows;
   int x;  // the texel that an offset of 0 and 0 is packed for
   int y;
 };
@@ -40,19 +42,24 @@ ${name}_Level ${name}_level(int number, int width, int height, float u, float v,
 {
   ${name}_Level level;
   level.number = max(number, 0);
-  level.width = max(width >> level.number, 1);
-  level.height = max(height >> level.number, 1);
-  level.x = (int)floor(u * level.width - cell * x + 0.5) - 64 + (mirror_x & (128 + cell));
-  level.y = (int)floor(v * level.height - cell * y + 0.5) - 64 + (mirror_y & (128 + cell));
+  float texel = 1 << level.number;
+  level.columns = width / texel;
+  level.rows = height / texel;
+  level.width = (int)ceil(level.columns);
+  level.height = (int)ceil(level.rows);
+  level.x = (int)floor(u * level.columns - cell * x + 0.5) - 64 + (mirror_x & (128 + cell));
+  level.y = (int)floor(v * level.rows - cell * y + 0.5) - 64 + (mirror_y & (128 + cell));
   return level;
 }
 
-int ${name}_wrap(int i, int size, int wrap)
+int ${name}_wrap(int i, int size, float extent, int wrap)
 {
-  if (wrap == 1) {
-    return i - size * (int)floor((i + 0.5) / size);
+  int read = i;
+  if (wrap == 1 && (i < 0 || i >= size)) {
+    float x = i + 0.5;
+    read = (int)(x - floor(x / extent) * extent);
   }
-  return clamp(i, 0, size - 1);
+  return clamp(read, 0, size - 1);
 }
 
 shader $name(
@@ -73,7 +80,11 @@ $coefficients};
 
   int size[2] = {1, 1};
   gettextureinfo(concat(Levels, "0", Extension), "resolution", size);
-  int last = Count > 0 ? Count - 1 : (int)log2(max(size[0], size[1]) + 0.5);
+  int last = Count - 1;
+  if (Count < 1) {
+    for (last = 0; (1 << last) < max(size[0], size[1]); ++last) {
+    }
+  }
 
   float scale = Scale;
   if (scale <= 0) {
@@ -90,8 +101,8 @@ $coefficients};
   // Farther out nothing changes, and whole numbers stay small.
   float s = clamp(WrapU == 1 ? Vector[0] - floor(Vector[0]) : Vector[0], -128, 129);
   float t = clamp(WrapV == 1 ? Vector[1] - floor(Vector[1]) : Vector[1], -128, 129);
-  float x = s * max(size[0] >> cell_level, 1);
-  float y = t * max(size[1] >> cell_level, 1);
+  float x = s * size[0] / (1 << cell_level);
+  float y = t * size[1] / (1 << cell_level);
   x -= floor(x);
   y -= floor(y);
   int mirror_x = x > 0.5 ? -1 : 0;
@@ -122,8 +133,8 @@ $coefficients};
     ${name}_Level level = levels[offsets[texel] >> 16];
     int at_x = (((offsets[texel] >> shift_x) & 255) ^ mirror_x) + level.x;
     int at_y = (((offsets[texel] >> (8 - shift_x)) & 255) ^ mirror_y) + level.y;
-    int read_x = ${name}_wrap(at_x, level.width, WrapU);
-    int read_y = ${name}_wrap(at_y, level.height, WrapV);
+    int read_x = ${name}_wrap(at_x, level.width, level.columns, WrapU);
+    int read_y = ${name}_wrap(at_y, level.height, level.rows, WrapV);
     if ((WrapU != 2 || read_x == at_x) && (WrapV != 2 || read_y == at_y)) {
       int term = $terms * texel;
 $weight
