@@ -43,7 +43,8 @@ def sample_stochastic(
 
     Of the texels that a table has for a place and a scale, one is picked with a probability
     proportional to the magnitude of its weight, and multiplied by the sum of all magnitudes, with
-    the sign of its weight.
+    the sign of its weight. Negative weights make for noise in proportion to the values: subtract
+    something near their mean from the levels, the same everywhere, and add it to the samples.
 
     Args:
         levels: As for `sample`.

@@ -1,0 +1,132 @@
+"""Measures samples of one texel each: how far their means are from the exact filter.
+
+Usage: scripts/run python3 bench/sampling/one_texel.py [--pixels N] [--markdown FILE]
+
+Each pixel is a mean of samples at its center, under Lanczos 2 of one scale, with stratified random
+numbers. Pictures are base colors of models in ../shared/data/textured, and figure 1.8 as in the
+documentation. Fails where texels of tables are not closer than those of trilinear interpolation: 4
+with 16 samples, 8 with 64.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+from PIL import Image
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
+from resize import drawn
+
+from bench.report import Report
+
+ROOT = Path(__file__).resolve().parents[2]
+Array = NDArray[np.float32]
+
+FILTER = "lanczos2"
+TEXTURES = ROOT.parent / "shared" / "data" / "textured"
+PICTURES = {
+    "spot": "spot/spot_texture.png",
+    "Duck": "Duck/DuckCM.png",
+    "BoomBox": "BoomBox/BoomBox_baseColor.png",
+    "AntiqueCamera": "AntiqueCamera/camera_camera_BaseColor.png",
+    "DamagedHelmet": "DamagedHelmet/Default_albedo.jpg",
+}
+SCALE = 1024 / 89  # As in figure 6.1.
+COUNTS = (1, 4, 16, 64)
+# Of levels less the picture's mean, which is added to the samples.
+ABOUT_MEAN = "8 texels, about the mean"
+# With this many samples they are to be closer than trilinear interpolation.
+BARS = {"4 texels": 16, "8 texels": 64, ABOUT_MEAN: 64}
+TABLES: dict[str, prefilter.SamplingTable | str] = {
+    "8 texels": prefilter.SamplingTable.standard(FILTER, 8),
+    ABOUT_MEAN: prefilter.SamplingTable.standard(FILTER, 8),
+    "4 texels": prefilter.SamplingTable.standard(FILTER, 4),
+    "trilinear": "trilinear",
+    "bilinear": "bilinear",
+}
+
+
+def main() -> None:
+    """Runs everything."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--pixels", type=int, default=20_000)
+    parser.add_argument("--markdown", type=Path)
+    options = parser.parse_args()
+    report = Report()
+    pictures = {"figure 1.8": drawn()} | {
+        name: read(TEXTURES / path) for name, path in PICTURES.items()
+    }
+    rows = []
+    ratios: dict[str, list[float]] = {table: [] for table in BARS}
+    for name, picture in pictures.items():
+        errors = {table: measured(picture, table, options.pixels) for table in TABLES}
+        rows += [(name, table, *map("{:.4f}".format, found)) for table, found in errors.items()]
+        for table, count in BARS.items():
+            at = COUNTS.index(count)
+            ratios[table].append(errors[table][at] / errors["trilinear"][at])
+    head = ("picture", "texels of", *(f"{n} a pixel" for n in COUNTS), "all of them")
+    report.table(f"RMSE to the exact {FILTER}, scale {SCALE:.1f}", head, rows)
+    for table, count in BARS.items():
+        claim = (
+            f"{table}, {count} samples a pixel: {min(ratios[table]):.2f} to "
+            f"{max(ratios[table]):.2f} of the error of trilinear interpolation"
+        )
+        report.verdict(max(ratios[table]) < 1, claim)
+    for table in TABLES:
+        if table != ABOUT_MEAN:
+            report.note(f"{table}: weights have a magnitude of {magnitude(table):.2f} on average")
+    report.finish(options.markdown)
+
+
+def read(path: Path) -> Array:
+    """A scene-linear picture of three channels."""
+    bytes_ = np.asarray(Image.open(path).convert("RGB"))
+    return prefilter.to_linear(bytes_[::-1].astype(np.float32) / 255)
+
+
+def measured(picture: Array, name: str, pixels: int) -> list[float]:
+    """The error for each number of samples, and that of the weighted sum itself."""
+    random = np.random.default_rng(0)
+    if name == ABOUT_MEAN:
+        picture = picture - picture.mean(axis=(0, 1))
+    levels = prefilter.sampling_levels(picture, FILTER)
+    places = random.random((pixels, 2))
+    exact = prefilter.sample_exact(picture, places, SCALE, filter=FILTER)
+    table = TABLES[name]
+    errors = []
+    for count in COUNTS:
+        strata = (np.arange(count) + random.random((pixels, count))) / count
+        found = prefilter.sample_stochastic(
+            levels, table, np.repeat(places, count, axis=0), SCALE, strata.ravel()
+        )
+        mean = found.reshape(pixels, count, -1).mean(axis=1)
+        errors.append(rmse(mean, exact))
+    if table == "bilinear":
+        level = round(np.log2(SCALE))
+        whole = prefilter.sample(levels[level : level + 1], "trilinear", places, 1.0)
+    else:
+        whole = prefilter.sample(levels, table, places, SCALE)
+    return [*errors, rmse(whole, exact)]
+
+
+def magnitude(name: str) -> float:
+    """Of the weights of the texels that are picked: 1 where none of them is negative."""
+    random = np.random.default_rng(1)
+    levels = prefilter.sampling_levels(np.zeros((1024, 1024, 1)), FILTER)
+    places, numbers = random.random((20_000, 2)), random.random(20_000)
+    scales = np.exp2(random.uniform(2, 8, 20_000))
+    picked = prefilter.pick_texels(levels, TABLES[name], places, scales, numbers)
+    return float(np.abs(picked.weights).mean())
+
+
+def rmse(found: Array, exact: Array) -> float:
+    """Over samples and channels."""
+    return float(np.sqrt(np.mean((found - exact) ** 2, dtype=np.float64)))
+
+
+if __name__ == "__main__":
+    main()
