@@ -25,13 +25,13 @@ inline float log2_of_mantissa(float m) {
 void place_between_levels(const double* scales, int count, int levels, int* cell_levels, float* f) {
   const std::int32_t coarsest = levels - 2;
   for (int i = 0; i < count; ++i) {
-    const auto scale = static_cast<float>(scales[i]);
+    const float scale = std::max(static_cast<float>(scales[i]), 1.0F);
     const auto bits = std::bit_cast<std::int32_t>(scale);
     // Powers of 2 count to the interval below them.
     const std::int32_t exponent = ((bits - 1) >> 23) - 127;
     const float mantissa = std::bit_cast<float>(bits - exponent * (1 << 23));
     const float fraction = std::min(log2_of_mantissa(mantissa), 1.0F);
-    const bool magnifies = scale <= 1.0F || coarsest < 0;
+    const bool magnifies = scale == 1.0F || coarsest < 0;
     cell_levels[i] = magnifies ? 0 : std::min(exponent, coarsest) + 1;
     f[i] = magnifies ? 0.0F : exponent > coarsest ? 1.0F : fraction;
   }

@@ -15,12 +15,12 @@ namespace prefilter {
 class TexelPlan;
 
 /// What weigh_texels says of a pyramid, a table and wrap modes, worked out ahead for all places.
-/// Samples are the sums of its texels but
-/// for the rounding of floats, which may also move one across the border of a subdomain.
+/// Samples are the sums of its texels but for the rounding of floats, which may also move one
+/// across the border of a subdomain.
 class PyramidSampler {
  public:
-  /// `table` may be nullptr: trilinear interpolation. The pyramid's texels must outlive
-  /// the sampler. Throws Error for a pyramid or a table that is none.
+  /// `table` may be nullptr: trilinear interpolation. The pyramid's texels must outlive the
+  /// sampler. Throws Error for a pyramid or a table that is none.
   PyramidSampler(const Pyramid& pyramid, const SamplingTable* table, const WrapModes& wrap);
   ~PyramidSampler();
   PyramidSampler(const PyramidSampler&) = delete;
