@@ -98,6 +98,14 @@ def _settings(options: argparse.Namespace) -> ResampleSettings:
         options.usage_error("give both --width and --height")
     if sizes:
         found["size"] = "pixels"
+    if (found.get("method") == "table") != ("table" in found):
+        options.usage_error(
+            "--table: not allowed without --method table"
+            if "table" in found
+            else "--method table: give --table too"
+        )
+    if "max_probes" in found and found.get("filter") != "gaussian":
+        options.usage_error("--max-probes: not allowed without --filter gaussian")
     if options.scale is not None:
         found = {"scale_x": options.scale, "scale_y": options.scale, **found}
     for name in warps:
