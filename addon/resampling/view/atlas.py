@@ -1,7 +1,7 @@
 """The levels of an image side by side in one texture, as Blender cannot upload levels.
 
 Level 0 is at (0, 0). The others follow along its longer side of s texels, level k from
-s - (s >> (k - 1)) on.
+s - (s >> (k - 1)) + k - 1 on: each has half the texels of the one before, rounded up.
 """
 
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from ...bridge.images import FloatArray
 READ_TEXELS = """
 ivec2 size_of(int level)
 {
-  return max(ivec2(size_0.x >> level, size_0.y >> level), ivec2(1));
+  return ivec2((size_0.x - 1) >> level, (size_0.y - 1) >> level) + 1;
 }
 
 vec4 texel_of(int level, ivec2 texel)
@@ -22,7 +22,7 @@ vec4 texel_of(int level, ivec2 texel)
   if (level > 0) {
     bool wide = size_0.x >= size_0.y;
     int side = wide ? size_0.x : size_0.y;
-    int along = side - (side >> (level - 1));
+    int along = side - (side >> (level - 1)) + level - 1;
     origin = wide ? ivec2(along, size_0.y) : ivec2(size_0.x, along);
   }
   return texelFetch(atlas, origin + texel, 0);
@@ -35,18 +35,18 @@ def packed(levels: Sequence[FloatArray]) -> FloatArray:
     """Returns all levels in one array.
 
     Args:
-        levels: (height, width, channels), each with half the sides of the one before, at least 1;
-            sides are powers of two.
+        levels: (height, width, channels), each with half the sides of the one before, rounded up.
     """
     height, width, channels = levels[0].shape
     rest = levels[1].shape[:2] if len(levels) > 1 else (0, 0)
     is_wide = width >= height
-    size = (height + rest[0], width) if is_wide else (height, width + rest[1])
+    longer = max(width, height) + len(levels)
+    size = (height + rest[0], longer) if is_wide else (longer, width + rest[1])
     atlas = np.zeros((*size, channels), np.float32)
     atlas[:height, :width] = levels[0]
     side = max(width, height)
     for number, level in enumerate(levels[1:], start=1):
-        along = side - (side >> (number - 1))
+        along = side - (side >> (number - 1)) + number - 1
         row, column = (height, along) if is_wide else (along, width)
         atlas[row : row + level.shape[0], column : column + level.shape[1]] = level
     return atlas

@@ -1,6 +1,5 @@
 """The levels that editors draw on a plane: computed, and kept."""
 
-import math
 from dataclasses import dataclass
 
 import gpu
@@ -15,7 +14,7 @@ from ...core.jobs import Progress, go_on, share
 from .atlas import packed
 
 LONGEST_SIDE = 4096
-"""Of the finest level that is drawn, in texels; a power of two."""
+"""Of the finest level that is drawn, in texels; larger images are made smaller."""
 
 _DECODED, _RESIZED, _FILTERED = 0.1, 0.3, 0.9  # What the progress is once these steps are done.
 
@@ -27,7 +26,7 @@ class Plane:
     Attributes:
         image_uid: The image's session_uid.
         filter: What the levels were made with.
-        size: The width and height of the finest level: powers of two.
+        size: The width and height of the finest level.
         aspect: The width of the image by its height.
         level_count: How many there are.
         atlas: All of them, see `atlas.packed`; empty once they are a texture.
@@ -66,9 +65,6 @@ register, unregister = _planes.register, _planes.unregister
 def compute(picture: Picture, image_uid: int, filter: str, progress: Progress) -> Plane:
     """Computes the levels of an image that tiles the plane.
 
-    Sides are made powers of two first: only then each level has just half the texels of the one
-    before, which shaders take for granted.
-
     Args:
         picture: The image.
         image_uid: The session_uid of the image.
@@ -85,14 +81,16 @@ def compute(picture: Picture, image_uid: int, filter: str, progress: Progress) -
         linear = associated(linear)
     go_on(progress, _DECODED)
     height, width = linear.shape[:2]
-    size = (_power_of_two(width), _power_of_two(height))
-    linear = prefilter.resize(
-        linear,
-        *size,
-        wrap="repeat",
-        premultiplied=True,
-        progress=share(progress, _DECODED, _RESIZED),
-    )
+    smaller = min(1.0, LONGEST_SIDE / max(width, height))
+    size = (max(1, round(smaller * width)), max(1, round(smaller * height)))
+    if smaller < 1.0:
+        linear = prefilter.resize(
+            linear,
+            *size,
+            wrap="repeat",
+            premultiplied=True,
+            progress=share(progress, _DECODED, _RESIZED),
+        )
     levels = prefilter.sampling_levels(
         linear,
         filter,
@@ -103,7 +101,3 @@ def compute(picture: Picture, image_uid: int, filter: str, progress: Progress) -
     atlas = packed(levels)
     go_on(progress, 1.0)
     return Plane(image_uid, filter, size, width / height, len(levels), atlas, picture.is_data)
-
-
-def _power_of_two(side: int) -> int:
-    return min(2 ** round(math.log2(side)), LONGEST_SIDE)

@@ -28,14 +28,21 @@ _MACROS = """
 #define PREFILTER_LEVELS level_count
 """
 _FRAGMENT = """
+int repeated(int i, int size, float extent)
+{
+  float x = float(i) + 0.5;
+  return clamp(i < 0 || i >= size ? int(x - floor(x / extent) * extent) : i, 0, size - 1);
+}
+
 vec4 bilinear(int level, vec2 uv)
 {
   ivec2 size = size_of(level);
-  vec2 at = fract(uv) * vec2(size) - 0.5;
+  vec2 extent = vec2(size_0) / float(1 << level);
+  vec2 at = fract(uv) * extent - 0.5;
   ivec2 low = ivec2(floor(at));
   vec2 f = at - floor(at);
-  ivec2 high = ivec2(low.x + 1 == size.x ? 0 : low.x + 1, low.y + 1 == size.y ? 0 : low.y + 1);
-  low = ivec2(low.x < 0 ? size.x - 1 : low.x, low.y < 0 ? size.y - 1 : low.y);
+  ivec2 high = ivec2(repeated(low.x + 1, size.x, extent.x), repeated(low.y + 1, size.y, extent.y));
+  low = ivec2(repeated(low.x, size.x, extent.x), repeated(low.y, size.y, extent.y));
   return mix(mix(texel_of(level, low), texel_of(level, ivec2(high.x, low.y)), f.x),
              mix(texel_of(level, ivec2(low.x, high.y)), texel_of(level, high), f.x), f.y);
 }

@@ -35,10 +35,10 @@ def session() -> Iterator[None]:
     bpy.utils.unregister_class(panel)
     panel.bl_options = set()
     bpy.utils.register_class(panel)
-    image = scenes.image("Wide", scenes.noise(32, 64))
+    image = scenes.image("Wide", scenes.noise(24, 43))
     # Blender tells of changes to what the scene uses.
     scenes.textured_quad(image)
-    other = scenes.image("High", scenes.noise(32, 8, alpha=True, seed=2))
+    other = scenes.image("High", scenes.noise(33, 7, alpha=True, seed=2))
     window = bpy.context.window_manager.windows[0]
     area = max(window.screen.areas, key=lambda area: area.width * area.height)
     area.type = "IMAGE_EDITOR"
@@ -72,7 +72,7 @@ def session() -> Iterator[None]:
                 yield from offscreen(kept.find(one), view, texels, f"{name} {index} {texels}")
 
     found["stale before painting"] = kept.find(image).is_stale
-    image.pixels.foreach_set(scenes.noise(32, 64, seed=9).ravel())
+    image.pixels.foreach_set(scenes.noise(24, 43, seed=9).ravel())
     image.update()
     image.update_tag()
     yield
