@@ -40,7 +40,8 @@ struct Squares {
     beside = xi * yi + xj * yj;
   }
 
-  double larger() const { return std::sqrt(mean + std::sqrt(half * half + beside * beside)); }
+  double root() const { return std::sqrt(half * half + beside * beside); }
+  double larger() const { return std::sqrt(mean + root()); }
 };
 
 }  // namespace
@@ -51,9 +52,14 @@ Footprint singular_values(const TextureJacobian& jacobian) {
   const double major = squares.larger();
   // By the determinant: no difference of near equals.
   const double minor = std::min(major, std::abs(squares.determinant) / major);
-  const double angle = 0.5 * std::atan2(squares.beside, squares.half);
-  return {steady(major * squares.largest), steady(minor * squares.largest), std::cos(angle),
-          std::sin(angle)};
+  // Of the two forms of the eigenvector the one that is no difference of near equals.
+  const double root = squares.root();
+  double x = squares.half >= 0.0 ? root + squares.half : squares.beside;
+  double y = squares.half >= 0.0 ? squares.beside : root - squares.half;
+  const double length = std::sqrt(x * x + y * y);
+  x = length > 0.0 ? x / length : 1.0;
+  y = length > 0.0 ? y / length : 0.0;
+  return {steady(major * squares.largest), steady(minor * squares.largest), x, y};
 }
 
 double larger_singular_value(const TextureJacobian& jacobian) {
