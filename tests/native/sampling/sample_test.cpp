@@ -69,8 +69,11 @@ SamplingTable random_table(int texels, int grid, int slices, int degree) {
       std::array<double, kMostTerms> rest{1.0};
       for (int i = 0; i < texels; ++i) {
         const int finer = static_cast<int>(random() % static_cast<unsigned>(levels));
-        section.texels.push_back(
-            {finer, static_cast<int>(random() % 10U) - 4, static_cast<int>(random() % 10U) - 4});
+        // As far from the cell in all levels, so that each of them is the first to reach an edge.
+        const auto offset = [&] {
+          return static_cast<int>(random() % (7U << finer)) - (3 << finer);
+        };
+        section.texels.push_back({finer, offset(), offset()});
         for (int term = 0; term < terms; ++term) {
           const double value = i + 1 == texels ? rest[term] : coefficient(random);
           section.coefficients.push_back(value);
@@ -144,11 +147,16 @@ TEST(Sample, IsTheSumOfWhatItsTexelsWeigh) {
                                             random_table(4, 2, 3, 2), random_table(13, 3, 1, 1)};
   std::vector<const SamplingTable*> all{nullptr};
   for (const SamplingTable& table : tables) all.push_back(&table);
-  const Coordinates coordinates = random_coordinates(300);
-  const std::vector<double> scales = random_scales(300);
+  Coordinates coordinates = random_coordinates(1000);
+  // Half of them where texels begin to lie beyond an edge, also of levels that do not nest.
+  for (std::size_t i = 0; i < coordinates.size(); i += 2) {
+    for (double& one : coordinates[i]) one = (one > 0.5 ? 0.8 : 0.2) + 0.3 * (one - 0.5);
+  }
+  const std::vector<double> scales = random_scales(1000);
   constexpr std::array<Wrap, 3> kWraps{Wrap::kClamp, Wrap::kRepeat, Wrap::kBorder};
   int seed = 0;
-  for (const auto& [width, height] : {std::pair{64, 64}, {37, 53}, {40, 3}, {1, 17}, {1, 1}}) {
+  for (const auto& [width, height] :
+       {std::pair{64, 64}, {37, 53}, {255, 63}, {40, 3}, {1, 17}, {1, 1}}) {
     const Levels levels(width, height, 1 + seed % 5);
     for (const SamplingTable* table : all) {
       const WrapModes wrap{kWraps[seed % 3], kWraps[seed / 3 % 3]};
