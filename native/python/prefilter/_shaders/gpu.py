@@ -140,7 +140,7 @@ struct ${name}_Place {
   ivec2 shifts;   // where x and y of an offset are packed: they change places across the diagonal
   ivec2 mirror;   // all bits where x or y was folded: ~i is -1 - i
   ivec4 level_0;  // of the cell's level and the two finer ones: the texel that an offset of 0 and 0
-  ivec4 level_1;  // is packed for, and the width and height
+  ivec4 level_1;  // is packed for, and the last texel
   ivec4 level_2;
 };
 
@@ -149,7 +149,7 @@ ivec4 ${name}_level(${upper}_PARAMETER vec2 uv, vec2 x, ivec2 mirror, int level,
   int available = max(level - finer, 0);
   int cell = 1 << finer;
   ivec2 corner = ivec2(floor(uv * ${upper}_EXTENT(available) - float(cell) * x + 0.5));
-  return ivec4(corner - 64 + (mirror & (128 + cell)), ${upper}_SIZE(available));
+  return ivec4(corner - 64 + (mirror & (128 + cell)), ${upper}_SIZE(available) - 1);
 }
 
 ${name}_Place ${name}_find(${upper}_PARAMETER vec2 uv, float mip_value, ivec2 wrap)
@@ -189,11 +189,11 @@ float ${name}_weight(${name}_Place place, int texel)
 $weight
 }
 
-int ${name}_wrap(int i, int size, float extent, int wrap)
+int ${name}_wrap(int i, int last, float extent, int wrap)
 {
   float x = float(i) + 0.5;
-  bool repeated = wrap == ${upper}_REPEAT && (i < 0 || i >= size);
-  return clamp(repeated ? int(x - floor(x / extent) * extent) : i, 0, size - 1);
+  bool repeated = wrap == ${upper}_REPEAT && (i < 0 || i > last);
+  return clamp(repeated ? int(x - floor(x / extent) * extent) : i, 0, last);
 }
 
 // x, y and level of a texel, and 0 for `inside` if it lies in a border of zeros, else 1.
