@@ -51,7 +51,6 @@ def cpu_samples(levels, table, queries, wrap="clamp"):
 
 RUN_TABLES = [
     ("lanczos2", 8),
-    ("lanczos2", 4),
     {"texels": 2, "grid": 1, "slices": 1},
     {"texels": 16, "grid": 5, "slices": 3, "degree": 2},
     {"texels": 5, "grid": 3, "slices": 4, "reach": 64},
