@@ -1,14 +1,32 @@
 #include "prefilter/sampling/sample_places.h"
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
+namespace {
+
+/// Whether all values are from `low` up, and finite. The loop has no exit, so that the processor
+/// compares several at a time.
+bool are_finite(const double* values, std::size_t count, double low) {
+  std::int64_t others = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    others |= static_cast<std::int64_t>(!(values[i] >= low));
+    others |= static_cast<std::int64_t>(!(values[i] <= std::numeric_limits<double>::max()));
+  }
+  return others == 0;
+}
+
+}  // namespace
 
 void check_coordinates(std::span<const TexturePlace> coordinates, std::size_t first) {
+  const double* const values = reinterpret_cast<const double*>(coordinates.data());
+  if (are_finite(values, 2 * coordinates.size(), std::numeric_limits<double>::lowest())) return;
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     for (const double coordinate : coordinates[i]) {
       if (std::isfinite(coordinate)) continue;
@@ -19,6 +37,7 @@ void check_coordinates(std::span<const TexturePlace> coordinates, std::size_t fi
 }
 
 void check_scales(std::span<const double> scales, std::size_t first) {
+  if (are_finite(scales.data(), scales.size(), 0.0)) return;
   for (std::size_t i = 0; i < scales.size(); ++i) {
     if (scales[i] >= 0.0 && std::isfinite(scales[i])) continue;
     throw_invalid("scales: found " + to_text(scales[i]) + " at " + std::to_string(first + i) +
