@@ -24,14 +24,16 @@ namespace {
 using SectionArrays =
     std::tuple<Array<int>, Array<double>, Array<double>, Array<double>, Array<double>>;
 
-TableShape to_shape(const std::string& filter, int texels, int grid, int slices, int degree) {
-  return {filter, texels, grid, slices, degree};
+TableShape to_shape(const std::string& filter, int texels, int grid, int slices, int degree,
+                    double ramp_weight) {
+  return {filter, texels, grid, slices, degree, ramp_weight};
 }
 
 SamplingTable bound_build(const std::string& filter, int texels, int grid, int slices, int degree,
-                          bool certify, const py::object& progress, int threads) {
+                          double ramp_weight, bool certify, const py::object& progress,
+                          int threads) {
   BuildTableOptions options;
-  options.shape = to_shape(filter, texels, grid, slices, degree);
+  options.shape = to_shape(filter, texels, grid, slices, degree, ramp_weight);
   options.certify = certify;
   options.progress = to_progress(progress);
   options.threads = threads;
@@ -44,9 +46,9 @@ std::vector<double> values_of(const Array<double>& array) {
 }
 
 SamplingTable bound_make(const std::string& filter, int texels, int grid, int slices, int degree,
-                         const std::array<SectionArrays, 3>& sections) {
+                         double ramp_weight, const std::array<SectionArrays, 3>& sections) {
   SamplingTable table;
-  table.shape = to_shape(filter, texels, grid, slices, degree);
+  table.shape = to_shape(filter, texels, grid, slices, degree, ramp_weight);
   check_shape(table.shape);
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const auto& [offsets, coefficients, errors, trilinear_errors, gaps] = sections[i];
@@ -92,7 +94,7 @@ SectionArrays bound_section(const SamplingTable& table, int levels) {
 void bind_sampling_table(py::module_& m) {
   py::class_<SamplingTable>(m, "SamplingTable")
       .def(py::init(&bound_make), py::arg("filter"), py::arg("texels"), py::arg("grid"),
-           py::arg("slices"), py::arg("degree"), py::arg("sections"))
+           py::arg("slices"), py::arg("degree"), py::arg("ramp_weight"), py::arg("sections"))
       .def_property_readonly("filter",
                              [](const SamplingTable& table) { return table.shape.filter; })
       .def_property_readonly("texels",
@@ -102,6 +104,8 @@ void bind_sampling_table(py::module_& m) {
                              [](const SamplingTable& table) { return table.shape.slices; })
       .def_property_readonly("degree",
                              [](const SamplingTable& table) { return table.shape.degree; })
+      .def_property_readonly("ramp_weight",
+                             [](const SamplingTable& table) { return table.shape.ramp_weight; })
       .def("section", &bound_section, py::arg("levels"))
       .def(
           "error_ratio",
@@ -110,8 +114,8 @@ void bind_sampling_table(py::module_& m) {
       .def("largest_jump", &largest_jump, py::arg("levels"),
            py::call_guard<py::gil_scoped_release>());
   m.def("build_sampling_table", &bound_build, py::arg("filter"), py::arg("texels"), py::arg("grid"),
-        py::arg("slices"), py::arg("degree"), py::arg("certify"), py::arg("progress"),
-        py::arg("threads"));
+        py::arg("slices"), py::arg("degree"), py::arg("ramp_weight"), py::arg("certify"),
+        py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

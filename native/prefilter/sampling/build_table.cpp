@@ -44,7 +44,7 @@ TableSection empty_section(const TableShape& shape, int levels) {
 // Texels that the set has none for stay at the cell's own, with weights of 0.
 void store(const SubdomainSystem& system, const FittedSet& set, const TableShape& shape, int index,
            TableSection* section) {
-  section->errors[index] = std::max(set.error, 0.0);
+  section->errors[index] = std::max(system.filter_error(set), 0.0);
   section->trilinear_errors[index] = system.trilinear_error;
   const std::size_t first = static_cast<std::size_t>(index) * shape.texels;
   const auto polynomials = static_cast<std::size_t>(system.polynomials());

@@ -16,8 +16,8 @@ struct BuildTableOptions {
 };
 
 /// The sets with the least errors that exchanges of texels find from fixed starts, and the weights
-/// that minimize equation 6.4. Throws Error for a shape that is out of range, or where a section
-/// has fewer candidates than texels.
+/// that minimize equation 6.4, with what TableShape::ramp_weight adds to it. Throws Error for a
+/// shape that is out of range, or where a section has fewer candidates than texels.
 SamplingTable build_sampling_table(const BuildTableOptions& options);
 
 /// The integral of equation 6.3 over the domain of a section, of the table's over trilinear

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/text.h"
 #include "prefilter/filters/kernel.h"
 
 namespace prefilter {
@@ -113,6 +114,10 @@ void check_shape(const TableShape& shape) {
   check("subdomains", shape.grid, 1, kMostParts);
   check("subdomains", shape.slices, 1, kMostParts);
   check("degree", shape.degree, 1, 2);
+  if (!(shape.ramp_weight >= 0.0 && shape.ramp_weight <= kMostRampWeight)) {
+    throw_invalid("ramp_weight: found " + to_text(shape.ramp_weight) +
+                  "; a number from 0 to 1000000 is needed");
+  }
 }
 
 void check_table(const SamplingTable& table) {

@@ -17,6 +17,7 @@ namespace prefilter {
 inline constexpr int kFewestTexels = 2;
 inline constexpr int kMostTexels = 16;
 inline constexpr int kMostTerms = 10;
+inline constexpr double kMostRampWeight = 1e6;
 inline constexpr int kMostParts = 16;  // of a cell along an axis, and from level to level
 
 /// A texel relative to a cell.
@@ -35,6 +36,10 @@ struct TableShape {
   int grid = 4;                     // parts of a cell along x, and along y
   int slices = 2;                   // parts from one level to the next
   int degree = 1;                   // of the weights in x, y and f: 1, or 2
+  // How much it counts, when a table is built, that the weighted centre of a sample's texels is
+  // where the sample is: its squared distance in cells, against equation 6.3. Ramps then come out
+  // as they are, and do not step from subdomain to subdomain. 0 to kMostRampWeight.
+  double ramp_weight = 5.0;
 
   /// Of a polynomial: 1, x, y, f, and for degree 2 also xx, yy, ff, xy, xf, yf. Where only one
   /// level is there f has nothing to tell, and stands for xy: what bilinear weights need.
@@ -55,8 +60,9 @@ struct TableSection {
   std::vector<double> coefficients;  // [subdomain][texel][term]; of a term they sum to 1 or to 0
   std::vector<double> errors;        // [subdomain]: equation 6.3, integrated over the subdomain
   std::vector<double> trilinear_errors;  // of trilinear interpolation, likewise
-  std::vector<double> gaps;  // [subdomain]: how much lower the error of another set may still be,
-                             // as a share of it; 0 where proven optimal; empty if not certified
+  std::vector<double> gaps;  // [subdomain]: how much lower what is minimised may still be for
+                             // another set, as a share of it; 0 where proven optimal; empty if not
+                             // certified
 };
 
 /// A section for three, two and one available levels, in this order.

@@ -214,6 +214,59 @@ SubdomainSystem::SubdomainSystem(const Kernel& kernel, const TableShape& shape,
                          along_axis(numbers[i].second, numbers[j].second));
     }
   }
+  // Sums over texels of level 0 are integrals times the number of those in a cell.
+  add_ramps(subdomain, section.levels == 3 ? shape.ramp_weight
+                                           : shape.ramp_weight / (section.levels * section.levels));
+}
+
+void SubdomainSystem::add_ramps(const Subdomain& subdomain, double weight) {
+  ramp_weight_ = weight;
+  const double middle_x = (subdomain.x_low() + subdomain.x_high()) / 2.0;
+  const double middle_y = (subdomain.y_low() + subdomain.y_high()) / 2.0;
+  for (const TexelOffset& texel : texels) {
+    const double width = std::ldexp(1.0, -texel.finer);
+    centres_.push_back({(texel.x + 0.5) * width - middle_x, (texel.y + 0.5) * width - middle_y});
+  }
+  for (const Subdomain::Node& node : subdomain.quadrature(1)) {
+    const Terms terms = terms_at(node.x, node.y, node.f);
+    const double x = node.x - middle_x;
+    const double y = node.y - middle_y;
+    for (int p = 0; p < basis.count; ++p) {
+      double value = 0.0;
+      for (int q = 0; q < kMostTerms; ++q) value += basis.coefficients[p][q] * terms[q];
+      ramps_[p].x += node.weight * value * x;
+      ramps_[p].y += node.weight * value * y;
+    }
+  }
+  const std::size_t count = centres_.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) {
+      products[i * count + j] +=
+          weight * (centres_[i].x * centres_[j].x + centres_[i].y * centres_[j].y);
+    }
+    for (int p = 0; p < basis.count; ++p) {
+      right_sides[i * basis.count + p] +=
+          weight * (centres_[i].x * ramps_[p].x + centres_[i].y * ramps_[p].y);
+    }
+  }
+  // The places are polynomials of the first degree, which the basis spans.
+  for (int p = 0; p < basis.count; ++p) {
+    filter_square += weight * (ramps_[p].x * ramps_[p].x + ramps_[p].y * ramps_[p].y);
+  }
+}
+
+double SubdomainSystem::filter_error(const FittedSet& set) const {
+  double distance = 0.0;
+  for (int p = 0; p < basis.count; ++p) {
+    Point2 missing = ramps_[p];
+    for (std::size_t i = 0; i < set.members.size(); ++i) {
+      const double weight = set.weights[i * basis.count + p];
+      missing.x -= weight * centres_[set.members[i]].x;
+      missing.y -= weight * centres_[set.members[i]].y;
+    }
+    distance += missing.x * missing.x + missing.y * missing.y;
+  }
+  return set.error - ramp_weight_ * distance;
 }
 
 FittedSet fit_set(const SubdomainSystem& system, std::span<const int> members) {

@@ -1,18 +1,32 @@
 // Equation 6.4 for a subdomain: which of its texels, with which weights.
 //
+// What is minimised is that, plus TableShape::ramp_weight times the squared distance between the
+// sample and the weighted centre of its texels, integrated over the subdomain. As weights sum to 1
+// the distance is a weighted sum too, and products and right sides hold both.
+//
 // In polynomials that are orthonormal over the subdomain the weights' equations come apart: one
 // right side for each polynomial, and the same products of texels for all.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <span>
 #include <vector>
 
+#include "prefilter/base/outline.h"
 #include "prefilter/filters/kernel.h"
 #include "prefilter/sampling/sampling_table.h"
 #include "prefilter/sampling/subdomain.h"
 
 namespace prefilter {
+
+/// The best weights of a set of texels, and what is minimised. Infinite, without weights, where
+/// texels of the set make up another one of it.
+struct FittedSet {
+  std::vector<int> members;     // candidates, in rising order
+  std::vector<double> weights;  // [member][polynomial]
+  double error = std::numeric_limits<double>::infinity();
+};
 
 struct SubdomainSystem {
   SubdomainSystem(const Kernel& kernel, const TableShape& shape, const TableSection& section,
@@ -29,6 +43,9 @@ struct SubdomainSystem {
   /// What the weights sum to, in each polynomial: the integral of 1 times it.
   double weight_sum(int polynomial) const { return polynomial == 0 ? unit : 0.0; }
 
+  /// Equation 6.4 alone, for a set that was fitted.
+  double filter_error(const FittedSet& set) const;
+
   OrthonormalBasis basis;
   double unit = 1.0;                // square root of the subdomain's volume
   std::vector<TexelOffset> texels;  // that the filter overlaps somewhere in the subdomain
@@ -36,16 +53,16 @@ struct SubdomainSystem {
   std::vector<double> right_sides;  // [i][p]: with the filter of a sample, times polynomial p,
                                     // integrated over the subdomain
   double filter_square = 0.0;       // the filter's with itself, integrated likewise
-  double trilinear_error = 0.0;
+  double trilinear_error = 0.0;     // by equation 6.4 alone
+
+ private:
+  void add_ramps(const Subdomain& subdomain, double weight);
+
+  double ramp_weight_;
+  std::vector<Point2> centres_;             // of texels, in cells from the subdomain's middle
+  std::array<Point2, kMostTerms> ramps_{};  // x and y of a sample times polynomial p, likewise
 };
 
-/// The best weights of a set of texels, and equation 6.4's value. Infinite, without weights, where
-/// texels of the set make up another one of it.
-struct FittedSet {
-  std::vector<int> members;     // candidates, in rising order
-  std::vector<double> weights;  // [member][polynomial]
-  double error = std::numeric_limits<double>::infinity();
-};
 FittedSet fit_set(const SubdomainSystem& system, std::span<const int> members);
 
 }  // namespace prefilter

@@ -59,6 +59,7 @@ class SamplingTable:
         grid: int,
         slices: int,
         degree: int,
+        ramp_weight: float,
         sections: Sequence[tuple[np.ndarray, ...]],
     ) -> None: ...
     @property
@@ -71,6 +72,8 @@ class SamplingTable:
     def slices(self) -> int: ...
     @property
     def degree(self) -> int: ...
+    @property
+    def ramp_weight(self) -> float: ...
     def section(
         self, levels: int
     ) -> tuple[
@@ -89,6 +92,7 @@ def build_sampling_table(
     grid: int,
     slices: int,
     degree: int,
+    ramp_weight: float,
     certify: bool,
     progress: ProgressCallback | None,
     threads: int,

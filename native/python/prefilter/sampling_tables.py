@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._border.arguments import ProgressCallback, as_int, as_name, as_progress
+from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
 from ._border.arrays import as_threads
 from ._border.output import as_path, as_target, replace_file
 from ._shaders import gpu, osl
@@ -43,8 +43,9 @@ class TableSection(NamedTuple):
             x, y, f, and for degree 2 also xx, yy, ff, xy, xf, yf.
         errors: (subdomains): equation 6.3, integrated over the subdomain.
         trilinear_errors: The same of trilinear interpolation.
-        gaps: (subdomains): how much lower the error of another set may be, as a share of it; 0
-            where the set is proven to be the best. None for tables that are not certified.
+        gaps: (subdomains): how much lower what `build` minimizes may be for another set, as a
+            share of it; 0 where the set is proven to be the best. None for tables that are not
+            certified.
     """
 
     levels: int
@@ -74,6 +75,7 @@ class SamplingTable:
         texels: int = 8,
         subdomains: tuple[int, int, int] = (4, 4, 2),
         degree: int = 1,
+        ramp_weight: float = 5.0,
         certify: bool = False,
         progress: ProgressCallback | None = None,
         threads: int = 0,
@@ -92,6 +94,10 @@ class SamplingTable:
             subdomains: Parts of a cell along x, the same along y, and parts from level to level; 1
                 to 16 each.
             degree: Of the weights, as polynomials of the place and the scale: 1 or 2.
+            ramp_weight: How much it counts that ramps come out as they are, 0 to 10^6: the squared
+                distance, in cells, between a sample and the weighted center of its texels is
+                multiplied by it and added to what is minimized. With 0, that is equation 6.4 alone,
+                and samples of smooth images step where the set of texels changes.
             certify: Whether to prove how far from the best the sets are at most, by branch and
                 bound; `TableSection.gaps` then says so. Takes seconds to minutes.
             progress: Called with the fraction done; may return False to stop.
@@ -109,6 +115,7 @@ class SamplingTable:
                 grid,
                 slices,
                 as_int("degree", degree, "1 or 2 is needed"),
+                as_number("ramp_weight", ramp_weight),
                 bool(certify),
                 as_progress(progress),
                 as_threads(threads),
@@ -157,8 +164,9 @@ class SamplingTable:
         """Writes the table as a JSON file, in place of one that may be there.
 
         The object in it has the members "format" ("prefilter sampling table"), "version" (1),
-        "filter", "texels", "subdomains", "degree", and "sections", a list of objects with the
-        attributes of `TableSection`, for 3, 2 and 1 levels; "gaps" is null without a certificate.
+        "filter", "texels", "subdomains", "degree", "ramp_weight", and "sections", a list of
+        objects with the attributes of `TableSection`, for 3, 2 and 1 levels; "gaps" is null
+        without a certificate.
 
         Raises:
             ValueError: That is no path.
@@ -191,6 +199,11 @@ class SamplingTable:
     def degree(self) -> int:
         """Of the weights, as polynomials of the place and the scale."""
         return self._native.degree
+
+    @property
+    def ramp_weight(self) -> float:
+        """How much it counted, when it was built, that ramps come out as they are."""
+        return self._native.ramp_weight
 
     @property
     def error_ratio(self) -> float:
@@ -278,7 +291,7 @@ class SamplingTable:
         """What tells it from other tables."""
         return (
             f"<SamplingTable {self.filter}, {self.texels} texels, subdomains {self.subdomains}, "
-            f"degree {self.degree}>"
+            f"degree {self.degree}, ramp weight {self.ramp_weight:g}>"
         )
 
 
@@ -320,6 +333,7 @@ def _formatted(table: SamplingTable) -> str:
         "texels": table.texels,
         "subdomains": list(table.subdomains),
         "degree": table.degree,
+        "ramp_weight": table.ramp_weight,
     }
     members = [f"{json.dumps(name)}: {json.dumps(value)}" for name, value in head.items()]
     joined = ",\n".join(sections)
@@ -350,6 +364,7 @@ def _parsed(data: bytes) -> _native.SamplingTable:
         grid,
         slices,
         degree,
+        as_number("ramp_weight", found.get("ramp_weight")),
         tuple(
             _section(section, levels, texels)
             for section, levels in zip(sections, _LEVELS, strict=True)
