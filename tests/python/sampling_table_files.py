@@ -36,6 +36,7 @@ def random_table(path, *, filter="lanczos2", texels=8, grid=4, slices=2, degree=
         "texels": texels,
         "subdomains": [grid, grid, slices],
         "degree": degree,
+        "ramp_weight": 0.0,
         "sections": sections,
     }
     path.write_text(json.dumps(table))

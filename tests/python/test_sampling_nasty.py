@@ -59,6 +59,8 @@ CHANGES = [
     (lambda t: t.update(texels=True), []),
     (lambda t: t.update(degree=2), []),
     (lambda t: t.update(degree=0), ["degree"]),
+    (lambda t: t.update(ramp_weight=-1), ["ramp_weight", "found -1"]),
+    (lambda t: t.pop("ramp_weight"), ["ramp_weight"]),
     (lambda t: t.update(subdomains=[2, 3, 1]), ["subdomains"]),
     (lambda t: t.update(subdomains=[2, 2]), ["subdomains"]),
     (lambda t: t.update(subdomains=[2, 2, 4]), []),
@@ -127,6 +129,8 @@ def test_what_cannot_be_read_or_written(contents, tmp_path):
         ({"subdomains": (4, 2, 1)}, "subdomains"),
         ({"subdomains": 4}, "subdomains"),
         ({"degree": 3}, "degree"),
+        ({"ramp_weight": float("nan")}, "ramp_weight"),
+        ({"ramp_weight": 1e7}, "ramp_weight"),
         ({"threads": -1}, "threads"),
     ],
 )

@@ -62,6 +62,35 @@ def test_magnified_boxes_and_tents_are_bilinear(filter):
     assert table.error_ratios[1] == 0.0
 
 
+def centers_off(table, levels):
+    """How far the weighted center of a sample's texels is from it, in cells, at places within."""
+    grid, _, slices = table.subdomains
+    section = table.section(levels)
+    width = 1.0 / 2.0 ** section.offsets[..., :1]
+    centers = (section.offsets[..., 1:] + 0.5) * width
+    off = []
+    for share in np.random.default_rng(0).random((50, 3)):
+        y, x = sorted(share[:2] / 2)
+        f = share[2] if levels > 1 else x * y
+        i, j, k = int(x * grid), int(y * grid), int(f * slices) if levels > 1 else 0
+        columns = (grid + 1) // 2
+        subdomain = k * columns * (columns + 1) // 2 + i * (i + 1) // 2 + j
+        weights = section.coefficients[subdomain] @ (1.0, x, y, f)
+        off.append(np.hypot(*(weights @ centers[subdomain] - (x, y))))
+    return np.sqrt(np.mean(np.square(off)))
+
+
+@pytest.mark.parametrize("levels", [3, 2, 1])
+@pytest.mark.parametrize("filter", ["gaussian", "lanczos2"])
+def test_ramps_come_out_as_they_are(filter, levels):
+    free, standard, strict = (
+        centers_off(prefilter.SamplingTable.build(filter, texels=6, ramp_weight=weight), levels)
+        for weight in (0.0, 5.0, 1e6)
+    )
+    assert standard < 0.7 * free
+    assert strict < 1e-3
+
+
 def test_results_do_not_depend_on_threads():
     one, two = (prefilter.SamplingTable.build("tent", **SMALL, threads=n) for n in (1, 2))
     assert_same(one, two)

@@ -364,7 +364,7 @@ def _parsed(data: bytes) -> _native.SamplingTable:
         grid,
         slices,
         degree,
-        as_number("ramp_weight", found.get("ramp_weight")),
+        as_number("ramp_weight", _member(found, "ramp_weight", int, float)),
         tuple(
             _section(section, levels, texels)
             for section, levels in zip(sections, _LEVELS, strict=True)
@@ -399,10 +399,11 @@ def _count(found: Any, name: str) -> int:
     return as_int(name, _member(found, name, int), "a small whole number is needed")
 
 
-def _member(found: Any, name: str, kind: type) -> Any:
+def _member(found: Any, name: str, *kinds: type) -> Any:
     if not isinstance(found, dict) or name not in found:
         raise ValueError(f"it has no '{name}'")
     value = found[name]
-    if not isinstance(value, kind):
-        raise ValueError(f"'{name}' is a {type(value).__name__}; a {kind.__name__} is needed")
+    if not isinstance(value, kinds):
+        allowed = " or ".join(kind.__name__ for kind in kinds)
+        raise ValueError(f"'{name}' is a {type(value).__name__}; a {allowed} is needed")
     return value
