@@ -57,8 +57,8 @@ class Commands:
         parser = argparse.ArgumentParser(
             prog=_PROGRAM,
             description=(
-                "Filters images for the surfaces that use them, and resizes them; makes meshes of "
-                "voxels and scans, and images of vector shapes."
+                "Filters images for the surfaces that use them, resizes and warps them; makes "
+                "meshes of voxels and scans, and images of vector shapes."
             ),
         )
         commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
