@@ -23,9 +23,9 @@ namespace {
 // and files are shorter.
 constexpr double kCoefficientSteps = 1e9;
 
-// Of the search for a proof, for each subdomain: seconds for tents, up to minutes for Lanczos
-// filters.
-constexpr std::int64_t kNodesToCertify = 8'000'000;
+// A proof may take so many nodes, times candidates, for each subdomain: about two minutes on two
+// threads.
+constexpr std::int64_t kWorkToCertify = 6'500'000'000;
 constexpr double kShareOfSearch = 0.1;  // of the progress, before proofs
 
 TableSection empty_section(const TableShape& shape, int levels) {
@@ -104,8 +104,8 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
     const auto done = static_cast<double>(i);
     const Progress progress =
         options.progress.part(kShareOfSearch, 1.0).part(done / count, (done + 1.0) / count);
-    const CertifiedSet certified =
-        certify_set(system, sets[i], {kNodesToCertify, progress, options.threads});
+    const CertifiedSet certified = certify_set(
+        system, sets[i], {kWorkToCertify / system.candidates(), progress, options.threads});
     store(system, certified.set, shape, index, &section);
     section.gaps.push_back(certified.gap);
   }

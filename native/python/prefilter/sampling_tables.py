@@ -99,7 +99,8 @@ class SamplingTable:
                 multiplied by it and added to what is minimized. With 0, that is equation 6.4 alone,
                 and samples of smooth images step where the set of texels changes.
             certify: Whether to prove how far from the best the sets are at most, by branch and
-                bound; `TableSection.gaps` then says so. Takes seconds to minutes.
+                bound; `TableSection.gaps` then says so. Takes a second for the tent, minutes for
+                Lanczos 2 with 8 texels, and up to half an hour where there is no proof in the end.
             progress: Called with the fraction done; may return False to stop.
             threads: How many to use; 0 = all processors. Results do not depend on it.
 
