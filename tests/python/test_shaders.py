@@ -252,6 +252,24 @@ def test_compilers_accept_it(table, tmp_path):
     )
 
 
+@pytest.mark.parametrize("wrap", ["CLAMP", "REPEAT", "BORDER"])
+def test_nothing_branches_but_the_loop_over_texels(wrap, tmp_path):
+    if shutil.which("spirv-opt") is None:
+        pytest.skip("there is no spirv-opt")
+    main = f"""Texture2D<float4> image;
+    float4 main(float3 at : TEXCOORD0) : SV_Target {{
+      return prefilter_sample(image, at.xy, at.z, int2(PREFILTER_{wrap}, PREFILTER_CLAMP));
+    }}"""
+    arguments = ["-D", "-V", "-S", "frag", "-e", "main", "-o", "a.spv"]
+    compile_shader(LANCZOS2.hlsl() + main, tmp_path / "a.hlsl", *arguments)
+    for command in (["spirv-opt", "-O", "a.spv", "-o", "b.spv"], ["spirv-dis", "b.spv"]):
+        result = subprocess.run(
+            command, cwd=tmp_path, check=True, stdout=subprocess.PIPE, text=True
+        )
+    assert result.stdout.count("OpBranchConditional") == 1
+    assert "OpSwitch" not in result.stdout
+
+
 @pytest.mark.parametrize("version", ["300 es", "310 es", "430 core", "460 core"])
 def test_other_versions_of_glsl(version, tmp_path):
     for table in (LANCZOS2, random_table(tmp_path / "table.json", degree=2)):

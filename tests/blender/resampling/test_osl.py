@@ -11,6 +11,7 @@ import pytest
 pytestmark = pytest.mark.skipif(not _cycles.with_osl, reason="this Blender has no OSL")
 
 COLUMNS, ROWS = 48, 32
+WIDTH, HEIGHT = 100, 37
 WRAP_MODES = ("clamp", "repeat", "border")
 
 
@@ -18,6 +19,12 @@ def write_levels(levels, folder):
     for level, pixels in enumerate(levels):
         buffer = oiio.ImageBuf(np.ascontiguousarray(pixels[::-1]))
         assert buffer.write(str(folder / f"level.{level}.exr"), "float"), buffer.geterror()
+
+
+def files_of_levels(folder):
+    # Cycles of Blender 5.2 has t = 0 at the bottom.
+    flip = int(bpy.app.version < (5, 2))
+    return {"Levels": str(folder / "level."), "Width": WIDTH, "Height": HEIGHT, "Flip": flip}
 
 
 def add_samples(coordinates, scales):
@@ -95,7 +102,7 @@ def rendered(folder):
 def levels(tmp_path):
     """Levels, also as files in tmp_path."""
     set_up()
-    image = np.random.default_rng(5).random((37, 100, 4), np.float32)
+    image = np.random.default_rng(5).random((HEIGHT, WIDTH, 4), np.float32)
     found = prefilter.sampling_levels(image, "lanczos2", premultiplied=True)
     write_levels(found, tmp_path)
     return found
@@ -109,7 +116,7 @@ def test_cycles_renders_the_samples_of_the_package(levels, texels, wrap, output,
     coordinates = rng.integers(-(2**14), 5 * 2**14, (count, 2)) / 2**16
     scales = np.exp2(rng.uniform(-1.0, len(levels), count)).astype(np.float32)
     samples = add_samples(coordinates, scales)
-    settings = {"Levels": str(tmp_path / "level."), "WrapU": wrap[0], "WrapV": wrap[1]}
+    settings = files_of_levels(tmp_path) | {"WrapU": wrap[0], "WrapV": wrap[1]}
     samples.data.materials.append(script_material(table.osl(), settings, output=output))
 
     modes = (WRAP_MODES[wrap[0]], WRAP_MODES[wrap[1]])
@@ -127,10 +134,10 @@ def test_the_scale_is_that_of_pixels_where_none_is_given(levels, tmp_path):
     # Texels of level 0 a pixel: 3.2 along one axis, 1.1 across it.
     angles = np.radians([20.0, 65.0])
     turn, turn_back = (np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]]) for a in angles)
-    jacobian = turn @ np.diag([3.2, 1.1]) @ turn_back / [[100.0], [37.0]]
+    jacobian = turn @ np.diag([3.2, 1.1]) @ turn_back / [[WIDTH], [HEIGHT]]
     corners = np.array([[0, 0], [COLUMNS, 0], [COLUMNS, ROWS], [0, ROWS]]) @ jacobian.T
     plane = add_plane(corners)
-    settings = {"Levels": str(tmp_path / "level."), "WrapU": 1, "WrapV": 1}
+    settings = files_of_levels(tmp_path) | {"WrapU": 1, "WrapV": 1}
     plane.data.materials.append(script_material(table.osl(), settings, has_scale=False))
 
     x, y = np.meshgrid(np.arange(COLUMNS) + 0.5, np.arange(ROWS) + 0.5)

@@ -13,36 +13,38 @@ _ABOUT = """
 Samples a texture at any scale from $texels texels of its mipmap, by a table for the filter
 "$filter": $about.
 
-Written by Prefilter. Prefilter's license does not extend to this text: use, change and pass it on
-as you like. It comes without any warranty.
+Written by Prefilter. Prefilter's license does not extend to this text: use, change and pass it
+on as you like. It comes without any warranty.
 
-The levels must be those that prefilter.sampling_levels(image, filter="$filter") makes, and the
-sides of the texture powers of two. Of textures with other sides, whose levels graphics cards round
-down, prefilter.mipmaps(image, filter="$filter") makes the levels; they gain less. Colors are
-filtered as the texture's format decodes them, so sRGB formats are filtered in linear light; alpha
-must be premultiplied. No sampler state matters.
+The levels must be those that prefilter.sampling_levels(image, filter="$filter") makes, and
+the sides of the texture powers of two. Graphics cards round the sides of other levels down:
+prefilter.mipmaps(image, filter="$filter", bounds=None) makes these, and they gain less. Colors
+are filtered as the texture's format decodes them, so sRGB formats are filtered in linear light;
+alpha must be premultiplied. No sampler state matters.
 
   vec4 ${name}_sample($texture levels, vec2 uv, float mip_value)
   vec4 ${name}_sample($texture levels, vec2 uv, float mip_value, ivec2 wrap)
-    The filtered color at uv, where (0, 0) and (1, 1) are corners of the image. mip_value is log2 of
-    the width of the filter's unit (a pixel, usually) in texels of level 0; at 0 and below, the
-    texture is magnified. wrap says for u and v what lies outside of the image:
-    ${upper}_CLAMP (its nearest texel, the default), ${upper}_REPEAT or ${upper}_BORDER (zero).
+    The filtered color at uv, where (0, 0) and (1, 1) are corners of the image. mip_value is log2
+    of the width of the filter's unit (a pixel, usually) in texels of level 0; at 0 and below,
+    the texture is magnified. wrap says for u and v what lies outside of the image:
+    ${upper}_CLAMP (its nearest texel, the default), ${upper}_REPEAT, or
+    ${upper}_BORDER (zero).
 
   float ${name}_mip_value($texture levels, vec2 duv_dx, vec2 duv_dy)
     The mip value of a pixel, given how uv changes along it and up it: $derivatives
-    in fragment shaders, ray differentials elsewhere. It goes by the longer axis of its footprint.
+    in fragment shaders, ray differentials elsewhere. It goes by the longer axis of the pixel's
+    footprint.
 
-  ivec3 ${name}_pick($texture levels, vec2 uv, float mip_value, ivec2 wrap, float number,
-                  out float weight)
+  ivec3 ${name}_pick($texture levels, vec2 uv, float mip_value, ivec2 wrap,
+      float number, out float weight)
     One of the $texels texels, for filtering after shading: its x, y and level. What is shaded with
-    it counts `weight` times. number is uniform in [0, 1): the mean over it is the filtered value.
-    The weight is negative for some texels of filters with negative lobes, and 0 in the border.
+    it counts `weight` times. number is uniform in [0, 1); the mean over it is the filtered
+    value. The weight is negative for texels that the filter subtracts, and 0 in the border.
 
-To read texels in another way (from an array, an atlas, a buffer), define these before this text;
-the functions then have no parameter `levels`, and the image may have any sides:
+To read texels in another way (from an array, an atlas, a buffer), define these before this
+text; the functions then have no parameter `levels`, and the image may have any sides:
   ${upper}_FETCH(level, texel)  the color of a texel; an int, and an ivec2 inside the level
-  ${upper}_SIZE(level)          an ivec2: the width and height of a level, as sampling_levels has it
+  ${upper}_SIZE(level)          an ivec2: the sides of a level, as sampling_levels has it
   ${upper}_LEVELS               an int: how many levels there are
 $language_note
 """
@@ -228,7 +230,8 @@ vec4 ${name}_sample(${upper}_PARAMETER vec2 uv, float mip_value, ivec2 wrap)
 
 vec4 ${name}_sample(${upper}_PARAMETER vec2 uv, float mip_value)
 {
-  return ${name}_sample(${upper}_ARGUMENT uv, mip_value, ivec2(${upper}_CLAMP, ${upper}_CLAMP));
+  ivec2 wrap = ivec2(${upper}_CLAMP, ${upper}_CLAMP);
+  return ${name}_sample(${upper}_ARGUMENT uv, mip_value, wrap);
 }
 
 // log2 of the larger singular value of the pixel's Jacobian, in texels of level 0.
