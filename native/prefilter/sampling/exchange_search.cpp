@@ -255,7 +255,8 @@ FittedSet find_set(const SubdomainSystem& system, int texels, const Progress& pr
     }
     while (exchanges.exchange()) {
     }
-    if (exchanges.error() < best_error) {
+    // Of sets that mirror each other the first one is taken, however their errors are rounded.
+    if (exchanges.error() < best_error - kLeastGain * system.filter_square) {
       best_error = exchanges.error();
       best = exchanges.members();
     }
