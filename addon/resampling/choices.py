@@ -285,6 +285,16 @@ class TableSettings:
         high=2,
         metavar="N",
     )
+    ramp_weight: float = number(
+        5.0,
+        "Ramp Weight",
+        "How much it counts that smooth gradients come out as they are, against the error of the "
+        "filter. With 0 samples of gradients step where the set of texels changes",
+        low=0.0,
+        high=1e6,
+        display={"soft_max": 100.0, "precision": 2},
+        metavar="WEIGHT",
+    )
     use_certify: bool = switch(
         False,
         "Certify",
@@ -310,7 +320,9 @@ class TableSettings:
     @property
     def is_standard(self) -> bool:
         """Whether the table comes with the package, if it comes at all."""
-        return (self.grid, self.slices, self.degree, self.use_certify) == (4, 2, 1, False)
+        standard = TableSettings()
+        names = ("grid", "slices", "degree", "ramp_weight", "use_certify")
+        return all(getattr(self, name) == getattr(standard, name) for name in names)
 
 
 @dataclass(frozen=True)

@@ -102,6 +102,7 @@ class TableProperties:
         parts.prop(self, "grid")
         parts.prop(self, "slices")
         column.prop(self, "degree")
+        column.prop(self, "ramp_weight")
         column.prop(self, "use_certify")
         layout.prop(self, "language")
         layout.prop(self, "filepath")

@@ -117,6 +117,7 @@ class TableMaking:
             texels=settings.texels,
             subdomains=(settings.grid, settings.grid, settings.slices),
             degree=settings.degree,
+            ramp_weight=settings.ramp_weight,
             certify=settings.use_certify,
             progress=progress,
             threads=settings.threads,

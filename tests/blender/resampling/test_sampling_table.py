@@ -28,9 +28,11 @@ def test_texts_are_written_over_but_not_those_of_others():
 def test_built_with_the_settings_and_saved(tmp_path):
     path = tmp_path / "own.json"
     options = {"filter": "bspline2", "texels": 3, "grid": 2, "slices": 1, "degree": 2}
-    make(**options, language="json", filepath=str(path))
+    make(**options, ramp_weight=0.5, language="json", filepath=str(path))
     found = prefilter.SamplingTable.load(path)
-    expected = prefilter.SamplingTable.build("bspline2", texels=3, subdomains=(2, 2, 1), degree=2)
+    expected = prefilter.SamplingTable.build(
+        "bspline2", texels=3, subdomains=(2, 2, 1), degree=2, ramp_weight=0.5
+    )
     for levels in (3, 2, 1):
         for one, other in zip(found.section(levels), expected.section(levels), strict=True):
             np.testing.assert_array_equal(one, other)
