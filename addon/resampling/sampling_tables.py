@@ -165,4 +165,6 @@ def _write_text(name: str, source: str) -> bpy.types.Text:
     found = next(ours, None) or bpy.data.texts.new(name)
     found[_TEXT_KEY] = name
     found.from_string(source)
+    # Else editors scroll to the end.
+    found.cursor_set(0)
     return found

@@ -22,6 +22,7 @@ def test_texts_are_written_over_but_not_those_of_others():
     for _ in range(2):
         make(filter="box", texels=4)
     assert bpy.data.texts["box-4.glsl"].as_string() == "mine"
+    assert bpy.data.texts["box-4.glsl.001"].current_line_index == 0
     assert sorted(text.name for text in bpy.data.texts) == ["box-4.glsl", "box-4.glsl.001"]
 
 
