@@ -202,10 +202,16 @@ def trilinear_error(filter, part, panels=1, count=4):
 
 
 class System:
-    """Equation 6.4 with all coefficients of all of these texels unknown."""
+    """Equation 6.4 with all coefficients of all of these texels unknown.
 
-    def __init__(self, filter, degree, part, offsets, panels=1, count=4):
+    With a ramp weight, the squared distance in cells between a place and the weighted center of its
+    texels counts that much too; of sums over texels of level 0, as much as of integrals.
+    """
+
+    def __init__(self, filter, degree, part, offsets, panels=1, count=4, ramp_weight=0.0):
         """Integrates all products by brute force."""
+        ramp_weight /= {3: 1, 2: 4, 1: 1}[part.levels]
+        centers = np.array([((i + 0.5) / 2**d, (j + 0.5) / 2**d) for d, i, j in offsets])
         size, powers = len(offsets), 10 if degree == 2 else 4
         self.moments = np.zeros((powers, powers))
         self.right = np.zeros((size, powers))
@@ -219,11 +225,14 @@ class System:
             )
             found = terms(degree, x, y, f)
             inner = (texels_x @ (along_x * sample_x)) * (texels_y @ (along_y * sample_y))
+            inner = inner + ramp_weight * (centers @ (x, y))
             self.right += weight * inner[:, None] * found
             self.moments += weight * found[:, None] * found
             own = (along_x @ sample_x**2) * (along_y @ sample_y**2)
+            own += ramp_weight * (x**2 + y**2)
             self.square += weight * own
         self.products = ((texels_x * along_x) @ texels_x.T) * ((texels_y * along_y) @ texels_y.T)
+        self.products += ramp_weight * (centers @ centers.T)
 
     def solve(self, members):
         """The coefficients (member, term) with the least error, and that error."""
@@ -242,6 +251,12 @@ class System:
         found = np.linalg.lstsq(matrix, np.concatenate([right, sums]), rcond=1e-13)[0][:size]
         error = self.square - 2 * found @ right + found @ matrix[:size, :size] @ found
         return found.reshape(count, powers), error
+
+    def value(self, coefficients):
+        """What is minimized, of coefficients (texel, term)."""
+        found = coefficients.ravel()
+        squares = found @ np.kron(self.products, self.moments) @ found
+        return self.square - 2 * found @ self.right.ravel() + squares
 
     def best_set(self, count):
         """The set of so many texels with the least error, of all there are, and that error."""

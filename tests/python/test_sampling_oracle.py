@@ -177,3 +177,40 @@ def test_standard_tables_are_within_the_errors_that_they_state(filter):
             assert section.errors[index] == pytest.approx(
                 expected, rel=TOLERANCES[levels], abs=NO_ERROR
             )
+
+
+@pytest.mark.parametrize("levels", LEVELS)
+@pytest.mark.parametrize("filter", ["tent", "lanczos2"])
+def test_weights_that_heed_ramps_are_the_best_for_their_texels(filter, levels):
+    table = prefilter.SamplingTable.build(filter, texels=5, subdomains=(2, 2, 1), ramp_weight=3.0)
+    section = table.section(levels)
+    (part,) = parts_of(table, levels)
+    system = oracle.System(
+        filter, 1, part, section.offsets[0].tolist(), *rule(filter, levels), ramp_weight=3.0
+    )
+    least = system.solve(range(5))[1]
+    found = system.value(section.coefficients[0])
+    assert found == pytest.approx(least, rel=1e-4, abs=NO_ERROR)
+    # Those that do not heed them are far from that.
+    free = prefilter.SamplingTable.build(filter, texels=5, subdomains=(2, 2, 1), ramp_weight=0.0)
+    offsets = free.section(levels).offsets[0].tolist()
+    system = oracle.System(filter, 1, part, offsets, *rule(filter, levels), ramp_weight=3.0)
+    if found > 1e-6:
+        assert system.value(free.section(levels).coefficients[0]) > 1.01 * least
+
+
+@pytest.mark.parametrize(("levels", "texels"), [(3, 2), (1, 3)])
+def test_the_best_of_all_sets_that_heed_ramps_is_found(levels, texels):
+    table = prefilter.SamplingTable.build(
+        "tent", texels=texels, subdomains=(1, 1, 1), ramp_weight=3.0
+    )
+    (part,) = parts_of(table, levels)
+    system = oracle.System(
+        "tent", 1, part, oracle.candidates("tent", part), *rule("tent", levels), ramp_weight=3.0
+    )
+    least = system.best_set(texels)[1]
+    chosen = [tuple(offset) for offset in table.section(levels).offsets[0].tolist()]
+    again = oracle.System("tent", 1, part, chosen, *rule("tent", levels), ramp_weight=3.0).solve(
+        range(texels)
+    )[1]
+    assert again == pytest.approx(least, rel=1e-4, abs=NO_ERROR)
