@@ -40,7 +40,8 @@ PROVEN = [
     *PROVEN_SOON,
     *((name, 4, 5.0) for name in FILTERS if name != "tent"),
     *((name, 6, 5.0) for name in ("box", "tent", "gaussian", "mitchell", "lanczos2")),
-    *((name, 8, 5.0) for name in ("box", "gaussian", "lanczos2")),
+    ("box", 8, 5.0),
+    *((name, 8, 0.0) for name in ("gaussian", "lanczos2")),
 ]
 PLACES = 200_000
 
