@@ -12,10 +12,10 @@
 #include "prefilter/base/outline.h"
 #include "prefilter/raster/paint.h"
 #include "prefilter/reconstruct/reconstruct.h"
-#include "prefilter/sampling/sampling_table.h"
 #include "prefilter/scan/point_source.h"
 #include "prefilter/spatial/nearest.h"
 #include "prefilter/surface/surface.h"
+#include "prefilter/tables/sampling_table.h"
 #include "prefilter/voxel/octree.h"
 
 namespace prefilter::python {

@@ -8,7 +8,7 @@
 #include "prefilter/base/wrap.h"
 #include "prefilter/filters/kernel.h"
 #include "prefilter/sampling/sample_places.h"
-#include "prefilter/sampling/sampling_table.h"
+#include "prefilter/tables/sampling_table.h"
 
 namespace prefilter {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "prefilter/base/progress.h"
-#include "prefilter/sampling/subdomain_system.h"
+#include "prefilter/tables/subdomain_system.h"
 
 namespace prefilter {
 

@@ -1,4 +1,4 @@
-#include "prefilter/sampling/sampling_table.h"
+#include "prefilter/tables/sampling_table.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "prefilter/base/progress.h"
-#include "prefilter/sampling/subdomain_system.h"
+#include "prefilter/tables/subdomain_system.h"
 
 namespace prefilter {
 

@@ -1,4 +1,4 @@
-#include "prefilter/sampling/jumps.h"
+#include "prefilter/tables/jumps.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "prefilter/filters/kernel.h"
-#include "prefilter/sampling/subdomain.h"
+#include "prefilter/tables/subdomain.h"
 
 namespace prefilter {
 namespace {

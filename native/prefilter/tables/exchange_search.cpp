@@ -1,4 +1,4 @@
-#include "prefilter/sampling/exchange_search.h"
+#include "prefilter/tables/exchange_search.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "prefilter/sampling/bordered_rows.h"
+#include "prefilter/tables/bordered_rows.h"
 
 namespace prefilter {
 namespace {

@@ -5,7 +5,7 @@
 // the weights' sum. Without the texels X the error is higher by c_X A_XX^-1 c_X. So a bound takes
 // the elimination of few texels, however many candidates there are. Of those that may still be in
 // or out, the one that raises the bound the most if it is out is next: with it in, and with it out.
-#include "prefilter/sampling/certify.h"
+#include "prefilter/tables/certify.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "prefilter/sampling/subdomain.h"
+#include "prefilter/tables/subdomain.h"
 
 #include <algorithm>
 #include <cmath>

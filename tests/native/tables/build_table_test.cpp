@@ -1,4 +1,4 @@
-#include "prefilter/sampling/build_table.h"
+#include "prefilter/tables/build_table.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/filters/kernel.h"
-#include "prefilter/sampling/exchange_search.h"
-#include "prefilter/sampling/filter_products.h"
-#include "prefilter/sampling/subdomain_system.h"
+#include "prefilter/tables/exchange_search.h"
+#include "prefilter/tables/filter_products.h"
+#include "prefilter/tables/subdomain_system.h"
 
 namespace prefilter {
 namespace {

@@ -1,4 +1,4 @@
-#include "prefilter/sampling/filter_products.h"
+#include "prefilter/tables/filter_products.h"
 
 #include <algorithm>
 #include <cmath>

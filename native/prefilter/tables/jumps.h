@@ -1,7 +1,7 @@
 // Steps of samples where they pass from one subdomain of a table to another.
 #pragma once
 
-#include "prefilter/sampling/sampling_table.h"
+#include "prefilter/tables/sampling_table.h"
 
 namespace prefilter {
 

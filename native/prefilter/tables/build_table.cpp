@@ -1,4 +1,4 @@
-#include "prefilter/sampling/build_table.h"
+#include "prefilter/tables/build_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,9 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/filters/kernel.h"
-#include "prefilter/sampling/certify.h"
-#include "prefilter/sampling/exchange_search.h"
-#include "prefilter/sampling/subdomain_system.h"
+#include "prefilter/tables/certify.h"
+#include "prefilter/tables/exchange_search.h"
+#include "prefilter/tables/subdomain_system.h"
 
 namespace prefilter {
 namespace {

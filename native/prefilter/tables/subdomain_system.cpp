@@ -1,4 +1,4 @@
-#include "prefilter/sampling/subdomain_system.h"
+#include "prefilter/tables/subdomain_system.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <map>
 #include <utility>
 
-#include "prefilter/sampling/bordered_rows.h"
-#include "prefilter/sampling/filter_products.h"
+#include "prefilter/tables/bordered_rows.h"
+#include "prefilter/tables/filter_products.h"
 
 namespace prefilter {
 namespace {

@@ -1,4 +1,4 @@
-#include "prefilter/sampling/certify.h"
+#include "prefilter/tables/certify.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/filters/kernel.h"
-#include "prefilter/sampling/exchange_search.h"
+#include "prefilter/tables/exchange_search.h"
 
 namespace prefilter {
 namespace {

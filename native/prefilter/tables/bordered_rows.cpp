@@ -1,9 +1,9 @@
-#include "prefilter/sampling/bordered_rows.h"
+#include "prefilter/tables/bordered_rows.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "prefilter/sampling/subdomain_system.h"
+#include "prefilter/tables/subdomain_system.h"
 
 namespace prefilter {
 

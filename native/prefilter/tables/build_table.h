@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "prefilter/base/progress.h"
-#include "prefilter/sampling/sampling_table.h"
+#include "prefilter/tables/sampling_table.h"
 
 namespace prefilter {
 

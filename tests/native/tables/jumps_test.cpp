@@ -1,4 +1,4 @@
-#include "prefilter/sampling/jumps.h"
+#include "prefilter/tables/jumps.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <vector>
 
-#include "prefilter/sampling/sampling_table.h"
+#include "prefilter/tables/sampling_table.h"
 
 namespace prefilter {
 

@@ -15,8 +15,8 @@
 
 #include "prefilter/base/outline.h"
 #include "prefilter/filters/kernel.h"
-#include "prefilter/sampling/sampling_table.h"
-#include "prefilter/sampling/subdomain.h"
+#include "prefilter/tables/sampling_table.h"
+#include "prefilter/tables/subdomain.h"
 
 namespace prefilter {
 
