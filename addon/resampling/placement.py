@@ -55,7 +55,7 @@ def placement(settings: ResampleSettings, width: int, height: int) -> Placement:
     if settings.warp == "affine":
         center = (new_width / 2 + settings.offset_x, new_height / 2 + settings.offset_y)
         forward = moved(*center) @ forward
-    return Placement(np.linalg.inv(forward), new_width, new_height)
+    return Placement(_inverse(forward), new_width, new_height)
 
 
 def moved(x: float, y: float) -> Matrix:
@@ -160,13 +160,17 @@ def _from_unit_square(corners: ArrayLike) -> Matrix:
     return np.vstack([np.stack(columns, axis=1), [g, h, 1.0]])
 
 
+def _inverse(transform: Matrix) -> Matrix:
+    return np.asarray(np.linalg.inv(transform), np.float64)
+
+
 def _fitted(forward: Matrix, width: int, height: int) -> Placement:
     """Returns a result that is just as large as needed, with the image in its middle."""
     corners = applied(forward, _rectangle(width, height))
     low, high = corners.min(axis=0), corners.max(axis=0)
     sizes = [_whole(float(extent)) for extent in high - low]
     shift = (np.array(sizes) - (low + high)) / 2
-    return Placement(np.linalg.inv(moved(*shift) @ forward), *sizes)
+    return Placement(_inverse(moved(*shift) @ forward), *sizes)
 
 
 def _rectified(settings: ResampleSettings, width: int, height: int) -> Placement:
