@@ -10,7 +10,7 @@ LIBRARY = Path(__file__).resolve().parents[2] / "native/prefilter"
 FLOORS = (
     {"base"},
     {"color", "filters", "moments", "outline", "solve", "spatial", "surface"},
-    {"scan", "tables", "texels", "wavelet"},
+    {"remesh", "scan", "tables", "texels", "wavelet"},
     {"contour", "mipmap", "raster", "resize", "sampling", "voxel"},
     {"reconstruct"},
 )

@@ -8,12 +8,12 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/contour/clean_up.h"
 #include "prefilter/contour/dual_cells.h"
 #include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/marching_table.h"
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/surface_vertices.h"
+#include "prefilter/remesh/clean_up.h"
 
 namespace prefilter {
 namespace {

@@ -1,6 +1,6 @@
 // In rounds: the shortest edges first, and in each round none whose surroundings have changed in
 // it, so that the neighbours of all vertices are found once a round.
-#include "prefilter/contour/clean_up.h"
+#include "prefilter/remesh/clean_up.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "prefilter/contour/clean_up.h"
+#include "prefilter/remesh/clean_up.h"
 
 #include <gtest/gtest.h>
 
