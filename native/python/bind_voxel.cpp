@@ -14,7 +14,6 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
-#include "prefilter/voxel/close_holes.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/octree.h"
 #include "prefilter/voxel/queries.h"
@@ -47,27 +46,6 @@ Octree bound_voxelize(const Array<double>& positions, const Array<std::int64_t>&
   const InputMesh mesh = mesh_of(positions, triangles);
   const py::gil_scoped_release unlocked;
   return voxelize(mesh, options);
-}
-
-// The mesh with its caps, and the numbers of open edges and of holes.
-std::tuple<Array<double>, Array<std::int64_t>, std::size_t, std::size_t> bound_close_holes(
-    const Array<double>& positions, const Array<std::int64_t>& triangles,
-    const py::object& callback) {
-  const Progress progress = to_progress(callback);
-  Caps caps;
-  {
-    const py::gil_scoped_release unlocked;
-    caps = close_holes(mesh_of(positions, triangles), progress, 0);
-  }
-  const auto joined = [](const auto& own, const auto& added) {
-    auto result = std::decay_t<decltype(own)>(
-        {own.shape(0) + static_cast<py::ssize_t>(added.size()), py::ssize_t{3}});
-    auto* const end = std::copy_n(own.data(), own.size(), result.mutable_data());
-    if (!added.empty()) std::memcpy(end, added.data(), added.size() * sizeof(added[0]));
-    return result;
-  };
-  return {joined(positions, caps.positions), joined(triangles, caps.triangles), caps.open_edges,
-          caps.holes};
 }
 
 Octree bound_combine(const Octree& a, const Octree& b, const std::string& name,
@@ -182,8 +160,6 @@ void bind_voxel(py::module_& m) {
         return Corners{cube.low, cube.high};
       },
       py::arg("box"), py::arg("depth"));
-  m.def("close_holes", &bound_close_holes, py::arg("positions"), py::arg("triangles"),
-        py::arg("progress"));
   m.def("make_octree", &bound_make_octree, py::arg("levels"), py::arg("root"), py::arg("bounds"),
         py::arg("depth"));
 }

@@ -24,6 +24,7 @@ void bind_resize(py::module_& m);
 void bind_sampling(py::module_& m);
 void bind_sampling_table(py::module_& m);
 void bind_scan(py::module_& m);
+void bind_solid(py::module_& m);
 void bind_spatial(py::module_& m);
 void bind_surface(py::module_& m);
 void bind_voxel(py::module_& m);
@@ -120,6 +121,7 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_cutout(m);
   prefilter::python::bind_normals(m);
   prefilter::python::bind_scan(m);
+  prefilter::python::bind_solid(m);
   prefilter::python::bind_spatial(m);
   prefilter::python::bind_surface(m);
   prefilter::python::bind_mipmap(m);

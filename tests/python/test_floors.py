@@ -12,7 +12,7 @@ FLOORS = (
     {"color", "filters", "moments", "outline", "solve", "spatial", "surface"},
     {"remesh", "scan", "tables", "texels", "wavelet"},
     {"contour", "mipmap", "raster", "resize", "sampling", "voxel"},
-    {"reconstruct"},
+    {"reconstruct", "solid"},
 )
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 _INCLUDE = re.compile(r'^\s*#\s*include\s+"prefilter/(\w+)/', re.MULTILINE)

@@ -25,13 +25,14 @@ from .sampling import sample
 from .sampling_tables import SamplingTable, TableSection
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .shapes import RASTER_FILTERS, Shape, rasterize
+from .solid import ClosedMesh, close_holes
 from .stochastic_sampling import PickedTexels, pick_texels, sample_stochastic
 from .surface import Surface
 from .svg import SvgDrawing, read_svg
 from .texture_use import fill_transparent, fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
 from .version import VERSION
-from .voxel import MAX_DEPTH, ClosedMesh, Octree, close_holes, cube_around, voxelize
+from .voxel import MAX_DEPTH, Octree, cube_around, voxelize
 
 __version__ = VERSION
 

@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -274,55 +273,6 @@ def cube_around(bounds: Box, *, depth: int = 8) -> tuple[np.ndarray, np.ndarray]
     """
     low, high = _native.cube_around(_as_box("bounds", bounds), _as_depth(depth, 1))
     return np.array(low), np.array(high)
-
-
-@dataclass(frozen=True)
-class ClosedMesh:
-    """A mesh and the caps of its holes.
-
-    Attributes:
-        positions: (vertices, 3) float64: the mesh's own, and those of the caps.
-        triangles: (triangles, 3) int64: the mesh's own first.
-        open_edges: Unbalanced edges of the mesh: traversed more often in one direction.
-        holes: Loops of such edges.
-    """
-
-    positions: npt.NDArray[np.float64]
-    triangles: npt.NDArray[np.int64]
-    open_edges: int
-    holes: int
-
-
-def close_holes(
-    positions: npt.ArrayLike,
-    triangles: npt.ArrayLike,
-    *,
-    progress: ProgressCallback | None = None,
-) -> ClosedMesh:
-    """The mesh with a fan of triangles over each of its holes, for `voxelize`.
-
-    `voxelize` takes open meshes, and what a hole does stays close to it; but there, the surface
-    ends in steps. With caps, every edge is run through as often one way as the other, so winding
-    numbers are whole, and a hole is closed by a cone to the middle of its border. Vertices at one
-    place count as one. Faces that are turned against their neighbours are made up for, too.
-
-    Args:
-        positions: (vertices, 3), in any unit of length.
-        triangles: (triangles, 3) integer indices of vertices, counter-clockwise from outside.
-        progress: Called with the fraction done; returning False stops the work.
-
-    Raises:
-        ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, or a
-            value is not finite.
-        Cancelled: `progress` returned False.
-    """
-    return ClosedMesh(
-        *_native.close_holes(
-            as_floats("positions", positions, ("vertices", 3), np.float64),
-            as_indices("triangles", triangles, ("triangles", 3)),
-            as_progress(progress),
-        )
-    )
 
 
 def _as_depth(depth: int, lowest: int) -> int:

@@ -7,7 +7,7 @@
 
 #include "prefilter/contour/tree_contour.h"
 #include "prefilter/spatial/nearest.h"
-#include "prefilter/voxel/close_holes.h"
+#include "prefilter/solid/close_holes.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/voxelize.h"
 #include "wavelet/meshes.h"

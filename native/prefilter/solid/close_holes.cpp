@@ -1,4 +1,4 @@
-#include "prefilter/voxel/close_holes.h"
+#include "prefilter/solid/close_holes.h"
 
 #include <algorithm>
 #include <cmath>
