@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,8 @@ Interpolant interpolant_of(const std::string& name) {
   if (name == "occupancy") return Interpolant::kOccupancy;
   if (name == "plane") return Interpolant::kPlane;
   if (name == "linear") return Interpolant::kLinear;
-  throw_invalid("interpolant: '" + name + "' is not one of occupancy, plane, linear");
+  if (name == "sharp") return Interpolant::kSharp;
+  throw_invalid("interpolant: '" + name + "' is not one of occupancy, plane, linear, sharp");
 }
 
 ContourOptions contour_options(const std::string& interpolant, float isovalue, bool clean_up,
@@ -46,11 +48,19 @@ MeshArrays to_arrays(TriangleMesh mesh) {
           to_array<std::int32_t>(std::move(mesh.triangles), {triangles, 3})};
 }
 
+// A mesh, and the groups of its triangles, of which there may be none.
+using SourceArrays = std::tuple<Array<double>, Array<std::int64_t>, Array<std::int64_t>>;
+
 MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpolant,
-                                float isovalue, bool clean_up, const py::object& progress,
-                                int threads) {
-  const ContourOptions options =
-      contour_options(interpolant, isovalue, clean_up, progress, threads);
+                                float isovalue, const std::vector<SourceArrays>& source_arrays,
+                                bool clean_up, const py::object& progress, int threads) {
+  ContourOptions options = contour_options(interpolant, isovalue, clean_up, progress, threads);
+  std::vector<SourceMesh> sources;
+  for (const auto& [positions, triangles, groups] : source_arrays) {
+    sources.push_back(
+        {mesh_of(positions, triangles), {groups.data(), static_cast<std::size_t>(groups.size())}});
+  }
+  options.sources = sources;
   TriangleMesh mesh;
   {
     const py::gil_scoped_release unlocked;
@@ -114,7 +124,8 @@ void bind_contour(py::module_& m) {
   m.def("contour_outlines", &bound_contour_outlines, py::arg("grid"), py::arg("interpolant"),
         py::arg("isovalue"), py::arg("spacing"), py::arg("origin"), py::arg("progress"));
   m.def("contour_octree", &bound_contour_octree, py::arg("octree"), py::arg("interpolant"),
-        py::arg("isovalue"), py::arg("clean_up"), py::arg("progress"), py::arg("threads"));
+        py::arg("isovalue"), py::arg("sources"), py::arg("clean_up"), py::arg("progress"),
+        py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -876,7 +876,7 @@ QUERY_ROWS = [
     ("box_occupancy", {"low": (0, 0, 0), "high": (0, 1, 1)}, ["box: ", "along x"]),
     ("box_occupancy", {"low": (0, 0), "high": (1, 1)}, ["box: shape (2, 2)", "(2, 3)"]),
     ("save", {"path": 3}, ["path: 3"]),
-    ("contour", {"interpolant": "cubic"}, ["interpolant: 'cubic'", "occupancy, plane, linear"]),
+    ("contour", {"interpolant": "cubic"}, ["interpolant: 'cubic'", "occupancy, plane, linear, sharp"]),
     ("contour", {"isovalue": 0}, ["isovalue: 0", "above 0 and up to 1"]),
 ]
 NEAREST_ROWS = [
@@ -911,7 +911,7 @@ CONTOUR_ROWS = [
         ({"grid": np.zeros((0, 2, 2))}, ["grid: 0 cells along x", "1 to 4096 are needed"]),
         ({"grid": np.full((2, 2, 2), np.nan)}, ["grid: holds nan", "finite"]),
         ({"grid": np.full((2, 2), np.inf)}, ["grid: holds inf", "finite"]),
-        ({"interpolant": "cubic"}, ["interpolant: 'cubic'", "occupancy, plane, linear"]),
+        ({"interpolant": "cubic"}, ["interpolant: 'cubic'", "occupancy, plane, linear, sharp"]),
         ({"interpolant": 1}, ["interpolant: 1", "a name is needed"]),
         ({"isovalue": np.nan}, ["isovalue: nan", "a finite number"]),
         ({"isovalue": "half"}, ["isovalue: 'half'", "a number is needed"]),

@@ -25,6 +25,9 @@ inline Vector3 operator+(const Vector3& a, const Vector3& b) {
 inline Vector3 operator-(const Vector3& a, const Vector3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
+inline Vector3 operator*(double factor, const Vector3& a) {
+  return {factor * a[0], factor * a[1], factor * a[2]};
+}
 inline double dot(const Vector3& a, const Vector3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
@@ -53,6 +56,13 @@ struct Box {
       low[a] = std::min(low[a], other.low[a]);
       high[a] = std::max(high[a], other.high[a]);
     }
+  }
+  /// Whether the boxes have a point in common.
+  bool overlaps(const Box& other) const {
+    for (int a = 0; a < 3; ++a) {
+      if (low[a] > other.high[a] || high[a] < other.low[a]) return false;
+    }
+    return true;
   }
   double squared_distance(const Vector3& point) const {
     double sum = 0.0;

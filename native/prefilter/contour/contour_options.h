@@ -1,6 +1,10 @@
 // What a contour is made by.
 #pragma once
 
+#include <cstdint>
+#include <span>
+
+#include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
 
 namespace prefilter {
@@ -9,13 +13,23 @@ enum class Interpolant {
   kOccupancy,  // a line that leaves each of two cells its share: chapter 5
   kPlane,      // the surface that preserves neighbouring cells
   kLinear,     // samples of a smooth function: marching cubes
+  kSharp,      // kPlane, with the edges and corners of the shape
+};
+
+/// A mesh that a shape was made of.
+struct SourceMesh {
+  InputMesh mesh;
+  // Of each triangle; those of different groups are kept apart. None: all are of one.
+  std::span<const std::int64_t> groups;
 };
 
 struct ContourOptions {
   Interpolant interpolant = Interpolant::kOccupancy;
   float isovalue = 0.5F;  // samples of at least this are inside
   bool clean_up = false;  // collapse edges that make slivers
-  int threads = 0;        // 0: all processors
+  // What kSharp takes the edges and corners from.
+  std::span<const SourceMesh> sources;
+  int threads = 0;  // 0: all processors
   Progress progress;
 };
 

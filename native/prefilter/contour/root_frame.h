@@ -30,6 +30,12 @@ class RootFrame {
     return position(axis, (face & 1) != 0 ? sample + kept : sample - kept, depth);
   }
 
+  /// The side of a cell of a depth along an axis.
+  double cell(int axis, int depth) const { return cell_[axis][depth]; }
+
+  /// A point of the space that the root is in.
+  Vector3 from_space(const Vector3& point) const { return (1.0 / unit_) * (point - origin_); }
+
   /// Moves the vertices to where the root is. Throws Error(kCancelled).
   void place(const Progress& progress, int threads, std::vector<Vector3>* positions) const;
 

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "prefilter/base/error.h"
@@ -12,6 +13,9 @@
 #include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/marching_table.h"
 #include "prefilter/contour/root_frame.h"
+#include "prefilter/contour/sharp_vertices.h"
+#include "prefilter/contour/sharpen.h"
+#include "prefilter/contour/source_surface.h"
 #include "prefilter/contour/surface_vertices.h"
 #include "prefilter/remesh/clean_up.h"
 
@@ -27,6 +31,18 @@ using Triangle = std::array<std::int32_t, 3>;
 struct TaskTriangles {
   std::vector<Triangle> triangles;
   std::vector<Vector3> middles;
+  std::vector<SharpLoop> loops;
+  std::vector<Triangle> loop_triangles;
+};
+
+// What tells whether there is an edge of the shape between two vertices.
+struct Division {
+  const SourceSurface& surface;
+  const VertexSamples& samples;
+
+  bool operator()(std::int32_t a, std::int32_t b) const {
+    return are_divided(surface, samples, a, b);
+  }
 };
 
 constexpr std::array<unsigned, 12> kFacesOfEdges = [] {
@@ -48,8 +64,8 @@ double sphere_gap(const Vector3& a, const Vector3& b, const Vector3& c) {
 
 class TriangleMaker {
  public:
-  explicit TriangleMaker(const SurfaceVertices& vertices)
-      : vertices_(vertices), cases_(marching_cases()) {}
+  explicit TriangleMaker(const SurfaceVertices& vertices, const Division* division = nullptr)
+      : vertices_(vertices), division_(division), cases_(marching_cases()) {}
 
   void add(const Meeting& leaves, TaskTriangles* task) const {
     unsigned inside = 0;
@@ -147,22 +163,42 @@ class TriangleMaker {
       faces[0] |= faces[count];
     }
     if (count < 3) return;
+    std::vector<Triangle>* triangles = &task->triangles;
+    if (is_divided(corners, count)) {
+      triangles = &task->loop_triangles;
+      task->loops.push_back({corners, count, triangles->size(), 0});
+    }
+    triangulate(corners, faces, count, triangles, &task->middles);
+    if (triangles == &task->loop_triangles) task->loops.back().end = triangles->size();
+  }
+
+  bool is_divided(const std::array<std::int32_t, 12>& corners, int count) const {
+    if (division_ == nullptr) return false;
+    for (int i = 0; i < count; ++i) {
+      if ((*division_)(corners[i], corners[(i + 1) % count])) return true;
+    }
+    return false;
+  }
+
+  void triangulate(const std::array<std::int32_t, 12>& corners,
+                   const std::array<unsigned, 12>& faces, int count,
+                   std::vector<Triangle>* triangles, std::vector<Vector3>* middles) const {
     const auto is_allowed = [&](int i, int j) { return (faces[i] & faces[j]) == 0U; };
     const auto cost = [&](int i, int j, int k) {
       return sphere_gap(position(corners[i]), position(corners[j]), position(corners[k]));
     };
     const bool is_done = triangulate_loop(count, is_allowed, cost, [&](int i, int j, int k) {
-      task->triangles.push_back({corners[i], corners[j], corners[k]});
+      triangles->push_back({corners[i], corners[j], corners[k]});
     });
     if (is_done) return;
     // No diagonal is free: a fan around the middle needs none.
     Vector3 middle{};
     for (int i = 0; i < count; ++i) middle = middle + position(corners[i]);
     for (double& x : middle) x /= count;
-    task->middles.push_back(middle);
-    const auto centre = -static_cast<std::int32_t>(task->middles.size());
+    middles->push_back(middle);
+    const auto centre = -static_cast<std::int32_t>(middles->size());
     for (int i = 0; i < count; ++i) {
-      task->triangles.push_back({centre, corners[i], corners[(i + 1) % count]});
+      triangles->push_back({centre, corners[i], corners[(i + 1) % count]});
     }
   }
 
@@ -171,12 +207,13 @@ class TriangleMaker {
   }
 
   const SurfaceVertices& vertices_;
+  const Division* division_;
   const std::array<MarchingCase, 256>& cases_;
 };
 
-TriangleMesh join(const Progress& progress, SurfaceVertices* vertices,
-                  std::vector<TaskTriangles>* tasks) {
-  TriangleMesh mesh;
+LoopedMesh join(const Progress& progress, SurfaceVertices* vertices,
+                std::vector<TaskTriangles>* tasks) {
+  LoopedMesh mesh;
   mesh.positions = vertices->take_positions();
   std::size_t count = 0;
   for (const TaskTriangles& task : *tasks) count += task.triangles.size();
@@ -185,15 +222,25 @@ TriangleMesh join(const Progress& progress, SurfaceVertices* vertices,
     const auto base = static_cast<std::int32_t>(mesh.positions.size());
     mesh.positions.insert(mesh.positions.end(), task.middles.begin(), task.middles.end());
     if (!task.middles.empty()) {
-      for (Triangle& triangle : task.triangles) {
-        for (std::int32_t& vertex : triangle) {
-          if (vertex < 0) vertex = base - 1 - vertex;
+      for (std::vector<Triangle>* triangles : {&task.triangles, &task.loop_triangles}) {
+        for (Triangle& triangle : *triangles) {
+          for (std::int32_t& vertex : triangle) {
+            if (vertex < 0) vertex = base - 1 - vertex;
+          }
         }
       }
     }
     mesh.triangles.insert(mesh.triangles.end(), task.triangles.begin(), task.triangles.end());
+    for (SharpLoop& loop : task.loops) {
+      loop.first += mesh.loop_triangles.size();
+      loop.end += mesh.loop_triangles.size();
+    }
+    mesh.loops.insert(mesh.loops.end(), task.loops.begin(), task.loops.end());
+    mesh.loop_triangles.insert(mesh.loop_triangles.end(), task.loop_triangles.begin(),
+                               task.loop_triangles.end());
     task = TaskTriangles();
-    progress.report(static_cast<double>(mesh.triangles.size()) / static_cast<double>(count));
+    progress.report(static_cast<double>(mesh.triangles.size()) /
+                    static_cast<double>(std::max<std::size_t>(count, 1)));
   }
   return mesh;
 }
@@ -224,7 +271,8 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   const double cleaning = options.clean_up ? 0.3 : kPlacing;
   const Progress cutting = options.progress.part(0.0, cleaning);
   ContourTree tree(cells, options.isovalue, cutting.part(0.0, 0.1), options.threads);
-  const bool fits = options.interpolant == Interpolant::kPlane && options.isovalue == 0.5F;
+  const bool fits = options.isovalue == 0.5F && (options.interpolant == Interpolant::kPlane ||
+                                                 options.interpolant == Interpolant::kSharp);
   if (fits) settle_sides(cutting.part(0.1, 0.3), options.threads, &tree);
   const RootFrame frame(root);
   SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.3, 0.5),
@@ -232,8 +280,19 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   if (fits) {
     fit_vertices(tree, frame, cutting.part(0.5, 0.6), options.threads, &vertices);
   }
+  std::optional<SourceSurface> surface;
+  VertexSamples samples;
+  std::vector<Vector3> crossings;
+  std::optional<Division> division;
+  if (fits && !options.sources.empty()) {
+    crossings = vertices.positions();
+    surface.emplace(options.sources, frame, frame.cell(0, cells.depth()), Progress(),
+                    options.threads);
+    samples = sample_vertices(tree, frame, *surface, Progress(), options.threads, &vertices);
+    division.emplace(*surface, samples);
+  }
   const DualCells dual(tree);
-  const TriangleMaker maker(vertices);
+  const TriangleMaker maker(vertices, division ? &*division : nullptr);
   const auto parts = static_cast<std::int64_t>(dual.part_count());
   std::vector<TaskTriangles> tasks(static_cast<std::size_t>(range_count(parts, kPartsPerTask)));
   const auto make_some = [&](std::int64_t begin, std::int64_t end) {
@@ -244,7 +303,16 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
     }
   };
   parallel_ranges(parts, kPartsPerTask, options.threads, cutting.part(0.6, 0.95), make_some);
-  TriangleMesh mesh = join(cutting.part(0.95, 1.0), &vertices, &tasks);
+  LoopedMesh looped = join(cutting.part(0.95, 1.0), &vertices, &tasks);
+  TriangleMesh mesh;
+  if (surface) {
+    FacetedMesh faceted =
+        sharpen(std::move(looped), crossings, *surface, samples, Progress(), options.threads);
+    mesh = {std::move(faceted.positions), std::move(faceted.triangles)};
+    leave_out_unused(&mesh);
+  } else {
+    mesh = {std::move(looped.positions), std::move(looped.triangles)};
+  }
   if (options.clean_up) {
     mesh = clean_up(std::move(mesh), options.progress.part(cleaning, kPlacing), options.threads);
   }
@@ -267,7 +335,8 @@ ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant inte
   }
   ContourSlab slab;
   const std::size_t pairs = vertices.places().size();
-  slab.mesh = join(Progress(), &vertices, &tasks);
+  LoopedMesh looped = join(Progress(), &vertices, &tasks);
+  slab.mesh = {std::move(looped.positions), std::move(looped.triangles)};
   const std::vector<std::int32_t> used = leave_out_unused(&slab.mesh);
   for (const std::int32_t vertex : used) {
     const auto i = static_cast<std::size_t>(vertex);

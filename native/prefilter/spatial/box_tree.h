@@ -46,6 +46,10 @@ class BoxTree {
   template <typename MayBe, typename Visit>
   void search(const Vector3& point, const MayBe& may_be, const Visit& visit) const;
 
+  /// Calls `visit(node)` for the leaves whose boxes have a point in common with this one.
+  template <typename Visit>
+  void for_overlapping(const Box& box, const Visit& visit) const;
+
  private:
   // As many splits as a key has bits, and then as an index has, where all keys are the same.
   static constexpr std::size_t kDeepest = 3 * kMortonBits + 32;
@@ -127,6 +131,24 @@ void BoxTree::search(const Vector3& point, const MayBe& may_be, const Visit& vis
       node = near.node;
       squared = near.squared;
     }
+  }
+}
+
+template <typename Visit>
+void BoxTree::for_overlapping(const Box& box, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  std::array<std::uint32_t, kDeepest> waiting;
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t node = waiting[--count];
+    if (!nodes_[node].box.overlaps(box)) continue;
+    if (nodes_[node].right == 0) {
+      visit(static_cast<std::size_t>(node));
+      continue;
+    }
+    waiting[count++] = nodes_[node].right;
+    waiting[count++] = node + 1;
   }
 }
 

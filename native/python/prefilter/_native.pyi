@@ -470,6 +470,9 @@ def contour_octree(
     octree: Octree,
     interpolant: str,
     isovalue: float,
+    sources: list[
+        tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]]
+    ],
     clean_up: bool,
     progress: ProgressCallback | None,
     threads: int,

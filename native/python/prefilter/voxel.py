@@ -14,6 +14,8 @@ from .octree_files import read_octree, write_octree
 
 Corner = Sequence[float] | npt.NDArray[np.floating]
 Box = tuple[Corner, Corner]
+Source = tuple[npt.ArrayLike, npt.ArrayLike] | tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike]
+"""A mesh: positions, triangles and maybe a group, a whole number, for each triangle."""
 
 MAX_DEPTH = _native.MAX_DEPTH
 
@@ -133,6 +135,7 @@ class Octree(_native.Octree):
         *,
         interpolant: str = "occupancy",
         isovalue: float = 0.5,
+        sources: Sequence[Source] | None = None,
         cleanup: bool = True,
         progress: ProgressCallback | None = None,
         threads: int = 0,
@@ -145,9 +148,14 @@ class Octree(_native.Octree):
         Args:
             interpolant: Where a vertex lies between the centres of two leaves. "occupancy" leaves
                 each of the two its share of a half-space (section 5.2); "plane" fits the surface to
-                the leaves around, and reproduces planes; "linear" is marching cubes.
+                the leaves around, and reproduces planes; "linear" is marching cubes; "sharp" is
+                "plane", with the edges and corners of the shape.
             isovalue: Above 0 and up to 1. Leaves of at least that are inside. For other values than
                 0.5, interpolation is linear.
+            sources: The meshes that the shape was made of, each (positions, triangles) or
+                (positions, triangles, groups), for "sharp": vertices are placed on their edges and
+                corners, and where one meets another; no triangle runs across an edge, or from one
+                group, (triangles,) whole numbers, to another.
             cleanup: Collapse short edges: fewer triangles, and none that are thin.
             progress: Called with the fraction done; returning False stops the work.
             threads: 0 means all processors. The result does not depend on it.
@@ -170,6 +178,7 @@ class Octree(_native.Octree):
             self,
             as_name("interpolant", interpolant),
             level,
+            _as_sources(sources),
             bool(cleanup),
             as_progress(progress),
             as_threads(threads),
@@ -273,6 +282,31 @@ def cube_around(bounds: Box, *, depth: int = 8) -> tuple[np.ndarray, np.ndarray]
     """
     low, high = _native.cube_around(_as_box("bounds", bounds), _as_depth(depth, 1))
     return np.array(low), np.array(high)
+
+
+def _as_sources(
+    sources: Sequence[Source] | None,
+) -> list[tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]]]:
+    if sources is None:
+        return []
+    checked = []
+    for i, source in enumerate(sources):
+        if not isinstance(source, (tuple, list)) or len(source) not in (2, 3):
+            raise ValueError(
+                f"sources: item {i} is a {type(source).__name__}; (positions, triangles) or "
+                "(positions, triangles, groups) is needed"
+            )
+        groups = np.empty(0, np.int64)
+        if len(source) == 3:
+            groups = np.ascontiguousarray(source[2], np.int64)
+        checked.append(
+            (
+                as_floats(f"sources[{i}] positions", source[0], ("vertices", 3), np.float64),
+                as_indices(f"sources[{i}] triangles", source[1], ("triangles", 3)),
+                groups,
+            )
+        )
+    return checked
 
 
 def _as_depth(depth: int, lowest: int) -> int:

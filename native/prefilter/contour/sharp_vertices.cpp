@@ -1,0 +1,111 @@
+#include "prefilter/contour/sharp_vertices.h"
+
+#include <bit>
+#include <cmath>
+#include <optional>
+
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kTaskDepth = 3;
+constexpr double kReachCells = 1.25;  // of a vertex whose line does not cross the surface
+
+struct Block {
+  CellNode cell;
+  CellCoordinates at;  // in cells of its depth
+};
+
+struct TaskSamples {
+  std::vector<std::int32_t> vertices;
+  std::vector<SourcePoint> samples;
+};
+
+class Sampler {
+ public:
+  Sampler(const ContourTree& tree, const RootFrame& frame, const SourceSurface& surface,
+          SurfaceVertices* vertices)
+      : tree_(tree), frame_(frame), surface_(surface), vertices_(*vertices) {}
+
+  template <typename Descend>
+  void visit_block(const Block& block, TaskSamples* task, const Descend& descend) const {
+    const auto level = static_cast<std::size_t>(block.cell.depth);
+    std::size_t vertex = vertices_.first(level, block.cell.octants);
+    for (std::uint64_t cuts = vertices_.cuts(level, block.cell.octants); cuts != 0;
+         cuts &= cuts - 1) {
+      const int bit = std::countr_zero(cuts);
+      sample(vertex++, octant_at(block.at, bit / 6), block.cell.depth + 1, bit % 6, task);
+    }
+    for (int o = 0; o < 8; ++o) {
+      const CellNode octant = tree_.octant(block.cell, o);
+      if (octant.is_split) descend({octant, octant_at(block.at, o)});
+    }
+  }
+
+  void visit_all(const Block& block, TaskSamples* task) const {
+    visit_block(block, task, [&](const Block& octant) { visit_all(octant, task); });
+  }
+
+ private:
+  void sample(std::size_t vertex, const CellCoordinates& at, int depth, int face,
+              TaskSamples* task) const {
+    const Vector3& expected = vertices_.positions()[vertex];
+    if (!surface_.is_near(expected)) return;
+    const int axis = face / 2;
+    Vector3 from;
+    for (int a = 0; a < 3; ++a) from[a] = frame_.position(a, at[a] + 0.5, depth);
+    Vector3 to = from;
+    const double side = frame_.cell(axis, depth);
+    to[axis] += (face & 1) != 0 ? side : -side;
+    std::optional<SourcePoint> found = surface_.crossing(from, to, expected);
+    if (found) {
+      const double t = std::abs(found->position[axis] - from[axis]) / side;
+      found->position[axis] = frame_.crossing(face, at[axis] + 0.5, t, 1.0, depth);
+    } else {
+      found = surface_.nearest(expected, kReachCells * surface_.cell(), -1);
+    }
+    if (!found) return;
+    vertices_.move(vertex, found->position);
+    task->vertices.push_back(static_cast<std::int32_t>(vertex));
+    task->samples.push_back(*found);
+  }
+
+  const ContourTree& tree_;
+  const RootFrame& frame_;
+  const SourceSurface& surface_;
+  SurfaceVertices& vertices_;
+};
+}  // namespace
+
+VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
+                              const SourceSurface& surface, const Progress& progress, int threads,
+                              SurfaceVertices* vertices) {
+  const Sampler sampler(tree, frame, surface, vertices);
+  std::vector<TaskSamples> tasks(1);
+  std::vector<Block> roots;
+  const auto above = [&](const auto& self, const Block& block) -> void {
+    if (block.cell.depth == kTaskDepth) {
+      roots.push_back(block);
+      return;
+    }
+    sampler.visit_block(block, tasks.data(), [&](const Block& octant) { self(self, octant); });
+  };
+  above(above, {tree.root(), {0, 0, 0}});
+  tasks.resize(roots.size() + 1);
+  parallel_for(static_cast<std::int64_t>(roots.size()), threads, progress, [&](std::int64_t i) {
+    sampler.visit_all(roots[static_cast<std::size_t>(i)], &tasks[static_cast<std::size_t>(i) + 1]);
+  });
+  VertexSamples result;
+  result.index.assign(vertices->positions().size(), -1);
+  for (const TaskSamples& task : tasks) {
+    for (std::size_t i = 0; i < task.vertices.size(); ++i) {
+      result.index[static_cast<std::size_t>(task.vertices[i])] =
+          static_cast<std::int32_t>(result.samples.size());
+      result.samples.push_back(task.samples[i]);
+    }
+  }
+  return result;
+}
+
+}  // namespace prefilter

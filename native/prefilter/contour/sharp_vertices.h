@@ -1,0 +1,30 @@
+// Vertices of a contour on the surface that its shape was made of.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/base/progress.h"
+#include "prefilter/contour/source_surface.h"
+#include "prefilter/contour/surface_vertices.h"
+
+namespace prefilter {
+
+/// What vertices near edges know of the surface that they are on.
+struct VertexSamples {
+  std::vector<std::int32_t> index;  // of each vertex, its sample; -1: none
+  std::vector<SourcePoint> samples;
+
+  const SourcePoint* of(std::int32_t vertex) const {
+    const std::int32_t i = index[static_cast<std::size_t>(vertex)];
+    return i < 0 ? nullptr : &samples[static_cast<std::size_t>(i)];
+  }
+};
+
+/// Moves the vertices near edges to where the lines that they are on cross the surface; where these
+/// do not, to the nearest point. Throws Error(kCancelled).
+VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
+                              const SourceSurface& surface, const Progress& progress, int threads,
+                              SurfaceVertices* vertices);
+
+}  // namespace prefilter

@@ -1,0 +1,48 @@
+// Edges and corners in a contour: extended marching cubes (Kobbelt, Botsch, Schwanecke and Seidel
+// 2001), on loops of any dual grid.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/base/progress.h"
+#include "prefilter/contour/sharp_vertices.h"
+#include "prefilter/contour/source_surface.h"
+#include "prefilter/remesh/faceted_mesh.h"
+
+namespace prefilter {
+
+/// A loop of a contour whose vertices are on different sides of an edge.
+struct SharpLoop {
+  std::array<std::int32_t, 12> corners;
+  int count = 0;
+  // Its triangles without the edge, among those of all sharp loops.
+  std::size_t first = 0;
+  std::size_t end = 0;
+};
+
+/// A contour of which some loops have yet to become triangles.
+struct LoopedMesh {
+  std::vector<Vector3> positions;
+  // Of all other loops.
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<SharpLoop> loops;
+  std::vector<std::array<std::int32_t, 3>> loop_triangles;
+};
+
+/// Whether there is an edge between two vertices.
+bool are_divided(const SourceSurface& surface, const VertexSamples& samples, std::int32_t a,
+                 std::int32_t b);
+
+/// Puts a vertex into each sharp loop, where the surfaces of its vertices meet, and joins those of
+/// loops that are side by side: the mesh edges between them are flipped. So each triangle is on one
+/// region, whose label it has; -1 is far from edges. Where that would have triangles intersect,
+/// loops stay as they are: the result is closed, two-manifold and free of intersections where it is
+/// without its edges. `crossings` are the positions of the vertices between cells, the first ones,
+/// before they were sampled. Throws Error(kCancelled).
+FacetedMesh sharpen(LoopedMesh looped, const std::vector<Vector3>& crossings,
+                    const SourceSurface& surface, const VertexSamples& samples,
+                    const Progress& progress, int threads);
+
+}  // namespace prefilter

@@ -1,0 +1,329 @@
+#include "prefilter/contour/source_surface.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_map>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/pulse.h"
+#include "prefilter/spatial/curve_order.h"
+#include "prefilter/spatial/triangle_point.h"
+
+namespace prefilter {
+namespace {
+
+constexpr double kBrickCells = 4.0;
+constexpr double kReachCells = 2.5;    // of what counts as near
+constexpr double kContactCells = 1.0;  // of parts that may meet
+constexpr std::size_t kLeafItems = 4;
+constexpr int kBrickBits = 21;
+constexpr double kMostBricks = 64.0;  // of a triangle's box, above which all count
+
+std::uint64_t brick_key(const std::array<std::int64_t, 3>& brick) {
+  constexpr std::int64_t kBias = std::int64_t{1} << (kBrickBits - 1);
+  std::uint64_t key = 0;
+  for (const std::int64_t b : brick) {
+    const std::int64_t kept = std::clamp(b + kBias, std::int64_t{0}, 2 * kBias - 1);
+    key = (key << static_cast<unsigned>(kBrickBits)) | static_cast<std::uint64_t>(kept);
+  }
+  return key;
+}
+
+// The bricks that a box of space overlaps, within the unit cube and what is close to it.
+struct BrickRange {
+  std::array<std::int64_t, 3> low;
+  std::array<std::int64_t, 3> high;
+  double count = 1.0;
+
+  BrickRange(const Box& box, double margin, double brick) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = static_cast<std::int64_t>(
+          std::floor(std::clamp((box.low[a] - margin), -1.0, 2.0) / brick));
+      high[a] = static_cast<std::int64_t>(
+          std::floor(std::clamp((box.high[a] + margin), -1.0, 2.0) / brick));
+      count *= static_cast<double>(high[a] - low[a] + 1);
+    }
+  }
+
+  template <typename Visit>
+  void for_each(const Visit& visit) const {
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) visit(brick_key({x, y, z}));
+      }
+    }
+  }
+};
+
+Box box_of(const Vector3& a, const Vector3& b) {
+  Box box = kEmptyBox;
+  box.include(a);
+  box.include(b);
+  return box;
+}
+
+Box box_of(const std::array<Vector3, 3>& corners) {
+  Box box = kEmptyBox;
+  for (const Vector3& corner : corners) box.include(corner);
+  return box;
+}
+
+Vector3 middle_of(const Box& box) { return 0.5 * (box.low + box.high); }
+
+// Calls visit(box) for boxes that cover a triangle, none of them much larger than `size`.
+template <typename Visit>
+void for_pieces(const std::array<Vector3, 3>& corners, double size, const Visit& visit) {
+  std::size_t longest = 0;
+  double most = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3 side = corners[(i + 1) % 3] - corners[i];
+    if (dot(side, side) > most) {
+      most = dot(side, side);
+      longest = i;
+    }
+  }
+  if (most <= size * size) {
+    visit(box_of(corners));
+    return;
+  }
+  const Vector3& a = corners[longest];
+  const Vector3& b = corners[(longest + 1) % 3];
+  const Vector3& c = corners[(longest + 2) % 3];
+  const Vector3 middle = 0.5 * (a + b);
+  for_pieces<Visit>({a, middle, c}, size, visit);
+  for_pieces<Visit>({middle, b, c}, size, visit);
+}
+
+// Where the segment from a to b, as a share of it, meets a triangle.
+std::optional<double> meeting(const Vector3& a, const Vector3& b,
+                              const std::array<Vector3, 3>& corners) {
+  const Vector3 d = b - a;
+  const Vector3 u = corners[1] - corners[0];
+  const Vector3 v = corners[2] - corners[0];
+  const Vector3 p = cross(d, v);
+  const double det = dot(u, p);
+  if (det == 0.0) return std::nullopt;
+  const Vector3 s = a - corners[0];
+  // So that no segment slips through between two triangles.
+  constexpr double kSlack = 1e-9;
+  const double x = dot(s, p) / det;
+  if (!(x >= -kSlack && x <= 1.0 + kSlack)) return std::nullopt;
+  const Vector3 q = cross(s, u);
+  const double y = dot(d, q) / det;
+  if (!(y >= -kSlack && x + y <= 1.0 + kSlack)) return std::nullopt;
+  const double t = dot(v, q) / det;
+  if (!(t >= 0.0 && t <= 1.0)) return std::nullopt;
+  return t;
+}
+}  // namespace
+
+SourceSurface::SourceSurface(std::span<const SourceMesh> sources, const RootFrame& frame,
+                             double cell, const Progress& progress, int threads)
+    : regions_(find_regions(sources, frame, cell, progress.part(0.0, 0.6), threads)),
+      cell_(cell),
+      brick_(kBrickCells * cell) {
+  mark_borders(progress.part(0.6, 0.65));
+  if (regions_.part_count > 1) mark_meetings(progress.part(0.65, 0.8));
+  build_trees(progress.part(0.8, 1.0), threads);
+}
+
+void SourceSurface::mark_around(const Box& box) {
+  BrickRange(box, kReachCells * cell_, brick_).for_each([&](std::uint64_t key) {
+    near_bricks_.insert(key);
+  });
+}
+
+void SourceSurface::mark_borders(const Progress& progress) {
+  Pulse pulse(progress);
+  const auto& positions = regions_.positions;
+  for (const RegionBorder& border : regions_.borders) {
+    pulse.step();
+    const Vector3 a = positions[static_cast<std::size_t>(border.ends[0])];
+    const Vector3 d = positions[static_cast<std::size_t>(border.ends[1])] - a;
+    const int steps = 1 + static_cast<int>(std::min(length(d) / brick_, 1e5));
+    for (int i = 0; i < steps; ++i) {
+      mark_around(box_of(a + (static_cast<double>(i) / steps) * d,
+                         a + (static_cast<double>(i + 1) / steps) * d));
+    }
+  }
+  for (const RegionCorner& corner : regions_.corners) {
+    const Vector3& p = positions[static_cast<std::size_t>(corner.vertex)];
+    mark_around(box_of(p, p));
+  }
+}
+
+void SourceSurface::mark_meetings(const Progress& progress) {
+  constexpr std::int32_t kSeveral = -1;
+  std::unordered_map<std::uint64_t, std::int32_t> parts;
+  Pulse pulse(progress);
+  for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
+    pulse.step();
+    const std::int32_t part = regions_.parts[t];
+    for_pieces({regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)}, brick_,
+               [&](const Box& box) {
+                 BrickRange(box, kContactCells * cell_, brick_).for_each([&](std::uint64_t key) {
+                   const auto [found, is_new] = parts.try_emplace(key, part);
+                   if (!is_new && found->second != part) found->second = kSeveral;
+                 });
+               });
+  }
+  for (const auto& [key, part] : parts) {
+    if (part == kSeveral) near_bricks_.insert(key);
+  }
+}
+
+bool SourceSurface::is_near(const Vector3& point) const {
+  std::array<std::int64_t, 3> brick;
+  for (std::size_t a = 0; a < 3; ++a) {
+    brick[a] = static_cast<std::int64_t>(std::floor(std::clamp(point[a], -1.0, 2.0) / brick_));
+  }
+  return near_bricks_.contains(brick_key(brick));
+}
+
+void SourceSurface::build_trees(const Progress& progress, int threads) {
+  const auto corners_of = [&](std::int32_t triangle) -> std::array<Vector3, 3> {
+    const auto t = static_cast<std::size_t>(triangle);
+    return {regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)};
+  };
+  std::vector<std::int32_t> near;
+  for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
+    if (regions_.labels[t] < 0) continue;
+    const auto triangle = static_cast<std::int32_t>(t);
+    const BrickRange range(box_of(corners_of(triangle)), cell_, brick_);
+    bool is_near = range.count > kMostBricks;
+    if (!is_near) {
+      range.for_each([&](std::uint64_t key) { is_near = is_near || near_bricks_.contains(key); });
+    }
+    if (is_near) near.push_back(triangle);
+  }
+  const auto arrange = [&](std::vector<std::int32_t> items, const auto& box_of_item,
+                           const Progress& part, std::vector<std::int32_t>* ordered) {
+    const std::vector<CurvePlace> places = along_curve(
+        items.size(), [&](std::size_t i) { return middle_of(box_of_item(items[i])); },
+        part.part(0.0, 0.6), threads);
+    std::vector<std::uint64_t> keys;
+    ordered->clear();
+    for (const CurvePlace& place : places) {
+      keys.push_back(place.key);
+      ordered->push_back(items[place.index]);
+    }
+    return BoxTree(
+        keys, kLeafItems, [&](std::size_t i) { return box_of_item((*ordered)[i]); },
+        part.part(0.6, 1.0));
+  };
+  triangle_tree_ = arrange(
+      std::move(near), [&](std::int32_t t) { return box_of(corners_of(t)); },
+      progress.part(0.0, 0.7), &triangles_);
+  std::vector<std::int32_t> borders(regions_.borders.size());
+  for (std::size_t i = 0; i < borders.size(); ++i) borders[i] = static_cast<std::int32_t>(i);
+  border_tree_ = arrange(
+      std::move(borders),
+      [&](std::int32_t i) {
+        const auto& ends = regions_.borders[static_cast<std::size_t>(i)].ends;
+        return box_of(regions_.positions[static_cast<std::size_t>(ends[0])],
+                      regions_.positions[static_cast<std::size_t>(ends[1])]);
+      },
+      progress.part(0.7, 1.0), &borders_);
+}
+
+SourcePoint SourceSurface::point_at(std::int32_t triangle, const Vector3& position) const {
+  const auto t = static_cast<std::size_t>(triangle);
+  const Vector3 a = regions_.corner(t, 0);
+  const Vector3 twice = cross(regions_.corner(t, 1) - a, regions_.corner(t, 2) - a);
+  return {position, (1.0 / length(twice)) * twice, triangle, regions_.labels[t]};
+}
+
+std::optional<SourcePoint> SourceSurface::crossing(const Vector3& a, const Vector3& b,
+                                                   const Vector3& expected) const {
+  std::int32_t best = -1;
+  double least = std::numeric_limits<double>::infinity();
+  Vector3 found{};
+  triangle_tree_.for_overlapping(box_of(a, b), [&](std::size_t node) {
+    for (std::size_t i = triangle_tree_.nodes()[node].begin; i < triangle_tree_.nodes()[node].end;
+         ++i) {
+      const std::int32_t triangle = triangles_[i];
+      const auto t = static_cast<std::size_t>(triangle);
+      const std::optional<double> at =
+          meeting(a, b, {regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)});
+      if (!at) continue;
+      const Vector3 position = a + *at * (b - a);
+      const double distance = length(position - expected);
+      if (distance < least || (distance == least && triangle < best)) {
+        least = distance;
+        best = triangle;
+        found = position;
+      }
+    }
+  });
+  if (best < 0) return std::nullopt;
+  return point_at(best, found);
+}
+
+std::optional<SourcePoint> SourceSurface::nearest(const Vector3& point, double reach,
+                                                  std::int32_t label) const {
+  if (triangle_tree_.is_empty()) return std::nullopt;
+  std::int32_t best = -1;
+  double least = reach * reach;
+  Vector3 found{};
+  triangle_tree_.search(
+      point, [&](double squared, std::size_t) { return squared <= least; },
+      [&](std::size_t node) {
+        for (std::size_t i = triangle_tree_.nodes()[node].begin;
+             i < triangle_tree_.nodes()[node].end; ++i) {
+          const std::int32_t triangle = triangles_[i];
+          const auto t = static_cast<std::size_t>(triangle);
+          if (label >= 0 && regions_.labels[t] != label) continue;
+          const std::array<Vector3, 3> corners = {regions_.corner(t, 0), regions_.corner(t, 1),
+                                                  regions_.corner(t, 2)};
+          const Vector3 weights = nearest_weights(point, corners[0], corners[1], corners[2]);
+          const Vector3 at =
+              weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+          const Vector3 offset = at - point;
+          const double squared = dot(offset, offset);
+          if (squared < least || (squared == least && (best < 0 || triangle < best))) {
+            least = squared;
+            best = triangle;
+            found = at;
+          }
+        }
+      });
+  if (best < 0) return std::nullopt;
+  return point_at(best, found);
+}
+
+std::optional<Vector3> SourceSurface::nearest_border(const Vector3& point, double reach,
+                                                     std::int32_t label, std::int32_t other) const {
+  if (border_tree_.is_empty()) return std::nullopt;
+  std::int32_t best = -1;
+  double least = reach * reach;
+  Vector3 found{};
+  border_tree_.search(
+      point, [&](double squared, std::size_t) { return squared <= least; },
+      [&](std::size_t node) {
+        for (std::size_t i = border_tree_.nodes()[node].begin; i < border_tree_.nodes()[node].end;
+             ++i) {
+          const RegionBorder& border = regions_.borders[static_cast<std::size_t>(borders_[i])];
+          if (std::minmax(border.labels[0], border.labels[1]) != std::minmax(label, other)) {
+            continue;
+          }
+          const Vector3& a = regions_.positions[static_cast<std::size_t>(border.ends[0])];
+          const Vector3& b = regions_.positions[static_cast<std::size_t>(border.ends[1])];
+          const Vector3 along = b - a;
+          const double size = dot(along, along);
+          const double t = size > 0.0 ? std::clamp(dot(point - a, along) / size, 0.0, 1.0) : 0.0;
+          const Vector3 at = a + t * along;
+          const Vector3 offset = at - point;
+          const double squared = dot(offset, offset);
+          if (squared < least || (squared == least && (best < 0 || borders_[i] < best))) {
+            least = squared;
+            best = borders_[i];
+            found = at;
+          }
+        }
+      });
+  if (best < 0) return std::nullopt;
+  return found;
+}
+
+}  // namespace prefilter

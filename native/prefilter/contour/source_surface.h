@@ -1,0 +1,69 @@
+// The meshes that a shape was made of, close to their edges, ready for searches.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <unordered_set>
+#include <vector>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/contour/source_regions.h"
+#include "prefilter/spatial/box_tree.h"
+
+namespace prefilter {
+
+/// A point of a source, with the unit normal of its triangle.
+struct SourcePoint {
+  Vector3 position;
+  Vector3 normal;
+  std::int32_t triangle;
+  std::int32_t label;
+};
+
+/// What searches find is the same for any number of threads. Lengths are the frame's.
+class SourceSurface {
+ public:
+  /// `cell` is the side of the finest cells. Throws as find_regions does.
+  SourceSurface(std::span<const SourceMesh> sources, const RootFrame& frame, double cell,
+                const Progress& progress, int threads);
+
+  const SourceRegions& regions() const { return regions_; }
+  double cell() const { return cell_; }
+
+  /// Whether there may be a border, or where two parts meet, within about two cells.
+  bool is_near(const Vector3& point) const;
+
+  /// Where the segment from `a` to `b` runs through the surface; of several places the one nearest
+  /// to `expected`.
+  std::optional<SourcePoint> crossing(const Vector3& a, const Vector3& b,
+                                      const Vector3& expected) const;
+
+  /// The nearest point within `reach`, of one region unless `label` is -1.
+  std::optional<SourcePoint> nearest(const Vector3& point, double reach, std::int32_t label) const;
+
+  /// The nearest point, within `reach`, of the borders between two regions; the same label twice
+  /// asks for sharp edges within a region.
+  std::optional<Vector3> nearest_border(const Vector3& point, double reach, std::int32_t label,
+                                        std::int32_t other) const;
+
+ private:
+  void mark_borders(const Progress& progress);
+  void mark_meetings(const Progress& progress);
+  void mark_around(const Box& box);
+  void build_trees(const Progress& progress, int threads);
+  SourcePoint point_at(std::int32_t triangle, const Vector3& position) const;
+
+  SourceRegions regions_;
+  double cell_;
+  double brick_;
+  std::unordered_set<std::uint64_t> near_bricks_;
+  std::vector<std::int32_t> triangles_;  // near borders, along the curve
+  BoxTree triangle_tree_;
+  std::vector<std::int32_t> borders_;
+  BoxTree border_tree_;
+};
+
+}  // namespace prefilter
