@@ -1,5 +1,6 @@
 #include "prefilter/contour/sharp_vertices.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -20,13 +21,14 @@ struct Block {
 struct TaskSamples {
   std::vector<std::int32_t> vertices;
   std::vector<SourcePoint> samples;
+  std::vector<Vector3> on_lines;
 };
 
 class Sampler {
  public:
   Sampler(const ContourTree& tree, const RootFrame& frame, const SourceSurface& surface,
-          SurfaceVertices* vertices)
-      : tree_(tree), frame_(frame), surface_(surface), vertices_(*vertices) {}
+          const PartSides* parts, SurfaceVertices* vertices)
+      : tree_(tree), frame_(frame), surface_(surface), parts_(parts), vertices_(*vertices) {}
 
   template <typename Descend>
   void visit_block(const Block& block, TaskSamples* task, const Descend& descend) const {
@@ -35,7 +37,9 @@ class Sampler {
     for (std::uint64_t cuts = vertices_.cuts(level, block.cell.octants); cuts != 0;
          cuts &= cuts - 1) {
       const int bit = std::countr_zero(cuts);
-      sample(vertex++, octant_at(block.at, bit / 6), block.cell.depth + 1, bit % 6, task);
+      const bool is_inside = tree_.octant(block.cell, bit / 6).sides == kInside;
+      sample(vertex++, octant_at(block.at, bit / 6), block.cell.depth + 1, bit % 6, is_inside,
+             task);
     }
     for (int o = 0; o < 8; ++o) {
       const CellNode octant = tree_.octant(block.cell, o);
@@ -48,7 +52,7 @@ class Sampler {
   }
 
  private:
-  void sample(std::size_t vertex, const CellCoordinates& at, int depth, int face,
+  void sample(std::size_t vertex, const CellCoordinates& at, int depth, int face, bool is_inside,
               TaskSamples* task) const {
     const Vector3& expected = vertices_.positions()[vertex];
     if (!surface_.is_near(expected)) return;
@@ -58,30 +62,38 @@ class Sampler {
     Vector3 to = from;
     const double side = frame_.cell(axis, depth);
     to[axis] += (face & 1) != 0 ? side : -side;
-    std::optional<SourcePoint> found = surface_.crossing(from, to, expected);
-    if (found) {
-      const double t = std::abs(found->position[axis] - from[axis]) / side;
-      found->position[axis] = frame_.crossing(face, at[axis] + 0.5, t, 1.0, depth);
-    } else {
-      found = surface_.nearest(expected, kReachCells * surface_.cell(), -1);
+    std::optional<SourcePoint> found;
+    bool is_known = false;
+    if (parts_ != nullptr && !surface_.meeting_parts(expected).empty()) {
+      found = parts_->exit(is_inside ? from : to, is_inside ? to : from, expected, &is_known);
     }
+    if (!is_known) found = surface_.crossing(from, to, expected);
+    const bool is_on_line = found.has_value();
+    if (!is_on_line) found = surface_.nearest(expected, kReachCells * surface_.cell(), -1);
     if (!found) return;
+    Vector3 on_line = from;
+    const double offset = found->position[axis] - from[axis];
+    const double t = std::clamp(((face & 1) != 0 ? offset : -offset) / side, 0.0, 1.0);
+    on_line[axis] = frame_.crossing(face, at[axis] + 0.5, t, 1.0, depth);
+    if (is_on_line) found->position = on_line;
     vertices_.move(vertex, found->position);
     task->vertices.push_back(static_cast<std::int32_t>(vertex));
     task->samples.push_back(*found);
+    task->on_lines.push_back(on_line);
   }
 
   const ContourTree& tree_;
   const RootFrame& frame_;
   const SourceSurface& surface_;
+  const PartSides* parts_;
   SurfaceVertices& vertices_;
 };
 }  // namespace
 
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
-                              const SourceSurface& surface, const Progress& progress, int threads,
-                              SurfaceVertices* vertices) {
-  const Sampler sampler(tree, frame, surface, vertices);
+                              const SourceSurface& surface, const PartSides* parts,
+                              const Progress& progress, int threads, SurfaceVertices* vertices) {
+  const Sampler sampler(tree, frame, surface, parts, vertices);
   std::vector<TaskSamples> tasks(1);
   std::vector<Block> roots;
   const auto above = [&](const auto& self, const Block& block) -> void {
@@ -103,6 +115,7 @@ VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
       result.index[static_cast<std::size_t>(task.vertices[i])] =
           static_cast<std::int32_t>(result.samples.size());
       result.samples.push_back(task.samples[i]);
+      result.on_lines.push_back(task.on_lines[i]);
     }
   }
   return result;

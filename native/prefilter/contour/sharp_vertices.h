@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "prefilter/base/progress.h"
+#include "prefilter/contour/part_sides.h"
 #include "prefilter/contour/source_surface.h"
 #include "prefilter/contour/surface_vertices.h"
 
@@ -14,6 +15,9 @@ namespace prefilter {
 struct VertexSamples {
   std::vector<std::int32_t> index;  // of each vertex, its sample; -1: none
   std::vector<SourcePoint> samples;
+  // For each sample that is off the line between its leaves, the nearest point of that; otherwise
+  // its own position.
+  std::vector<Vector3> on_lines;
 
   const SourcePoint* of(std::int32_t vertex) const {
     const std::int32_t i = index[static_cast<std::size_t>(vertex)];
@@ -22,9 +26,10 @@ struct VertexSamples {
 };
 
 /// Moves the vertices near edges to where the lines that they are on cross the surface; where these
-/// do not, to the nearest point. Throws Error(kCancelled).
+/// do not, to the nearest point. `parts` is for what was combined of several. Throws
+/// Error(kCancelled).
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
-                              const SourceSurface& surface, const Progress& progress, int threads,
-                              SurfaceVertices* vertices);
+                              const SourceSurface& surface, const PartSides* parts,
+                              const Progress& progress, int threads, SurfaceVertices* vertices);
 
 }  // namespace prefilter

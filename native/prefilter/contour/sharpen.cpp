@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 #include <utility>
@@ -16,12 +17,16 @@ namespace {
 constexpr double kSharpCosine = 0.9396926207859084;  // 20 degrees
 // All in cells.
 constexpr double kRidgeReach = 1.5;
-constexpr double kFeatureReach = 2.0;
-constexpr double kRegionReach = 3.0;
+constexpr double kFeatureReach = 5.0;
+constexpr double kRegionReach = 5.0;
+constexpr double kOnSurface = 0.05;
 constexpr double kCornerReach = 1.0;
 constexpr double kSettled = 1e-7;
-constexpr double kTooClose = 0.02;
+constexpr double kTooClose = 0.05;
 constexpr int kMostSteps = 12;
+constexpr int kMostAttempts = 3;
+constexpr int kRings = 2;
+constexpr int kSmoothings = 4;
 constexpr std::int64_t kLoopsPerTask = 64;
 
 using Triangle = std::array<std::int32_t, 3>;
@@ -123,6 +128,8 @@ class Sharpener {
     parallel_ranges(static_cast<std::int64_t>(features_.size()), kLoopsPerTask, threads_, progress,
                     place_some);
     is_sharp_.assign(features_.size(), 1);
+    attempts_.assign(features_.size(), 0);
+    is_single_.assign(features_.size(), 0);
   }
 
   Feature feature_of(std::size_t i) const {
@@ -140,17 +147,19 @@ class Sharpener {
     Labels& labels = feature.labels;
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
-    feature.position = start;
-    std::optional<Vector3> found;
-    if (labels.size() > 2) {
-      found = corner_near(start, labels);
-      feature.is_corner = true;
-    } else {
-      found = surface_.nearest_border(start, kFeatureReach * cell_, labels.front(), labels.back());
-    }
-    if (!found && labels.size() > 1) found = meeting_of(start, labels);
-    if (found) feature.position = *found;
+    feature.is_corner = labels.size() > 2;
+    feature.position = placed(start, labels).value_or(start);
     return feature;
+  }
+
+  // The point next to `start` where regions meet; of one, where it has a sharp edge.
+  std::optional<Vector3> placed(const Vector3& start, const Labels& labels) const {
+    std::optional<Vector3> found =
+        labels.size() > 2
+            ? corner_near(start, labels)
+            : surface_.nearest_border(start, kFeatureReach * cell_, labels.front(), labels.back());
+    if (!found && labels.size() > 1) found = meeting_of(start, labels);
+    return found;
   }
 
   // The corner of these regions, or more, next to a point.
@@ -190,6 +199,9 @@ class Sharpener {
       at = at + move;
       if (length(at - start) > kFeatureReach * cell_) return std::nullopt;
       if (length(move) < kSettled * cell_) break;
+    }
+    for (const std::int32_t label : labels) {
+      if (!surface_.nearest(at, kOnSurface * cell_, label)) return std::nullopt;
     }
     return at;
   }
@@ -285,27 +297,96 @@ class Sharpener {
     return -1;
   }
 
+  // Loops that are joined and whose features are at one place have one vertex. Where mesh edges
+  // would then be there twice, they have not.
   FacetedMesh assemble() {
+    find_merged();
+    FacetedMesh mesh = assemble_merged();
+    while (unmerge_repeated(mesh)) {
+      find_merged();
+      mesh = assemble_merged();
+    }
+    return mesh;
+  }
+
+  void find_merged() {
+    merged_.resize(features_.size());
+    std::iota(merged_.begin(), merged_.end(), 0);
+    for (std::size_t i = 0; i < features_.size(); ++i) {
+      if (is_sharp_[i] == 0 || is_single_[i] != 0) continue;
+      for (const std::int32_t joint : joined(i)) {
+        const auto other = static_cast<std::size_t>(joint);
+        if (other < i || is_single_[other] != 0) continue;
+        if (length(features_[i].position - features_[other].position) > kTooClose * cell_) continue;
+        const std::size_t p = root_of(i);
+        const std::size_t q = root_of(other);
+        merged_[std::max(p, q)] = std::min(p, q);
+      }
+    }
+    for (std::size_t i = 0; i < features_.size(); ++i) merged_[i] = root_of(i);
+  }
+
+  std::size_t root_of(std::size_t i) const {
+    while (merged_[i] != i) i = merged_[i];
+    return i;
+  }
+
+  bool unmerge_repeated(const FacetedMesh& mesh) {
+    std::unordered_map<std::uint64_t, std::size_t> sides;
+    bool is_any = false;
+    for (std::size_t t = looped_.triangles.size(); t < mesh.triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint64_t key = (static_cast<std::uint64_t>(mesh.triangles[t][k]) << 32U) |
+                                  static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
+        const auto [found, is_new] = sides.try_emplace(key, t);
+        if (is_new) continue;
+        for (const std::size_t u : {t, found->second}) {
+          for (const std::int32_t owner : owners_[u]) {
+            if (owner < 0) continue;
+            // All that share its vertex.
+            const std::size_t root = merged_[static_cast<std::size_t>(owner)];
+            for (std::size_t i = root; i < merged_.size(); ++i) {
+              if (merged_[i] != root || is_single_[i] != 0) continue;
+              is_single_[i] = 1;
+              is_any = true;
+            }
+          }
+        }
+      }
+    }
+    return is_any;
+  }
+
+  FacetedMesh assemble_merged() {
     FacetedMesh mesh;
     mesh.positions = looped_.positions;
     mesh.triangles = looped_.triangles;
     mesh.kinds.assign(mesh.positions.size(), VertexKind::kSurface);
     owners_.assign(mesh.triangles.size(), {-1, -1});
     for (const Triangle& triangle : mesh.triangles) mesh.labels.push_back(label_of(triangle));
-    const auto base = static_cast<std::int32_t>(mesh.positions.size());
     std::vector<std::int32_t> places(features_.size(), -1);
     for (std::size_t i = 0; i < features_.size(); ++i) {
       if (is_sharp_[i] == 0) continue;
+      if (merged_[i] != i) {
+        places[i] = places[merged_[i]];
+        continue;
+      }
       places[i] = static_cast<std::int32_t>(mesh.positions.size());
       mesh.positions.push_back(features_[i].position);
-      int joints = 0;
-      for (std::size_t k = 0; k < static_cast<std::size_t>(loop(i).count); ++k) {
-        joints += is_joined(i, k) ? 1 : 0;
-      }
-      mesh.kinds.push_back(joints == 2 && !features_[i].is_corner ? VertexKind::kEdge
-                                                                  : VertexKind::kCorner);
+      mesh.kinds.push_back(VertexKind::kEdge);
     }
-    (void)base;
+    std::vector<std::uint8_t> joints(mesh.positions.size(), 0);
+    for (std::size_t i = 0; i < features_.size(); ++i) {
+      if (is_sharp_[i] == 0) continue;
+      const auto place = static_cast<std::size_t>(places[i]);
+      if (features_[i].is_corner) mesh.kinds[place] = VertexKind::kCorner;
+      for (const std::int32_t other : joined(i)) {
+        if (merged_[static_cast<std::size_t>(other)] != merged_[i]) ++joints[place];
+      }
+    }
+    for (std::size_t v = looped_.positions.size(); v < mesh.positions.size(); ++v) {
+      if (joints[v] != 2) mesh.kinds[v] = VertexKind::kCorner;
+    }
     const auto add = [&](const Triangle& triangle, std::int32_t label, std::size_t i,
                          std::int32_t other) {
       mesh.triangles.push_back(triangle);
@@ -325,7 +406,8 @@ class Sharpener {
         const std::int32_t to = loop(i).corners[next(i, k)];
         if (is_joined(i, k)) {
           const std::int32_t other = sides_[i][k].other;
-          add({places[i], from, places[static_cast<std::size_t>(other)]}, label_of(from), i, other);
+          const std::int32_t place = places[static_cast<std::size_t>(other)];
+          if (place != places[i]) add({places[i], from, place}, label_of(from), i, other);
         } else {
           const Triangle triangle = {places[i], from, to};
           add(triangle, label_of(triangle), i, -1);
@@ -353,17 +435,28 @@ class Sharpener {
     const auto pairs =
         intersecting_triangles({mesh.positions, mesh.triangles}, is_suspect, progress, threads_);
     bool has_dropped = false;
-    for (const auto& pair : pairs) {
-      bool has_loop = false;
-      for (const std::uint32_t t : pair) {
-        for (const std::int32_t owner : owners_[t]) {
-          if (owner < 0 || is_sharp_[static_cast<std::size_t>(owner)] == 0) continue;
-          dropped_.push_back(static_cast<std::size_t>(owner));
-          has_loop = true;
+    // The loops with the most intersections first, until none are left.
+    std::vector<std::pair<std::int32_t, std::size_t>> blamed;  // loop, pair
+    for (std::size_t p = 0; p < pairs.size(); ++p) {
+      bool has_moved = false;
+      for (const std::uint32_t t : pairs[p]) {
+        for (const std::int32_t corner : mesh.triangles[t]) {
+          has_moved = put_on_line(corner) || has_moved;
         }
       }
-      if (has_loop) continue;
-      for (const std::uint32_t t : pair) {
+      has_dropped = has_dropped || has_moved;
+      if (has_moved) continue;
+      Labels loops;
+      for (const std::uint32_t t : pairs[p]) {
+        for (const std::int32_t owner : owners_[t]) {
+          if (owner >= 0 && is_sharp_[static_cast<std::size_t>(owner)] != 0) loops.push_back(owner);
+        }
+      }
+      std::sort(loops.begin(), loops.end());
+      loops.erase(std::unique(loops.begin(), loops.end()), loops.end());
+      for (const std::int32_t i : loops) blamed.emplace_back(i, p);
+      if (!loops.empty()) continue;
+      for (const std::uint32_t t : pairs[p]) {
         for (const std::int32_t corner : mesh.triangles[t]) {
           if (!is_moved(corner)) continue;
           looped_.positions[static_cast<std::size_t>(corner)] =
@@ -372,10 +465,102 @@ class Sharpener {
         }
       }
     }
+    has_dropped = relax(blamed) || has_dropped;
+    drop_fewest(std::move(blamed), pairs.size());
     has_dropped = has_dropped || !dropped_.empty();
     for (const std::size_t i : dropped_) is_sharp_[i] = 0;
     dropped_.clear();
     return has_dropped;
+  }
+
+  // Where an edge is far from the loops, as at the tip of a thin wedge, their nearest points of it
+  // may be out of order. Moves those of the loops, and what is next to them, to between their
+  // neighbours'; loops that have been moved often enough are left. Returns whether there are
+  // others.
+  bool relax(std::vector<std::pair<std::int32_t, std::size_t>>& blamed) {
+    std::vector<std::size_t> moving;
+    std::erase_if(blamed, [&](const auto& entry) {
+      const auto i = static_cast<std::size_t>(entry.first);
+      if (attempts_[i] >= kMostAttempts) return false;
+      moving.push_back(i);
+      return true;
+    });
+    std::sort(moving.begin(), moving.end());
+    moving.erase(std::unique(moving.begin(), moving.end()), moving.end());
+    for (const std::size_t i : moving) ++attempts_[i];
+    const bool has_moving = !moving.empty();
+    for (int ring = 0; ring < kRings; ++ring) {
+      std::vector<std::size_t> wider = moving;
+      for (const std::size_t i : moving) {
+        for (const std::int32_t other : joined(i)) {
+          wider.push_back(static_cast<std::size_t>(other));
+        }
+      }
+      std::sort(wider.begin(), wider.end());
+      wider.erase(std::unique(wider.begin(), wider.end()), wider.end());
+      moving.swap(wider);
+    }
+    std::vector<Vector3> moved(moving.size());
+    for (int step = 0; step < kSmoothings; ++step) {
+      for (std::size_t m = 0; m < moving.size(); ++m) {
+        const Feature& feature = features_[moving[m]];
+        moved[m] = feature.position;
+        const std::vector<std::int32_t> others = joined(moving[m]);
+        if (feature.is_corner || others.size() != 2) continue;
+        const Vector3 middle = 0.5 * (features_[static_cast<std::size_t>(others[0])].position +
+                                      features_[static_cast<std::size_t>(others[1])].position);
+        const std::optional<Vector3> found =
+            placed(0.5 * (feature.position + middle), feature.labels);
+        if (found) moved[m] = *found;
+      }
+      for (std::size_t m = 0; m < moving.size(); ++m) features_[moving[m]].position = moved[m];
+    }
+    return has_moving;
+  }
+
+  std::vector<std::int32_t> joined(std::size_t i) const {
+    std::vector<std::int32_t> others;
+    for (std::size_t k = 0; k < static_cast<std::size_t>(loop(i).count); ++k) {
+      if (is_joined(i, k)) others.push_back(sides_[i][k].other);
+    }
+    return others;
+  }
+
+  // Of loops and the pairs that they are in: loops so that none is left, the one with the most
+  // first.
+  void drop_fewest(std::vector<std::pair<std::int32_t, std::size_t>> blamed, std::size_t count) {
+    std::sort(blamed.begin(), blamed.end());
+    std::vector<std::uint8_t> is_settled(count, 0);
+    while (true) {
+      std::int32_t worst = -1;
+      std::size_t most = 0;
+      for (std::size_t i = 0; i < blamed.size();) {
+        const std::int32_t loop = blamed[i].first;
+        std::size_t open = 0;
+        for (; i < blamed.size() && blamed[i].first == loop; ++i) {
+          open += is_settled[blamed[i].second] == 0 ? 1U : 0U;
+        }
+        if (open > most) {
+          most = open;
+          worst = loop;
+        }
+      }
+      if (worst < 0) return;
+      dropped_.push_back(static_cast<std::size_t>(worst));
+      for (const auto& [loop, pair] : blamed) {
+        if (loop == worst) is_settled[pair] = 1;
+      }
+    }
+  }
+
+  bool put_on_line(std::int32_t vertex) {
+    const auto v = static_cast<std::size_t>(vertex);
+    if (v >= samples_.index.size() || samples_.index[v] < 0) return false;
+    const Vector3& on_line = samples_.on_lines[static_cast<std::size_t>(samples_.index[v])];
+    const Vector3& sampled = samples_.samples[static_cast<std::size_t>(samples_.index[v])].position;
+    if (looped_.positions[v] != sampled || sampled == on_line) return false;
+    looped_.positions[v] = on_line;
+    return true;
   }
 
   bool is_moved(std::int32_t vertex) const {
@@ -403,6 +588,9 @@ class Sharpener {
   std::vector<std::array<Side, 12>> sides_;
   std::vector<Feature> features_;
   std::vector<std::uint8_t> is_sharp_;
+  std::vector<std::uint8_t> attempts_;
+  std::vector<std::uint8_t> is_single_;  // not to be merged
+  std::vector<std::size_t> merged_;      // the first of the loops that have one vertex
   std::vector<std::size_t> dropped_;
   std::vector<std::array<std::int32_t, 2>> owners_;  // of triangles: loops
   std::unordered_map<std::array<std::int64_t, 3>, std::vector<std::size_t>, PlaceHash> grid_;

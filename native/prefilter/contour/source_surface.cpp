@@ -16,6 +16,7 @@ namespace {
 constexpr double kBrickCells = 4.0;
 constexpr double kReachCells = 2.5;    // of what counts as near
 constexpr double kContactCells = 1.0;  // of parts that may meet
+constexpr double kSearchCells = 6.0;   // from what is near, of triangles that are found
 constexpr std::size_t kLeafItems = 4;
 constexpr int kBrickBits = 21;
 constexpr double kMostBricks = 64.0;  // of a triangle's box, above which all count
@@ -153,32 +154,66 @@ void SourceSurface::mark_borders(const Progress& progress) {
   }
 }
 
+void SourceSurface::Meeting::add(std::int32_t part) {
+  const auto end = parts.begin() + static_cast<std::ptrdiff_t>(std::min(count, kMostMeeting));
+  if (count > kMostMeeting || std::find(parts.begin(), end, part) != end) return;
+  if (count < kMostMeeting) parts[count] = part;
+  ++count;
+}
+
 void SourceSurface::mark_meetings(const Progress& progress) {
-  constexpr std::int32_t kSeveral = -1;
-  std::unordered_map<std::uint64_t, std::int32_t> parts;
   Pulse pulse(progress);
   for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
     pulse.step();
+    if (regions_.labels[t] < 0) continue;
     const std::int32_t part = regions_.parts[t];
     for_pieces({regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)}, brick_,
                [&](const Box& box) {
                  BrickRange(box, kContactCells * cell_, brick_).for_each([&](std::uint64_t key) {
-                   const auto [found, is_new] = parts.try_emplace(key, part);
-                   if (!is_new && found->second != part) found->second = kSeveral;
+                   meetings_[key].add(part);
                  });
                });
   }
-  for (const auto& [key, part] : parts) {
-    if (part == kSeveral) near_bricks_.insert(key);
+  for (auto brick = meetings_.begin(); brick != meetings_.end();) {
+    if (brick->second.count < 2) {
+      brick = meetings_.erase(brick);
+      continue;
+    }
+    const std::size_t count = std::min(brick->second.count, kMostMeeting);
+    std::sort(brick->second.parts.begin(),
+              brick->second.parts.begin() + static_cast<std::ptrdiff_t>(count));
+    near_bricks_.insert(brick->first);
+    ++brick;
   }
 }
 
-bool SourceSurface::is_near(const Vector3& point) const {
+std::uint64_t SourceSurface::brick_of(const Vector3& point) const {
   std::array<std::int64_t, 3> brick;
   for (std::size_t a = 0; a < 3; ++a) {
     brick[a] = static_cast<std::int64_t>(std::floor(std::clamp(point[a], -1.0, 2.0) / brick_));
   }
-  return near_bricks_.contains(brick_key(brick));
+  return brick_key(brick);
+}
+
+Vector3 SourceSurface::low_of_brick(std::uint64_t key) const {
+  constexpr std::int64_t kBias = std::int64_t{1} << (kBrickBits - 1);
+  Vector3 low;
+  for (int a = 2; a >= 0; --a) {
+    const auto kept = static_cast<std::int64_t>(key & ((std::uint64_t{1} << kBrickBits) - 1));
+    low[a] = static_cast<double>(kept - kBias) * brick_;
+    key >>= static_cast<unsigned>(kBrickBits);
+  }
+  return low;
+}
+
+bool SourceSurface::is_near(const Vector3& point) const {
+  return near_bricks_.contains(brick_of(point));
+}
+
+std::span<const std::int32_t> SourceSurface::meeting_parts(const Vector3& point) const {
+  const auto found = meetings_.find(brick_of(point));
+  if (found == meetings_.end() || found->second.count > kMostMeeting) return {};
+  return {found->second.parts.data(), found->second.count};
 }
 
 void SourceSurface::build_trees(const Progress& progress, int threads) {
@@ -190,7 +225,7 @@ void SourceSurface::build_trees(const Progress& progress, int threads) {
   for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
     if (regions_.labels[t] < 0) continue;
     const auto triangle = static_cast<std::int32_t>(t);
-    const BrickRange range(box_of(corners_of(triangle)), cell_, brick_);
+    const BrickRange range(box_of(corners_of(triangle)), kSearchCells * cell_, brick_);
     bool is_near = range.count > kMostBricks;
     if (!is_near) {
       range.for_each([&](std::uint64_t key) { is_near = is_near || near_bricks_.contains(key); });
@@ -227,11 +262,77 @@ void SourceSurface::build_trees(const Progress& progress, int threads) {
       progress.part(0.7, 1.0), &borders_);
 }
 
-SourcePoint SourceSurface::point_at(std::int32_t triangle, const Vector3& position) const {
+SourcePoint SourceSurface::point_on(std::int32_t triangle, const Vector3& position) const {
   const auto t = static_cast<std::size_t>(triangle);
   const Vector3 a = regions_.corner(t, 0);
   const Vector3 twice = cross(regions_.corner(t, 1) - a, regions_.corner(t, 2) - a);
   return {position, (1.0 / length(twice)) * twice, triangle, regions_.labels[t]};
+}
+
+std::vector<SourceCrossing> SourceSurface::crossings(const Vector3& a, const Vector3& b) const {
+  std::vector<SourceCrossing> found;
+  triangle_tree_.for_overlapping(box_of(a, b), [&](std::size_t node) {
+    for (std::size_t i = triangle_tree_.nodes()[node].begin; i < triangle_tree_.nodes()[node].end;
+         ++i) {
+      const auto t = static_cast<std::size_t>(triangles_[i]);
+      const std::optional<double> at =
+          meeting(a, b, {regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)});
+      if (at) found.push_back({*at, triangles_[i]});
+    }
+  });
+  std::sort(found.begin(), found.end(), [](const SourceCrossing& x, const SourceCrossing& y) {
+    return x.share != y.share ? x.share < y.share : x.triangle < y.triangle;
+  });
+  constexpr double kSame = 1e-9;
+  std::vector<SourceCrossing> single;
+  for (const SourceCrossing& hit : found) {
+    const bool is_again =
+        std::any_of(single.begin(), single.end(), [&](const SourceCrossing& other) {
+          return hit.share - other.share < kSame &&
+                 regions_.parts[static_cast<std::size_t>(hit.triangle)] ==
+                     regions_.parts[static_cast<std::size_t>(other.triangle)];
+        });
+    if (!is_again) single.push_back(hit);
+  }
+  return single;
+}
+
+std::optional<SourcePoint> SourceSurface::nearest_plane(const Vector3& point, double reach,
+                                                        std::int32_t part) const {
+  if (triangle_tree_.is_empty()) return std::nullopt;
+  // At an edge or a corner the triangle that faces the point most tells its side.
+  constexpr double kTie = 1e-9;
+  double least = reach * reach;
+  double facing = 0.0;
+  std::optional<SourcePoint> found;
+  triangle_tree_.search(
+      point, [&](double squared, std::size_t) { return squared <= least * (1.0 + kTie); },
+      [&](std::size_t node) {
+        for (std::size_t i = triangle_tree_.nodes()[node].begin;
+             i < triangle_tree_.nodes()[node].end; ++i) {
+          const std::int32_t triangle = triangles_[i];
+          const auto t = static_cast<std::size_t>(triangle);
+          if (regions_.parts[t] != part) continue;
+          const std::array<Vector3, 3> corners = {regions_.corner(t, 0), regions_.corner(t, 1),
+                                                  regions_.corner(t, 2)};
+          const Vector3 weights = nearest_weights(point, corners[0], corners[1], corners[2]);
+          const Vector3 at =
+              weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+          const Vector3 offset = point - at;
+          const double squared = dot(offset, offset);
+          if (squared > least * (1.0 + kTie)) continue;
+          const SourcePoint candidate = point_on(triangle, at);
+          const double height = std::abs(dot(candidate.normal, offset));
+          const bool is_nearer = squared < least * (1.0 - kTie);
+          if (!found || is_nearer || height > facing ||
+              (height == facing && triangle < found->triangle)) {
+            found = candidate;
+            facing = height;
+          }
+          least = is_nearer ? squared : std::min(least, squared);
+        }
+      });
+  return found;
 }
 
 std::optional<SourcePoint> SourceSurface::crossing(const Vector3& a, const Vector3& b,
@@ -257,7 +358,7 @@ std::optional<SourcePoint> SourceSurface::crossing(const Vector3& a, const Vecto
     }
   });
   if (best < 0) return std::nullopt;
-  return point_at(best, found);
+  return point_on(best, found);
 }
 
 std::optional<SourcePoint> SourceSurface::nearest(const Vector3& point, double reach,
@@ -289,7 +390,7 @@ std::optional<SourcePoint> SourceSurface::nearest(const Vector3& point, double r
         }
       });
   if (best < 0) return std::nullopt;
-  return point_at(best, found);
+  return point_on(best, found);
 }
 
 std::optional<Vector3> SourceSurface::nearest_border(const Vector3& point, double reach,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -21,6 +22,12 @@ struct SourcePoint {
   Vector3 normal;
   std::int32_t triangle;
   std::int32_t label;
+};
+
+/// Where a segment meets a triangle, as a share of it.
+struct SourceCrossing {
+  double share;
+  std::int32_t triangle;
 };
 
 /// What searches find is the same for any number of threads. Lengths are the frame's.
@@ -41,6 +48,32 @@ class SourceSurface {
   std::optional<SourcePoint> crossing(const Vector3& a, const Vector3& b,
                                       const Vector3& expected) const;
 
+  /// All places where it does, in order; one where that is an edge between triangles of a part.
+  std::vector<SourceCrossing> crossings(const Vector3& a, const Vector3& b) const;
+
+  /// A point of a triangle.
+  SourcePoint point_on(std::int32_t triangle, const Vector3& position) const;
+
+  /// The parts that may meet within a cell or two of a point; none where that are fewer than two,
+  /// or very many.
+  std::span<const std::int32_t> meeting_parts(const Vector3& point) const;
+
+  bool has_meetings() const { return !meetings_.empty(); }
+
+  /// Calls visit(low corner, side) for the cubes where parts may meet.
+  template <typename Visit>
+  void for_meeting_bricks(const Visit& visit) const {
+    for (const auto& [key, parts] : meetings_) {
+      if (parts.count > 1) visit(low_of_brick(key), brick_);
+    }
+  }
+
+  /// The plane of the triangle of a part that is nearest to a point, and of several the one that
+  /// faces it most: the point is inside of the part where it is behind that. None where it is
+  /// farther than `reach`.
+  std::optional<SourcePoint> nearest_plane(const Vector3& point, double reach,
+                                           std::int32_t part) const;
+
   /// The nearest point within `reach`, of one region unless `label` is -1.
   std::optional<SourcePoint> nearest(const Vector3& point, double reach, std::int32_t label) const;
 
@@ -54,12 +87,20 @@ class SourceSurface {
   void mark_meetings(const Progress& progress);
   void mark_around(const Box& box);
   void build_trees(const Progress& progress, int threads);
-  SourcePoint point_at(std::int32_t triangle, const Vector3& position) const;
+  static constexpr std::size_t kMostMeeting = 6;
+  struct Meeting {
+    std::array<std::int32_t, kMostMeeting> parts;
+    std::size_t count = 0;
+    void add(std::int32_t part);
+  };
+  Vector3 low_of_brick(std::uint64_t key) const;
+  std::uint64_t brick_of(const Vector3& point) const;
 
   SourceRegions regions_;
   double cell_;
   double brick_;
   std::unordered_set<std::uint64_t> near_bricks_;
+  std::unordered_map<std::uint64_t, Meeting> meetings_;
   std::vector<std::int32_t> triangles_;  // near borders, along the curve
   BoxTree triangle_tree_;
   std::vector<std::int32_t> borders_;

@@ -12,6 +12,7 @@
 #include "prefilter/contour/dual_cells.h"
 #include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/marching_table.h"
+#include "prefilter/contour/part_sides.h"
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/sharp_vertices.h"
 #include "prefilter/contour/sharpen.h"
@@ -275,20 +276,28 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
                                                  options.interpolant == Interpolant::kSharp);
   if (fits) settle_sides(cutting.part(0.1, 0.3), options.threads, &tree);
   const RootFrame frame(root);
+  std::optional<SourceSurface> surface;
+  std::optional<PartSides> part_sides;
+  if (fits && !options.sources.empty()) {
+    surface.emplace(options.sources, frame, frame.cell(0, cells.depth()), Progress(),
+                    options.threads);
+    if (surface->has_meetings()) {
+      part_sides.emplace(tree, frame, *surface, Progress());
+      part_sides->settle(Progress(), options.threads, &tree);
+    }
+  }
   SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.3, 0.5),
                            options.threads);
   if (fits) {
     fit_vertices(tree, frame, cutting.part(0.5, 0.6), options.threads, &vertices);
   }
-  std::optional<SourceSurface> surface;
   VertexSamples samples;
   std::vector<Vector3> crossings;
   std::optional<Division> division;
-  if (fits && !options.sources.empty()) {
+  if (surface) {
     crossings = vertices.positions();
-    surface.emplace(options.sources, frame, frame.cell(0, cells.depth()), Progress(),
-                    options.threads);
-    samples = sample_vertices(tree, frame, *surface, Progress(), options.threads, &vertices);
+    samples = sample_vertices(tree, frame, *surface, part_sides ? &*part_sides : nullptr,
+                              Progress(), options.threads, &vertices);
     division.emplace(*surface, samples);
   }
   const DualCells dual(tree);
