@@ -95,6 +95,10 @@ FUNCTIONS = {
         prefilter.close_holes,
         {"positions": BOX.positions, "triangles": BOX.triangles},
     ),
+    "as_solid": (
+        prefilter.as_solid,
+        {"positions": BOX.positions, "triangles": BOX.triangles, "cell": 0.1},
+    ),
     "reconstruct": (
         prefilter.reconstruct,
         {"points": CLOUD.points, "normals": CLOUD.normals, "depth": 3},
@@ -903,6 +907,23 @@ CLOSE_ROWS = [
         ({"progress": 3}, ["progress: 3", "a callable"]),
     )
 ]
+SOLID_ROWS = [
+    ("as_solid", arguments, words)
+    for arguments, words in (
+        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: vertex 3", "nan"]),
+        ({"positions": BOX.positions[:, :2]}, ["positions: shape (8, 2)", "(vertices, 3) is"]),
+        ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
+        ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
+        ({"cell": 0}, ["cell: 0", "above 0"]),
+        ({"cell": NAN}, ["cell: nan", "above 0"]),
+        ({"cell": "small"}, ["cell: 'small'"]),
+        ({"weld": -0.1}, ["weld: -0.1", "0 or more"]),
+        ({"gap": np.inf}, ["gap: inf", "finite"]),
+        ({"thickness": -1}, ["thickness: -1", "0 or more"]),
+        ({"threads": -1}, ["threads: -1", THREADS]),
+        ({"progress": 3}, ["progress: 3", "a callable"]),
+    )
+]
 CONTOUR_ROWS = [
     ("contour", arguments, words)
     for arguments, words in (
@@ -923,7 +944,7 @@ CONTOUR_ROWS = [
         ({"progress": 3}, ["progress: 3", "a callable"]),
     )
 ]
-ROWS += VOXEL_ROWS + NEAREST_ROWS + CUBE_ROWS + CLOSE_ROWS + CONTOUR_ROWS
+ROWS += VOXEL_ROWS + NEAREST_ROWS + CUBE_ROWS + CLOSE_ROWS + SOLID_ROWS + CONTOUR_ROWS
 # Where something stands in the way on the disk.
 PLACES = [
     ("nowhere/out.dds", ["path: there is no folder", "nowhere"]),
@@ -1009,6 +1030,7 @@ def test_every_function_is_there():
         "SamplingTable",
         "ScanPoints",
         "Shape",
+        "SolidMesh",
         "Surface",
         "SvgDrawing",
         "SvgWarning",

@@ -26,6 +26,7 @@ from .sampling_tables import SamplingTable, TableSection
 from .scan_files import POINT_EXTENSIONS, ScanPoints, read_points
 from .shapes import RASTER_FILTERS, Shape, rasterize
 from .solid import ClosedMesh, close_holes
+from .solid_meshes import SolidMesh, as_solid
 from .stochastic_sampling import PickedTexels, pick_texels, sample_stochastic
 from .surface import Surface
 from .svg import SvgDrawing, read_svg
@@ -54,10 +55,12 @@ __all__ = [
     "SamplingTable",
     "ScanPoints",
     "Shape",
+    "SolidMesh",
     "Surface",
     "SvgDrawing",
     "SvgWarning",
     "TableSection",
+    "as_solid",
     "close_holes",
     "contour",
     "cube_around",

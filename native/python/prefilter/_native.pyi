@@ -455,6 +455,19 @@ def voxelize(
 def cube_around(
     box: tuple[list[float], list[float]], depth: int
 ) -> tuple[list[float], list[float]]: ...
+def as_solid(
+    positions: npt.NDArray[np.float64],
+    triangles: npt.NDArray[np.int64],
+    cell: float,
+    weld: float,
+    gap: float,
+    thickness: float,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[
+    tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]] | None,
+    tuple[int, int, int, int, int, int, int, int],
+]: ...
 def close_holes(
     positions: npt.NDArray[np.float64],
     triangles: npt.NDArray[np.int64],

@@ -1,0 +1,77 @@
+// Items put together by what they have in common, in parallel.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prefilter/base/parallel.h"
+
+namespace prefilter {
+
+/// Numbers in buckets; those of a bucket are in order.
+class Buckets {
+ public:
+  Buckets() = default;
+
+  /// Puts in some numbers: `for_items(begin, end, put)` calls put(bucket, number) for what the rows
+  /// [begin, end) of `rows` have, the same whenever it is called.
+  template <typename ForItems>
+  Buckets(std::size_t buckets, std::size_t rows, const ForItems& for_items,
+          const Progress& progress, int threads);
+
+  std::size_t size() const { return starts_.size() - 1; }
+  std::span<const std::uint64_t> operator[](std::size_t bucket) const {
+    return std::span(numbers_).subspan(starts_[bucket], starts_[bucket + 1] - starts_[bucket]);
+  }
+
+ private:
+  std::vector<std::uint64_t> starts_ = {0};
+  std::vector<std::uint64_t> numbers_;
+};
+
+template <typename ForItems>
+Buckets::Buckets(std::size_t buckets, std::size_t rows, const ForItems& for_items,
+                 const Progress& progress, int threads) {
+  constexpr std::int64_t kRowsPerTask = 1 << 14;
+  const auto count = static_cast<std::int64_t>(rows);
+  starts_.assign(buckets + 1, 0);
+  const auto next = [&](std::size_t bucket) {
+    return std::atomic_ref(starts_[bucket]).fetch_add(1, std::memory_order_relaxed);
+  };
+  parallel_ranges(count, kRowsPerTask, threads, progress.part(0.0, 0.3),
+                  [&](std::int64_t begin, std::int64_t end) {
+                    for_items(static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
+                              [&](std::size_t bucket, std::uint64_t) { next(bucket); });
+                  });
+  std::uint64_t sum = 0;
+  for (std::uint64_t& start : starts_) {
+    sum += start;
+    start = sum - start;
+  }
+  numbers_.resize(sum);
+  parallel_ranges(count, kRowsPerTask, threads, progress.part(0.3, 0.8),
+                  [&](std::int64_t begin, std::int64_t end) {
+                    for_items(static_cast<std::size_t>(begin), static_cast<std::size_t>(end),
+                              [&](std::size_t bucket, std::uint64_t number) {
+                                numbers_[next(bucket)] = number;
+                              });
+                  });
+  // Each start has become the next one's.
+  for (std::size_t bucket = buckets; bucket > 0; --bucket) starts_[bucket] = starts_[bucket - 1];
+  starts_[0] = 0;
+  parallel_ranges(static_cast<std::int64_t>(buckets), kRowsPerTask, threads,
+                  progress.part(0.8, 1.0), [&](std::int64_t begin, std::int64_t end) {
+                    for (auto b = static_cast<std::size_t>(begin);
+                         b < static_cast<std::size_t>(end); ++b) {
+                      const auto first = numbers_.begin();
+                      std::sort(first + static_cast<std::ptrdiff_t>(starts_[b]),
+                                first + static_cast<std::ptrdiff_t>(starts_[b + 1]));
+                    }
+                  });
+}
+
+}  // namespace prefilter

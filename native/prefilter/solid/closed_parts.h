@@ -1,0 +1,18 @@
+// Whether a mesh is a solid as it is.
+#pragma once
+
+#include <cstddef>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
+
+namespace prefilter {
+
+/// Whether each edge is run through as often one way as the other, no triangle is there twice the
+/// same way, no part (what hangs together by vertices) is the same as another, each is right side
+/// out or a cavity of one that is, and none is thinner than `thickness` on average. Sets the number
+/// of parts. Precondition: check_mesh.
+bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress, int threads,
+              std::size_t* part_count);
+
+}  // namespace prefilter

@@ -1,0 +1,255 @@
+#include "prefilter/solid/weld.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/pulse.h"
+#include "prefilter/solid/buckets.h"
+#include "prefilter/solid/edge_table.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::int64_t kRowsPerTask = 1 << 14;
+// Welding must leave triangles their corners: of the shortest edge at a vertex.
+constexpr double kShareOfEdge = 1.0 / 3.0;
+
+std::uint64_t mixed(std::uint64_t x) {
+  x ^= x >> 30U;
+  x *= 0xBF58476D1CE4E5B9U;
+  x ^= x >> 27U;
+  x *= 0x94D049BB133111EBU;
+  return x ^ (x >> 31U);
+}
+
+// The same for positions that are equal; 0 and -0 are.
+std::uint64_t hash_of(const Vector3& p) {
+  std::uint64_t hash = 0;
+  for (const double x : p) hash = mixed(hash + std::bit_cast<std::uint64_t>(x + 0.0));
+  return hash;
+}
+
+// Renames the corners of all triangles. Returns how many vertices that were named are renamed.
+std::size_t rename(const std::vector<std::int32_t>& names, WorkMesh* mesh) {
+  std::vector<bool> is_renamed(names.size(), false);
+  std::size_t count = 0;
+  for (auto& triangle : mesh->triangles) {
+    for (std::int32_t& vertex : triangle) {
+      const auto v = static_cast<std::size_t>(vertex);
+      if (names[v] == vertex) continue;
+      if (!is_renamed[v]) ++count;
+      is_renamed[v] = true;
+      vertex = names[v];
+    }
+  }
+  return count;
+}
+
+// Points put into cells of a grid as they come, to be found by others nearby.
+class NearbyPoints {
+ public:
+  NearbyPoints(std::size_t count, double distance)
+      : side_(2.0 * distance), heads_(std::bit_ceil(2 * count + 1), kNone), next_(count, kNone) {}
+
+  void add(std::uint32_t item, const Vector3& p) {
+    const std::size_t slot = slot_of({cell(p[0]), cell(p[1]), cell(p[2])});
+    next_[item] = heads_[slot];
+    heads_[slot] = item;
+  }
+
+  /// Visits at least all items within the distance, some perhaps twice.
+  template <typename Visit>
+  void visit(const Vector3& p, const Visit& visit_item) const {
+    Vector3 near;
+    Vector3 other;
+    for (std::size_t a = 0; a < 3; ++a) {
+      near[a] = cell(p[a]);
+      other[a] = near[a] + (p[a] / side_ - near[a] < 0.5 ? -1.0 : 1.0);
+    }
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Vector3 at;
+      for (std::size_t a = 0; a < 3; ++a) at[a] = ((corner >> a) & 1U) != 0U ? other[a] : near[a];
+      for (std::uint32_t i = heads_[slot_of(at)]; i != kNone; i = next_[i]) visit_item(i);
+    }
+  }
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  double cell(double x) const { return std::floor(x / side_); }
+  std::size_t slot_of(const Vector3& cell) const { return hash_of(cell) & (heads_.size() - 1); }
+
+  double side_;
+  std::vector<std::uint32_t> heads_;
+  std::vector<std::uint32_t> next_;
+};
+
+// The ends of edges with a single triangle, in order.
+std::vector<std::uint32_t> border_vertices(const WorkMesh& mesh, const Progress& progress,
+                                           int threads) {
+  const EdgeTable edges(mesh.view(), progress, threads);
+  std::vector<bool> is_border(mesh.positions.size(), false);
+  for (std::size_t low = 0; low < edges.vertex_count(); ++low) {
+    edges.for_edges_from(low, [&](std::size_t high, std::span<const std::uint64_t> uses) {
+      if (uses.size() != 1) return;
+      is_border[low] = true;
+      is_border[high] = true;
+    });
+  }
+  std::vector<std::uint32_t> vertices;
+  for (std::size_t v = 0; v < is_border.size(); ++v) {
+    if (is_border[v]) vertices.push_back(static_cast<std::uint32_t>(v));
+  }
+  return vertices;
+}
+
+double squared_length(const Vector3& a) { return dot(a, a); }
+
+}  // namespace
+
+std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads) {
+  const std::vector<Vector3>& positions = mesh->positions;
+  const std::size_t slots = std::bit_ceil(positions.size() / 2 + 1);
+  const Buckets buckets(
+      slots, positions.size(),
+      [&](std::size_t begin, std::size_t end, const auto& put) {
+        for (std::size_t v = begin; v < end; ++v) put(hash_of(positions[v]) & (slots - 1), v);
+      },
+      progress.part(0.0, 0.7), threads);
+  std::vector<std::int32_t> names(positions.size());
+  parallel_ranges(static_cast<std::int64_t>(slots), kRowsPerTask, threads, progress.part(0.7, 0.9),
+                  [&](std::int64_t begin, std::int64_t end) {
+                    for (auto slot = static_cast<std::size_t>(begin);
+                         slot < static_cast<std::size_t>(end); ++slot) {
+                      const std::span<const std::uint64_t> vertices = buckets[slot];
+                      for (std::size_t i = 0; i < vertices.size(); ++i) {
+                        std::size_t first = 0;
+                        while (positions[vertices[first]] != positions[vertices[i]]) ++first;
+                        names[vertices[i]] = static_cast<std::int32_t>(vertices[first]);
+                      }
+                    }
+                  });
+  const std::size_t count = rename(names, mesh);
+  progress.report(1.0);
+  return count;
+}
+
+std::size_t weld_borders(WorkMesh* mesh, double distance, const Progress& progress, int threads) {
+  const std::vector<Vector3>& positions = mesh->positions;
+  const std::vector<std::uint32_t> vertices =
+      border_vertices(*mesh, progress.part(0.0, 0.5), threads);
+  if (vertices.empty()) return 0;
+  // Of each vertex, the square of how far it may be from what it is welded with.
+  std::vector<double> reaches(positions.size(), distance * distance);
+  for (const auto& triangle : mesh->triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto a = static_cast<std::size_t>(triangle[i]);
+      const auto b = static_cast<std::size_t>(triangle[(i + 1) % 3]);
+      const double reach =
+          kShareOfEdge * kShareOfEdge * squared_length(positions[b] - positions[a]);
+      reaches[a] = std::min(reaches[a], reach);
+      reaches[b] = std::min(reaches[b], reach);
+    }
+  }
+  std::vector<std::int32_t> names(positions.size());
+  for (std::size_t v = 0; v < names.size(); ++v) names[v] = static_cast<std::int32_t>(v);
+  NearbyPoints kept(vertices.size(), distance);
+  const Progress welding = progress.part(0.5, 0.9);
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+    if (i % 4096 == 0)
+      welding.report(static_cast<double>(i) / static_cast<double>(vertices.size()));
+    const std::uint32_t v = vertices[i];
+    double nearest = std::numeric_limits<double>::infinity();
+    std::uint32_t name = v;
+    kept.visit(positions[v], [&](std::uint32_t other) {
+      const std::uint32_t w = vertices[other];
+      const double squared = squared_length(positions[w] - positions[v]);
+      if (squared > std::min(reaches[v], reaches[w])) return;
+      if (squared > nearest || (squared == nearest && w >= name)) return;
+      nearest = squared;
+      name = w;
+    });
+    names[v] = static_cast<std::int32_t>(name);
+    if (name == v) kept.add(i, positions[v]);
+  }
+  const std::size_t count = rename(names, mesh);
+  progress.report(1.0);
+  return count;
+}
+
+std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int threads) {
+  auto& triangles = mesh->triangles;
+  const auto sorted = [&](std::size_t t) {
+    std::array<std::int32_t, 3> corners = triangles[t];
+    std::sort(corners.begin(), corners.end());
+    return corners;
+  };
+  const auto is_degenerate = [&](std::size_t t) {
+    const auto& [a, b, c] = triangles[t];
+    return a == b || b == c || c == a;
+  };
+  // Whether the corners, from the lowest one on, go up.
+  const auto goes_up = [&](std::size_t t) {
+    const auto& [a, b, c] = triangles[t];
+    return (a < b) + (b < c) + (c < a) == 2;
+  };
+  const Buckets buckets(
+      mesh->positions.size(), triangles.size(),
+      [&](std::size_t begin, std::size_t end, const auto& put) {
+        for (std::size_t t = begin; t < end; ++t) {
+          if (is_degenerate(t)) continue;
+          const auto [a, b, c] = sorted(t);
+          put(static_cast<std::size_t>(a), t);
+        }
+      },
+      progress.part(0.0, 0.6), threads);
+  std::vector<std::uint8_t> is_kept(triangles.size(), 0);
+  parallel_ranges(
+      static_cast<std::int64_t>(buckets.size()), kRowsPerTask, threads, progress.part(0.6, 0.9),
+      [&](std::int64_t begin, std::int64_t end) {
+        struct Face {
+          std::array<std::int32_t, 3> corners;
+          std::uint64_t triangle;
+          bool operator<(const Face& other) const {
+            return corners != other.corners ? corners < other.corners : triangle < other.triangle;
+          }
+        };
+        std::vector<Face> faces;
+        for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
+          faces.clear();
+          for (const std::uint64_t t : buckets[b]) faces.push_back({sorted(t), t});
+          std::sort(faces.begin(), faces.end());
+          for (std::size_t i = 0; i < faces.size();) {
+            std::array<std::size_t, 2> counts{};
+            std::array<std::uint64_t, 2> firsts{};  // that goes down, that goes up
+            const std::size_t first = i;
+            for (; i < faces.size() && faces[i].corners == faces[first].corners; ++i) {
+              const std::size_t way = goes_up(faces[i].triangle) ? 1 : 0;
+              if (counts[way]++ == 0) firsts[way] = faces[i].triangle;
+            }
+            const std::size_t way = counts[0] != counts[1]
+                                        ? (counts[1] > counts[0] ? 1 : 0)
+                                        : (goes_up(faces[first].triangle) ? 1 : 0);
+            is_kept[firsts[way]] = 1;
+          }
+        }
+      });
+  std::size_t count = 0;
+  std::size_t duplicates = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (is_kept[t] == 0) {
+      if (!is_degenerate(t)) ++duplicates;
+      continue;
+    }
+    triangles[count] = triangles[t];
+    mesh->origins[count++] = mesh->origins[t];
+  }
+  triangles.resize(count);
+  mesh->origins.resize(count);
+  progress.report(1.0);
+  return duplicates;
+}
+
+}  // namespace prefilter
