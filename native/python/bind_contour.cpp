@@ -29,11 +29,12 @@ Interpolant interpolant_of(const std::string& name) {
 }
 
 ContourOptions contour_options(const std::string& interpolant, float isovalue, bool clean_up,
-                               const py::object& progress, int threads) {
+                               double adaptivity, const py::object& progress, int threads) {
   ContourOptions options;
   options.interpolant = interpolant_of(interpolant);
   options.isovalue = isovalue;
   options.clean_up = clean_up;
+  options.adaptivity = adaptivity;
   options.threads = threads;
   options.progress = to_progress(progress);
   return options;
@@ -53,8 +54,10 @@ using SourceArrays = std::tuple<Array<double>, Array<std::int64_t>, Array<std::i
 
 MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpolant,
                                 float isovalue, const std::vector<SourceArrays>& source_arrays,
-                                bool clean_up, const py::object& progress, int threads) {
-  ContourOptions options = contour_options(interpolant, isovalue, clean_up, progress, threads);
+                                bool clean_up, double adaptivity, const py::object& progress,
+                                int threads) {
+  ContourOptions options =
+      contour_options(interpolant, isovalue, clean_up, adaptivity, progress, threads);
   std::vector<SourceMesh> sources;
   for (const auto& [positions, triangles, groups] : source_arrays) {
     sources.push_back(
@@ -82,9 +85,10 @@ std::array<int, N> sides_of(const Array<float>& grid) {
 
 MeshArrays bound_contour_grid(const Array<float>& grid, const std::string& interpolant,
                               float isovalue, const Vector3& spacing, const Vector3& origin,
-                              bool clean_up, const py::object& progress, int threads) {
+                              bool clean_up, double adaptivity, const py::object& progress,
+                              int threads) {
   const ContourOptions options =
-      contour_options(interpolant, isovalue, clean_up, progress, threads);
+      contour_options(interpolant, isovalue, clean_up, adaptivity, progress, threads);
   const GridView view{grid.data(), sides_of<3>(grid)};
   TriangleMesh mesh;
   {
@@ -100,7 +104,7 @@ std::vector<Array<double>> bound_contour_outlines(const Array<float>& grid,
                                                   const std::string& interpolant, float isovalue,
                                                   const Pair& spacing, const Pair& origin,
                                                   const py::object& progress) {
-  const ContourOptions options = contour_options(interpolant, isovalue, false, progress, 1);
+  const ContourOptions options = contour_options(interpolant, isovalue, false, 0.0, progress, 1);
   const PlaneView view{grid.data(), sides_of<2>(grid)};
   std::vector<OutlinePoints> outlines;
   {
@@ -120,12 +124,12 @@ std::vector<Array<double>> bound_contour_outlines(const Array<float>& grid,
 void bind_contour(py::module_& m) {
   m.def("contour_grid", &bound_contour_grid, py::arg("grid"), py::arg("interpolant"),
         py::arg("isovalue"), py::arg("spacing"), py::arg("origin"), py::arg("clean_up"),
-        py::arg("progress"), py::arg("threads"));
+        py::arg("adaptivity"), py::arg("progress"), py::arg("threads"));
   m.def("contour_outlines", &bound_contour_outlines, py::arg("grid"), py::arg("interpolant"),
         py::arg("isovalue"), py::arg("spacing"), py::arg("origin"), py::arg("progress"));
   m.def("contour_octree", &bound_contour_octree, py::arg("octree"), py::arg("interpolant"),
-        py::arg("isovalue"), py::arg("sources"), py::arg("clean_up"), py::arg("progress"),
-        py::arg("threads"));
+        py::arg("isovalue"), py::arg("sources"), py::arg("clean_up"), py::arg("adaptivity"),
+        py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -172,3 +172,103 @@ def test_clean_up_is_the_default():
 def test_stops_when_asked():
     with pytest.raises(prefilter.Cancelled):
         prefilter.contour(np.zeros((64, 64, 64)), progress=lambda fraction: False)
+
+
+def sampled(positions, triangles, count, seed):
+    """Random points all over a surface, and some of its vertices."""
+    random = np.random.default_rng(seed)
+    corners = positions[triangles]
+    areas = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    chosen = corners[random.choice(len(corners), count, p=areas / areas.sum())]
+    inner = np.einsum("ij,ijk->ik", random.dirichlet((1, 1, 1), count), chosen)
+    return np.concatenate([random.permutation(positions)[:count], inner])
+
+
+def distances(points, positions, triangles):
+    """Of points from a surface, by trying all of its triangles."""
+    least = np.full(len(points), np.inf)
+    for a, b, c in positions[triangles]:
+        normal = np.cross(b - a, c - a)
+        normal /= np.linalg.norm(normal)
+        inside = np.ones(len(points), bool)
+        for start, end in ((a, b), (b, c), (c, a)):
+            side = end - start
+            inside &= (points - start) @ np.cross(normal, side) >= 0
+            along = ((points - start) @ side / (side @ side)).clip(0, 1)
+            apart = np.linalg.norm(points - start - along[:, None] * side, axis=1)
+            least = np.minimum(least, apart)
+        least = np.where(inside, np.minimum(least, np.abs((points - a) @ normal)), least)
+    return least
+
+
+@pytest.mark.parametrize("interpolant", INTERPOLANTS)
+@pytest.mark.parametrize("adaptivity", [0.02, 0.1, 0.5])
+def test_adaptive_surfaces_stay_within_their_distance(interpolant, adaptivity):
+    solid = solids.join(
+        solids.torus(1.0, 0.4, 40, 24), solids.box((1.2, -0.2, -0.7), (2.1, 0.6, 0.9))
+    )
+    octree = prefilter.voxelize(solid.positions, solid.triangles, depth=5)
+    cell = (np.array(octree.bounds[1]) - octree.bounds[0])[0] / 2**5
+    full = octree.contour(interpolant=interpolant)
+    fewer = octree.contour(interpolant=interpolant, adaptivity=adaptivity)
+    assert len(fewer[1]) < len(full[1])
+    assert solids.surface_faults(*fewer).none
+    for one, other in ((full, fewer), (fewer, full)):
+        found = distances(sampled(*one, 700, 5), *other)
+        assert found.max() <= adaptivity * cell
+
+
+@pytest.mark.parametrize("seed", [None, 3, 4])
+def test_an_adaptive_box_has_twelve_triangles(seed):
+    """Vertices on its planes; edges and corners from the mesh that it was made of."""
+    solid = solids.box((0.1, 0.2, 0.3), (1.4, 1.1, 1.2))
+    if seed is not None:
+        solid = solid.transformed(solids.random_rotation(seed))
+    octree = prefilter.voxelize(solid.positions, solid.triangles, depth=6)
+    source = (solid.positions, solid.triangles)
+    positions, triangles = octree.contour(
+        interpolant="sharp", sources=[source], cleanup=False, adaptivity=0.02
+    )
+    assert solids.surface_faults(positions, triangles).none
+    assert len(triangles) == 12
+    assert distances(solid.positions, positions, triangles).max() < 1e-6
+    assert enclosed(positions, triangles) == pytest.approx(solid.volume, rel=1e-6)
+
+
+def test_adaptivity_is_in_cells():
+    grid = slab(24, (0.36, 0.48, 0.8), 20.0).astype(np.float32)
+    fewer = prefilter.contour(grid, interpolant="linear", adaptivity=0.1)
+    wider = prefilter.contour(
+        grid, interpolant="linear", spacing=(4, 8, 8), origin=100, adaptivity=0.1
+    )
+    other = prefilter.contour(grid, interpolant="linear", spacing=4, origin=100, adaptivity=0.1)
+    np.testing.assert_array_equal(other[1], fewer[1])
+    assert solids.surface_faults(*wider).none
+    full = prefilter.contour(grid, interpolant="linear", spacing=(4, 8, 8), origin=100)
+    assert distances(sampled(*full, 1000, 6), *wider).max() <= 0.1 * 4
+
+
+def test_adaptivity_does_not_depend_on_threads():
+    solid = solids.sphere(0.4, 4, (0.5, 0.5, 0.5))
+    octree = prefilter.voxelize(solid.positions, solid.triangles, depth=7)
+    first, other = (octree.contour(adaptivity=0.1, threads=threads) for threads in (1, 3))
+    np.testing.assert_array_equal(first[0], other[0])
+    np.testing.assert_array_equal(first[1], other[1])
+
+
+@pytest.mark.parametrize("adaptivity", [-0.1, np.nan, np.inf, 1e7])
+def test_adaptivity_out_of_range_is_refused(adaptivity):
+    octree = prefilter.voxelize(*vars(solids.box()).values(), depth=3)
+    with pytest.raises(ValueError, match=r"adaptivity: found .* allowed are 0 to 1e"):
+        octree.contour(adaptivity=adaptivity)
+    with pytest.raises(ValueError, match=r"adaptivity: found .* allowed are 0 to 1e"):
+        prefilter.contour(np.ones((4, 4, 4)), adaptivity=adaptivity)
+
+
+def test_adaptive_contours_stop_when_asked():
+    solid = solids.sphere(0.4, 4, (0.5, 0.5, 0.5))
+    octree = prefilter.voxelize(solid.positions, solid.triangles, depth=6)
+    with pytest.raises(prefilter.Cancelled):
+        octree.contour(adaptivity=0.1, progress=lambda fraction: fraction < 0.6)

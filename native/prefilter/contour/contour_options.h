@@ -27,6 +27,9 @@ struct ContourOptions {
   Interpolant interpolant = Interpolant::kOccupancy;
   float isovalue = 0.5F;  // samples of at least this are inside
   bool clean_up = false;  // collapse edges that make slivers
+  // How far a surface may be from the full contour where it gets larger triangles, in cells of the
+  // finest depth, along their shortest side; 0: it is the full one.
+  double adaptivity = 0.0;
   // What kSharp takes the edges and corners from.
   std::span<const SourceMesh> sources;
   int threads = 0;  // 0: all processors

@@ -9,6 +9,7 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/base/text.h"
 #include "prefilter/contour/dual_cells.h"
 #include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/marching_table.h"
@@ -19,11 +20,13 @@
 #include "prefilter/contour/source_surface.h"
 #include "prefilter/contour/surface_vertices.h"
 #include "prefilter/remesh/clean_up.h"
+#include "prefilter/remesh/simplify.h"
 
 namespace prefilter {
 namespace {
 
 constexpr std::int64_t kPartsPerTask = 8;
+constexpr double kLargestAdaptivity = 1e6;  // in cells: beyond the largest root
 
 using Triangle = std::array<std::int32_t, 3>;
 
@@ -247,7 +250,8 @@ LoopedMesh join(const Progress& progress, SurfaceVertices* vertices,
 }
 
 // Leaves out the vertices that no triangle has; returns where the others were.
-std::vector<std::int32_t> leave_out_unused(TriangleMesh* mesh) {
+template <typename Mesh>
+std::vector<std::int32_t> leave_out_unused(Mesh* mesh) {
   std::vector<std::int32_t> places(mesh->positions.size(), -1);
   for (const Triangle& triangle : mesh->triangles) {
     for (const std::int32_t vertex : triangle) places[static_cast<std::size_t>(vertex)] = 0;
@@ -269,7 +273,8 @@ std::vector<std::int32_t> leave_out_unused(TriangleMesh* mesh) {
 // The contour of a tree whose root is split.
 TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options) {
   constexpr double kPlacing = 0.98;
-  const double cleaning = options.clean_up ? 0.3 : kPlacing;
+  const double simplifying = options.adaptivity > 0.0 ? 0.4 : kPlacing;
+  const double cleaning = options.clean_up ? 0.3 * simplifying : simplifying;
   const Progress cutting = options.progress.part(0.0, cleaning);
   ContourTree tree(cells, options.isovalue, cutting.part(0.0, 0.1), options.threads);
   const bool fits = options.isovalue == 0.5F && (options.interpolant == Interpolant::kPlane ||
@@ -313,20 +318,31 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   };
   parallel_ranges(parts, kPartsPerTask, options.threads, cutting.part(0.6, 0.95), make_some);
   LoopedMesh looped = join(cutting.part(0.95, 1.0), &vertices, &tasks);
-  TriangleMesh mesh;
+  FacetedMesh mesh;
   if (surface) {
-    FacetedMesh faceted =
-        sharpen(std::move(looped), crossings, *surface, samples, Progress(), options.threads);
-    mesh = {std::move(faceted.positions), std::move(faceted.triangles)};
-    leave_out_unused(&mesh);
+    mesh = sharpen(std::move(looped), crossings, *surface, samples, Progress(), options.threads);
+    const std::vector<std::int32_t> used = leave_out_unused(&mesh);
+    for (std::size_t i = 0; i < used.size() && !mesh.kinds.empty(); ++i) {
+      mesh.kinds[i] = mesh.kinds[static_cast<std::size_t>(used[i])];
+    }
+    mesh.kinds.resize(std::min(mesh.kinds.size(), used.size()));
   } else {
-    mesh = {std::move(looped.positions), std::move(looped.triangles)};
+    mesh.positions = std::move(looped.positions);
+    mesh.triangles = std::move(looped.triangles);
   }
   if (options.clean_up) {
-    mesh = clean_up(std::move(mesh), options.progress.part(cleaning, kPlacing), options.threads);
+    TriangleMesh cleaned = clean_up({std::move(mesh.positions), std::move(mesh.triangles)},
+                                    options.progress.part(cleaning, simplifying), options.threads);
+    mesh = {std::move(cleaned.positions), std::move(cleaned.triangles), {}, {}};
+  }
+  if (options.adaptivity > 0.0) {
+    double cell = frame.cell(0, cells.depth());
+    for (int a = 1; a < 3; ++a) cell = std::min(cell, frame.cell(a, cells.depth()));
+    mesh = simplify(std::move(mesh), options.adaptivity * cell,
+                    options.progress.part(simplifying, kPlacing), options.threads);
   }
   frame.place(options.progress.part(kPlacing, 1.0), options.threads, &mesh.positions);
-  return mesh;
+  return {std::move(mesh.positions), std::move(mesh.triangles)};
 }
 }  // namespace
 
@@ -356,6 +372,10 @@ ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant inte
 
 TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourOptions& options) {
   check_box(root, "bounds");
+  if (!(options.adaptivity >= 0.0 && options.adaptivity <= kLargestAdaptivity)) {
+    throw_invalid("adaptivity: found " + to_text(options.adaptivity) + "; allowed are 0 to " +
+                  to_text(kLargestAdaptivity));
+  }
   if (!cells.levels.empty()) return contour_split(cells, root, options);
   CellTree split;
   split.root = cells.root;

@@ -22,11 +22,11 @@ constexpr double kCrossing = 0.1;
 // Vertices with more neighbours than this stay.
 constexpr std::size_t kMostNeighbours = 64;
 constexpr int kMostTries = 4;
-constexpr double kLeastCosine = 0.8660254037844386;        // 30 degrees
-constexpr double kSliverLeastCosine = 0.5;                 // 60 degrees
-constexpr double kSliver = 0.1;                            // height over longest side
-constexpr double kLeastHeight = 1.0;                       // of triangles, in tolerances
-constexpr double kLargestCost = 16.0;                      // squared distance from planes
+constexpr double kLeastCosine = 0.8660254037844386;  // 30 degrees
+constexpr double kSliverLeastCosine = 0.5;           // 60 degrees
+constexpr double kSliver = 0.1;                      // height over longest side
+constexpr double kLeastHeight = 1.0;                 // of triangles, in tolerances
+constexpr double kLargestCost = 16.0;                // squared distance from planes
 constexpr double kLengthWeight = 1e-6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -389,7 +389,8 @@ class Decimator {
     bool is_linked = false;
     for_corners(v, [&](std::int32_t t, std::int32_t corner) {
       const auto& corners = triangle(t).corners;
-      for (const std::int32_t other : {corners[index((corner + 1) % 3)], corners[index((corner + 2) % 3)]}) {
+      for (const std::int32_t other :
+           {corners[index((corner + 1) % 3)], corners[index((corner + 2) % 3)]}) {
         is_linked = is_linked || slots_[index(other)] == -1 - u;
       }
     });
@@ -441,7 +442,8 @@ class Decimator {
       MeasuredTriangle& made = made_[i];
       made = MeasuredTriangle(to, p, q);
       const double size = std::sqrt(made.squared_normal);
-      const double longest = std::sqrt(std::max({squared(p - to), squared(q - to), squared(q - p)}));
+      const double longest =
+          std::sqrt(std::max({squared(p - to), squared(q - to), squared(q - p)}));
       if (!(size >= least_height * longest && size > 0.0)) return false;
       if (is_sliver_[i]) {
         if (!(dot(made.normal, sector_normals_[sectors_[i]]) >= kSliverLeastCosine * size)) {
@@ -454,8 +456,8 @@ class Decimator {
     return true;
   }
 
-  // The ring's triangle whose new one is nearest to a point, where that is near enough; -1 where none
-  // is. The one that it was near to comes first.
+  // The ring's triangle whose new one is nearest to a point, where that is near enough; -1 where
+  // none is. The one that it was near to comes first.
   std::int32_t find_near(const Vector3& p, std::size_t hint, std::size_t spoke, double most) const {
     const std::size_t before = ring_.before(spoke);
     const bool is_hint_new = hint != spoke && hint != before;
@@ -517,8 +519,7 @@ class Decimator {
   }
 
   bool may_collapse(std::int32_t u, std::size_t spoke, Outcome* outcome) {
-    if (!keeps_creases(u, spoke, outcome) || !make_triangles(spoke) ||
-        !is_sound(u, spoke)) {
+    if (!keeps_creases(u, spoke, outcome) || !make_triangles(spoke) || !is_sound(u, spoke)) {
       return false;
     }
     places_.clear();
@@ -536,8 +537,7 @@ class Decimator {
     const double gap = measure_crossings(u, spoke, most);
     if (gap < 0.0) return false;
     if (!has_points_) {
-      const double moved =
-          std::max(gap, std::sqrt(made_[index(near)].squared_distance(point(u))));
+      const double moved = std::max(gap, std::sqrt(made_[index(near)].squared_distance(point(u))));
       if (ring_error_ + moved <= kAddedUp) {
         outcome->error = ring_error_ + moved;
         return true;
@@ -580,8 +580,9 @@ class Decimator {
   }
 
   // Where creases of the two sides that become one go: to both triangles beside it.
-  void join_sides(std::int32_t v, std::size_t dead, std::size_t dead_side_u, std::size_t dead_side_v,
-                  std::size_t beside, std::size_t beside_side, std::int32_t w, const Outcome& outcome) {
+  void join_sides(std::int32_t v, std::size_t dead, std::size_t dead_side_u,
+                  std::size_t dead_side_v, std::size_t beside, std::size_t beside_side,
+                  std::int32_t w, const Outcome& outcome) {
     const PatchTriangle gone = triangle(ring_.triangles[dead]);
     PatchTriangle& kept = triangle(ring_.triangles[beside]);
     const bool from_u = ((gone.creases >> dead_side_u) & 1U) != 0;

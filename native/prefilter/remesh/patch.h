@@ -19,7 +19,8 @@ struct PatchTriangle {
   float error = 0.0F;
   /// The same of creases along sides.
   std::array<float, 3> crease_errors{};
-  /// The first of the points of the surface that were given up, and lie near this triangle; -1: none.
+  /// The first of the points of the surface that were given up, and lie near this triangle; -1:
+  /// none.
   std::int32_t first_point = -1;
   std::int32_t label = 0;
   bool is_new = false;  // a corner has moved
@@ -30,8 +31,8 @@ struct PatchPoint {
   std::int32_t next;  // of the same triangle, or -1
 };
 
-/// Vertices are removed, one after the other, by collapsing edges onto their other ends. All lengths
-/// are in units of the tolerance.
+/// Vertices are removed, one after the other, by collapsing edges onto their other ends. All
+/// lengths are in units of the tolerance.
 struct Patch {
   enum VertexFlags : std::uint8_t {
     kShared = 1,   // has triangles that are not part of the patch; stays

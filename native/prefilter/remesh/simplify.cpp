@@ -1,5 +1,6 @@
 // In passes: each divides the mesh into patches of neighbouring triangles, which are simplified by
-// themselves, and each divides it elsewhere, so that the vertices that patches share get their turn.
+// themselves, and each divides it elsewhere, so that the vertices that patches share get their
+// turn.
 #include "prefilter/remesh/simplify.h"
 
 #include <algorithm>
@@ -177,7 +178,8 @@ class Simplifier {
   }
 
   // Numbers the vertices of a patch, and returns the ones that it shares, in order.
-  std::vector<std::int32_t> number_vertices(std::size_t patch, std::vector<std::int32_t>* vertices) {
+  std::vector<std::int32_t> number_vertices(std::size_t patch,
+                                            std::vector<std::int32_t>* vertices) {
     std::vector<std::int32_t> shared;
     const auto owner = static_cast<std::int32_t>(patch);
     for (const std::uint32_t t : patch_triangles(patch)) {
@@ -242,7 +244,8 @@ class Simplifier {
       if (!facets_.errors.empty()) made.error = facets_.errors[t];
       if (!facets_.crease_errors.empty()) made.crease_errors = facets_.crease_errors[t];
       if (facets_.point_ends.empty()) continue;
-      for (std::uint32_t p = t == 0 ? 0 : facets_.point_ends[t - 1]; p < facets_.point_ends[t]; ++p) {
+      for (std::uint32_t p = t == 0 ? 0 : facets_.point_ends[t - 1]; p < facets_.point_ends[t];
+           ++p) {
         patch.points.push_back({local(facets_.points[p]), made.first_point});
         made.first_point = static_cast<std::int32_t>(patch.points.size()) - 1;
       }
@@ -318,8 +321,9 @@ class Simplifier {
       if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
       PatchTriangle& a = patch->triangles[sides[i].side / 3];
       PatchTriangle& b = patch->triangles[sides[i + 1].side / 3];
-      const bool is_crease = a.label != b.label ||
-                             (!kinds_.empty() && dot(unit_normal(a), unit_normal(b)) < kCreaseCosine);
+      const bool is_border = a.label != b.label && a.label >= 0 && b.label >= 0;
+      const bool is_crease =
+          is_border || (!kinds_.empty() && dot(unit_normal(a), unit_normal(b)) < kCreaseCosine);
       if (!is_crease) continue;
       a.creases = static_cast<std::uint8_t>(a.creases | (1U << (sides[i].side % 3)));
       b.creases = static_cast<std::uint8_t>(b.creases | (1U << (sides[i + 1].side % 3)));

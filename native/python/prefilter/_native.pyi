@@ -487,6 +487,7 @@ def contour_octree(
         tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]]
     ],
     clean_up: bool,
+    adaptivity: float,
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]: ...
@@ -497,6 +498,7 @@ def contour_grid(
     spacing: list[float],
     origin: list[float],
     clean_up: bool,
+    adaptivity: float,
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]: ...

@@ -19,6 +19,7 @@ def contour(
     spacing: npt.ArrayLike = 1.0,
     origin: npt.ArrayLike = 0.0,
     cleanup: bool = True,
+    adaptivity: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> Mesh | Outlines:
@@ -39,6 +40,8 @@ def contour(
         spacing: Size of a cell, above 0: one number, or one an axis.
         origin: The low corner of cell (0, 0, 0): one number, or one an axis.
         cleanup: Collapse short edges of a surface: fewer triangles, and none that are thin.
+        adaptivity: How far a surface may be from the full contour, in cells along their shortest
+            side, where larger triangles take its place. 0 is the full contour.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
@@ -49,7 +52,8 @@ def contour(
 
     Raises:
         ValueError: A shape or type is wrong, a sample is not finite, `interpolant` is no such name,
-            `spacing` is not above 0, or cells have no volume where `origin` puts them.
+            `adaptivity` is out of range, `spacing` is not above 0, or cells have no volume where
+            `origin` puts them.
         MemoryError: The surface would not fit into memory.
         Cancelled: `progress` returned False.
     """
@@ -60,6 +64,7 @@ def contour(
     level = as_number("isovalue", isovalue)
     if not np.isfinite(level):
         raise ValueError(f"isovalue: {isovalue!r}; a finite number is needed")
+    tolerance = as_number("adaptivity", adaptivity)
     size = _as_vector("spacing", spacing, axes)
     if min(size) <= 0.0:
         raise ValueError(f"spacing: {spacing!r}; sizes above 0 are needed")
@@ -73,6 +78,7 @@ def contour(
         size,
         corner,
         bool(cleanup),
+        tolerance,
         as_progress(progress),
         as_threads(threads),
     )
