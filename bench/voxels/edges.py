@@ -1,0 +1,265 @@
+"""Measures how well contours keep the edges of shapes and the rims of booleans.
+
+Usage: scripts/run python3 bench/voxels/edges.py [--shapes NAME...] [--pairs NAME+NAME...]
+    [--sizes N...] [--interpolants NAME[+clean][@ADAPTIVITY]...]
+
+The columns: how far true edges are from the surface and from its sharp edges, mean and 95th
+percentile, and the farthest; the farthest that a corner is from a vertex; the share of the area more
+than 10 degrees off; two cells from edges, the mean error of normals in degrees and the vertices' root
+mean square distance; open and crowded edges; pairs of triangles that cut each other; the share of
+triangles with an angle below 15 degrees; triangles; seconds. Lengths are in cells.
+
+Truth of booleans is manifold3d's (PyPI); without it they are left out. Self-intersections are counted
+by a program that CMake builds where CGAL is; -1 stands where it is missing.
+"""
+
+import argparse
+import inspect
+import re
+import sys
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.report import Report
+from bench.voxels import booleans, measures, sharp_shapes
+from bench.voxels.sharp_shapes import Shape
+
+HEAD = (
+    "subject",
+    "contour",
+    "surf mean",
+    "95 %",
+    "edge mean",
+    "95 %",
+    "most",
+    "corner",
+    "area off %",
+    "normal",
+    "vertex rms",
+    "open",
+    "crowded",
+    "cuts",
+    "thin %",
+    "triangles",
+    "s",
+)
+MARGIN = 2  # Cells on every side.
+EDGE_MEAN, EDGE_95, AREA = 0.02, 0.1, 0.001
+
+
+@dataclass(frozen=True)
+class Subject:
+    """What is voxelized, and what is true of the surface."""
+
+    name: str
+    sources: tuple[Shape, ...]
+    operation: str
+    truth: Shape
+    edges: measures.Edges
+
+
+@dataclass(frozen=True)
+class Contour:
+    """How a surface is made."""
+
+    interpolant: str
+    cleanup: bool
+    adaptivity: float
+
+    @classmethod
+    def named(cls, text: str) -> "Contour":
+        """Reads NAME[+clean][@ADAPTIVITY].
+
+        Raises:
+            ValueError: It is not written so.
+        """
+        found = re.fullmatch(r"([a-z]+)(\+clean)?(?:@([0-9.]+))?", text)
+        if not found:
+            raise ValueError(f"{text!r} is not of the form NAME[+clean][@ADAPTIVITY]")
+        return cls(found[1], bool(found[2]), float(found[3] or 0))
+
+    @property
+    def name(self) -> str:
+        """As it is written on the command line."""
+        end = f"@{self.adaptivity:g}" if self.adaptivity else ""
+        return f"{self.interpolant}{'+clean' if self.cleanup else ''}{end}"
+
+
+def single(name: str) -> Subject:
+    """One shape, by itself."""
+    shape = sharp_shapes.shape(name)
+    edges = measures.sharp_edges(shape.positions, shape.triangles, sharp_shapes.SHARP_DEGREES)
+    return Subject(name, (shape,), "", shape, edges)
+
+
+def box_around(shapes: Sequence[Shape], size: int) -> tuple[np.ndarray, float]:
+    """The low corner of a cube of cells around shapes, and the side of a cell."""
+    points = np.concatenate([shape.positions for shape in shapes])
+    low, high = points.min(axis=0), points.max(axis=0)
+    cell = float((high - low).max()) / (size - 2 * MARGIN)
+    return (low + high) / 2 - cell * size / 2, cell
+
+
+def contour(subject: Subject, size: int, how: Contour) -> tuple[np.ndarray, np.ndarray, float]:
+    """Returns the surface, and the seconds of its contour alone."""
+    import prefilter
+
+    low, cell = box_around(subject.sources, size)
+    bounds = (low, low + size * cell)
+    depth = size.bit_length() - 1
+    trees = [
+        prefilter.voxelize(s.positions, s.triangles, depth=depth, bounds=bounds)
+        for s in subject.sources
+    ]
+    tree = trees[0]
+    for other in trees[1:]:
+        tree = getattr(tree, subject.operation)(other)
+    options: dict[str, Any] = {"interpolant": how.interpolant, "cleanup": how.cleanup}
+    known = inspect.signature(tree.contour).parameters
+    if how.interpolant == "sharp" and "sources" in known:
+        options["sources"] = [(s.positions, s.triangles) for s in subject.sources]
+    if how.adaptivity:
+        options["adaptivity"] = how.adaptivity
+    began = time.perf_counter()
+    positions, triangles = tree.contour(**options)
+    seconds = time.perf_counter() - began
+    return np.asarray(positions, np.float64), np.asarray(triangles, np.int64), seconds
+
+
+@dataclass(frozen=True)
+class Result:
+    """All measures of one surface."""
+
+    edges: measures.EdgeErrors
+    surface: measures.SurfaceErrors
+    sound: measures.Soundness
+    thin: float
+    triangles: int
+    seconds: float
+
+    @property
+    def row(self) -> list[str]:
+        """The columns of the table that follow the names."""
+        return [
+            *(f"{value:.4f}" for value in self.edges.numbers),
+            f"{100 * self.surface.wrong:.3f}",
+            f"{self.surface.normal_mean:.3f}",
+            f"{self.surface.vertex_rms:.5f}",
+            str(self.sound.open_edges),
+            str(self.sound.crowded_edges + self.sound.crowded_vertices),
+            str(self.sound.intersections),
+            f"{100 * self.thin:.2f}",
+            str(self.triangles),
+            f"{self.seconds:.2f}",
+        ]
+
+
+def measured(
+    subject: Subject, positions: np.ndarray, triangles: np.ndarray, cell: float, seconds: float
+) -> Result:
+    """Measures a surface, whoever made it."""
+    truth = subject.truth
+    return Result(
+        measures.edge_errors(positions, triangles, subject.edges, cell),
+        measures.surface_errors(
+            positions, triangles, truth.positions, truth.triangles, subject.edges, cell
+        ),
+        measures.soundness(positions, triangles),
+        float((measures.smallest_angles(positions, triangles) < 15).mean()),
+        len(triangles),
+        seconds,
+    )
+
+
+def subjects_of(options: argparse.Namespace) -> list[Subject]:
+    """The shapes and booleans that are asked for and can be had."""
+    found = []
+    for name in options.shapes:
+        try:
+            found.append(single(name))
+        except OSError as error:
+            print(f"{name} is left out: {error}")
+    if options.pairs and booleans.missing():
+        print(f"booleans are left out: {booleans.missing()} is missing")
+        return found
+    for name in options.pairs:
+        first, second = name.split("+")
+        for operation in options.operations:
+            found.append(boolean(first, second, operation))
+    return found
+
+
+def boolean(first: str, second: str, operation: str, number: int = 0) -> Subject:
+    """Two shapes combined; its edges are the rims, where faces of both meet."""
+    sources = sharp_shapes.pair(first, second, number)
+    truth, rims = booleans.combined(sources, operation)
+    return Subject(f"{first} {operation} {second}", sources, operation, truth, rims)
+
+
+def main() -> None:
+    """Measures and prints."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    pairs = ["+".join(pair) for pair in sharp_shapes.PAIRS]
+    parser.add_argument("--shapes", nargs="*", default=list(sharp_shapes.MAKERS))
+    parser.add_argument("--pairs", nargs="*", default=[], help=f"'all', or of {', '.join(pairs)}")
+    parser.add_argument(
+        "--operations", nargs="+", default=["union", "intersection", "difference"]
+    )
+    parser.add_argument("--sizes", type=int, nargs="+", default=[128])
+    parser.add_argument(
+        "--interpolants", nargs="+", default=["occupancy", "plane"], metavar="NAME[+clean][@CELLS]"
+    )
+    parser.add_argument("--markdown", type=Path)
+    options = parser.parse_args()
+    if options.pairs == ["all"]:
+        options.pairs = pairs
+    report = Report()
+    subjects = subjects_of(options)
+    for size in options.sizes:
+        rows = []
+        judged = []
+        for subject in subjects:
+            _, cell = box_around(subject.sources, size)
+            for text in options.interpolants:
+                how = Contour.named(text)
+                positions, triangles, seconds = contour(subject, size, how)
+                found = measured(subject, positions, triangles, cell, seconds)
+                rows.append([subject.name, how.name, *found.row])
+                print(" ".join(rows[-1]), flush=True)
+                if how.interpolant == "sharp":
+                    judged.append((f"{subject.name}, {how.name}", found))
+        report.table(f"{size} cells along an axis", HEAD, rows)
+        for name, found in judged:
+            judge(report, f"{name}, {size}", found)
+    report.finish(options.markdown)
+
+
+def judge(report: Report, name: str, found: Result) -> None:
+    """Compares with the bars."""
+    edge = found.edges
+    mean, high = (
+        max(edge.surface_mean, edge.crease_mean),
+        max(edge.surface_95, edge.crease_95),
+    )
+    report.verdict(
+        mean <= EDGE_MEAN and high <= EDGE_95 and found.surface.wrong <= AREA,
+        f"{name}: edges missed by {mean:.4f} on average and {high:.4f} at the 95th percentile, "
+        f"{100 * found.surface.wrong:.3f} % of the area off; {EDGE_MEAN}, {EDGE_95} and "
+        f"{100 * AREA} % are allowed",
+    )
+    report.verdict(
+        found.sound.is_sound,
+        f"{name}: {found.sound.open_edges} open edges, "
+        f"{found.sound.crowded_edges} crowded edges, {found.sound.crowded_vertices} crowded "
+        f"vertices, {found.sound.intersections} self-intersections",
+    )
+
+
+if __name__ == "__main__":
+    main()
