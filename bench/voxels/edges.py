@@ -4,13 +4,13 @@ Usage: scripts/run python3 bench/voxels/edges.py [--shapes NAME...] [--pairs NAM
     [--sizes N...] [--interpolants NAME[+clean][@ADAPTIVITY]...]
 
 The columns: how far true edges are from the surface and from its sharp edges, mean and 95th
-percentile, and the farthest; the farthest that a corner is from a vertex; the share of the area more
-than 10 degrees off; two cells from edges, the mean error of normals in degrees and the vertices' root
-mean square distance; open and crowded edges; pairs of triangles that cut each other; the share of
-triangles with an angle below 15 degrees; triangles; seconds. Lengths are in cells.
+percentile, and the farthest; the farthest that a corner is from a vertex; the share of the area
+more than 10 degrees off; two cells from edges, the mean error of normals in degrees and the
+vertices' root mean square distance; open and crowded edges; pairs of triangles that cut each other;
+the share of triangles with an angle below 15 degrees; triangles; seconds. Lengths are in cells.
 
-Truth of booleans is manifold3d's (PyPI); without it they are left out. Self-intersections are counted
-by a program that CMake builds where CGAL is; -1 stands where it is missing.
+Truth of booleans is manifold3d's (PyPI); without it they are left out. Self-intersections are
+counted by a program that CMake builds where CGAL is; -1 stands where it is missing.
 """
 
 import argparse
@@ -208,9 +208,7 @@ def main() -> None:
     pairs = ["+".join(pair) for pair in sharp_shapes.PAIRS]
     parser.add_argument("--shapes", nargs="*", default=list(sharp_shapes.MAKERS))
     parser.add_argument("--pairs", nargs="*", default=[], help=f"'all', or of {', '.join(pairs)}")
-    parser.add_argument(
-        "--operations", nargs="+", default=["union", "intersection", "difference"]
-    )
+    parser.add_argument("--operations", nargs="+", default=["union", "intersection", "difference"])
     parser.add_argument("--sizes", type=int, nargs="+", default=[128])
     parser.add_argument(
         "--interpolants", nargs="+", default=["occupancy", "plane"], metavar="NAME[+clean][@CELLS]"

@@ -4,7 +4,6 @@ Lengths are in cells, angles in degrees. Nothing here calls the library.
 """
 
 import os
-import shutil
 import subprocess
 import tempfile
 from dataclasses import dataclass
@@ -21,7 +20,7 @@ SPACING = 0.25  # Between samples of an edge.
 SAMPLES = 60_000  # Of a surface.
 SLACK = 0.01  # Faces that are that much farther than the nearest one are adjacent to the edge.
 WRONG_DEGREES = 10.0
-CHECKER = "prefilter_self_intersections"
+CHECKER = Path(__file__).resolve().parents[2] / "build/bench/self_intersections"
 
 
 @dataclass(frozen=True)
@@ -137,9 +136,7 @@ def corner_points(lines: Edges) -> Floats:
     return unique[(counts != 2) | ~straight]
 
 
-def edge_errors(
-    positions: Floats, triangles: Indices, truth: Edges, cell: float
-) -> EdgeErrors:
+def edge_errors(positions: Floats, triangles: Indices, truth: Edges, cell: float) -> EdgeErrors:
     """Compares a surface with the true edges."""
     ends, _, turn = edges(positions, triangles)
     length = np.linalg.norm(truth.ends[:, 1] - truth.ends[:, 0], axis=1)
@@ -183,9 +180,7 @@ def weighted_quantile(values: Floats, weights: Floats, share: float) -> float:
     return float(values[order][np.searchsorted(below, share * below[-1])])
 
 
-def surface_samples(
-    positions: Floats, triangles: Indices, count: int
-) -> tuple[Floats, Indices]:
+def surface_samples(positions: Floats, triangles: Indices, count: int) -> tuple[Floats, Indices]:
     """Points spread evenly over the area, and their triangles."""
     _, areas = facet_normals(positions, triangles)
     below = np.cumsum(areas)
@@ -262,10 +257,8 @@ def soundness(positions: Floats, triangles: Indices) -> Soundness:
     total = np.bincount(which, minlength=len(unique))
     open_edges = int((total == 1).sum())
     crowded = int(((total > 2) | ((total == 2) & (forward != 1))).sum())
-    pairs, faces, flat, example = self_intersections(positions, triangles)
-    return Soundness(
-        open_edges, crowded, _crowded_vertices(triangles, which), flat, pairs, example
-    )
+    pairs, _, flat, example = self_intersections(positions, triangles)
+    return Soundness(open_edges, crowded, _crowded_vertices(triangles, which), flat, pairs, example)
 
 
 def _crowded_vertices(triangles: Indices, edge_of: Indices) -> int:
@@ -280,9 +273,7 @@ def _crowded_vertices(triangles: Indices, edge_of: Indices) -> int:
     first, second = side_corner[order[:-1][same]], side_corner[order[1:][same]]
     crossed = vertex[first[:, 0]] != vertex[second[:, 0]]
     second = np.where(crossed[:, None], second[:, ::-1], second)
-    links = np.concatenate(
-        [np.stack([first[:, k], second[:, k]], axis=1) for k in range(2)]
-    )
+    links = np.concatenate([np.stack([first[:, k], second[:, k]], axis=1) for k in range(2)])
     label = np.arange(3 * count)
     while True:
         low = np.minimum(label[links[:, 0]], label[links[:, 1]])
@@ -298,7 +289,8 @@ def _crowded_vertices(triangles: Indices, edge_of: Indices) -> int:
 
 def checker() -> str:
     """The program that counts self-intersections; empty where it was not built."""
-    return os.environ.get("PREFILTER_SELF_INTERSECTIONS") or shutil.which(CHECKER) or ""
+    named = os.environ.get("PREFILTER_SELF_INTERSECTIONS", "")
+    return named or (str(CHECKER) if CHECKER.exists() else "")
 
 
 def self_intersections(

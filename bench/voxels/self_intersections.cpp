@@ -1,6 +1,6 @@
 // Counts the pairs of triangles that cut each other, with exact predicates of CGAL.
 //
-// Usage: prefilter_self_intersections MESH...
+// Usage: self_intersections MESH...
 // A mesh is two int64, the numbers of vertices and triangles, then float64 positions and int64
 // triangles. For each prints the number of pairs, of triangles in them, of triangles without area,
 // and the triangles of the first pair (-1 where there is none).
@@ -72,7 +72,8 @@ bool folded(const Mesh& mesh, const Triangle& first, const Triangle& second) {
 bool cut_beyond(const Mesh& mesh, const Triangle& first, const Triangle& second,
                 std::int64_t shared) {
   const auto k = static_cast<int>(std::find(first.begin(), first.end(), shared) - first.begin());
-  const Kernel::Segment_3 opposite(mesh.corner(first, (k + 1) % 3), mesh.corner(first, (k + 2) % 3));
+  const Kernel::Segment_3 opposite(mesh.corner(first, (k + 1) % 3),
+                                   mesh.corner(first, (k + 2) % 3));
   return CGAL::do_intersect(mesh.shape(second), opposite);
 }
 
@@ -106,17 +107,19 @@ void count(const Mesh& mesh) {
   long pairs = 0;
   std::vector<char> cut(mesh.triangles.size());
   std::array<long, 2> example{-1, -1};
-  CGAL::box_self_intersection_d(
-      boxes.begin(), boxes.end(),
-      [&](const Box& first, const Box& second) {
-        const std::size_t a = first.info();
-        const std::size_t b = second.info();
-        if (!intersect(mesh, mesh.triangles[a], mesh.triangles[b])) return;
-        if (pairs++ == 0) example = {static_cast<long>(a), static_cast<long>(b)};
-        cut[a] = cut[b] = 1;
-      });
-  std::printf("%ld %ld %ld %ld %ld\n", pairs, static_cast<long>(std::count(cut.begin(), cut.end(), 1)),
-              flat, example[0], example[1]);
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
+                                [&](const Box& first, const Box& second) {
+                                  const std::size_t a = first.info();
+                                  const std::size_t b = second.info();
+                                  if (!intersect(mesh, mesh.triangles[a], mesh.triangles[b]))
+                                    return;
+                                  if (pairs++ == 0)
+                                    example = {static_cast<long>(a), static_cast<long>(b)};
+                                  cut[a] = cut[b] = 1;
+                                });
+  std::printf("%ld %ld %ld %ld %ld\n", pairs,
+              static_cast<long>(std::count(cut.begin(), cut.end(), 1)), flat, example[0],
+              example[1]);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ class Solid:
         self.triangles.extend(_clip_ears(_bridged(list(outer), holes, flat), flat))
 
     def strip(self, low: Loop, high: Loop) -> None:
-        """Joins loops of as many vertices; seen from outside, both run right and `high` is above."""
+        """Joins loops of as many vertices; seen from outside, both run right, `high` above."""
         for k in range(len(low)):
             a, b = low[k], low[(k + 1) % len(low)]
             d, c = high[k], high[(k + 1) % len(low)]
@@ -232,10 +232,9 @@ def joint(fingers: int = 6, slot: float = 0.06, facets: int = 128) -> Shape:
 def bracket(facets: int = 96) -> Shape:
     """An L with bevels, two holes through one leg and a large one through the other."""
     solid = Solid()
-    outline = np.array(
-        [(-0.85, -1), (1, -1), (1, -0.8), (0.9, -0.7), (-0.55, -0.7), (-0.7, -0.55)]
-        + [(-0.7, 0.9), (-0.8, 1), (-1, 1), (-1, -0.85)]
-    )
+    x = (-0.85, 1, 1, 0.9, -0.55, -0.7, -0.7, -0.8, -1, -1)
+    z = (-1, -1, -0.8, -0.7, -0.7, -0.55, 0.9, 1, 1, -0.85)
+    outline = np.column_stack([x, z])
     front, back = (
         solid.loop(np.column_stack([outline[:, 0], np.full(len(outline), y), outline[:, 1]]))
         for y in (-0.7, 0.7)
