@@ -83,8 +83,8 @@ class VoxelSettings:
     use_cleanup: bool = switch(
         True,
         "Clean Up",
-        "Collapse short edges: about a quarter fewer triangles, and no slivers that shade badly",
-        flag_description="Keep all triangles, including slivers",
+        "Remove narrow triangles, which shade badly: about a quarter fewer triangles",
+        flag_description="Keep all triangles, including narrow ones",
     )
     use_materials: bool = switch(
         True,

@@ -26,7 +26,7 @@ struct SourceMesh {
 struct ContourOptions {
   Interpolant interpolant = Interpolant::kOccupancy;
   float isovalue = 0.5F;  // samples of at least this are inside
-  bool clean_up = false;  // collapse edges that make slivers
+  bool clean_up = false;  // widen narrow triangles
   // How far a surface may be from the full contour where it gets larger triangles, in cells of the
   // finest depth, along their shortest side; 0: it is the full one.
   double adaptivity = 0.0;

@@ -330,14 +330,14 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
     mesh.positions = std::move(looped.positions);
     mesh.triangles = std::move(looped.triangles);
   }
+  double cell = frame.cell(0, cells.depth());
+  for (int a = 1; a < 3; ++a) cell = std::min(cell, frame.cell(a, cells.depth()));
   if (options.clean_up) {
-    TriangleMesh cleaned = clean_up({std::move(mesh.positions), std::move(mesh.triangles)},
-                                    options.progress.part(cleaning, simplifying), options.threads);
-    mesh = {std::move(cleaned.positions), std::move(cleaned.triangles), {}, {}};
+    constexpr double kCreaseTolerance = 0.01;  // cells
+    mesh = clean_up(std::move(mesh), kCreaseTolerance * cell,
+                    options.progress.part(cleaning, simplifying), options.threads);
   }
   if (options.adaptivity > 0.0) {
-    double cell = frame.cell(0, cells.depth());
-    for (int a = 1; a < 3; ++a) cell = std::min(cell, frame.cell(a, cells.depth()));
     mesh = simplify(std::move(mesh), options.adaptivity * cell,
                     options.progress.part(simplifying, kPlacing), options.threads);
   }

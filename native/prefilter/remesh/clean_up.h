@@ -1,16 +1,23 @@
-// Contours with fewer thin triangles.
+// Contours without narrow triangles.
 #pragma once
 
-#include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/remesh/faceted_mesh.h"
 
 namespace prefilter {
 
-/// Collapses edges that are much shorter than others of their triangles, onto the one of their ends
-/// that leaves the better triangles. A collapse that would fold the surface, turn a triangle by
-/// more than 45 degrees, or leave it less than a closed two-manifold is not made, so a mesh that is
-/// one stays one. Vertices that remain do not move. Sides from 1e-70 to 1e70. Throws
-/// Error(kCancelled).
-TriangleMesh clean_up(TriangleMesh mesh, const Progress& progress, int threads);
+/// Widens triangles whose smallest angle is below 16 degrees: leaves out one of their vertices, or
+/// flips an edge. What is new is nearly as flat as what was there. Vertices that remain do not
+/// move.
+///
+/// Creases stay: a vertex on one is left out only where that keeps the crease within
+/// `crease_tolerance`, a length, and kCorner ones never are. Labels stay on their side of them; a
+/// triangle of kNoLabel may get that of one beside it. No new triangle intersects another one. A
+/// closed two-manifold stays one. The same for any number of threads; vertices that are near each
+/// other should have indices that are, for several threads to be of use.
+///
+/// Sides from 1e-70 to 1e70. Throws Error(kCancelled).
+FacetedMesh clean_up(FacetedMesh mesh, double crease_tolerance, const Progress& progress,
+                     int threads);
 
 }  // namespace prefilter

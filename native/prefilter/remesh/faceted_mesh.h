@@ -16,10 +16,14 @@ enum class VertexKind : std::uint8_t {
   kCorner,   // where such edges meet or end
 };
 
+/// The label of a triangle that may be on either side of a crease.
+inline constexpr std::int32_t kNoLabel = -1;
+
 /// Triangles that share vertices; counter-clockwise seen from outside.
 ///
-/// An edge is a crease where its two triangles have different labels, or where both its ends are of
-/// another kind than kSurface and the normals of its triangles are more than 15 degrees apart.
+/// An edge is a crease where its two triangles have labels that differ, and neither is kNoLabel, or
+/// where both its ends are of another kind than kSurface and the normals of its triangles are more
+/// than 15 degrees apart.
 struct FacetedMesh {
   std::vector<Vector3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;

@@ -39,7 +39,7 @@ def contour(
         isovalue: Samples of at least this are inside.
         spacing: Size of a cell, above 0: one number, or one an axis.
         origin: The low corner of cell (0, 0, 0): one number, or one an axis.
-        cleanup: Collapse short edges of a surface: fewer triangles, and none that are thin.
+        cleanup: Remove narrow triangles of a surface; there are fewer then.
         adaptivity: How far a surface may be from the full contour, in cells along their shortest
             side, where larger triangles take its place. 0 is the full contour.
         progress: Called with the fraction done; returning False stops the work.

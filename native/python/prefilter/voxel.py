@@ -157,7 +157,7 @@ class Octree(_native.Octree):
                 (positions, triangles, groups), for "sharp": vertices are placed on their edges and
                 corners, and where one meets another; no triangle runs across an edge, or from one
                 group, (triangles,) whole numbers, to another.
-            cleanup: Collapse short edges: fewer triangles, and none that are thin.
+            cleanup: Remove narrow triangles; there are fewer then.
             adaptivity: How far from the full contour the surface may be, in cells of the finest
                 depth, where larger triangles take its place: on flat and gently curved parts. 0.1
                 is hardly seen, and leaves a fifth of the triangles of a statue, and a twentieth of
