@@ -67,7 +67,7 @@ MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpo
   TriangleMesh mesh;
   {
     const py::gil_scoped_release unlocked;
-    mesh = contour_tree(octree.cells, octree.bounds, options);
+    mesh = contour_occupancies(octree.cells, octree.bounds, options);
   }
   return to_arrays(std::move(mesh));
 }

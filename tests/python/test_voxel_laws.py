@@ -193,8 +193,16 @@ def test_de_morgan(pair):
 
 @pytest.mark.parametrize("depths", [(3, 6), (6, 3), (1, 5)])
 def test_operands_of_different_depths(depths):
+    """Coarse cells are split, and keep their occupancies; the rest is cell by cell."""
     a, b = (voxelized(s, d) for s, d in zip((A, B), depths, strict=True))
-    x, y = (octree.dense(max(depths)) for octree in (a, b))
+    speck = voxelized(sphere(0.01, 1, (0.99, 0.99, 0.99)), max(depths))
+    fine = [octree.union(speck).difference(speck) for octree in (a, b)]
+    for octree, split in zip((a, b), fine, strict=True):
+        off = np.abs(split.dense(octree.depth) - octree.dense())
+        corner = slice(int(0.98 * len(off)), None)
+        off[corner, corner, corner] = 0  # where the speck was
+        assert off.max() < 1e-6
+    x, y = (split.dense() for split in fine)
     for operation, values in (
         ("union", np.maximum(x, y)),
         ("intersection", np.minimum(x, y)),
@@ -202,7 +210,25 @@ def test_operands_of_different_depths(depths):
     ):
         found = getattr(a, operation)(b)
         assert found.depth == max(depths)
-        assert np.abs(found.dense() - values).max() <= 1.1e-4
+        off = np.abs(found.dense() - values)
+        n = 2 ** (max(depths) - min(depths))
+        off[-n:, -n:, -n:] = 0
+        assert off.max() <= 1.1e-4
+
+
+def test_a_plane_in_coarse_cells_is_one_in_fine_cells():
+    """United with a fine ball, a half-space has the occupancies that its mesh has in fine cells."""
+    half = box((-2.0, -2.0, -3.0), (2.0, 2.0, 0.0)).transformed(
+        random_rotation(4), (0.5, 0.45, 0.5)
+    )
+    ball = voxelized(sphere(0.05, 3, (0.1, 0.1, 0.1)), 6)
+    joined = voxelized(half, 4).union(ball).dense()
+    expected = voxelized(half, 6).union(ball).dense()
+    # Beyond the root all is empty, so the plane ends there.
+    within = slice(12, -12)
+    off = np.abs(joined - expected)[within, within, within]
+    assert off.max() < 1e-3
+    assert (expected[within, within, within] > 0).any()
 
 
 def test_operands_of_other_bounds():

@@ -2,29 +2,16 @@
 
 #include <cmath>
 
+#include "prefilter/wavelet/column_height.h"
+
 namespace prefilter {
 namespace {
 
-constexpr float kFull = 1.0F - 1e-5F;
-constexpr float kEmpty = 1e-5F;
-constexpr int kMostSteps = 4;
 constexpr float kSlack = 0.05F;
 
-// The height of the surface over the low side of a column's cell, in cells; `up` leads towards the
-// empty end.
-std::optional<float> column_height(const float* cell, std::ptrdiff_t up) {
-  float height = 0.0F;
-  int steps = 0;
-  for (const float* at = cell; *at > kEmpty; at += up) {
-    if (++steps > kMostSteps) return std::nullopt;
-    height += *at;
-  }
-  steps = 0;
-  for (const float* at = cell - up; *at < kFull; at -= up) {
-    if (++steps > kMostSteps) return std::nullopt;
-    height -= 1.0F - *at;
-  }
-  return height;
+// `up` leads towards the empty end.
+std::optional<float> height_at(const float* cell, std::ptrdiff_t up) {
+  return column_height([&](int step) { return cell[step * up]; });
 }
 
 struct Profile {
@@ -35,8 +22,8 @@ struct Profile {
 
 // Along one axis across the columns.
 Profile profile(const float* cell, std::ptrdiff_t across, std::ptrdiff_t up, float height) {
-  const std::optional<float> low = column_height(cell - across, up);
-  const std::optional<float> high = column_height(cell + across, up);
+  const std::optional<float> low = height_at(cell - across, up);
+  const std::optional<float> high = height_at(cell + across, up);
   Profile result;
   if (!low || !high) return result;  // A slope to one side would be off by half the curvature.
   result.slope = (*high - *low) / 2.0F;
@@ -80,7 +67,7 @@ struct LocalSurface {
 
 std::optional<LocalSurface> surface_over(const float* cell, std::ptrdiff_t up,
                                          const std::array<std::ptrdiff_t, 2>& across) {
-  const std::optional<float> height = column_height(cell, up);
+  const std::optional<float> height = height_at(cell, up);
   if (!height) return std::nullopt;
   const Profile first = profile(cell, across[0], up, *height);
   const Profile second = profile(cell, across[1], up, *height);

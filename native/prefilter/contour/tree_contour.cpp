@@ -21,6 +21,7 @@
 #include "prefilter/contour/surface_vertices.h"
 #include "prefilter/remesh/clean_up.h"
 #include "prefilter/remesh/simplify.h"
+#include "prefilter/wavelet/refine.h"
 
 namespace prefilter {
 namespace {
@@ -385,6 +386,20 @@ TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourO
   split.levels[0].split.push_back(0);
   link_blocks(split.levels.data());
   return contour_split(split, root, options);
+}
+
+TriangleMesh contour_occupancies(const CellTree& cells, const Box& root,
+                                 const ContourOptions& options) {
+  constexpr double kRefining = 0.3;
+  if (options.isovalue != 0.5F || !has_coarse_surface(cells)) {
+    return contour_tree(cells, root, options);
+  }
+  check_box(root, "bounds");
+  const CellTree fine =
+      refined(cells, cells.depth(), options.progress.part(0.0, kRefining), options.threads);
+  ContourOptions rest = options;
+  rest.progress = options.progress.part(kRefining, 1.0);
+  return contour_tree(fine, root, rest);
 }
 
 }  // namespace prefilter

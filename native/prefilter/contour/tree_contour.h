@@ -22,6 +22,12 @@ namespace prefilter {
 /// 2^31 vertices.
 TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourOptions& options);
 
+/// The contour of occupancies, for any tree: where the surface passes through cells of several
+/// sizes contour_tree may cross itself, so such a tree is refined first. At another iso-value than
+/// 1/2 the same as contour_tree.
+TriangleMesh contour_occupancies(const CellTree& cells, const Box& root,
+                                 const ContourOptions& options);
+
 /// The part of a contour that is made of the dual cells at some heights. Parts at heights that
 /// follow each other have vertices in common, and together are the whole.
 struct ContourSlab {

@@ -8,6 +8,8 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/voxel/regrid.h"
+#include "prefilter/wavelet/leaf_surface.h"
+#include "prefilter/wavelet/refine.h"
 
 namespace prefilter {
 namespace {
@@ -17,8 +19,6 @@ constexpr float kHalf = 0.5F;
 constexpr float kTie = 1e-4F;
 // Work is shared out by cells of this depth.
 constexpr int kTaskDepth = 2;
-
-bool is_fraction(float value) { return value > 0.0F && value < 1.0F; }
 
 class ValueRule {
  public:
@@ -147,7 +147,7 @@ void append(Levels* levels, Levels* from) {
   }
 }
 
-// Trees of the same root.
+// Trees of the same root, whose surfaces are in cells of one size.
 CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operation,
                      const Progress& progress, int threads) {
   const Merger merger(operation);
@@ -202,6 +202,23 @@ CellTree merge_trees(const CellTree& a, const CellTree& b, SetOperation operatio
   return tree;
 }
 
+// Where surfaces in cells of different sizes meet, a contour would cross itself.
+CellTree combine_trees(const CellTree& a, const CellTree& b, SetOperation operation,
+                       const Progress& progress, int threads) {
+  const int depth = std::max(a.depth(), b.depth());
+  CellTree fine_a;
+  CellTree fine_b;
+  const auto fine = [&](const CellTree& tree, const Progress& part,
+                        CellTree* result) -> const CellTree& {
+    if (tree.depth() == depth && !has_coarse_surface(tree)) return tree;
+    *result = refined(tree, depth, part, threads);
+    return *result;
+  };
+  const CellTree& first = fine(a, progress.part(0.0, 0.3), &fine_a);
+  const CellTree& second = fine(b, progress.part(0.3, 0.6), &fine_b);
+  return merge_trees(first, second, operation, progress.part(0.6, 1.0), threads);
+}
+
 bool same_box(const Box& a, const Box& b) {
   for (int i = 0; i < 3; ++i) {
     const double slack = 1e-12 * a.size(i);
@@ -230,7 +247,7 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
   if (same_box(a.bounds, b.bounds)) {
     result.bounds = a.bounds;
     result.depth = std::max(a.depth, b.depth);
-    result.cells = merge_trees(a.cells, b.cells, operation, progress, threads);
+    result.cells = combine_trees(a.cells, b.cells, operation, progress, threads);
     progress.report(1.0);
     return result;
   }
@@ -240,12 +257,12 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
     if (occupied && !holds(a.bounds, *occupied)) larger = grown(a, *occupied);
   }
   const Octree& first = larger ? *larger : a;
-  const int depth = matching_depth(first.bounds, b);
+  const int depth = std::max(matching_depth(first.bounds, b), first.cells.depth());
   const Octree second = regridded(b, first.bounds, depth, progress.part(0.0, 0.7), threads);
   result.bounds = first.bounds;
   result.depth = std::max(first.depth, depth);
   result.cells =
-      merge_trees(first.cells, second.cells, operation, progress.part(0.7, 1.0), threads);
+      combine_trees(first.cells, second.cells, operation, progress.part(0.7, 1.0), threads);
   progress.report(1.0);
   return result;
 }

@@ -12,12 +12,16 @@ enum class SetOperation {
   kDifference,    // min(a, 1 - b)
 };
 
-/// The operation cell by cell, in memory proportional to the surfaces. Trees may be of any depths
+/// The operation cell by cell, in memory proportional to the surfaces. Octrees may be of any depths
 /// and bounds.
 ///
+/// Where depths differ, surfaces in larger cells are refined first, down to the finest cells of
+/// both, in which the result has its surface: it takes the memory of octrees of that depth.
+///
 /// Where bounds differ, b is regridded on the cells of a, down to the first depth at which they are
-/// no larger than b's; for a union the root of a is doubled until it holds all of b that is not
-/// empty. Throws Error where that would be deeper than kMaxTreeDepth; Error(kCancelled).
+/// no larger than b's, or to a's if that is deeper; for a union the root of a is doubled until it
+/// holds all of b that is not empty. Throws Error where that would be deeper than kMaxTreeDepth;
+/// Error(kCancelled).
 ///
 /// Where both surfaces run through a cell and the result would be 1/2, where contours are, it is
 /// rounded so that faces that coincide leave neither a film of matter (difference, intersection)

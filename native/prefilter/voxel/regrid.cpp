@@ -2,26 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "prefilter/base/error.h"
-#include "prefilter/voxel/queries.h"
+#include "prefilter/wavelet/leaf_surface.h"
+#include "prefilter/wavelet/tree_builder.h"
 
 namespace prefilter {
 namespace {
-
-struct ValueSpan {
-  float low = std::numeric_limits<float>::infinity();
-  float high = -std::numeric_limits<float>::infinity();
-
-  void add(float value) {
-    low = std::min(low, value);
-    high = std::max(high, value);
-  }
-  bool is_constant() const { return low >= high; }
-};
 
 Box octant_of(const Box& box, int octant) {
   Box half = box;
@@ -52,21 +42,66 @@ bool is_within(const Box& a, const Box& b) {
   return true;
 }
 
-// Adds the values of leaves that overlap the box, until they differ.
-void add_leaves(const CellTree& tree, std::size_t level, std::size_t block, const Box& cell,
-                const Box& box, ValueSpan* span) {
-  const TreeLevel& cells = tree.levels[level];
-  for (int o = 0; o < 8; ++o) {
-    const Box octant = octant_of(cell, o);
-    if (!overlaps(octant, box)) continue;
-    if (cells.is_split(block, o)) {
-      add_leaves(tree, level + 1, cells.child(block, o), octant, box, span);
-    } else {
-      span->add(cells.blocks[block][o]);
+// The surfaces within the leaves of a tree.
+class LeafSurfaces {
+ public:
+  LeafSurfaces(const CellTree& tree, const Progress& progress, int threads)
+      : firsts_(tree.levels.size()) {
+    std::vector<std::vector<LeafPlace>> places(tree.levels.size());
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < tree.levels.size(); ++k) {
+      const TreeLevel& level = tree.levels[k];
+      if (k == 0) places[k] = {{0, 0, 0}};
+      if (k + 1 < tree.levels.size()) places[k + 1].reserve(tree.levels[k + 1].size());
+      firsts_[k].reserve(level.size());
+      for (std::size_t b = 0; b < level.size(); ++b) {
+        firsts_[k].push_back(count);
+        for (int o = 0; o < 8; ++o) {
+          if (level.is_split(b, o)) {
+            places[k + 1].push_back(octant_place(places[k][b], o));
+          } else if (is_fraction(level.blocks[b][static_cast<std::size_t>(o)])) {
+            ++count;
+          }
+        }
+      }
     }
-    if (!span->is_constant()) return;
+    surfaces_.resize(count);
+    const auto steps = static_cast<double>(tree.levels.size());
+    for (std::size_t k = 0; k < tree.levels.size(); ++k) {
+      const TreeLevel& level = tree.levels[k];
+      const auto step = static_cast<double>(k);
+      for_blocks(level, threads, progress.part(step / steps, (step + 1.0) / steps),
+                 [&](std::size_t begin, std::size_t end) {
+                   for (std::size_t b = begin; b < end; ++b) {
+                     std::size_t next = firsts_[k][b];
+                     for (int o = 0; o < 8; ++o) {
+                       if (level.is_split(b, o) ||
+                           !is_fraction(level.blocks[b][static_cast<std::size_t>(o)])) {
+                         continue;
+                       }
+                       surfaces_[next++] = LeafSurface::find(tree, static_cast<int>(k) + 1,
+                                                             octant_place(places[k][b], o), 2);
+                     }
+                   }
+                 });
+    }
   }
-}
+
+  /// Of a leaf that is neither full nor empty.
+  const std::optional<LeafSurface>& of(const CellTree& tree, std::size_t level, std::size_t block,
+                                       int octant) const {
+    std::size_t index = firsts_[level][block];
+    for (int o = 0; o < octant; ++o) {
+      const float value = tree.levels[level].blocks[block][static_cast<std::size_t>(o)];
+      if (!tree.levels[level].is_split(block, o) && is_fraction(value)) ++index;
+    }
+    return surfaces_[index];
+  }
+
+ private:
+  std::vector<std::vector<std::size_t>> firsts_;  // of a block
+  std::vector<std::optional<LeafSurface>> surfaces_;
+};
 
 // A cell and the finest cells around it, which are 2^-shift as wide.
 Box widened(const Box& cell, int shift) {
@@ -79,64 +114,142 @@ Box widened(const Box& cell, int shift) {
   return box;
 }
 
-class Regridder {
+// What the source holds in cells of other bounds.
+class RegridRule {
  public:
-  Regridder(const Octree& source, int depth, const Progress& progress)
-      : source_(source), depth_(depth), progress_(progress) {
-    levels_.resize(static_cast<std::size_t>(depth));
+  // A cell of the source.
+  struct Source {
+    Box box;
+    bool is_split;
+    std::size_t level;  // on which its octants are, where it is split
+    std::size_t block;
+    float value;
+    const LeafSurface* surface;  // null where there is none
+  };
+  struct Part {
+    Box box;
+    std::vector<Source> sources;  // that meet the cell, and the finest cells around it
+    bool is_uniform;
+    float value;  // where it is uniform
+  };
+
+  RegridRule(const Octree& source, int depth, const LeafSurfaces& surfaces)
+      : source_(source), depth_(depth), surfaces_(surfaces) {}
+
+  Part root(const Box& bounds) const {
+    const CellTree& tree = source_.cells;
+    return part_of(bounds, 0, {{source_.bounds, !tree.levels.empty(), 0, 0, tree.root, nullptr}});
   }
 
-  // The value of a cell; `is_split` tells that its block went to the levels.
-  float value_of(const Box& box, int at_depth, double share, bool* is_split) {
-    *is_split = false;
-    ValueSpan span;
-    // A surface along the borders of cells leaves them uniform; they have to stay fine, as contours
-    // between larger cells cut corners off.
-    const Box around = at_depth < depth_ ? widened(box, depth_ - at_depth) : box;
-    if (!is_within(around, source_.bounds)) span.add(0.0F);
-    if (source_.cells.levels.empty()) {
-      if (overlaps(source_.bounds, around)) span.add(source_.cells.root);
-    } else {
-      add_leaves(source_.cells, 0, 0, source_.bounds, around, &span);
-    }
-    if (span.is_constant()) {
-      advance(share);
-      return std::isfinite(span.low) ? span.low : 0.0F;
-    }
-    if (at_depth == depth_) {
-      advance(share);
-      return static_cast<float>(box_occupancy(source_, box));
-    }
-    *is_split = true;
-    TreeLevel& level = levels_[static_cast<std::size_t>(at_depth)];
-    const std::size_t block = level.size();
-    level.blocks.emplace_back();
-    level.split.push_back(0);
-    for (int o = 0; o < 8; ++o) {
-      bool octant_is_split = false;
-      const float value = value_of(octant_of(box, o), at_depth + 1, share / 8.0, &octant_is_split);
-      level.blocks[block][o] = value;
-      if (octant_is_split) level.split[block] |= static_cast<std::uint8_t>(1U << o);
-    }
-    return block_mean(level.blocks[block]);
+  bool is_split(const Part& part, int depth) const { return !part.is_uniform && depth < depth_; }
+
+  float value(const Part& part, int /*depth*/) const {
+    if (part.is_uniform) return part.value;
+    double volume = 0.0;
+    for (const Source& source : part.sources) volume += volume_within(source, part.box);
+    return static_cast<float>(std::clamp(volume / part.box.volume(), 0.0, 1.0));
   }
 
-  std::vector<TreeLevel> take_levels() {
-    while (!levels_.empty() && levels_.back().size() == 0) levels_.pop_back();
-    return std::move(levels_);
+  Part octant(const Part& part, int depth, int o) const {
+    return part_of(octant_of(part.box, o), depth + 1, part.sources);
   }
 
  private:
-  void advance(double share) {
-    done_ += share;
-    progress_.report(std::min(done_, 1.0));
+  Part part_of(const Box& box, int depth, const std::vector<Source>& candidates) const {
+    // A surface along the borders of cells leaves them uniform; they have to stay fine, as contours
+    // between larger cells cut corners off.
+    const Box around = depth < depth_ ? widened(box, depth_ - depth) : box;
+    Part part{box, {}, true, 0.0F};
+    const double longest = 1.5 * std::max({box.size(0), box.size(1), box.size(2)});
+    for (const Source& source : candidates) add_sources(source, around, longest, &part.sources);
+    std::optional<float> value;
+    if (!is_within(around, source_.bounds)) value = 0.0F;
+    for (const Source& source : part.sources) {
+      const std::optional<float> found = value_over(source, around);
+      part.is_uniform = found && (!value || *value == *found);
+      if (!part.is_uniform) return part;
+      value = found;
+    }
+    part.value = value.value_or(0.0F);
+    return part;
+  }
+
+  // Of those larger than a cell the octants are taken.
+  void add_sources(const Source& source, const Box& around, double longest,
+                   std::vector<Source>* sources) const {
+    if (!overlaps(source.box, around)) return;
+    if (!source.is_split ||
+        std::max({source.box.size(0), source.box.size(1), source.box.size(2)}) < longest) {
+      sources->push_back(source);
+      return;
+    }
+    for (int o = 0; o < 8; ++o) add_sources(octant_source(source, o), around, longest, sources);
+  }
+
+  Source octant_source(const Source& source, int o) const {
+    const TreeLevel& level = source_.cells.levels[source.level];
+    Source result;
+    result.box = octant_of(source.box, o);
+    result.is_split = level.is_split(source.block, o);
+    result.level = source.level + 1;
+    result.block = result.is_split ? level.child(source.block, o) : 0;
+    result.value = level.blocks[source.block][static_cast<std::size_t>(o)];
+    result.surface = nullptr;
+    if (!result.is_split && is_fraction(result.value)) {
+      const std::optional<LeafSurface>& surface =
+          surfaces_.of(source_.cells, source.level, source.block, o);
+      if (surface) result.surface = &*surface;
+    }
+    return result;
+  }
+
+  // The part of a box within a source, in coordinates in which that is the unit cube.
+  static Box within(const Source& source, const Box& box) {
+    Box part;
+    for (int a = 0; a < 3; ++a) {
+      const double size = source.box.size(a);
+      part.low[a] = std::clamp((box.low[a] - source.box.low[a]) / size, 0.0, 1.0);
+      part.high[a] = std::clamp((box.high[a] - source.box.low[a]) / size, 0.0, 1.0);
+    }
+    return part;
+  }
+
+  // The value of a source all over a box; none where there are others.
+  std::optional<float> value_over(const Source& source, const Box& box) const {
+    if (!source.is_split) {
+      if (source.surface == nullptr) return source.value;
+      return source.surface->uniform_value(within(source, box));
+    }
+    std::optional<float> value;
+    for (int o = 0; o < 8; ++o) {
+      const Source octant = octant_source(source, o);
+      if (!overlaps(octant.box, box)) continue;
+      const std::optional<float> found = value_over(octant, box);
+      if (!found || (value && *value != *found)) return std::nullopt;
+      value = found;
+    }
+    return value ? value : source.value;
+  }
+
+  double volume_within(const Source& source, const Box& box) const {
+    if (!overlaps(source.box, box)) return 0.0;
+    if (is_within(source.box, box)) {
+      return source.box.volume() * static_cast<double>(source.value);
+    }
+    if (source.is_split) {
+      double volume = 0.0;
+      for (int o = 0; o < 8; ++o) volume += volume_within(octant_source(source, o), box);
+      return volume;
+    }
+    const Box part = within(source, box);
+    const double share =
+        source.surface != nullptr ? source.surface->share(part) : static_cast<double>(source.value);
+    return share * part.volume() * source.box.volume();
   }
 
   const Octree& source_;
   int depth_;
-  const Progress& progress_;
-  double done_ = 0.0;
-  std::vector<TreeLevel> levels_;
+  const LeafSurfaces& surfaces_;
 };
 
 void add_occupied(const CellTree& tree, std::size_t level, std::size_t block, const Box& cell,
@@ -157,16 +270,12 @@ void add_occupied(const CellTree& tree, std::size_t level, std::size_t block, co
 
 Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress,
                  int threads) {
-  const Progress finding = progress.part(0.0, 0.95);
-  Regridder regridder(octree, depth, finding);
+  const LeafSurfaces surfaces(octree.cells, progress.part(0.0, 0.2), threads);
+  const RegridRule rule(octree, depth, surfaces);
   Octree result;
   result.bounds = bounds;
   result.depth = depth;
-  bool is_split = false;
-  result.cells.root = regridder.value_of(bounds, 0, 1.0, &is_split);
-  result.cells.levels = regridder.take_levels();
-  for (TreeLevel& level : result.cells.levels) link_blocks(&level);
-  update_means(&result.cells, progress.part(0.95, 1.0), threads);
+  result.cells = build_tree(rule.root(bounds), depth, rule, progress.part(0.2, 1.0), threads);
   return result;
 }
 

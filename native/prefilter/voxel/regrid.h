@@ -8,9 +8,10 @@
 
 namespace prefilter {
 
-/// The same shape on the cells of another box, down to `depth`: exact where its cells lie within
-/// leaves or are made up of them, and otherwise the mean of what they cover. Preconditions: bounds
-/// that check_box accepts, and a depth from 0 to kMaxTreeDepth. Throws Error(kCancelled).
+/// The same shape on the cells of another box, down to `depth`: exact where its cells are leaves or
+/// made up of them, and otherwise what of them is inside of the leaves' surfaces (LeafSurface).
+/// Preconditions: bounds that check_box accepts, and a depth from 0 to kMaxTreeDepth. Throws
+/// Error(kCancelled).
 Octree regridded(const Octree& octree, const Box& bounds, int depth, const Progress& progress,
                  int threads);
 

@@ -11,6 +11,7 @@
 #include "prefilter/contour/height_crossing.h"
 #include "prefilter/contour/marching_table.h"
 #include "prefilter/contour/tree_contour.h"
+#include "prefilter/remesh/intersections.h"
 #include "wavelet/random_tree.h"
 
 namespace prefilter {
@@ -238,6 +239,19 @@ TEST(ContourTree, LeavesOfAnySizesGiveClosedManifolds) {
       ContourOptions options = options_of(interpolant);
       options.clean_up = seed % 4 == 3;
       ASSERT_EQ(fault_of(contour_tree(tree, kUnitBox, options)), "") << seed;
+    }
+  }
+}
+
+TEST(ContourOccupancies, NeverCrossesItself) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    const CellTree tree = random_tree(seed, 2 + static_cast<int>(seed % 4));
+    for (const Interpolant interpolant : kInterpolants) {
+      const TriangleMesh mesh = contour_occupancies(tree, kUnitBox, options_of(interpolant));
+      EXPECT_EQ(fault_of(mesh), "");
+      EXPECT_TRUE(
+          intersecting_triangles({mesh.positions, mesh.triangles}, {}, Progress(), 1).empty())
+          << seed;
     }
   }
 }

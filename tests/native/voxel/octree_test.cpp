@@ -6,10 +6,14 @@
 #include <string>
 
 #include "prefilter/base/error.h"
+#include "prefilter/contour/tree_contour.h"
+#include "prefilter/remesh/intersections.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/queries.h"
 #include "prefilter/voxel/regrid.h"
 #include "prefilter/voxel/voxelize.h"
+#include "prefilter/wavelet/leaf_surface.h"
+#include "prefilter/wavelet/refine.h"
 #include "wavelet/meshes.h"
 #include "wavelet/random_tree.h"
 
@@ -143,8 +147,14 @@ TEST(Combine, IsCellByCellForAnyDepths) {
     const Octree a = random_octree(seed, 3 + static_cast<int>(seed % 3));
     const Octree b = random_octree(seed + 100, 2 + static_cast<int>(seed % 4));
     const int depth = std::max(a.depth, b.depth);
-    const std::vector<float> of_a = dense_values(a, depth, Progress(), 1);
-    const std::vector<float> of_b = dense_values(b, depth, Progress(), 1);
+    // Leaves that are neither full nor empty are split first.
+    const auto dense_refined = [&](const Octree& octree) {
+      Octree fine = octree;
+      fine.cells = refined(octree.cells, std::max(a.cells.depth(), b.cells.depth()), Progress(), 1);
+      return dense_values(fine, depth, Progress(), 1);
+    };
+    const std::vector<float> of_a = dense_refined(a);
+    const std::vector<float> of_b = dense_refined(b);
     for (const SetOperation operation :
          {SetOperation::kUnion, SetOperation::kIntersection, SetOperation::kDifference}) {
       const Octree result = combine(a, b, operation, Progress(), 1);
@@ -199,12 +209,60 @@ TEST(Combine, OtherBoundsAreCarriedOver) {
   EXPECT_NEAR(volume(cut), volume(a) - 0.027, 2e-3);
 }
 
+TEST(Combine, OctreesOfAnyCellsHaveContoursThatDoNotCrossThemselves) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int trial = 0; trial < 12; ++trial) {
+    const Vector3 middle = {0.3 + 0.4 * uniform(random), 0.3 + 0.4 * uniform(random), 0.4};
+    const double radius = 0.15 + 0.2 * uniform(random);
+    const Vector3 low = {0.1 + 0.4 * uniform(random), 0.1 + 0.4 * uniform(random), 0.2};
+    const Vector3 size = {0.2 + 0.3 * uniform(random), 0.2 + 0.3 * uniform(random), 0.41};
+    Box bounds = kUnit;
+    if (trial % 3 == 0) bounds = {{-0.1, -0.13, -0.05}, {1.17, 1.04, 1.1}};
+    const Octree ball = voxelized(sphere_mesh(middle, radius, 20), 3 + trial % 4);
+    const Octree box = voxelized(box_mesh(low, low + size), 6 - trial % 3, bounds);
+    for (const SetOperation operation :
+         {SetOperation::kUnion, SetOperation::kIntersection, SetOperation::kDifference}) {
+      const Octree both = combine(ball, box, operation, Progress(), 1);
+      for (const Interpolant interpolant : {Interpolant::kOccupancy, Interpolant::kPlane}) {
+        ContourOptions options;
+        options.interpolant = interpolant;
+        const TriangleMesh mesh = contour_tree(both.cells, both.bounds, options);
+        EXPECT_TRUE(
+            intersecting_triangles({mesh.positions, mesh.triangles}, {}, Progress(), 1).empty())
+            << trial;
+      }
+    }
+  }
+}
+
 TEST(Resample, KeepsTheVolumeOfWhatItCovers) {
-  const Octree octree = random_octree(30, 4);
   const Box around = {{-0.31, -0.17, -0.4}, {1.2, 1.33, 1.11}};
-  EXPECT_NEAR(volume(regridded(octree, around, 4, Progress(), 1)), volume(octree), 1e-6);
-  const Octree same = regridded(octree, kUnit, 4, Progress(), 1);
-  EXPECT_EQ(dense(same), dense(octree));
+  const Octree ball = voxelized(sphere_mesh({0.5, 0.5, 0.45}, 0.4, 20), 4);
+  EXPECT_EQ(dense(regridded(ball, kUnit, 4, Progress(), 1)), dense(ball));
+  // Surfaces are taken for flat over each box.
+  EXPECT_NEAR(volume(regridded(ball, around, 4, Progress(), 1)), volume(ball), 1e-5);
+  const Octree noise = random_octree(30, 4);
+  EXPECT_NEAR(volume(regridded(noise, around, 4, Progress(), 1)), volume(noise), 5e-5);
+}
+
+TEST(Resample, MovesPlanesExactly) {
+  const Mesh half = box_mesh({-1.0, -1.0, -1.0}, {2.0, 2.0, 0.4371});
+  const Box around = {{-0.31, -0.17, -0.37}, {1.2, 1.33, 1.13}};
+  const Octree moved = regridded(voxelized(half, 4), around, 5, Progress(), 1);
+  const Box within = {{0.2, 0.2, 0.2}, {0.8, 0.8, 0.7}};
+  EXPECT_NEAR(box_occupancy(moved, within), (0.4371 - 0.2) / 0.5, 1e-6);
+  int fractions = 0;
+  for (const TreeLevel& level : moved.cells.levels) {
+    for (std::size_t b = 0; b < level.size(); ++b) {
+      for (int o = 0; o < 8; ++o) {
+        const float value = level.blocks[b][static_cast<std::size_t>(o)];
+        if (!level.is_split(b, o) && is_fraction(value)) ++fractions;
+      }
+    }
+  }
+  // One layer over the root of the source, and what its borders cut.
+  EXPECT_LT(fractions, 32 * 32 + 6 * 32 * 32);
 }
 
 TEST(Voxelize, LeavesAMarginAroundTheMesh) {
