@@ -50,6 +50,7 @@ HEAD = (
     "s",
 )
 MARGIN = 2  # Cells on every side.
+NO_EDGES = measures.Edges(np.zeros((0, 2, 3)), np.zeros(0))
 EDGE_MEAN, EDGE_95, AREA = 0.02, 0.1, 0.001
 
 

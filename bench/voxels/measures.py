@@ -6,7 +6,7 @@ Lengths are in cells, angles in degrees. Nothing here calls the library.
 import os
 import subprocess
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -247,18 +247,28 @@ def smallest_angles(positions: Floats, triangles: Indices) -> Floats:
 
 def soundness(positions: Floats, triangles: Indices) -> Soundness:
     """Looks at every edge, every fan, and every pair of triangles."""
+    found = manifoldness(triangles, len(positions))
+    pairs, _, flat, example = self_intersections(positions, triangles)
+    return replace(found, flat_triangles=flat, intersections=pairs, example=example)
+
+
+def manifoldness(triangles: Indices, vertices: int) -> Soundness:
+    """Looks at every edge and every fan; leaves positions alone."""
     triangles = np.asarray(triangles, np.int64)
     directed = np.concatenate([triangles[:, [k, (k + 1) % 3]] for k in range(3)])
-    low, high = directed.min(axis=1), directed.max(axis=1)
-    key = low * max(len(positions), 1) + high
+    key = directed.min(axis=1) * max(vertices, 1) + directed.max(axis=1)
     unique, which = np.unique(key, return_inverse=True)
     which = which.ravel()
     forward = np.bincount(which, directed[:, 0] < directed[:, 1], len(unique))
     total = np.bincount(which, minlength=len(unique))
-    open_edges = int((total == 1).sum())
-    crowded = int(((total > 2) | ((total == 2) & (forward != 1))).sum())
-    pairs, _, flat, example = self_intersections(positions, triangles)
-    return Soundness(open_edges, crowded, _crowded_vertices(triangles, which), flat, pairs, example)
+    return Soundness(
+        int((total == 1).sum()),
+        int(((total > 2) | ((total == 2) & (forward != 1))).sum()),
+        _crowded_vertices(triangles, which),
+        -1,
+        -1,
+        (-1, -1),
+    )
 
 
 def _crowded_vertices(triangles: Indices, edge_of: Indices) -> int:

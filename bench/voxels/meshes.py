@@ -3,7 +3,9 @@
 With numpy alone, so that nothing else is in the memory that is measured.
 """
 
+import base64
 import io
+import json
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -60,6 +62,47 @@ def read(path: Path) -> Triangles:
     positions, faces = readers[path.suffix](path)
     fans = [(face[0], face[k], face[k + 1]) for face in faces for k in range(1, len(face) - 1)]
     return Triangles(np.asarray(positions, np.float64), np.asarray(fans, np.int64))
+
+
+def read_gltf(path: Path) -> list[Triangles]:
+    """Reads the triangles of each primitive of a glTF file; equal positions become one vertex."""
+    scene = json.loads(path.read_text())
+    buffers = []
+    for buffer in scene["buffers"]:
+        uri = buffer["uri"]
+        if uri.startswith("data:"):
+            buffers.append(base64.b64decode(uri.split(",", 1)[1]))
+        else:
+            buffers.append((path.parent / uri).read_bytes())
+
+    def values(number: int) -> NDArray:
+        accessor = scene["accessors"][number]
+        view = scene["bufferViews"][accessor["bufferView"]]
+        dtype = np.dtype(
+            {5121: "u1", 5123: "<u2", 5125: "<u4", 5126: "<f4"}[accessor["componentType"]]
+        )
+        width = {"SCALAR": 1, "VEC3": 3}[accessor["type"]]
+        start = view.get("byteOffset", 0) + accessor.get("byteOffset", 0)
+        stride = view.get("byteStride", width * dtype.itemsize)
+        count = accessor["count"]
+        raw = np.frombuffer(
+            buffers[view["buffer"]], np.uint8, (count - 1) * stride + width * dtype.itemsize, start
+        )
+        rows = np.lib.stride_tricks.as_strided(raw, (count, width * dtype.itemsize), (stride, 1))
+        return np.ascontiguousarray(rows).view(dtype)
+
+    found = []
+    for mesh in scene["meshes"]:
+        for primitive in mesh["primitives"]:
+            if primitive.get("mode", 4) != 4:
+                continue
+            positions = values(primitive["attributes"]["POSITION"]).astype(np.float64)
+            indices = values(primitive["indices"]).astype(np.int64).reshape(-1, 3)
+            unique, which = np.unique(positions, axis=0, return_inverse=True)
+            triangles = which.ravel()[indices]
+            whole = (triangles != np.roll(triangles, 1, axis=1)).all(axis=1)
+            found.append(Triangles(unique, triangles[whole]))
+    return found
 
 
 def _read_obj(path: Path) -> tuple[list, list]:

@@ -356,6 +356,9 @@ MAKERS: dict[str, Callable[[], Shape]] = {
 }
 
 
+ROUND: dict[str, Callable[[int], Shape]] = {"cylinder": cylinder, "cone": cone}
+
+
 def shape(name: str, *, turned: bool = True) -> Shape:
     """One of `MAKERS`, turned in its own way."""
     made = MAKERS[name]()
