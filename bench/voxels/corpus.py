@@ -5,8 +5,8 @@ Usage: scripts/run python3 bench/voxels/corpus.py [--depth N] [--interpolants NA
     ...] [--meshes N] [--booleans N] [--only TEXT]
 
 Meshes are those gathered beside the checkout and made ones. Volumes are compared with manifold3d's
-(PyPI) where that takes both operands, and may differ by 0.1 of a cell times the area. What is not
-as it has to be is printed as it is found, with the triangles of a pair that cuts.
+(PyPI) where that takes both operands and neither passes through itself, and may differ by 0.1 of a
+cell times the area. What is wrong is printed at once, with the triangles of a pair that cuts.
 """
 
 import argparse
@@ -176,6 +176,7 @@ def run_meshes(shapes: list[Shape], size: int, how: edges.Contour) -> Tally:
 def run_booleans(chosen: list[Boolean], size: int, how: edges.Contour) -> tuple[Tally, int, int]:
     """Contours of each; returns how many volumes were compared, and are wrong."""
     tally, compared, wrong = Tally(), 0, 0
+    simple: dict[str, bool] = {}
     for one in chosen:
         subject = edges.Subject(
             one.name, one.sources, one.operation, one.sources[0], edges.NO_EDGES
@@ -184,6 +185,11 @@ def run_booleans(chosen: list[Boolean], size: int, how: edges.Contour) -> tuple[
         positions, triangles, seconds = edges.contour(subject, size, how)
         tally.add(f"{one.name}, {how.name}", measures.soundness(positions, triangles), seconds)
         if booleans.missing():
+            continue
+        for shape in one.sources:
+            if shape.name not in simple:
+                simple[shape.name] = measures.self_intersections(*vars_of(shape))[0] <= 0
+        if not all(simple[shape.name] for shape in one.sources):
             continue
         try:
             truth, _ = booleans.combined(one.sources, one.operation)

@@ -189,7 +189,10 @@ def subjects_of(options: argparse.Namespace) -> list[Subject]:
     if options.pairs and booleans.missing():
         print(f"booleans are left out: {booleans.missing()} is missing")
         return found
-    for name in options.pairs:
+    names = options.pairs
+    if names == ["all"]:
+        names = ["+".join(pair[:2]) for pair in sharp_shapes.PAIRS]
+    for name in names:
         first, second = name.split("+")
         for operation in options.operations:
             found.append(boolean(first, second, operation))
@@ -203,21 +206,24 @@ def boolean(first: str, second: str, operation: str, number: int = 0) -> Subject
     return Subject(f"{first} {operation} {second}", sources, operation, truth, rims)
 
 
+def add_subjects(parser: argparse.ArgumentParser) -> None:
+    """Adds the options that say what is measured."""
+    pairs = ", ".join("+".join(pair[:2]) for pair in sharp_shapes.PAIRS)
+    parser.add_argument("--shapes", nargs="*", default=list(sharp_shapes.MAKERS))
+    parser.add_argument("--pairs", nargs="*", default=[], help=f"'all', or of {pairs}")
+    parser.add_argument("--operations", nargs="+", default=list(booleans.OPERATORS))
+    parser.add_argument("--sizes", type=int, nargs="+", default=[128])
+    parser.add_argument("--markdown", type=Path)
+
+
 def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    pairs = ["+".join(pair) for pair in sharp_shapes.PAIRS]
-    parser.add_argument("--shapes", nargs="*", default=list(sharp_shapes.MAKERS))
-    parser.add_argument("--pairs", nargs="*", default=[], help=f"'all', or of {', '.join(pairs)}")
-    parser.add_argument("--operations", nargs="+", default=["union", "intersection", "difference"])
-    parser.add_argument("--sizes", type=int, nargs="+", default=[128])
+    add_subjects(parser)
     parser.add_argument(
         "--interpolants", nargs="+", default=["occupancy", "plane"], metavar="NAME[+clean][@CELLS]"
     )
-    parser.add_argument("--markdown", type=Path)
     options = parser.parse_args()
-    if options.pairs == ["all"]:
-        options.pairs = pairs
     report = Report()
     subjects = subjects_of(options)
     for size in options.sizes:
