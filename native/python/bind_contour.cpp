@@ -50,7 +50,7 @@ MeshArrays to_arrays(TriangleMesh mesh) {
 }
 
 // A mesh, and the groups of its triangles, of which there may be none.
-using SourceArrays = std::tuple<Array<double>, Array<std::int64_t>, Array<std::int64_t>>;
+using SourceArrays = std::tuple<py::array, py::array, Array<std::int64_t>>;
 
 MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpolant,
                                 float isovalue, const std::vector<SourceArrays>& source_arrays,

@@ -161,13 +161,14 @@ Array<double> bound_estimate_normals(const Array<double>& points, int neighbours
   return to_array<double>(std::move(normals), {points.shape(0), 3});
 }
 
-Array<double> bound_mesh_normals(const Array<double>& points, const Array<std::int64_t>& triangles,
+Array<double> bound_mesh_normals(const py::array& points, const py::array& triangles,
                                  const py::object& callback) {
   const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(points, triangles);
   std::vector<Vector3> normals;
   {
     const py::gil_scoped_release unlocked;
-    normals = mesh_normals(mesh_of(points, triangles), progress);
+    normals = mesh_normals(mesh, progress);
   }
   return to_array<double>(std::move(normals), {points.shape(0), 3});
 }

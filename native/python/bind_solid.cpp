@@ -1,10 +1,9 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cstring>
 #include <tuple>
-#include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "convert.h"
 #include "prefilter/solid/as_solid.h"
@@ -17,30 +16,30 @@ namespace {
 
 // The mesh with its caps, and the numbers of open edges and of holes.
 std::tuple<Array<double>, Array<std::int64_t>, std::size_t, std::size_t> bound_close_holes(
-    const Array<double>& positions, const Array<std::int64_t>& triangles,
-    const py::object& callback) {
+    const py::array& positions, const py::array& triangles, const py::object& callback) {
   const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(positions, triangles);
   Caps caps;
   {
     const py::gil_scoped_release unlocked;
-    caps = close_holes(mesh_of(positions, triangles), progress, 0);
+    caps = close_holes(mesh, progress, 0);
   }
-  const auto joined = [](const auto& own, const auto& added) {
-    auto result = std::decay_t<decltype(own)>(
-        {own.shape(0) + static_cast<py::ssize_t>(added.size()), py::ssize_t{3}});
-    auto* const end = std::copy_n(own.data(), own.size(), result.mutable_data());
-    if (!added.empty()) std::memcpy(end, added.data(), added.size() * sizeof(added[0]));
+  const auto joined = []<typename T>(const auto& own, const std::vector<std::array<T, 3>>& added) {
+    Array<T> result({static_cast<py::ssize_t>(own.size() + added.size()), py::ssize_t{3}});
+    auto* const rows = reinterpret_cast<std::array<T, 3>*>(result.mutable_data());
+    for (std::size_t i = 0; i < own.size(); ++i) rows[i] = own[i];
+    std::copy(added.begin(), added.end(), rows + own.size());
     return result;
   };
-  return {joined(positions, caps.positions), joined(triangles, caps.triangles), caps.open_edges,
-          caps.holes};
+  return {joined(mesh.positions, caps.positions), joined(mesh.triangles, caps.triangles),
+          caps.open_edges, caps.holes};
 }
 
 // Nothing where the mesh stays as it is, or its positions, triangles, and where these came from;
 // and the report.
-py::tuple bound_as_solid(const Array<double>& positions, const Array<std::int64_t>& triangles,
-                         double cell, double weld, double gap, double thickness,
-                         const py::object& callback, int threads) {
+py::tuple bound_as_solid(const py::array& positions, const py::array& triangles, double cell,
+                         double weld, double gap, double thickness, const py::object& callback,
+                         int threads) {
   SolidOptions options;
   options.cell = cell;
   options.weld = weld;
@@ -48,10 +47,11 @@ py::tuple bound_as_solid(const Array<double>& positions, const Array<std::int64_
   options.thickness = thickness;
   options.threads = threads;
   options.progress = to_progress(callback);
+  const InputMesh mesh_view = mesh_of(positions, triangles);
   Solid solid;
   {
     const py::gil_scoped_release unlocked;
-    solid = as_solid(mesh_of(positions, triangles), options);
+    solid = as_solid(mesh_view, options);
   }
   py::object mesh = py::none();
   if (!solid.is_unchanged) {

@@ -32,12 +32,12 @@ Found to_arrays(const std::vector<SurfacePoint>& points) {
   return {std::move(triangles), std::move(weights), std::move(distances)};
 }
 
-std::unique_ptr<NearestPoints> bound_tree(const Array<double>& positions,
-                                          const Array<std::int64_t>& triangles,
+std::unique_ptr<NearestPoints> bound_tree(const py::array& positions, const py::array& triangles,
                                           const py::object& callback, int threads) {
   const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(positions, triangles);
   const py::gil_scoped_release unlocked;
-  return std::make_unique<NearestPoints>(mesh_of(positions, triangles), progress, threads);
+  return std::make_unique<NearestPoints>(mesh, progress, threads);
 }
 
 Found bound_find(const NearestPoints& tree, const Array<double>& points, const py::object& callback,
@@ -51,14 +51,14 @@ Found bound_find(const NearestPoints& tree, const Array<double>& points, const p
   return to_arrays(found);
 }
 
-Found bound_nearest_points(const Array<double>& points, const Array<double>& positions,
-                           const Array<std::int64_t>& triangles, const py::object& callback,
-                           int threads) {
+Found bound_nearest_points(const Array<double>& points, const py::array& positions,
+                           const py::array& triangles, const py::object& callback, int threads) {
   const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(positions, triangles);
   std::vector<SurfacePoint> found;
   {
     const py::gil_scoped_release unlocked;
-    found = nearest_points(rows_of(points), mesh_of(positions, triangles), progress, threads);
+    found = nearest_points(rows_of(points), mesh, progress, threads);
   }
   return to_arrays(found);
 }

@@ -35,8 +35,8 @@ SetOperation set_operation(const std::string& name) {
   throw_invalid("operation: '" + name + "' is not one of union, intersection, difference");
 }
 
-Octree bound_voxelize(const Array<double>& positions, const Array<std::int64_t>& triangles,
-                      int depth, const std::optional<Corners>& bounds, const py::object& progress,
+Octree bound_voxelize(const py::array& positions, const py::array& triangles, int depth,
+                      const std::optional<Corners>& bounds, const py::object& progress,
                       int threads) {
   VoxelizeOptions options;
   options.depth = depth;

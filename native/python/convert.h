@@ -38,10 +38,9 @@ std::span<const std::array<T, 3>> rows_of(const Array<T>& array) {
           static_cast<std::size_t>(array.shape(0))};
 }
 
-/// A mesh of arrays of shape (vertices, 3) and (triangles, 3).
-inline InputMesh mesh_of(const Array<double>& positions, const Array<std::int64_t>& triangles) {
-  return {rows_of(positions), rows_of(triangles)};
-}
+/// A mesh of C-contiguous arrays: (vertices, 3) of float32 or float64, and (triangles, 3) of int32
+/// or int64. It holds no copy: the arrays have to live as long. Needs the interpreter's lock.
+InputMesh mesh_of(const pybind11::array& positions, const pybind11::array& triangles);
 
 /// An array of this shape that owns the values, rows of T or T themselves.
 template <typename T, typename Value>

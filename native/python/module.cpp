@@ -34,6 +34,23 @@ ImageView view_of(const Array<float>& array) {
           static_cast<int>(array.shape(2))};
 }
 
+namespace {
+
+template <typename Narrow, typename Wide>
+RowView<Narrow, Wide> row_view(const py::array& array) {
+  const auto count = static_cast<std::size_t>(array.shape(0));
+  if (array.itemsize() == static_cast<py::ssize_t>(sizeof(Narrow))) {
+    return std::span(static_cast<const std::array<Narrow, 3>*>(array.data()), count);
+  }
+  return std::span(static_cast<const std::array<Wide, 3>*>(array.data()), count);
+}
+
+}  // namespace
+
+InputMesh mesh_of(const py::array& positions, const py::array& triangles) {
+  return {row_view<float, double>(positions), row_view<std::int32_t, std::int64_t>(triangles)};
+}
+
 std::vector<ImageView> views_of(const std::vector<Array<float>>& arrays) {
   std::vector<ImageView> views;
   for (const Array<float>& array : arrays) views.push_back(view_of(array));

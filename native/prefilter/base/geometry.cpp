@@ -7,7 +7,7 @@
 
 namespace prefilter {
 
-void check_points(std::span<const Vector3> points, const char* rows, double largest) {
+void check_points(const PositionView& points, const char* rows, double largest) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     for (const double x : points[i]) {
       if (std::abs(x) <= largest) continue;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -94,8 +95,70 @@ struct MeshView {
   }
 };
 
-/// A mesh as callers pass it: its indices are not yet known to name vertices.
-using InputMesh = MeshView<std::int64_t>;
+/// Rows of three numbers as someone else holds them, in one of two types; they are read as the
+/// wider.
+template <typename Narrow, typename Wide>
+class RowView {
+ public:
+  using Row = std::array<Wide, 3>;
+
+  RowView() = default;
+  RowView(std::span<const std::array<Narrow, 3>> rows)  // NOLINT(google-explicit-constructor)
+      : narrow_(rows.data()), size_(rows.size()) {}
+  RowView(std::span<const Row> rows)  // NOLINT(google-explicit-constructor)
+      : wide_(rows.data()), size_(rows.size()) {}
+  template <typename Rows>
+  requires std::convertible_to<const Rows&, std::span<const std::array<Narrow, 3>>> ||
+      std::convertible_to<const Rows&, std::span<const Row>>
+      RowView(const Rows& rows)  // NOLINT(google-explicit-constructor)
+      : RowView(std::span(rows)) {}
+
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  Row operator[](std::size_t i) const {
+    if (wide_ != nullptr) return wide_[i];
+    const auto& [a, b, c] = narrow_[i];
+    return {static_cast<Wide>(a), static_cast<Wide>(b), static_cast<Wide>(c)};
+  }
+
+  class Iterator {
+   public:
+    Iterator(const RowView* rows, std::size_t at) : rows_(rows), at_(at) {}
+    Row operator*() const { return (*rows_)[at_]; }
+    Iterator& operator++() {
+      ++at_;
+      return *this;
+    }
+    bool operator==(const Iterator& other) const { return at_ == other.at_; }
+
+   private:
+    const RowView* rows_;
+    std::size_t at_;
+  };
+  Iterator begin() const { return {this, 0}; }
+  Iterator end() const { return {this, size_}; }
+
+ private:
+  const std::array<Narrow, 3>* narrow_ = nullptr;
+  const Row* wide_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+using PositionView = RowView<float, double>;
+using TriangleView = RowView<std::int32_t, std::int64_t>;
+
+/// A mesh as callers pass it; counter-clockwise seen from outside. Its indices are not yet known to
+/// name vertices.
+struct InputMesh {
+  PositionView positions;
+  TriangleView triangles;
+
+  std::array<Vector3, 3> corners(std::size_t triangle) const {
+    const auto [a, b, c] = triangles[triangle];
+    return {positions[static_cast<std::size_t>(a)], positions[static_cast<std::size_t>(b)],
+            positions[static_cast<std::size_t>(c)]};
+  }
+};
 
 /// Triangles that share vertices; counter-clockwise seen from outside.
 struct TriangleMesh {
@@ -105,7 +168,7 @@ struct TriangleMesh {
 
 /// Throws Error where a row holds a value that is not finite, or larger than `largest`. `rows` says
 /// what they are: "points: row".
-void check_points(std::span<const Vector3> points, const char* rows, double largest);
+void check_points(const PositionView& points, const char* rows, double largest);
 
 /// Throws Error where an index names none of `count` vertices; `who` names it.
 [[noreturn]] void throw_no_vertex(const std::string& who, std::int64_t vertex, std::size_t count);

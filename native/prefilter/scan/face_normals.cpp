@@ -172,7 +172,7 @@ std::vector<Vector3> mesh_normals(const InputMesh& mesh, const Progress& progres
 
 GridNormals grid_normals(std::span<const Vector3> points, const RangeGrid& grid,
                          const std::optional<Vector3>& viewpoint, const Progress& progress) {
-  if (viewpoint) check_points({&*viewpoint, 1}, "viewpoint: row", kLargestCoordinate);
+  if (viewpoint) check_points(std::span(&*viewpoint, 1), "viewpoint: row", kLargestCoordinate);
   const Grid places(points, grid);
   const double longest = kLongestEdge * places.spacing(progress);
   std::vector<Triangle> triangles;

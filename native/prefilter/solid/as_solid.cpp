@@ -32,7 +32,8 @@ void check(const InputMesh& mesh, const SolidOptions& options) {
 
 WorkMesh work_mesh(const InputMesh& mesh) {
   WorkMesh work;
-  work.positions.assign(mesh.positions.begin(), mesh.positions.end());
+  work.positions.reserve(mesh.positions.size());
+  for (const Vector3& position : mesh.positions) work.positions.push_back(position);
   work.triangles.resize(mesh.triangles.size());
   work.origins.resize(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {

@@ -21,7 +21,7 @@ struct Run {
 };
 
 // For each vertex, the first of those at its place.
-std::vector<std::uint32_t> weld(std::span<const Vector3> positions, const Progress& progress,
+std::vector<std::uint32_t> weld(const PositionView& positions, const Progress& progress,
                                 int threads) {
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -70,7 +70,7 @@ std::vector<Run> missing_runs(const InputMesh& mesh, const std::vector<std::uint
   return runs;
 }
 
-void add_fan(std::span<const Vector3> positions, std::span<const std::uint32_t> loop, Caps* caps) {
+void add_fan(const PositionView& positions, std::span<const std::uint32_t> loop, Caps* caps) {
   ++caps->holes;
   if (loop.size() == 3) {
     caps->triangles.push_back({loop[0], loop[1], loop[2]});
@@ -98,8 +98,8 @@ void add_fan(std::span<const Vector3> positions, std::span<const std::uint32_t> 
 
 // Walks along the runs, each once. As many lead to a vertex as away from it, so a walk ends where
 // it began; where it comes to a vertex again, it has closed a loop.
-void add_fans(std::span<const Vector3> positions, const std::vector<Run>& runs,
-              const Progress& progress, Caps* caps) {
+void add_fans(const PositionView& positions, const std::vector<Run>& runs, const Progress& progress,
+              Caps* caps) {
   constexpr std::size_t kNowhere = static_cast<std::size_t>(-1);
   std::vector<std::size_t> next(positions.size(), kNowhere);  // the first run not yet walked
   for (std::size_t i = runs.size(); i-- > 0;) next[runs[i].from] = i;

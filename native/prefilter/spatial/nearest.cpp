@@ -100,7 +100,8 @@ NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, in
 
 std::vector<std::uint64_t> NearestPoints::sort_triangles(const InputMesh& mesh,
                                                          const Progress& progress, int threads) {
-  positions_.assign(mesh.positions.begin(), mesh.positions.end());
+  positions_.reserve(mesh.positions.size());
+  for (const Vector3& position : mesh.positions) positions_.push_back(position);
   const auto middle = [&](std::size_t triangle) {
     Box box = kEmptyBox;
     for (const Vector3& corner : mesh.corners(triangle)) box.include(corner);
@@ -118,7 +119,7 @@ std::vector<std::uint64_t> NearestPoints::sort_triangles(const InputMesh& mesh,
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       keys[i] = places[i].key;
       indices_[i] = places[i].index;
-      const auto& triangle = mesh.triangles[places[i].index];
+      const auto triangle = mesh.triangles[places[i].index];
       for (int c = 0; c < 3; ++c) triangles_[i][c] = static_cast<std::int32_t>(triangle[c]);
     }
   };

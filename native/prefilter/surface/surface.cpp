@@ -97,7 +97,8 @@ Surface make_surface(const TexturedMesh& textured, const Progress& progress) {
   surface.areas.resize(count);
   surface.triangles.resize(count);
   Pulse pulse(progress);
-  surface.positions.assign(mesh.positions.begin(), mesh.positions.end());
+  surface.positions.reserve(mesh.positions.size());
+  for (const Vector3& position : mesh.positions) surface.positions.push_back(position);
   for (std::size_t k = 0; k < count; ++k) {
     pulse.step();
     for (int corner = 0; corner < 3; ++corner) {

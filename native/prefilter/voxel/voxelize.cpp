@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -67,7 +65,7 @@ SurfaceExtent extent_of(const RootTriangles& mesh, std::int64_t begin, std::int6
 
 // Throws where all triangles have zero area, or the tree would not fit.
 void check_surface(const RootTriangles& mesh, int depth, const Progress& progress, int threads) {
-  const auto count = static_cast<std::int64_t>(mesh.triangles.size());
+  const auto count = static_cast<std::int64_t>(mesh.mesh.triangles.size());
   std::vector<SurfaceExtent> parts(static_cast<std::size_t>(range_count(count, kRowsPerTask)));
   parallel_ranges(
       count, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
@@ -79,7 +77,7 @@ void check_surface(const RootTriangles& mesh, int depth, const Progress& progres
     all.has_area = all.has_area || part.has_area;
   }
   if (!all.has_area) {
-    throw_invalid("triangles: all " + std::to_string(mesh.triangles.size()) +
+    throw_invalid("triangles: all " + std::to_string(mesh.mesh.triangles.size()) +
                   " have zero area; at least one with an area is needed");
   }
   check_memory("depth: a tree of depth " + std::to_string(depth) + " of this mesh",
@@ -119,33 +117,10 @@ Octree voxelize(const InputMesh& mesh, const VoxelizeOptions& options) {
     check_box(octree.bounds, "positions");
   }
 
-  const Box& bounds = octree.bounds;
-  // Not set to zero first, so that the threads that write touch the memory.
-  const auto position_memory = std::make_unique_for_overwrite<Vector3[]>(mesh.positions.size());
-  const std::span positions(position_memory.get(), mesh.positions.size());
-  const auto carry = [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      for (int a = 0; a < 3; ++a) {
-        positions[i][a] = (mesh.positions[i][a] - bounds.low[a]) / bounds.size(a);
-      }
-    }
-  };
-  parallel_ranges(static_cast<std::int64_t>(positions.size()), kRowsPerTask, options.threads,
-                  options.progress.part(0.0, 0.02), carry);
-  const auto triangle_memory =
-      std::make_unique_for_overwrite<std::array<std::int32_t, 3>[]>(mesh.triangles.size());
-  const std::span triangles(triangle_memory.get(), mesh.triangles.size());
-  const auto narrow = [&](std::int64_t begin, std::int64_t end) {
-    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-      for (int i = 0; i < 3; ++i) triangles[t][i] = static_cast<std::int32_t>(mesh.triangles[t][i]);
-    }
-  };
-  parallel_ranges(static_cast<std::int64_t>(triangles.size()), kRowsPerTask, options.threads,
-                  options.progress.part(0.02, 0.04), narrow);
-  const RootTriangles in_root{positions, triangles};
-  check_surface(in_root, options.depth, options.progress.part(0.04, 0.06), options.threads);
+  const RootTriangles in_root{mesh, octree.bounds};
+  check_surface(in_root, options.depth, options.progress.part(0.0, 0.05), options.threads);
   HaarTree coefficients =
-      analyse_triangles(in_root, options.depth, options.progress.part(0.06, 0.9), options.threads);
+      analyse_triangles(in_root, options.depth, options.progress.part(0.05, 0.9), options.threads);
   octree.cells =
       synthesise(std::move(coefficients), -1, options.progress.part(0.9, 1.0), options.threads);
   return octree;

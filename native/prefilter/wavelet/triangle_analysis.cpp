@@ -32,8 +32,7 @@ struct BrickTriangle {
 
 CellPolygon triangle_of(const RootTriangles& mesh, std::size_t index, double scale) {
   CellPolygon polygon;
-  for (const std::int32_t vertex : mesh.triangles[index]) {
-    const Vector3& p = mesh.positions[static_cast<std::size_t>(vertex)];
+  for (const Vector3& p : mesh.corners(index)) {
     polygon.add({p[0] * scale, p[1] * scale, p[2] * scale});
   }
   return polygon;
@@ -211,7 +210,7 @@ class Brick {
 // All triangles' bricks, sorted by brick and then by triangle.
 Scattered scatter_all(const RootTriangles& mesh, int bricks_per_axis, const Progress& progress,
                       int threads) {
-  const auto count = static_cast<std::int64_t>(mesh.triangles.size());
+  const auto count = static_cast<std::int64_t>(mesh.mesh.triangles.size());
   std::vector<Scattered> parts(static_cast<std::size_t>(range_count(count, kTrianglesPerTask)));
   parallel_ranges(count, kTrianglesPerTask, threads, progress.part(0.0, 0.6),
                   [&](std::int64_t begin, std::int64_t end) {

@@ -9,8 +9,19 @@
 
 namespace prefilter {
 
-/// Triangles in coordinates in which the root is the unit cube.
-using RootTriangles = MeshView<std::int32_t>;
+/// Triangles in coordinates in which the root is the unit cube, carried there as they are read.
+struct RootTriangles {
+  InputMesh mesh;
+  Box root = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};  // in the mesh's own coordinates
+
+  std::array<Vector3, 3> corners(std::size_t triangle) const {
+    std::array<Vector3, 3> corners = mesh.corners(triangle);
+    for (Vector3& p : corners) {
+      for (int a = 0; a < 3; ++a) p[a] = (p[a] - root.low[a]) / root.size(a);
+    }
+    return corners;
+  }
+};
 
 /// The Haar coefficients of the shape that the triangles bound, down to cells of `depth` (1 to
 /// kMaxTreeDepth). What lies outside of the root does not count. The surface need not be closed: a

@@ -42,8 +42,8 @@ class Surface:
 class NearestPoints:
     def __init__(
         self,
-        positions: npt.NDArray[np.float64],
-        triangles: npt.NDArray[np.int64],
+        positions: npt.NDArray[np.floating],
+        triangles: npt.NDArray[np.integer],
         progress: ProgressCallback | None,
         threads: int,
     ) -> None: ...
@@ -245,8 +245,8 @@ def read_points(
 ]: ...
 def nearest_points(
     points: npt.NDArray[np.float64],
-    positions: npt.NDArray[np.float64],
-    triangles: npt.NDArray[np.int64],
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
@@ -388,8 +388,8 @@ def normal_mipmaps(
     threads: int,
 ) -> tuple[list[npt.NDArray[np.float32]], list[npt.NDArray[np.float32]]]: ...
 def mesh_normals(
-    points: npt.NDArray[np.float64],
-    triangles: npt.NDArray[np.int64],
+    points: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
     progress: ProgressCallback | None,
 ) -> npt.NDArray[np.float64]: ...
 def grid_normals(
@@ -445,8 +445,8 @@ def levels_of(
     octree: Octree,
 ) -> list[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]]: ...
 def voxelize(
-    positions: npt.NDArray[np.float64],
-    triangles: npt.NDArray[np.int64],
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
     depth: int,
     bounds: tuple[list[float], list[float]] | None,
     progress: ProgressCallback | None,
@@ -469,8 +469,8 @@ def as_solid(
     tuple[int, int, int, int, int, int, int, int],
 ]: ...
 def close_holes(
-    positions: npt.NDArray[np.float64],
-    triangles: npt.NDArray[np.int64],
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
     progress: ProgressCallback | None,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], int, int]: ...
 def make_octree(
@@ -484,7 +484,7 @@ def contour_octree(
     interpolant: str,
     isovalue: float,
     sources: list[
-        tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]]
+        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int64]]
     ],
     clean_up: bool,
     adaptivity: float,

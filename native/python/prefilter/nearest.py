@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, as_progress
-from ._border.arrays import as_floats, as_indices, as_threads
+from ._border.arrays import as_floats, as_mesh, as_threads
 
 Found = tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]
 
@@ -34,8 +34,7 @@ class NearestPoints:
         threads: int = 0,
     ) -> None:
         self._tree = _native.NearestPoints(
-            as_floats("positions", positions, ("vertices", 3), np.float64),
-            as_indices("triangles", triangles, ("triangles", 3)),
+            *as_mesh(positions, triangles),
             as_progress(progress),
             as_threads(threads),
         )
@@ -92,8 +91,7 @@ def nearest_points(
     """
     return _native.nearest_points(
         as_floats("points", points, ("points", 3), np.float64),
-        as_floats("positions", positions, ("vertices", 3), np.float64),
-        as_indices("triangles", triangles, ("triangles", 3)),
+        *as_mesh(positions, triangles),
         as_progress(progress),
         as_threads(threads),
     )

@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, as_progress
-from ._border.arrays import as_floats, as_indices
+from ._border.arrays import as_mesh
 
 
 @dataclass(frozen=True)
@@ -52,8 +52,7 @@ def close_holes(
     """
     return ClosedMesh(
         *_native.close_holes(
-            as_floats("positions", positions, ("vertices", 3), np.float64),
-            as_indices("triangles", triangles, ("triangles", 3)),
+            *as_mesh(positions, triangles),
             as_progress(progress),
         )
     )

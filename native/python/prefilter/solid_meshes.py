@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, as_number, as_progress
-from ._border.arrays import as_floats, as_indices, as_threads
+from ._border.arrays import as_mesh, as_threads
 
 
 @dataclass(frozen=True)
@@ -15,8 +15,8 @@ class SolidMesh:
     """A mesh that `voxelize` makes a good solid of, and what was done for it.
 
     Attributes:
-        positions: (vertices, 3) float64.
-        triangles: (triangles, 3) int64.
+        positions: (vertices, 3) float64, or what was passed if the mesh is as it was.
+        triangles: (triangles, 3) int64, likewise.
         origins: (triangles,) int64: the triangle of the mesh that each came from, or -1 for those
             that fill what the outside does not reach. None if the mesh is as it was.
         parts: Patches of the mesh: faces that hang together by edges with two of them.
@@ -29,8 +29,8 @@ class SolidMesh:
         lost_parts: Parts that have no voxels all the same.
     """
 
-    positions: npt.NDArray[np.float64]
-    triangles: npt.NDArray[np.int64]
+    positions: npt.NDArray[np.floating]
+    triangles: npt.NDArray[np.integer]
     origins: npt.NDArray[np.int64] | None
     parts: int
     welded_vertices: int
@@ -83,8 +83,7 @@ def as_solid(
         MemoryError: The work would not fit into memory.
         Cancelled: `progress` returned False.
     """
-    points = as_floats("positions", positions, ("vertices", 3), np.float64)
-    indices = as_indices("triangles", triangles, ("triangles", 3))
+    points, indices = as_mesh(positions, triangles)
     mesh, report = _native.as_solid(
         points,
         indices,

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
-from ._border.arrays import as_floats, as_indices, as_threads
+from ._border.arrays import as_floats, as_mesh, as_threads
 from .octree_files import read_octree, write_octree
 
 Corner = Sequence[float] | npt.NDArray[np.floating]
@@ -264,8 +264,7 @@ def voxelize(
         MemoryError: The octree would not fit into memory.
         Cancelled: `progress` returned False.
     """
-    points = as_floats("positions", positions, ("vertices", 3), np.float64)
-    indices = as_indices("triangles", triangles, ("triangles", 3))
+    points, indices = as_mesh(positions, triangles)
     box = None if bounds is None else _as_box("bounds", bounds)
     return Octree(
         _native.voxelize(
@@ -293,7 +292,7 @@ def cube_around(bounds: Box, *, depth: int = 8) -> tuple[np.ndarray, np.ndarray]
 
 def _as_sources(
     sources: Sequence[Source] | None,
-) -> list[tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]]]:
+) -> list[tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int64]]]:
     if sources is None:
         return []
     checked = []
@@ -308,8 +307,11 @@ def _as_sources(
             groups = np.ascontiguousarray(source[2], np.int64)
         checked.append(
             (
-                as_floats(f"sources[{i}] positions", source[0], ("vertices", 3), np.float64),
-                as_indices(f"sources[{i}] triangles", source[1], ("triangles", 3)),
+                *as_mesh(
+                    source[0],
+                    source[1],
+                    names=(f"sources[{i}] positions", f"sources[{i}] triangles"),
+                ),
                 groups,
             )
         )

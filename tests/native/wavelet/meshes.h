@@ -16,7 +16,7 @@ struct Mesh {
   std::vector<Vector3> positions;
   std::vector<std::array<std::int32_t, 3>> triangles;
 
-  RootTriangles view() const { return {positions, triangles}; }
+  RootTriangles view() const { return {{positions, triangles}}; }
 
   void add(const Mesh& other) {
     const auto offset = static_cast<std::int32_t>(positions.size());

@@ -12,6 +12,8 @@ _LARGEST_INT = 2**30
 # What can be filtered without overflow.
 _LARGEST_VALUE = np.float32(1e30)
 
+_MESH_NAMES = ("positions", "triangles")
+
 FloatArray: TypeAlias = npt.NDArray[np.float32]
 
 
@@ -38,6 +40,23 @@ def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> n
         raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
     check_shape(name, found, shape)
     return np.ascontiguousarray(found, np.int64)
+
+
+def as_mesh(
+    positions: npt.ArrayLike, triangles: npt.ArrayLike, *, names: Sequence[str] = _MESH_NAMES
+) -> tuple[np.ndarray, np.ndarray]:
+    """The arrays of a mesh, C-contiguous, and not copied where they are.
+
+    Positions are float32 or float64, (vertices, 3), and triangles int32 or int64, (triangles, 3).
+    Raises ValueError as `as_floats` and `as_indices` do.
+    """
+    points = as_array(names[0], positions)
+    points = as_floats(names[0], points, ("vertices", 3), points.dtype)
+    indices = as_array(names[1], triangles)
+    if indices.dtype != np.int32:
+        return points, as_indices(names[1], indices, ("triangles", 3))
+    check_shape(names[1], indices, ("triangles", 3))
+    return points, np.ascontiguousarray(indices)
 
 
 def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:
