@@ -7,6 +7,8 @@
 
 #include "convert.h"
 #include "instances.h"
+#include "prefilter/spatial/corner_points.h"
+#include "prefilter/spatial/measure_mesh.h"
 #include "prefilter/spatial/nearest.h"
 
 namespace py = pybind11;
@@ -14,6 +16,7 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
+// The triangle, the weights of its corners, and the distance of each point.
 using Found = std::tuple<Array<std::int64_t>, Array<double>, Array<double>>;
 
 Found to_arrays(const std::vector<SurfacePoint>& points) {
@@ -63,6 +66,38 @@ Found bound_nearest_points(const Array<double>& points, const py::array& positio
   return to_arrays(found);
 }
 
+// The points, and which of them the corners have.
+std::tuple<Found, Array<std::int32_t>> bound_corner_points(
+    const py::array& positions, const py::array& triangles, const Array<std::int32_t>& origins,
+    const py::array& source_positions, const py::array& source_triangles,
+    const Array<std::int32_t>& labels, const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  const InputMesh surface = mesh_of(positions, triangles);
+  const InputMesh source = mesh_of(source_positions, source_triangles);
+  CornerPoints found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = find_corner_points(surface, values_of(origins), source, values_of(labels), progress,
+                               threads);
+  }
+  const auto count = static_cast<py::ssize_t>(found.corners.size());
+  return {to_arrays(found.points),
+          to_array<std::int32_t>(std::move(found.corners), {count, py::ssize_t{3}})};
+}
+
+std::tuple<std::pair<Vector3, Vector3>, double, double> bound_measure_mesh(
+    const py::array& positions, const py::array& triangles, const py::object& callback,
+    int threads) {
+  const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(positions, triangles);
+  MeshMeasures measures;
+  {
+    const py::gil_scoped_release unlocked;
+    measures = measure_mesh(mesh, progress, threads);
+  }
+  return {{measures.box.low, measures.box.high}, measures.area, measures.volume};
+}
+
 }  // namespace
 
 void bind_spatial(py::module_& m) {
@@ -70,6 +105,11 @@ void bind_spatial(py::module_& m) {
       .def(py::init(&bound_tree), py::arg("positions"), py::arg("triangles"), py::arg("progress"),
            py::arg("threads"))
       .def("find", &bound_find, py::arg("points"), py::arg("progress"), py::arg("threads"));
+  m.def("corner_points", &bound_corner_points, py::arg("positions"), py::arg("triangles"),
+        py::arg("origins"), py::arg("source_positions"), py::arg("source_triangles"),
+        py::arg("labels"), py::arg("progress"), py::arg("threads"));
+  m.def("measure_mesh", &bound_measure_mesh, py::arg("positions"), py::arg("triangles"),
+        py::arg("progress"), py::arg("threads"));
   m.def("nearest_points", &bound_nearest_points, py::arg("points"), py::arg("positions"),
         py::arg("triangles"), py::arg("progress"), py::arg("threads"));
 }

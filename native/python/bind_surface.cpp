@@ -4,9 +4,11 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "convert.h"
 #include "instances.h"
+#include "prefilter/surface/charts.h"
 #include "prefilter/surface/subdivision.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/surface/udim_tile.h"
@@ -48,6 +50,24 @@ Surface bound_surface(const Array<double>& positions, const Array<std::int64_t>&
   }
   const py::gil_scoped_release unlocked;
   return make_surface(mesh);
+}
+
+Array<std::int32_t> bound_uv_charts(const py::array& positions, const py::array& triangles,
+                                    const std::vector<Array<float>>& uvs,
+                                    const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(positions, triangles);
+  std::vector<CornerUvs> maps;
+  for (const Array<float>& map : uvs) {
+    maps.emplace_back(reinterpret_cast<const CornerUvs::value_type*>(map.data()),
+                      static_cast<std::size_t>(map.shape(0)));
+  }
+  std::vector<std::int32_t> charts;
+  {
+    const py::gil_scoped_release unlocked;
+    charts = find_charts(mesh, maps, progress, threads);
+  }
+  return to_array<std::int32_t>(std::move(charts), {triangles.shape(0)});
 }
 
 Surface bound_placed(const Surface& surface, const Array<double>& matrices) {
@@ -130,6 +150,8 @@ void bind_surface(py::module_& m) {
                                return rows<double>(s.uvs, {3, 2});
                              })
       .def_property_readonly("areas", [](const Surface& s) { return rows<double>(s.areas, {}); });
+  m.def("uv_charts", &bound_uv_charts, py::arg("positions"), py::arg("triangles"), py::arg("uvs"),
+        py::arg("progress"), py::arg("threads"));
   m.def("subdivide", &bound_subdivide, py::arg("positions"), py::arg("face_sizes"),
         py::arg("face_vertices"), py::arg("face_uvs"), py::arg("crease_edges"),
         py::arg("crease_sharpness"), py::arg("corner_vertices"), py::arg("corner_sharpness"),

@@ -38,6 +38,12 @@ std::span<const std::array<T, 3>> rows_of(const Array<T>& array) {
           static_cast<std::size_t>(array.shape(0))};
 }
 
+/// The values of an array of one axis.
+template <typename T>
+std::span<const T> values_of(const Array<T>& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
 /// A mesh of C-contiguous arrays: (vertices, 3) of float32 or float64, and (triangles, 3) of int32
 /// or int64. It holds no copy: the arrays have to live as long. Needs the interpreter's lock.
 InputMesh mesh_of(const pybind11::array& positions, const pybind11::array& triangles);

@@ -91,6 +91,29 @@ FUNCTIONS = {
         prefilter.nearest_points,
         {"points": QUAD, "positions": BOX.positions, "triangles": BOX.triangles},
     ),
+    "corner_points": (
+        prefilter.corner_points,
+        {
+            "positions": BOX.positions,
+            "triangles": BOX.triangles,
+            "origins": np.arange(12),
+            "source_positions": BOX.positions,
+            "source_triangles": BOX.triangles,
+            "labels": np.zeros(12, np.int32),
+        },
+    ),
+    "measure_mesh": (
+        prefilter.measure_mesh,
+        {"positions": BOX.positions, "triangles": BOX.triangles},
+    ),
+    "uv_charts": (
+        prefilter.uv_charts,
+        {
+            "positions": BOX.positions,
+            "triangles": BOX.triangles,
+            "uvs": [np.zeros((12, 3, 2), np.float32)],
+        },
+    ),
     "close_holes": (
         prefilter.close_holes,
         {"positions": BOX.positions, "triangles": BOX.triangles},
@@ -893,6 +916,35 @@ NEAREST_ROWS = [
         ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
     )
 ]
+CORNER_ROWS = [
+    ("corner_points", arguments, words)
+    for arguments, words in (
+        ({"origins": np.zeros(12)}, ["origins: dtype float64", "integers"]),
+        ({"origins": np.arange(11)}, ["origins: found 11 for 12 triangles"]),
+        ({"origins": np.arange(1, 13)}, ["origins: item 11 names triangle 12", "there are 12"]),
+        ({"origins": np.arange(12) - 1}, ["origins: item 0 names triangle -1"]),
+        ({"labels": np.arange(13)}, ["labels: found 13 for 12 source triangles"]),
+        ({"labels": np.arange(12) + 2**31}, ["labels: found 2147483648", "32 bits"]),
+        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: vertex 3", "nan"]),
+        ({"source_triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
+        ({"source_positions": BOX.positions[:, :2]}, ["source_positions: shape (8, 2)"]),
+        ({"threads": -1}, ["threads: -1", THREADS]),
+    )
+]
+MEASURE_ROWS = [
+    (name, arguments, words)
+    for name in ("measure_mesh", "uv_charts")
+    for arguments, words in (
+        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: vertex 3", "nan"]),
+        ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
+        ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
+        ({"progress": 3}, ["progress: 3", "a callable"]),
+    )
+    if not (name == "uv_charts" and "triangles: none" in words)
+]
+CHART_ROWS = [
+    ("uv_charts", {"uvs": [np.zeros((11, 3, 2))]}, ["uvs[0]: shape (11, 3, 2)", "(12, 3, 2)"]),
+]
 CUBE_ROWS = [
     ("cube_around", {"bounds": (0, 0, 0)}, ["bounds: shape (3,)", "(2, 3)"]),
     ("cube_around", {"depth": 13}, ["depth: 13", "a whole number from 1 to 12"]),
@@ -944,7 +996,7 @@ CONTOUR_ROWS = [
         ({"progress": 3}, ["progress: 3", "a callable"]),
     )
 ]
-ROWS += VOXEL_ROWS + NEAREST_ROWS + CUBE_ROWS + CLOSE_ROWS + SOLID_ROWS + CONTOUR_ROWS
+ROWS += VOXEL_ROWS + NEAREST_ROWS + CORNER_ROWS + MEASURE_ROWS + CHART_ROWS + CUBE_ROWS + CLOSE_ROWS + SOLID_ROWS + CONTOUR_ROWS
 # Where something stands in the way on the disk.
 PLACES = [
     ("nowhere/out.dds", ["path: there is no folder", "nowhere"]),
@@ -1022,8 +1074,10 @@ def test_every_function_is_there():
     classes = {
         "Cancelled",
         "ClosedMesh",
+        "CornerPoints",
         "FilteredLevels",
         "MipmapFilter",
+        "MeshMeasures",
         "NearestPoints",
         "PickedTexels",
         "ReconstructionReport",

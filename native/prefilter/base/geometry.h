@@ -108,10 +108,13 @@ class RowView {
   RowView(std::span<const Row> rows)  // NOLINT(google-explicit-constructor)
       : wide_(rows.data()), size_(rows.size()) {}
   template <typename Rows>
-  requires std::convertible_to<const Rows&, std::span<const std::array<Narrow, 3>>> ||
-      std::convertible_to<const Rows&, std::span<const Row>>
-      RowView(const Rows& rows)  // NOLINT(google-explicit-constructor)
-      : RowView(std::span(rows)) {}
+  requires std::convertible_to<const Rows&, std::span<const std::array<Narrow, 3>>> RowView(
+      const Rows& rows)  // NOLINT(google-explicit-constructor)
+      : RowView(std::span<const std::array<Narrow, 3>>(rows)) {}
+  template <typename Rows>
+  requires std::convertible_to<const Rows&, std::span<const Row>> RowView(
+      const Rows& rows)  // NOLINT(google-explicit-constructor)
+      : RowView(std::span<const Row>(rows)) {}
 
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }

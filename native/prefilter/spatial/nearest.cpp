@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 
+#include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/sort.h"
 #include "prefilter/spatial/curve_order.h"
@@ -32,30 +35,39 @@ std::array<Vector3, 3> sorted_corners(const InputMesh& mesh, std::size_t triangl
 // A triangle among others with the same middle.
 struct Copy {
   std::array<Vector3, 3> corners;
+  std::int32_t label;
   std::uint32_t index;
 
+  bool is_of(const Copy& other) const { return corners == other.corners && label == other.label; }
   bool operator<(const Copy& other) const {
-    return corners != other.corners ? corners < other.corners : index < other.index;
+    if (corners != other.corners) return corners < other.corners;
+    return label != other.label ? label < other.label : index < other.index;
   }
 };
 
-// Leaves of identical triangles, which have the same key, the one with the lowest index.
-void drop_copies(const InputMesh& mesh, const Progress& progress, int threads,
-                 std::vector<CurvePlace>* places) {
+// Leaves of identical triangles with one label, which have the same key, the one with the lowest
+// index. Sets the place of each triangle, or of that one.
+void drop_copies(const InputMesh& mesh, std::span<const std::int32_t> labels,
+                 const Progress& progress, int threads, std::vector<CurvePlace>* places,
+                 std::span<std::uint32_t> place_of) {
   constexpr std::size_t kMany = 1U << 15;
   std::vector<Copy> copies;
   std::size_t kept = 0;
   for (std::size_t begin = 0, end = 0; begin < places->size(); begin = end) {
     const std::uint64_t key = (*places)[begin].key;
     while (end < places->size() && (*places)[end].key == key) ++end;
+    const auto keep = [&](std::uint32_t index) {
+      if (!place_of.empty()) place_of[index] = static_cast<std::uint32_t>(kept);
+      (*places)[kept++] = {key, index};
+    };
     if (end == begin + 1) {
-      (*places)[kept++] = (*places)[begin];
+      keep((*places)[begin].index);
       continue;
     }
     copies.clear();
     for (std::size_t i = begin; i < end; ++i) {
       const std::uint32_t index = (*places)[i].index;
-      copies.push_back({sorted_corners(mesh, index), index});
+      copies.push_back({sorted_corners(mesh, index), labels.empty() ? 0 : labels[index], index});
     }
     if (copies.size() < kMany) {
       std::sort(copies.begin(), copies.end());
@@ -63,8 +75,11 @@ void drop_copies(const InputMesh& mesh, const Progress& progress, int threads,
       sort_in_parallel(&copies, progress, threads);
     }
     for (std::size_t i = 0; i < copies.size(); ++i) {
-      if (i > 0 && copies[i].corners == copies[i - 1].corners) continue;
-      (*places)[kept++] = {key, copies[i].index};
+      if (i == 0 || !copies[i].is_of(copies[i - 1])) {
+        keep(copies[i].index);
+      } else if (!place_of.empty()) {
+        place_of[copies[i].index] = static_cast<std::uint32_t>(kept - 1);
+      }
     }
   }
   places->resize(kept);
@@ -83,9 +98,18 @@ struct NearestPoints::Best {
   }
 };
 
-NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, int threads) {
+NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, int threads)
+    : NearestPoints(mesh, {}, progress, threads) {}
+
+NearestPoints::NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels,
+                             const Progress& progress, int threads) {
   check_mesh(mesh, kLargest);
-  const std::vector<std::uint64_t> keys = sort_triangles(mesh, progress.part(0.0, 0.8), threads);
+  if (!labels.empty() && labels.size() != mesh.triangles.size()) {
+    throw_invalid("labels: found " + std::to_string(labels.size()) + " for " +
+                  std::to_string(mesh.triangles.size()) + " triangles; one each is needed");
+  }
+  const std::vector<std::uint64_t> keys =
+      sort_triangles(mesh, labels, progress.part(0.0, 0.8), threads);
   const auto box = [&](std::size_t place) { return box_of(place); };
   tree_ = BoxTree(keys, kLeafTriangles, box, progress.part(0.8, 1.0));
   lowest_indices_.resize(tree_.nodes().size());
@@ -99,6 +123,7 @@ NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, in
 }
 
 std::vector<std::uint64_t> NearestPoints::sort_triangles(const InputMesh& mesh,
+                                                         std::span<const std::int32_t> labels,
                                                          const Progress& progress, int threads) {
   positions_.reserve(mesh.positions.size());
   for (const Vector3& position : mesh.positions) positions_.push_back(position);
@@ -111,7 +136,9 @@ std::vector<std::uint64_t> NearestPoints::sort_triangles(const InputMesh& mesh,
   };
   std::vector<CurvePlace> places =
       along_curve(mesh.triangles.size(), middle, progress.part(0.0, 0.8), threads);
-  drop_copies(mesh, progress.part(0.8, 0.9), threads, &places);
+  places_.resize(labels.size());
+  drop_copies(mesh, labels, progress.part(0.8, 0.9), threads, &places, places_);
+  labels_.resize(labels.empty() ? 0 : places.size());
   triangles_.resize(places.size());
   indices_.resize(places.size());
   std::vector<std::uint64_t> keys(places.size());
@@ -119,6 +146,7 @@ std::vector<std::uint64_t> NearestPoints::sort_triangles(const InputMesh& mesh,
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       keys[i] = places[i].key;
       indices_[i] = places[i].index;
+      if (!labels.empty()) labels_[i] = labels[places[i].index];
       const auto triangle = mesh.triangles[places[i].index];
       for (int c = 0; c < 3; ++c) triangles_[i][c] = static_cast<std::int32_t>(triangle[c]);
     }
@@ -155,7 +183,8 @@ void NearestPoints::try_triangle(std::size_t place, const Vector3& point, Best* 
   if (best->may_be(squared, indices_[place])) *best = {squared, place, indices_[place], weights};
 }
 
-void NearestPoints::search(const Vector3& point, Best* best) const {
+void NearestPoints::search(const Vector3& point, std::optional<std::int32_t> label,
+                           Best* best) const {
   tree_.search(
       point,
       [&](double squared, std::size_t node) {
@@ -163,7 +192,7 @@ void NearestPoints::search(const Vector3& point, Best* best) const {
       },
       [&](std::size_t node) {
         for (std::size_t i = tree_.nodes()[node].begin; i < tree_.nodes()[node].end; ++i) {
-          try_triangle(i, point, best);
+          if (!label || labels_[i] == *label) try_triangle(i, point, best);
         }
       });
 }
@@ -182,13 +211,42 @@ std::vector<SurfacePoint> NearestPoints::find(std::span<const Vector3> points,
       const Vector3& point = points[order[i].index];
       Best best;
       try_triangle(guess, point, &best);
-      search(point, &best);
+      search(point, std::nullopt, &best);
       guess = best.place;
       found[order[i].index] = {best.index, best.weights, std::sqrt(best.squared)};
     }
   };
   parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads,
                   progress.part(0.1, 1.0), find_some);
+  return found;
+}
+
+std::vector<SurfacePoint> NearestPoints::find_on(std::span<const Vector3> points,
+                                                 std::span<const std::int32_t> origins,
+                                                 const Progress& progress, int threads) const {
+  check_points(points, "points: row", kLargest);
+  if (origins.size() != points.size()) {
+    throw_invalid("origins: found " + std::to_string(origins.size()) + " for " +
+                  std::to_string(points.size()) + " points; one each is needed");
+  }
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    if (origins[i] >= 0 && static_cast<std::size_t>(origins[i]) < places_.size()) continue;
+    throw_invalid("origins: item " + std::to_string(i) + " names triangle " +
+                  std::to_string(origins[i]) + ", but " + std::to_string(places_.size()) +
+                  " have labels");
+  }
+  std::vector<SurfacePoint> found(points.size());
+  const auto find_some = [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      const std::size_t origin = places_[static_cast<std::size_t>(origins[i])];
+      Best best;
+      try_triangle(origin, points[i], &best);
+      search(points[i], labels_[origin], &best);
+      found[i] = {best.index, best.weights, std::sqrt(best.squared)};
+    }
+  };
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads, progress,
+                  find_some);
   return found;
 }
 

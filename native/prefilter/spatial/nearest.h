@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,11 @@ class NearestPoints {
   /// overflow; Error(kCancelled).
   NearestPoints(const InputMesh& mesh, const Progress& progress, int threads);
 
+  /// The same, for searches on triangles of one label alone: one for each triangle. Throws Error
+  /// where there are not as many.
+  NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels,
+                const Progress& progress, int threads);
+
   /// The points of the triangles nearest to these; of several triangles at the same distance, the
   /// one with the lowest index. A search takes longer the more triangles there are whose boxes are
   /// nearer than that: all of them for triangles in a stack, or around one vertex. The same for any
@@ -34,19 +40,29 @@ class NearestPoints {
   std::vector<SurfacePoint> find(std::span<const Vector3> points, const Progress& progress,
                                  int threads) const;
 
+  /// Likewise, each point's on triangles with the label of the triangle `origins` has for it; the
+  /// nearer that is, the faster. Throws Error for an index that names no triangle, and where there
+  /// are not as many as points.
+  std::vector<SurfacePoint> find_on(std::span<const Vector3> points,
+                                    std::span<const std::int32_t> origins, const Progress& progress,
+                                    int threads) const;
+
  private:
   struct Best;
   // Returns where the triangles are along the curve.
-  std::vector<std::uint64_t> sort_triangles(const InputMesh& mesh, const Progress& progress,
-                                            int threads);
+  std::vector<std::uint64_t> sort_triangles(const InputMesh& mesh,
+                                            std::span<const std::int32_t> labels,
+                                            const Progress& progress, int threads);
   Box box_of(std::size_t place) const;
   void try_triangle(std::size_t place, const Vector3& point, Best* best) const;
-  void search(const Vector3& point, Best* best) const;
+  void search(const Vector3& point, std::optional<std::int32_t> label, Best* best) const;
 
   std::vector<Vector3> positions_;
   // Along the Morton curve through their middles, each once; and their indices in the mesh.
   std::vector<std::array<std::int32_t, 3>> triangles_;
   std::vector<std::uint32_t> indices_;
+  std::vector<std::int32_t> labels_;   // as the triangles; empty for none
+  std::vector<std::uint32_t> places_;  // of each of the mesh's triangles, or its first copy
   BoxTree tree_;
   std::vector<std::uint32_t> lowest_indices_;  // for each node of the tree
 };

@@ -9,13 +9,15 @@ and what is allowed.
 from ._native import Cancelled
 from ._svg.warnings import SvgWarning
 from .anisotropic_sampling import sample_anisotropic
+from .charts import uv_charts
 from .color import to_linear, to_srgb
 from .contours import contour
 from .cutout import keep_coverage
 from .exact_sampling import sample_ewa, sample_exact
 from .filtered_levels import SAMPLING_FILTERS, FilteredLevels, sampling_levels
+from .measures import MeshMeasures, measure_mesh
 from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
-from .nearest import NearestPoints, nearest_points
+from .nearest import CornerPoints, NearestPoints, corner_points, nearest_points
 from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
 from .reconstruction import ReconstructionReport, file_normals, reconstruct, reconstruct_file
@@ -46,7 +48,9 @@ __all__ = [
     "SAMPLING_FILTERS",
     "Cancelled",
     "ClosedMesh",
+    "CornerPoints",
     "FilteredLevels",
+    "MeshMeasures",
     "MipmapFilter",
     "NearestPoints",
     "Octree",
@@ -63,6 +67,7 @@ __all__ = [
     "as_solid",
     "close_holes",
     "contour",
+    "corner_points",
     "cube_around",
     "estimate_normals",
     "file_normals",
@@ -70,6 +75,7 @@ __all__ = [
     "fill_unused",
     "grid_normals",
     "keep_coverage",
+    "measure_mesh",
     "mesh_normals",
     "mipmap_error",
     "mipmaps",
@@ -93,6 +99,7 @@ __all__ = [
     "texel_weights",
     "to_linear",
     "to_srgb",
+    "uv_charts",
     "voxelize",
     "write_dds",
     "write_ktx2",

@@ -243,6 +243,25 @@ def read_points(
     npt.NDArray[np.float64] | None,
     dict[str, npt.NDArray[np.uint8 | np.float32]],
 ]: ...
+def corner_points(
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
+    origins: npt.NDArray[np.int32],
+    source_positions: npt.NDArray[np.floating],
+    source_triangles: npt.NDArray[np.integer],
+    labels: npt.NDArray[np.int32],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[
+    tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]],
+    npt.NDArray[np.int32],
+]: ...
+def measure_mesh(
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[tuple[list[float], list[float]], float, float]: ...
 def nearest_points(
     points: npt.NDArray[np.float64],
     positions: npt.NDArray[np.floating],
@@ -250,6 +269,13 @@ def nearest_points(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
+def uv_charts(
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
+    uvs: list[npt.NDArray[np.float32]],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.int32]: ...
 def subdivide(
     positions: npt.NDArray[np.float64],
     face_sizes: npt.NDArray[np.int64],
@@ -456,8 +482,8 @@ def cube_around(
     box: tuple[list[float], list[float]], depth: int
 ) -> tuple[list[float], list[float]]: ...
 def as_solid(
-    positions: npt.NDArray[np.float64],
-    triangles: npt.NDArray[np.int64],
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
     cell: float,
     weld: float,
     gap: float,

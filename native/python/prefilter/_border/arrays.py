@@ -59,6 +59,25 @@ def as_mesh(
     return points, np.ascontiguousarray(indices)
 
 
+def as_labels(name: str, array: npt.ArrayLike, count: int, of: str) -> np.ndarray:
+    """The array as C-contiguous int32, a number for each of `count` things; `of` says of what.
+
+    Raises ValueError where it holds no integers, others than int32 has, or not as many.
+    """
+    found = as_array(name, array)
+    if not np.issubdtype(found.dtype, np.integer):
+        raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
+    check_shape(name, found, (of,))
+    if len(found) != count:
+        raise ValueError(f"{name}: found {len(found)} for {count} {of}; one each is needed")
+    if found.dtype != np.int32 and len(found):
+        limits = np.iinfo(np.int32)
+        lowest, highest = int(found.min()), int(found.max())
+        if lowest < limits.min or highest > limits.max:
+            raise ValueError(f"{name}: found {lowest} to {highest}; 32 bits are the most")
+    return np.ascontiguousarray(found, np.int32)
+
+
 def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:
     """A float32 image of shape (height, width, channels)."""
     image = as_floats(name, array, ("height", "width", "channels"), np.float32)
