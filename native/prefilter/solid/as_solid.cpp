@@ -10,11 +10,15 @@
 #include "prefilter/base/text.h"
 #include "prefilter/solid/closed_parts.h"
 #include "prefilter/solid/nesting.h"
+#include "prefilter/solid/open_parts.h"
 #include "prefilter/solid/patches.h"
 #include "prefilter/solid/weld.h"
 
 namespace prefilter {
 namespace {
+
+// The share of a part's faces, by area, against which it has to be turned to count as mixed.
+constexpr double kMixed = 0.1;
 
 void check_length(const char* name, double value, bool may_be_zero) {
   if (std::isfinite(value) && (value > 0.0 || (may_be_zero && value == 0.0))) return;
@@ -59,7 +63,8 @@ std::size_t turn_closed_patches(const Patches& patches, WorkMesh* mesh, const Pr
     const Patch& patch = patches.patches[p];
     part_of[p] = is_part(patch) ? parts.size() : count;
     if (is_part(patch)) {
-      parts.push_back({patch.volume, patch.area, patch.triangles, 0, first[p], patch.box});
+      parts.push_back({patch.volume, patch.area, patch.triangles, 0, first[p],
+                       patch.turned_area > kMixed * patch.area, patch.box});
     }
   }
   const std::vector<bool> is_turned = parts_to_turn(
@@ -99,14 +104,14 @@ Solid as_solid(const InputMesh& mesh, const SolidOptions& options) {
 
   SolidReport report;
   WorkMesh work = work_mesh(mesh);
-  report.welded_vertices = weld_equal(&work, progress.part(0.2, 0.3), options.threads);
-  report.duplicate_faces = drop_duplicates(&work, progress.part(0.3, 0.4), options.threads);
+  const std::size_t equal = weld_equal(&work, progress.part(0.2, 0.25), options.threads);
+  report.duplicate_faces = drop_duplicates(&work, progress.part(0.25, 0.3), options.threads);
   if (options.weld > 0.0) {
-    report.welded_vertices +=
-        weld_borders(&work, options.weld * options.cell, progress.part(0.4, 0.5), options.threads);
-    report.duplicate_faces += drop_duplicates(&work, progress.part(0.5, 0.6), options.threads);
+    report.welded_vertices =
+        weld_borders(&work, options.weld * options.cell, progress.part(0.3, 0.45), options.threads);
+    report.duplicate_faces += drop_duplicates(&work, progress.part(0.45, 0.5), options.threads);
   }
-  Patches patches = find_patches(work.view(), progress.part(0.6, 0.8), options.threads);
+  Patches patches = find_patches(work.view(), progress.part(0.5, 0.65), options.threads);
   report.parts = patches.patches.size();
   report.turned_faces = static_cast<std::size_t>(
       std::count(patches.is_turned.begin(), patches.is_turned.end(), std::uint8_t{1}));
@@ -114,8 +119,18 @@ Solid as_solid(const InputMesh& mesh, const SolidOptions& options) {
     if (patches.is_turned[t] != 0) std::swap(work.triangles[t][1], work.triangles[t][2]);
   }
   report.turned_parts =
-      turn_closed_patches(patches, &work, progress.part(0.8, 1.0), options.threads);
+      turn_closed_patches(patches, &work, progress.part(0.65, 0.7), options.threads);
+  const bool is_mended = mend_open_parts(patches, options, progress.part(0.7, 1.0), &work, &report);
   progress.report(1.0);
+  const bool is_other = is_mended || report.welded_vertices + report.duplicate_faces +
+                                             report.turned_faces + report.turned_parts >
+                                         0;
+  // Vertices at one place count as one for voxels as they are.
+  if (!is_other) {
+    unchanged.report = report;
+    return unchanged;
+  }
+  report.welded_vertices += equal;
   return finished(std::move(work), report);
 }
 

@@ -1,6 +1,7 @@
 // Vertices that count as one, and faces that are there more than once.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,6 +20,7 @@ struct WorkMesh {
       origins;  // of each triangle: that of the input which it came from, or -1
 
   MeshView<std::int32_t> view() const { return {positions, triangles}; }
+  std::array<Vector3, 3> corners(std::size_t triangle) const { return view().corners(triangle); }
 };
 
 /// Lets triangles name the first of the vertices at each place. Returns how many other vertices are

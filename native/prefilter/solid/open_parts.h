@@ -1,0 +1,18 @@
+// What becomes of patches that are not closed, or too thin.
+#pragma once
+
+#include "prefilter/base/progress.h"
+#include "prefilter/solid/as_solid.h"
+#include "prefilter/solid/patches.h"
+#include "prefilter/solid/weld.h"
+
+namespace prefilter {
+
+/// Turns patches so that they have their outside where the outside is, and replaces those that wind
+/// around nothing: by the surface of what the outside does not reach, or by shells. The triangles
+/// of `mesh` are those that `patches` were found of, turned as they say. Returns whether anything
+/// changed.
+bool mend_open_parts(const Patches& patches, const SolidOptions& options, const Progress& progress,
+                     WorkMesh* mesh, SolidReport* report);
+
+}  // namespace prefilter

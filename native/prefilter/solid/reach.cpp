@@ -1,0 +1,181 @@
+// The mesh's cells are widened by half of the gap; the outside, and what else is left, is flooded
+// and grown back by as much, side by side, so that in a gap the two meet halfway.
+#include "prefilter/solid/reach.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/pulse.h"
+#include "prefilter/wavelet/cell_polygon.h"
+
+namespace prefilter {
+namespace {
+
+constexpr double kMostCells = 256.0;
+constexpr std::int64_t kRowsPerTask = 1 << 10;
+
+// The cells within `radius` of those that are set, along each axis.
+std::vector<std::uint8_t> widened(std::vector<std::uint8_t> cells, const std::array<int, 3>& size,
+                                  int radius, int threads) {
+  if (radius == 0) return cells;
+  std::vector<std::uint8_t> other(cells.size());
+  const std::array<std::size_t, 3> strides = {
+      static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]),
+      static_cast<std::size_t>(size[2]), 1};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto stride = static_cast<std::ptrdiff_t>(strides[axis]);
+    parallel_for(size[0], threads, Progress(), [&](std::int64_t x) {
+      const std::size_t begin = static_cast<std::size_t>(x) * strides[0];
+      for (std::size_t i = begin; i < begin + strides[0]; ++i) {
+        const auto place =
+            static_cast<int>(i / strides[axis] % static_cast<std::size_t>(size[axis]));
+        const int low = std::max(-radius, -place);
+        const int high = std::min(radius, size[axis] - 1 - place);
+        std::uint8_t any = 0;
+        for (int k = low; k <= high; ++k) {
+          any |= cells[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + k * stride)];
+        }
+        other[i] = any;
+      }
+    });
+    cells.swap(other);
+  }
+  return cells;
+}
+
+}  // namespace
+
+template <typename Visit>
+void ReachGrid::for_neighbours(std::size_t cell, const Visit& visit) const {
+  const auto ny = static_cast<std::size_t>(size_[1]);
+  const auto nz = static_cast<std::size_t>(size_[2]);
+  const std::size_t z = cell % nz;
+  const std::size_t y = cell / nz % ny;
+  const std::size_t x = cell / (ny * nz);
+  if (z > 0) visit(cell - 1);
+  if (z + 1 < nz) visit(cell + 1);
+  if (y > 0) visit(cell - nz);
+  if (y + 1 < ny) visit(cell + nz);
+  if (x > 0) visit(cell - ny * nz);
+  if (x + 1 < static_cast<std::size_t>(size_[0])) visit(cell + ny * nz);
+}
+
+ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap,
+                     const Progress& progress, int threads) {
+  Box box = kEmptyBox;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const Vector3& corner : mesh.corners(t)) box.include(corner);
+  }
+  const double longest = std::max({box.size(0), box.size(1), box.size(2)});
+  cell_ = std::max(cell, longest / kMostCells);
+  // A gap of a cell is closed as it is: the cells in it are met.
+  const int radius = std::max(0, static_cast<int>(std::ceil((gap / cell_ - 1.0) / 2.0)));
+  const int margin = radius + 2;
+  for (int a = 0; a < 3; ++a) {
+    size_[a] = static_cast<int>(std::ceil(box.size(a) / cell_)) + 1 + 2 * margin;
+    origin_[a] = box.low[a] + box.size(a) / 2.0 - size_[a] * cell_ / 2.0;
+  }
+  labels_.assign(index(size_[0] - 1, size_[1] - 1, size_[2] - 1) + 1, kUnset);
+  mark_met(mesh, progress.part(0.0, 0.5), threads);
+
+  std::vector<std::uint8_t> is_met(labels_.size());
+  for (std::size_t i = 0; i < labels_.size(); ++i) is_met[i] = labels_[i] == kMet ? 1 : 0;
+  const std::vector<std::uint8_t> is_blocked = widened(std::move(is_met), size_, radius, threads);
+  progress.report(0.6);
+  flood(0, kOutside, is_blocked);
+  progress.report(0.8);
+  for (std::size_t i = 0; i < labels_.size(); ++i) {
+    if (labels_[i] != kUnset || is_blocked[i] != 0) continue;
+    flood(i, region_end_, is_blocked);
+    if (region_end_ < kUnset - 1) ++region_end_;
+  }
+  grow(2 * radius);
+  for (Label& label : labels_) {
+    if (label == kUnset) label = kPocket;
+  }
+  stack_ = {};
+  progress.report(1.0);
+}
+
+void ReachGrid::mark_met(const MeshView<std::int32_t>& mesh, const Progress& progress,
+                         int threads) {
+  const CellBox all = {{0, 0, 0}, size_};
+  parallel_ranges(static_cast<std::int64_t>(mesh.triangles.size()), kRowsPerTask, threads, progress,
+                  [&](std::int64_t begin, std::int64_t end) {
+                    for (std::int64_t t = begin; t < end; ++t) {
+                      CellPolygon polygon;
+                      for (const Vector3& corner : mesh.corners(static_cast<std::size_t>(t))) {
+                        Vector3 at;
+                        for (std::size_t a = 0; a < 3; ++a)
+                          at[a] = (corner[a] - origin_[a]) / cell_;
+                        polygon.add(at);
+                      }
+                      cut_polygon(polygon, all,
+                                  [&](const std::array<int, 3>& cell, const CellPolygon&) {
+                                    std::atomic_ref(labels_[index(cell[0], cell[1], cell[2])])
+                                        .store(kMet, std::memory_order_relaxed);
+                                  });
+                    }
+                  });
+}
+
+void ReachGrid::flood(std::size_t seed, Label label, const std::vector<std::uint8_t>& is_blocked) {
+  labels_[seed] = label;
+  stack_.assign(1, seed);
+  while (!stack_.empty()) {
+    const std::size_t cell = stack_.back();
+    stack_.pop_back();
+    for_neighbours(cell, [&](std::size_t next) {
+      if (labels_[next] != kUnset || is_blocked[next] != 0) return;
+      labels_[next] = label;
+      stack_.push_back(next);
+    });
+  }
+}
+
+void ReachGrid::grow(int steps) {
+  std::vector<std::size_t> front;
+  for (std::size_t i = 0; i < labels_.size() && steps > 0; ++i) {
+    if (labels_[i] == kMet || labels_[i] == kUnset) continue;
+    bool is_front = false;
+    for_neighbours(i, [&](std::size_t next) { is_front = is_front || labels_[next] == kUnset; });
+    if (is_front) front.push_back(i);
+  }
+  std::vector<std::size_t> next_front;
+  for (int step = 0; step < steps; ++step) {
+    next_front.clear();
+    for (const std::size_t cell : front) {
+      for_neighbours(cell, [&](std::size_t next) {
+        if (labels_[next] != kUnset) return;
+        labels_[next] = labels_[cell];
+        next_front.push_back(next);
+      });
+    }
+    front.swap(next_front);
+  }
+}
+
+ReachGrid::Label ReachGrid::at(const Vector3& point) const {
+  std::array<int, 3> cell;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const double along = (point[a] - origin_[a]) / cell_;
+    if (!(along >= 0.0) || along >= size_[a]) return kOutside;
+    cell[a] = static_cast<int>(along);
+  }
+  return labels_[index(cell[0], cell[1], cell[2])];
+}
+
+ReachGrid::Label ReachGrid::along(const Vector3& point, const Vector3& direction) const {
+  constexpr double kStep = 0.5;
+  for (double distance = kStep; distance <= kFarthest; distance += kStep) {
+    Vector3 there;
+    for (std::size_t a = 0; a < 3; ++a) there[a] = point[a] + direction[a] * distance * cell_;
+    const Label label = at(there);
+    if (label != kMet) return label;
+  }
+  return kMet;
+}
+
+}  // namespace prefilter
