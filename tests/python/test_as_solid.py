@@ -3,7 +3,7 @@
 import numpy as np
 import prefilter
 import pytest
-from solids import box, crumpled, join, sphere, torus
+from solids import Solid, box, crumpled, join, random_rotation, sphere, torus
 
 CELL = 2 / 128
 
@@ -119,3 +119,180 @@ def test_threads_change_nothing(change):
     assert np.array_equal(one.positions, several.positions)
     assert np.array_equal(one.triangles, several.triangles)
     assert np.array_equal(one.origins, several.origins)
+
+
+def contour_of(found, cell, depth=7):
+    """The surface of the voxels of a solid, about the origin."""
+    half = cell * 2**depth / 2
+    closed = prefilter.close_holes(found.positions, found.triangles)
+    octree = prefilter.voxelize(
+        closed.positions, closed.triangles, depth=depth, bounds=([-half] * 3, [half] * 3)
+    )
+    return octree.contour(interpolant="plane")
+
+
+def kept_share(solid, positions, triangles, distance):
+    """Of points of a surface, those that are that near to another one."""
+    random = np.random.default_rng(3)
+    a, b, c = np.moveaxis(solid.corners, 1, 0)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    chosen = random.choice(len(areas), 2000, p=areas / areas.sum())
+    weights = random.dirichlet((1, 1, 1), 2000)
+    points = np.einsum("ij,ijk->ik", weights, solid.corners[chosen])
+    _, _, distances = prefilter.nearest_points(points, positions, triangles)
+    return np.mean(distances <= distance)
+
+
+def square(rows=4, height=lambda x, y: 0 * x):
+    """A sheet over [-1, 1]^2."""
+    x, y = np.meshgrid(np.linspace(-1, 1, rows + 1), np.linspace(-1, 1, rows + 1), indexing="ij")
+    i, j = np.meshgrid(np.arange(rows), np.arange(rows), indexing="ij")
+    a = i * (rows + 1) + j
+    quads = np.stack([a, a + rows + 1, a + rows + 2, a + 1], axis=-1).reshape(-1, 4)
+    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    return Solid(np.stack([x, y, height(x, y)], axis=-1).reshape(-1, 3), triangles)
+
+
+def edge_balance(triangles):
+    """How many edges are not run through as often one way as the other."""
+    edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
+    up = edges[:, 0] < edges[:, 1]
+    unique, which = np.unique(np.sort(edges, axis=1), axis=0, return_inverse=True)
+    sums = np.bincount(which.reshape(-1), np.where(up, 1, -1), len(unique))
+    return np.count_nonzero(sums)
+
+
+SHEETS = {
+    "plane": square(),
+    "hills": square(24, lambda x, y: 0.3 * np.sin(4 * x) * np.cos(5 * y)),
+    "one triangle": Solid(np.eye(3), np.array([(0, 1, 2)])),
+    "turned": square().transformed(random_rotation(4)),
+}
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_sheets_get_a_thickness(name):
+    sheet = SHEETS[name]
+    cell = 2.5 / 64
+    found = prefilter.as_solid(sheet.positions, sheet.triangles, cell=cell, thickness=2.0)
+    assert found.thickened_parts == 1
+    assert found.lost_parts == 0
+    assert edge_balance(found.triangles) == 0
+    a, b, c = np.moveaxis(sheet.corners, 1, 0)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
+    # The shell of a sheet has its area times the thickness, less or more where it is curved.
+    assert volume(found) == pytest.approx(area * 2.0 * cell, rel=0.02)
+    positions, triangles = contour_of(found, cell)
+    assert kept_share(sheet, positions, triangles, 3 * cell) == 1.0
+
+
+def test_sheets_may_stay_sheets():
+    sheet = square()
+    found = prefilter.as_solid(sheet.positions, sheet.triangles, cell=0.05, thickness=0)
+    assert found.is_unchanged
+    assert found.thickened_parts == 0
+    assert found.lost_parts == 1
+
+
+def test_thin_plates_get_a_thickness():
+    plate = box((-1, -1, -0.001), (1, 1, 0.001)).transformed(random_rotation(1))
+    cell = 3 / 64
+    found = prefilter.as_solid(plate.positions, plate.triangles, cell=cell)
+    assert found.thickened_parts == 1
+    positions, triangles = contour_of(found, cell)
+    assert kept_share(plate, positions, triangles, 2 * cell) == 1.0
+
+
+def test_thick_parts_of_a_thin_mesh_stay_as_they_are():
+    thick = box((-1, -1, -1), (1, 1, 0))
+    both = join(thick, box((-1, -1, 0.5), (1, 1, 0.501)))
+    found = prefilter.as_solid(both.positions, both.triangles, cell=3 / 64)
+    assert found.thickened_parts == 1
+    corners = found.positions[found.triangles]
+    for corner in thick.corners:
+        assert (corners == corner).all(axis=(1, 2)).any()
+
+
+def test_leaky_parts_are_filled():
+    solid = sphere(1.0, 3)
+    middles = solid.corners.mean(axis=1, keepdims=True)
+    corners = solid.corners + 0.05 * (middles - solid.corners)
+    flipped = np.random.default_rng(5).random(len(corners)) < 0.5
+    corners[flipped] = corners[flipped][:, ::-1]
+    cell = 2 / 64
+    triangles = np.arange(3 * len(corners)).reshape(-1, 3)
+    found = prefilter.as_solid(corners.reshape(-1, 3), triangles, cell=cell, gap=2.0)
+    assert found.filled_parts > 0.8 * len(corners)
+    assert edge_balance(found.triangles) == 0
+    assert volume(found) == pytest.approx(solid.volume, rel=0.03)
+    open_ = prefilter.as_solid(corners.reshape(-1, 3), triangles, cell=cell, gap=0)
+    assert open_.filled_parts == 0
+
+
+def test_open_parts_have_their_outside_outside():
+    """A box without a bottom, each way around."""
+    solid = box((-1, -1, -1), (1, 1, 1)).transformed(random_rotation(2))
+    lidless = Solid(solid.positions, solid.triangles[:10])
+    for triangles in (lidless.triangles, lidless.triangles[:, ::-1], shuffled(lidless)):
+        found = prefilter.as_solid(lidless.positions, triangles, cell=4 / 64)
+        closed = prefilter.close_holes(found.positions, found.triangles)
+        a, b, c = np.moveaxis(closed.positions[closed.triangles], 1, 0)
+        enclosed = np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+        assert enclosed == pytest.approx(8.0)
+
+
+def test_walls_inside_are_dropped():
+    left = box((-1, -0.5, -0.5), (0, 0.5, 0.5))
+    right = Solid(box((0, -0.5, -0.5), (1, 0.5, 0.5)).positions, left.triangles[2:])
+    both = join(left, right).transformed(random_rotation(6))
+    found = prefilter.as_solid(both.positions, shuffled(both), cell=2.2 / 64)
+    assert volume(found) == pytest.approx(2.0)
+    assert len(found.triangles) == 20
+    assert found.thickened_parts == found.lost_parts == 0
+
+
+def test_origins_name_the_triangles_that_others_come_from():
+    both = join(sphere(0.5), Solid(square().positions + (0, 0, 2), square().triangles))
+    found = prefilter.as_solid(both.positions, both.triangles, cell=0.05)
+    assert found.thickened_parts == 1
+    assert set(found.origins) == set(range(len(both.triangles)))
+    kept = found.origins < len(sphere().triangles)
+    assert np.array_equal(
+        found.positions[found.triangles[kept]], both.corners[found.origins[kept]]
+    )
+
+
+def test_nothing_with_an_area_is_no_solid():
+    flat = Solid(np.zeros((3, 3)), np.array([(0, 1, 2)]))
+    found = prefilter.as_solid(flat.positions, flat.triangles, cell=0.1)
+    assert found.is_unchanged
+    assert found.parts == 0
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e30])
+def test_units_do_not_matter(scale):
+    sheet, ball = square(), sphere()
+    small = prefilter.as_solid(sheet.positions * scale, sheet.triangles, cell=0.05 * scale)
+    usual = prefilter.as_solid(sheet.positions, sheet.triangles, cell=0.05)
+    assert np.allclose(small.positions / scale, usual.positions)
+    assert np.array_equal(small.triangles, usual.triangles)
+    found = prefilter.as_solid(ball.positions * scale, shuffled(ball), cell=0.05 * scale)
+    assert found.turned_faces == prefilter.as_solid(
+        ball.positions, shuffled(ball), cell=0.05
+    ).turned_faces
+
+
+def test_threads_change_nothing_about_sheets_and_leaks():
+    leaky = sphere(1.0, 3)
+    middles = leaky.corners.mean(axis=1, keepdims=True)
+    corners = leaky.corners + 0.05 * (middles - leaky.corners)
+    sheet = square(16, lambda x, y: 2 + 0.2 * np.sin(3 * x))
+    both = join(Solid(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)), sheet)
+    one, several = (
+        prefilter.as_solid(both.positions, both.triangles, cell=0.04, threads=threads)
+        for threads in (1, 5)
+    )
+    assert one.thickened_parts > 0
+    assert one.filled_parts > 0
+    assert np.array_equal(one.positions, several.positions)
+    assert np.array_equal(one.triangles, several.triangles)

@@ -34,6 +34,8 @@ constexpr double kLostOfSheet = 0.25;
 constexpr double kLostOfThin = 0.5;
 constexpr double kLostInPart = 0.005;
 constexpr double kInnerOfBuried = 0.8;
+// In cells: the least volume over its area of a part that encloses something.
+constexpr double kBulkyCells = 1.0;
 constexpr int kRounds = 3;
 // Of a part that counts as closed: the square of the length of its border over its area.
 constexpr double kLargestHole = 0.02;
@@ -158,9 +160,16 @@ class OpenParts {
     const std::size_t count = patches_.patches.size();
     std::vector<double> front(count, 0.0);
     std::vector<double> back(count, 0.0);
+    std::vector<double> both(count, 0.0);
+    std::vector<double> volumes(count, 0.0);  // with a fan over the border
     for (std::size_t t = 0; t < sides_.size(); ++t) {
-      front[patches_.patch_of[t]] += areas_[t] * sides_[t].outside_front;
-      back[patches_.patch_of[t]] += areas_[t] * sides_[t].outside_back;
+      const std::uint32_t p = patches_.patch_of[t];
+      front[p] += areas_[t] * sides_[t].outside_front;
+      back[p] += areas_[t] * sides_[t].outside_back;
+      both[p] += areas_[t] * sides_[t].outside_both;
+      const std::array<Vector3, 3> corners = mesh_->corners(t);
+      const Vector3& middle = patches_.patches[p].border_middle;
+      volumes[p] += dot(corners[0] - middle, cross(corners[1] - middle, corners[2] - middle)) / 6.0;
     }
     std::vector<bool> is_turned(count, false);
     for (std::size_t p = 0; p < count; ++p) {
@@ -168,6 +177,10 @@ class OpenParts {
       if (patch.is_closed() || !patch.is_orientable) continue;
       const double limit = patch.turned_area > 0.0 || patch.triangles == 1 ? 1.0 : kAgainstItself;
       is_turned[p] = back[p] > limit * front[p] && back[p] > 0.1 * patch.area;
+      // The outside reaches both sides of what is open wide: as with closed parts, by the volume.
+      if (both[p] > patch.area / 2.0) {
+        is_turned[p] = -volumes[p] > kBulkyCells * options_.cell * patch.area;
+      }
       if (is_turned[p]) ++report_->turned_parts;
     }
     for (std::size_t t = 0; t < sides_.size(); ++t) {

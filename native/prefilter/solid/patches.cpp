@@ -131,7 +131,13 @@ void add_borders(const MeshView<std::int32_t>& mesh, const EdgeTable& edges, Pat
       }
       const double side = length(mesh.positions[high] - mesh.positions[low]);
       for (const Balance& balance : balances) {
-        if (balance.excess != 0) result->patches[balance.patch].border += side;
+        if (balance.excess == 0) continue;
+        Patch& patch = result->patches[balance.patch];
+        patch.border += side;
+        for (std::size_t a = 0; a < 3; ++a) {
+          const double middle = mesh.positions[low][a] / 2.0 + mesh.positions[high][a] / 2.0;
+          patch.border_middle[a] += (middle - patch.border_middle[a]) * (side / patch.border);
+        }
       }
     });
   }

@@ -17,6 +17,7 @@ struct Patch {
   double area = 0.0;
   double volume = 0.0;  // as turned, of the cone from its first corner; exact where it is closed
   double border = 0.0;  // the length of the edges along which it is open
+  Vector3 border_middle{};    // of these edges
   double turned_area = 0.0;   // of the triangles that had to be turned against the others
   bool is_orientable = true;  // no edge is left that both of its triangles run along the same way
   Box box = kEmptyBox;
