@@ -22,6 +22,7 @@ struct TaskSamples {
   std::vector<std::int32_t> vertices;
   std::vector<SourcePoint> samples;
   std::vector<Vector3> on_lines;
+  std::vector<float> facing;
 };
 
 class Sampler {
@@ -80,6 +81,8 @@ class Sampler {
     task->vertices.push_back(static_cast<std::int32_t>(vertex));
     task->samples.push_back(*found);
     task->on_lines.push_back(on_line);
+    const double up = (face & 1) != 0 ? found->normal[axis] : -found->normal[axis];
+    task->facing.push_back(is_on_line ? static_cast<float>(is_inside ? up : -up) : 0.0F);
   }
 
   const ContourTree& tree_;
@@ -116,6 +119,7 @@ VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
           static_cast<std::int32_t>(result.samples.size());
       result.samples.push_back(task.samples[i]);
       result.on_lines.push_back(task.on_lines[i]);
+      result.facing.push_back(task.facing[i]);
     }
   }
   return result;

@@ -18,6 +18,9 @@ struct VertexSamples {
   // For each sample that is off the line between its leaves, the nearest point of that; otherwise
   // its own position.
   std::vector<Vector3> on_lines;
+  // For each sample, how much its normal points from the leaf inside to the one outside, -1 to 1; 0
+  // off the line.
+  std::vector<float> facing;
 
   const SourcePoint* of(std::int32_t vertex) const {
     const std::int32_t i = index[static_cast<std::size_t>(vertex)];

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include "prefilter/base/parallel.h"
@@ -80,12 +81,22 @@ class Sharpener {
 
   FacetedMesh run(const Progress& progress) {
     find_sides();
+    find_turned();
     place_features(progress.part(0.1, 0.5));
     claim_corners();
     find_joints();
     const Progress checking = progress.part(0.6, 1.0);
-    FacetedMesh mesh = assemble();
-    for (int round = 0; drop_intersecting(mesh, checking); ++round) mesh = assemble();
+    FacetedMesh mesh;
+    mesh.triangles = looped_.triangles;
+    for (const Triangle& triangle : mesh.triangles) mesh.labels.push_back(label_of(triangle));
+    is_changed_loop_.assign(features_.size(), 1);
+    is_changed_vertex_.assign(crossings_.size(), 0);
+    for (std::size_t v = 0; v < crossings_.size(); ++v) {
+      if (looped_.positions[v] != crossings_[v]) is_changed_vertex_[v] = 1;
+    }
+    do {
+      assemble(&mesh);
+    } while (drop_intersecting(mesh, checking));
     return mesh;
   }
 
@@ -299,14 +310,11 @@ class Sharpener {
 
   // Loops that are joined and whose features are at one place have one vertex. Where mesh edges
   // would then be there twice, they have not.
-  FacetedMesh assemble() {
-    find_merged();
-    FacetedMesh mesh = assemble_merged();
-    while (unmerge_repeated(mesh)) {
+  void assemble(FacetedMesh* mesh) {
+    do {
       find_merged();
-      mesh = assemble_merged();
-    }
-    return mesh;
+      assemble_merged(mesh);
+    } while (unmerge_repeated(*mesh));
   }
 
   void find_merged() {
@@ -341,30 +349,72 @@ class Sharpener {
         const auto [found, is_new] = sides.try_emplace(key, t);
         if (is_new) continue;
         for (const std::size_t u : {t, found->second}) {
-          for (const std::int32_t owner : owners_[u]) {
+          for (const std::int32_t owner : owners_of(u)) {
             if (owner < 0) continue;
+            is_changed_loop_[static_cast<std::size_t>(owner)] = 1;
             // All that share its vertex.
             const std::size_t root = merged_[static_cast<std::size_t>(owner)];
             for (std::size_t i = root; i < merged_.size(); ++i) {
               if (merged_[i] != root || is_single_[i] != 0) continue;
               is_single_[i] = 1;
+              is_changed_loop_[i] = 1;
               is_any = true;
             }
           }
         }
       }
     }
+    return unmerge_pinched(mesh) || is_any;
+  }
+
+  // Takes apart what has been merged to a vertex with several fans of triangles.
+  bool unmerge_pinched(const FacetedMesh& mesh) {
+    std::unordered_map<std::int32_t, std::size_t> merged;  // vertices, and their loops
+    for (std::size_t i = 0; i < merged_.size(); ++i) {
+      if (merged_[i] != i && is_sharp_[i] != 0) merged[places_[i]] = merged_[i];
+    }
+    if (merged.empty()) return false;
+    std::unordered_map<std::int32_t, std::vector<std::array<std::int32_t, 2>>> links;
+    for (std::size_t t = looped_.triangles.size(); t < mesh.triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (!merged.contains(mesh.triangles[t][k])) continue;
+        links[mesh.triangles[t][k]].push_back(
+            {mesh.triangles[t][(k + 1) % 3], mesh.triangles[t][(k + 2) % 3]});
+      }
+    }
+    bool is_any = false;
+    for (const auto& [vertex, link] : links) {
+      std::int32_t at = link[0][1];
+      std::size_t steps = 1;
+      while (at != link[0][0] && steps <= link.size()) {
+        const auto next =
+            std::find_if(link.begin(), link.end(), [&](const auto& side) { return side[0] == at; });
+        if (next == link.end()) break;
+        at = (*next)[1];
+        ++steps;
+      }
+      if (at == link[0][0] && steps == link.size()) continue;
+      const std::size_t root = merged[vertex];
+      for (std::size_t i = root; i < merged_.size(); ++i) {
+        if (merged_[i] != root || is_single_[i] != 0) continue;
+        is_single_[i] = 1;
+        is_changed_loop_[i] = 1;
+        is_any = true;
+      }
+    }
     return is_any;
   }
 
-  FacetedMesh assemble_merged() {
-    FacetedMesh mesh;
+  // The triangles of sharp loops, behind all others.
+  void assemble_merged(FacetedMesh* result) {
+    FacetedMesh& mesh = *result;
     mesh.positions = looped_.positions;
-    mesh.triangles = looped_.triangles;
+    mesh.triangles.resize(looped_.triangles.size());
+    mesh.labels.resize(looped_.triangles.size());
     mesh.kinds.assign(mesh.positions.size(), VertexKind::kSurface);
-    owners_.assign(mesh.triangles.size(), {-1, -1});
-    for (const Triangle& triangle : mesh.triangles) mesh.labels.push_back(label_of(triangle));
-    std::vector<std::int32_t> places(features_.size(), -1);
+    owners_.clear();
+    std::vector<std::int32_t>& places = places_;
+    places.assign(features_.size(), -1);
     for (std::size_t i = 0; i < features_.size(); ++i) {
       if (is_sharp_[i] == 0) continue;
       if (merged_[i] != i) {
@@ -414,7 +464,12 @@ class Sharpener {
         }
       }
     }
-    return mesh;
+  }
+
+  // The sharp loops that a triangle is made of.
+  std::array<std::int32_t, 2> owners_of(std::size_t triangle) const {
+    if (triangle < looped_.triangles.size()) return {-1, -1};
+    return owners_[triangle - looped_.triangles.size()];
   }
 
   bool is_joined(std::size_t i, std::size_t k) const {
@@ -427,13 +482,23 @@ class Sharpener {
   bool drop_intersecting(const FacetedMesh& mesh, const Progress& progress) {
     std::vector<std::uint8_t> is_suspect(mesh.triangles.size(), 0);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      is_suspect[t] = owners_[t][0] >= 0 ? 1 : 0;
+      for (const std::int32_t owner : owners_of(t)) {
+        if (owner >= 0 && is_changed_loop_[static_cast<std::size_t>(owner)] != 0) is_suspect[t] = 1;
+      }
       for (const std::int32_t corner : mesh.triangles[t]) {
-        if (is_moved(corner)) is_suspect[t] = 1;
+        const auto v = static_cast<std::size_t>(corner);
+        if (v < is_changed_vertex_.size() && is_changed_vertex_[v] != 0) is_suspect[t] = 1;
       }
     }
-    const auto pairs =
+    std::fill(is_changed_loop_.begin(), is_changed_loop_.end(), std::uint8_t{0});
+    std::fill(is_changed_vertex_.begin(), is_changed_vertex_.end(), std::uint8_t{0});
+    auto pairs =
         intersecting_triangles({mesh.positions, mesh.triangles}, is_suspect, progress, threads_);
+    // Triangles of a plane that overlap need not intersect, by rounding: then one is upside down.
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const auto number = static_cast<std::uint32_t>(t);
+      if (is_suspect[t] != 0 && is_upside_down(mesh, t)) pairs.push_back({number, number});
+    }
     bool has_dropped = false;
     // The loops with the most intersections first, until none are left.
     std::vector<std::pair<std::int32_t, std::size_t>> blamed;  // loop, pair
@@ -448,7 +513,7 @@ class Sharpener {
       if (has_moved) continue;
       Labels loops;
       for (const std::uint32_t t : pairs[p]) {
-        for (const std::int32_t owner : owners_[t]) {
+        for (const std::int32_t owner : owners_of(t)) {
           if (owner >= 0 && is_sharp_[static_cast<std::size_t>(owner)] != 0) loops.push_back(owner);
         }
       }
@@ -459,8 +524,9 @@ class Sharpener {
       for (const std::uint32_t t : pairs[p]) {
         for (const std::int32_t corner : mesh.triangles[t]) {
           if (!is_moved(corner)) continue;
-          looped_.positions[static_cast<std::size_t>(corner)] =
-              crossings_[static_cast<std::size_t>(corner)];
+          const auto v = static_cast<std::size_t>(corner);
+          looped_.positions[v] = crossings_[v];
+          is_changed_vertex_[v] = 1;
           has_dropped = true;
         }
       }
@@ -468,7 +534,15 @@ class Sharpener {
     has_dropped = relax(blamed) || has_dropped;
     drop_fewest(std::move(blamed), pairs.size());
     has_dropped = has_dropped || !dropped_.empty();
-    for (const std::size_t i : dropped_) is_sharp_[i] = 0;
+    for (const std::size_t i : dropped_) {
+      is_sharp_[i] = 0;
+      is_changed_loop_[i] = 1;
+      // Those beside it lose a joint.
+      for (std::size_t k = 0; k < static_cast<std::size_t>(loop(i).count); ++k) {
+        const std::int32_t other = sides_[i][k].other;
+        if (other >= 0) is_changed_loop_[static_cast<std::size_t>(other)] = 1;
+      }
+    }
     dropped_.clear();
     return has_dropped;
   }
@@ -515,6 +589,7 @@ class Sharpener {
       }
       for (std::size_t m = 0; m < moving.size(); ++m) features_[moving[m]].position = moved[m];
     }
+    for (const std::size_t i : moving) is_changed_loop_[i] = 1;
     return has_moving;
   }
 
@@ -553,6 +628,34 @@ class Sharpener {
     }
   }
 
+  // Of each label, whether its normals point into the shape, as those of what was cut away do.
+  void find_turned() {
+    std::unordered_map<std::int32_t, double> facing;
+    for (std::size_t i = 0; i < samples_.samples.size(); ++i) {
+      facing[samples_.samples[i].label] += static_cast<double>(samples_.facing[i]);
+    }
+    for (const auto& [label, sum] : facing) {
+      if (sum < 0.0) turned_.insert(label);
+    }
+  }
+
+  bool is_upside_down(const FacetedMesh& mesh, std::size_t t) const {
+    constexpr double kLeast = 0.05;
+    const Triangle& corners = mesh.triangles[t];
+    const auto at = [&](std::size_t i) -> const Vector3& {
+      return mesh.positions[static_cast<std::size_t>(corners[i])];
+    };
+    const Vector3 normal = cross(at(1) - at(0), at(2) - at(0));
+    for (const std::int32_t corner : corners) {
+      if (static_cast<std::size_t>(corner) >= samples_.index.size()) continue;
+      const SourcePoint* sample = samples_.of(corner);
+      if (sample == nullptr || sample->label != mesh.labels[t]) continue;
+      const double height = dot(normal, sample->normal);
+      return (turned_.contains(sample->label) ? -height : height) < kLeast * length(normal);
+    }
+    return false;
+  }
+
   bool put_on_line(std::int32_t vertex) {
     const auto v = static_cast<std::size_t>(vertex);
     if (v >= samples_.index.size() || samples_.index[v] < 0) return false;
@@ -560,6 +663,7 @@ class Sharpener {
     const Vector3& sampled = samples_.samples[static_cast<std::size_t>(samples_.index[v])].position;
     if (looped_.positions[v] != sampled || sampled == on_line) return false;
     looped_.positions[v] = on_line;
+    is_changed_vertex_[v] = 1;
     return true;
   }
 
@@ -588,8 +692,12 @@ class Sharpener {
   std::vector<std::array<Side, 12>> sides_;
   std::vector<Feature> features_;
   std::vector<std::uint8_t> is_sharp_;
+  std::vector<std::uint8_t> is_changed_loop_;  // since intersections were looked for
+  std::vector<std::uint8_t> is_changed_vertex_;
+  std::unordered_set<std::int32_t> turned_;
   std::vector<std::uint8_t> attempts_;
   std::vector<std::uint8_t> is_single_;  // not to be merged
+  std::vector<std::int32_t> places_;     // of loops, their vertices
   std::vector<std::size_t> merged_;      // the first of the loops that have one vertex
   std::vector<std::size_t> dropped_;
   std::vector<std::array<std::int32_t, 2>> owners_;  // of triangles: loops
