@@ -8,6 +8,8 @@ namespace prefilter {
 namespace {
 
 constexpr float kSlack = 0.05F;
+// Of heights in cells: more is an edge.
+constexpr float kMostCurved = 0.5F;
 
 // `up` leads towards the empty end.
 std::optional<float> height_at(const float* cell, std::ptrdiff_t up) {
@@ -128,7 +130,10 @@ std::optional<float> height_over_centre(const float* cell,
   const std::ptrdiff_t up = change < 0.0F ? strides[axis] : -strides[axis];
   const std::optional<LocalSurface> surface =
       surface_over(cell, up, {strides[(axis + 1) % 3], strides[(axis + 2) % 3]});
-  if (!surface) return std::nullopt;
+  if (!surface || std::abs(surface->first.curvature) > kMostCurved ||
+      std::abs(surface->second.curvature) > kMostCurved) {
+    return std::nullopt;
+  }
   return surface->height;
 }
 
