@@ -25,7 +25,8 @@ constexpr double kCornerReach = 1.0;
 constexpr double kSettled = 1e-7;
 constexpr double kTooClose = 0.05;
 constexpr int kMostSteps = 12;
-constexpr int kMostAttempts = 3;
+constexpr int kMostAttempts = 2;
+constexpr int kMostHalvings = 3;
 constexpr int kRings = 2;
 constexpr int kSmoothings = 4;
 constexpr std::int64_t kLoopsPerTask = 64;
@@ -59,6 +60,7 @@ std::vector<double> solve_products(const std::vector<Vector3>& normals, std::vec
 
 struct Feature {
   Vector3 position{};
+  Vector3 start{};  // in the loop's middle, from where the position was looked for
   Labels labels;
   bool is_corner = false;
 };
@@ -141,6 +143,7 @@ class Sharpener {
     is_sharp_.assign(features_.size(), 1);
     attempts_.assign(features_.size(), 0);
     is_single_.assign(features_.size(), 0);
+    halvings_.assign(features_.size(), 0);
   }
 
   Feature feature_of(std::size_t i) const {
@@ -158,6 +161,7 @@ class Sharpener {
     Labels& labels = feature.labels;
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    feature.start = start;
     feature.is_corner = labels.size() > 2;
     feature.position = placed(start, labels).value_or(start);
     return feature;
@@ -535,7 +539,10 @@ class Sharpener {
     drop_fewest(std::move(blamed), pairs.size());
     has_dropped = has_dropped || !dropped_.empty();
     for (const std::size_t i : dropped_) {
-      is_sharp_[i] = 0;
+      // What cannot reach the edge gets as close to it as it can.
+      Feature& feature = features_[i];
+      feature.position = 0.5 * (feature.start + feature.position);
+      if (++halvings_[i] > kMostHalvings) is_sharp_[i] = 0;
       is_changed_loop_[i] = 1;
       // Those beside it lose a joint.
       for (std::size_t k = 0; k < static_cast<std::size_t>(loop(i).count); ++k) {
@@ -646,14 +653,17 @@ class Sharpener {
       return mesh.positions[static_cast<std::size_t>(corners[i])];
     };
     const Vector3 normal = cross(at(1) - at(0), at(2) - at(0));
+    const SourcePoint* surface = nullptr;
     for (const std::int32_t corner : corners) {
       if (static_cast<std::size_t>(corner) >= samples_.index.size()) continue;
       const SourcePoint* sample = samples_.of(corner);
-      if (sample == nullptr || sample->label != mesh.labels[t]) continue;
-      const double height = dot(normal, sample->normal);
-      return (turned_.contains(sample->label) ? -height : height) < kLeast * length(normal);
+      // Those across an edge have no side of their own.
+      if (sample == nullptr || sample->label != mesh.labels[t]) return false;
+      surface = sample;
     }
-    return false;
+    if (surface == nullptr) return false;
+    const double height = dot(normal, surface->normal);
+    return (turned_.contains(surface->label) ? -height : height) < kLeast * length(normal);
   }
 
   bool put_on_line(std::int32_t vertex) {
@@ -696,6 +706,7 @@ class Sharpener {
   std::vector<std::uint8_t> is_changed_vertex_;
   std::unordered_set<std::int32_t> turned_;
   std::vector<std::uint8_t> attempts_;
+  std::vector<std::uint8_t> halvings_;
   std::vector<std::uint8_t> is_single_;  // not to be merged
   std::vector<std::int32_t> places_;     // of loops, their vertices
   std::vector<std::size_t> merged_;      // the first of the loops that have one vertex
