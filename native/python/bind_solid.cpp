@@ -1,11 +1,13 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "convert.h"
+#include "prefilter/base/error.h"
 #include "prefilter/solid/as_solid.h"
 #include "prefilter/solid/close_holes.h"
 
@@ -14,15 +16,26 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-// The mesh with its caps, and the numbers of open edges and of holes.
-std::tuple<Array<double>, Array<std::int64_t>, std::size_t, std::size_t> bound_close_holes(
-    const py::array& positions, const py::array& triangles, const py::object& callback) {
-  const Progress progress = to_progress(callback);
+HoleMethod hole_method(const std::string& name) {
+  if (name == "smooth") return HoleMethod::kSmooth;
+  if (name == "flat") return HoleMethod::kFlat;
+  if (name == "fan") return HoleMethod::kFan;
+  throw_invalid("method: '" + name + "' is not one of smooth, flat, fan");
+}
+
+// The mesh with its caps, and the numbers of open edges, of holes, and of those left open.
+std::tuple<Array<double>, Array<std::int64_t>, std::size_t, std::size_t, std::size_t>
+bound_close_holes(const py::array& positions, const py::array& triangles, const std::string& method,
+                  const py::object& callback, int threads) {
+  CloseHolesOptions options;
+  options.method = hole_method(method);
+  options.threads = threads;
+  options.progress = to_progress(callback);
   const InputMesh mesh = mesh_of(positions, triangles);
   Caps caps;
   {
     const py::gil_scoped_release unlocked;
-    caps = close_holes(mesh, progress, 0);
+    caps = close_holes(mesh, options);
   }
   const auto joined = []<typename T>(const auto& own, const std::vector<std::array<T, 3>>& added) {
     Array<T> result({static_cast<py::ssize_t>(own.size() + added.size()), py::ssize_t{3}});
@@ -32,7 +45,7 @@ std::tuple<Array<double>, Array<std::int64_t>, std::size_t, std::size_t> bound_c
     return result;
   };
   return {joined(mesh.positions, caps.positions), joined(mesh.triangles, caps.triangles),
-          caps.open_edges, caps.holes};
+          caps.open_edges, caps.holes, caps.left_open};
 }
 
 // Nothing where the mesh stays as it is, or its positions, triangles, and where these came from;
@@ -75,7 +88,7 @@ void bind_solid(py::module_& m) {
         py::arg("weld"), py::arg("gap"), py::arg("thickness"), py::arg("progress"),
         py::arg("threads"));
   m.def("close_holes", &bound_close_holes, py::arg("positions"), py::arg("triangles"),
-        py::arg("progress"));
+        py::arg("method"), py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -957,6 +957,9 @@ CLOSE_ROWS = [
         ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
         ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
         ({"progress": 3}, ["progress: 3", "a callable"]),
+        ({"method": "round"}, ["method: 'round'", "smooth, flat, fan"]),
+        ({"method": None}, ["method: None", "a name"]),
+        ({"threads": -1}, ["threads: -1"]),
     )
 ]
 SOLID_ROWS = [

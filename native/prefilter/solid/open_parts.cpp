@@ -222,8 +222,13 @@ class OpenParts {
       has_area = length(cross(p[1] - p[0], p[2] - p[0])) > 0.0;
     }
     if (!has_area) return octree;
-    const Caps caps =
-        close_holes({mesh.positions, triangles}, progress.part(0.0, 0.3), options_.threads);
+    CloseHolesOptions holes;
+    holes.method = HoleMethod::kFan;
+    // So that sheets are lost, and get a thickness.
+    holes.leaves_losses = false;
+    holes.progress = progress.part(0.0, 0.3);
+    holes.threads = options_.threads;
+    const Caps caps = close_holes({mesh.positions, triangles}, holes);
     std::vector<Vector3> positions = mesh.positions;
     positions.insert(positions.end(), caps.positions.begin(), caps.positions.end());
     triangles.insert(triangles.end(), caps.triangles.begin(), caps.triangles.end());

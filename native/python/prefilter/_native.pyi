@@ -497,8 +497,10 @@ def as_solid(
 def close_holes(
     positions: npt.NDArray[np.floating],
     triangles: npt.NDArray[np.integer],
+    method: str,
     progress: ProgressCallback | None,
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], int, int]: ...
+    threads: int,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], int, int, int]: ...
 def make_octree(
     levels: Sequence[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]],
     root: float,

@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "prefilter/contour/tree_contour.h"
-#include "prefilter/spatial/nearest.h"
 #include "prefilter/solid/close_holes.h"
+#include "prefilter/spatial/nearest.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/voxelize.h"
 #include "wavelet/meshes.h"
@@ -113,7 +113,10 @@ TEST_F(ReportGaps, OfSetOperations) {
 TEST_F(ReportGaps, OfHoles) {
   const std::span<const std::array<std::int64_t, 3>> all = triangles;
   EXPECT_LT(longest_gap([&](const Progress& progress) {
-              close_holes({mesh.positions, all.subspan(0, all.size() - 7)}, progress, 1);
+              CloseHolesOptions holes;
+              holes.threads = 1;
+              holes.progress = progress;
+              close_holes({mesh.positions, all.subspan(0, all.size() - 7)}, holes);
             }),
             kLongest);
 }

@@ -1,0 +1,146 @@
+// G. Barill, N. Dickson, R. Schmidt, D. Levin, A. Jacobson, Fast winding numbers for soups and
+// clouds (2018), of the lowest order. Solid angles: A. van Oosterom, J. Strackee, The solid angle
+// of a plane triangle (1983).
+#include "prefilter/spatial/winding_numbers.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/spatial/curve_order.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::size_t kLeafTriangles = 4;
+constexpr std::int64_t kPointsPerTask = 256;
+constexpr double kLargest = 1e100;
+// How many radii away a node is taken as one piece.
+constexpr double kFarRadii = 4.0;
+// Below rounding: the point is in the triangle's plane.
+constexpr double kInPlane = 1e-12;
+// Nodes that wait on the way down: one for each split, of which the tree has fewer.
+constexpr std::size_t kDeepest = 128;
+
+double size_of(const Vector3& v) { return std::sqrt(dot(v, v)); }
+
+// As a share of all directions.
+double solid_angle(const std::array<Vector3, 3>& triangle, const Vector3& point) {
+  const Vector3 a = triangle[0] - point;
+  const Vector3 b = triangle[1] - point;
+  const Vector3 c = triangle[2] - point;
+  const double la = size_of(a);
+  const double lb = size_of(b);
+  const double lc = size_of(c);
+  const double volume = dot(a, cross(b, c));
+  if (std::abs(volume) <= kInPlane * la * lb * lc) return 0.0;
+  const double rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+  return std::atan2(volume, rest) / (2.0 * std::numbers::pi);
+}
+
+}  // namespace
+
+WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, int threads) {
+  check_mesh(mesh, kLargest);
+  const auto middle_of = [&](std::size_t triangle) {
+    const auto corners = mesh.corners(triangle);
+    Vector3 middle = corners[0] + corners[1] + corners[2];
+    for (double& x : middle) x /= 3.0;
+    return middle;
+  };
+  const std::vector<CurvePlace> places =
+      along_curve(mesh.triangles.size(), middle_of, progress.part(0.0, 0.6), threads);
+  std::vector<std::uint64_t> keys;
+  keys.reserve(places.size());
+  triangles_.reserve(places.size());
+  for (const CurvePlace& place : places) {
+    keys.push_back(place.key);
+    triangles_.push_back(mesh.corners(place.index));
+  }
+  const auto box_of = [&](std::size_t item) {
+    Box box = kEmptyBox;
+    for (const Vector3& corner : triangles_[item]) box.include(corner);
+    return box;
+  };
+  tree_ = BoxTree(keys, kLeafTriangles, box_of, progress.part(0.6, 0.9));
+  const auto nodes = tree_.nodes();
+  fars_.resize(nodes.size());
+  std::vector<double> areas(nodes.size());
+  for (std::size_t n = nodes.size(); n-- > 0;) {
+    if (n % (1U << 16U) == 0) progress.report(0.9);
+    Far& far = fars_[n];
+    far = {};
+    double area = 0.0;
+    Vector3 sum{};
+    const auto add = [&](const Vector3& middle, double weight) {
+      area += weight;
+      for (std::size_t a = 0; a < 3; ++a) sum[a] += weight * middle[a];
+    };
+    if (nodes[n].right == 0) {
+      for (std::uint32_t item = nodes[n].begin; item < nodes[n].end; ++item) {
+        const auto& [a, b, c] = triangles_[item];
+        Vector3 normal = cross(b - a, c - a);
+        for (double& x : normal) x /= 2.0;
+        const Vector3 corners = a + b + c;
+        add({corners[0] / 3.0, corners[1] / 3.0, corners[2] / 3.0}, size_of(normal));
+        far.normal = far.normal + normal;
+      }
+    } else {
+      for (const std::size_t child : {n + 1, std::size_t{nodes[n].right}}) {
+        add(fars_[child].middle, areas[child]);
+        far.normal = far.normal + fars_[child].normal;
+      }
+    }
+    areas[n] = area;
+    const Box& box = nodes[n].box;
+    for (std::size_t a = 0; a < 3; ++a) {
+      far.middle[a] = area > 0.0 ? sum[a] / area : (box.low[a] + box.high[a]) / 2.0;
+      const double reach = std::max(far.middle[a] - box.low[a], box.high[a] - far.middle[a]);
+      far.squared_radius += reach * reach;
+    }
+  }
+  progress.report(1.0);
+}
+
+double WindingNumbers::at(const Vector3& point) const {
+  const auto nodes = tree_.nodes();
+  double winding = 0.0;
+  std::array<std::uint32_t, kDeepest> waiting;
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t n = waiting[--count];
+    const BoxTree::Node& node = nodes[n];
+    const Far& far = fars_[n];
+    const Vector3 to = far.middle - point;
+    const double squared = dot(to, to);
+    if (squared > kFarRadii * kFarRadii * far.squared_radius) {
+      winding += dot(far.normal, to) / (squared * std::sqrt(squared) * 4.0 * std::numbers::pi);
+    } else if (node.right == 0) {
+      for (std::uint32_t item = node.begin; item < node.end; ++item) {
+        winding += solid_angle(triangles_[item], point);
+      }
+    } else {
+      waiting[count++] = node.right;
+      waiting[count++] = n + 1;
+    }
+  }
+  return winding;
+}
+
+std::vector<double> WindingNumbers::find(std::span<const Vector3> points, const Progress& progress,
+                                         int threads) const {
+  check_points(points, "points: row", kLargest);
+  std::vector<double> result(points.size());
+  parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads, progress,
+                  [&](std::int64_t begin, std::int64_t end) {
+                    for (std::int64_t i = begin; i < end; ++i) {
+                      result[static_cast<std::size_t>(i)] = at(points[static_cast<std::size_t>(i)]);
+                    }
+                  });
+  return result;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,42 @@
+// How often a mesh winds around points, open or not.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/spatial/box_tree.h"
+
+namespace prefilter {
+
+/// Generalized winding numbers: the solid angle that the triangles take up, seen from a point, as a
+/// share of all directions; positive where they are seen from their back. A closed mesh has 1
+/// inside and 0 outside, in steps at its surface; holes make it smooth. Seen from a point in its
+/// own plane a triangle takes up nothing, so on the surface it is the mean of both sides.
+class WindingNumbers {
+ public:
+  /// Throws Error as check_mesh does, for positions above 1e100; Error(kCancelled).
+  WindingNumbers(const InputMesh& mesh, const Progress& progress, int threads);
+
+  /// To about 0.01: what is far away is taken as one plane piece. The same for any number of
+  /// threads. Throws Error for points that are not finite; Error(kCancelled).
+  std::vector<double> find(std::span<const Vector3> points, const Progress& progress,
+                           int threads) const;
+
+  double at(const Vector3& point) const;
+
+ private:
+  // What a node's triangles are from afar.
+  struct Far {
+    Vector3 middle;
+    Vector3 normal;  // the sum of their areas along their normals
+    double squared_radius;
+  };
+
+  std::vector<std::array<Vector3, 3>> triangles_;  // along the Morton curve
+  BoxTree tree_;
+  std::vector<Far> fars_;
+};
+
+}  // namespace prefilter
