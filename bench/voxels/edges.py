@@ -192,10 +192,12 @@ def subjects_of(options: argparse.Namespace) -> list[Subject]:
     names = options.pairs
     if names == ["all"]:
         names = ["+".join(pair[:2]) for pair in sharp_shapes.PAIRS]
+    numbers = {(first, second): number for first, second, number in sharp_shapes.PAIRS}
     for name in names:
         first, second = name.split("+")
         for operation in options.operations:
-            found.append(boolean(first, second, operation))
+            number = numbers.get((first, second), 0)
+            found.append(boolean(first, second, operation, number))
     return found
 
 
