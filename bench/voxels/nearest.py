@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -29,6 +28,8 @@ class Nearest:
 
     def __init__(self, corners: Floats) -> None:
         """Sorts them along a Morton curve; there has to be one at least."""
+        from scipy.spatial import cKDTree
+
         self._corners = np.asarray(corners, np.float64)
         self._measure = to_triangles if self._corners.shape[1] == 3 else to_segments
         parts, owners = _short(self._corners)

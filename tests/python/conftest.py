@@ -35,6 +35,7 @@ SAME_IN_ANY_PYTHON = {
     "test_scan_formats.py",
     "test_seams.py",
     "test_shaders.py",
+    "test_sharp_edges.py",
     "test_structure.py",
     "test_subdivision.py",
     "test_surfaces.py",

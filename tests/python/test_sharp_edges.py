@@ -1,0 +1,159 @@
+"""Sharp contours of shapes whose edges are known, by measures that share nothing with the library.
+
+The same measures, of more shapes and in finer cells, are in bench/voxels/edges.py and corpus.py.
+"""
+
+import itertools
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.voxels import booleans, corpus, edges, measures, meshes, sharp_shapes
+
+spatial = pytest.importorskip("scipy.spatial")
+
+SIZE = 128
+SHARP = edges.Contour.named("sharp")
+CLEAN = edges.Contour.named("sharp+clean")
+
+
+def cuts(positions, triangles):
+    """Pairs of triangles without a common vertex, an edge of one of which passes through the other.
+
+    Only where rounding cannot have made it so: every volume whose sign decides is far from 0.
+    """
+    corners = positions[triangles]
+    middles = corners.mean(axis=1)
+    radius = np.linalg.norm(corners - middles[:, None], axis=2).max()
+    pairs = spatial.cKDTree(middles).query_pairs(2 * radius, output_type="ndarray")
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    meet = (low[pairs[:, 0]] <= high[pairs[:, 1]]) & (low[pairs[:, 1]] <= high[pairs[:, 0]])
+    pairs = pairs[meet.all(axis=1)]
+    shared = (triangles[pairs[:, 0], :, None] == triangles[pairs[:, 1], None, :]).any(axis=(1, 2))
+    pairs = pairs[~shared]
+    found = np.zeros(len(pairs), bool)
+    least = 1e-12 * np.ptp(positions, axis=0).max() ** 3
+
+    def volume(a, b, c, d):
+        return np.einsum("ij,ij->i", np.cross(b - a, c - a), d - a)
+
+    for first, second in (pairs.T, pairs.T[::-1]):
+        a, b, c = np.moveaxis(corners[second], 1, 0)
+        for k in range(3):
+            p, q = corners[first, k], corners[first, (k + 1) % 3]
+            above, below = volume(a, b, c, p), volume(a, b, c, q)
+            sides = [volume(p, q, *ends) for ends in ((a, b), (b, c), (c, a))]
+            through = (above * below < 0) & (np.minimum(np.abs(above), np.abs(below)) > least)
+            for one, other in itertools.combinations(sides, 2):
+                through &= (one * other > 0) & (np.minimum(np.abs(one), np.abs(other)) > least)
+            found |= through
+    return pairs[found]
+
+
+def check_sound(name, positions, triangles):
+    found = measures.manifoldness(triangles, len(positions))
+    assert found.is_manifold, (name, found)
+    assert len(cuts(positions, triangles)) == 0, name
+
+
+def test_the_measures_find_what_was_done_to_a_cube():
+    """Moved by a tenth of a cell along an axis, and with an edge that is cut off."""
+    cube = sharp_shapes.shape("cube", turned=False)
+    lines = measures.sharp_edges(cube.positions, cube.triangles, 30)
+    assert len(lines.ends) == 12
+    np.testing.assert_allclose(lines.degrees, 90)
+    cell = 0.1
+    same = measures.edge_errors(cube.positions, cube.triangles, lines, cell)
+    assert max(same.numbers) < 1e-9
+    moved = measures.edge_errors(
+        cube.moved(np.eye(3), [0.01, 0, 0]).positions, cube.triangles, lines, cell
+    )
+    # Eight edges are moved across themselves, four along, where the surface stays.
+    np.testing.assert_allclose(moved.crease_mean, 8 / 12 * 0.1, rtol=0.01)
+    np.testing.assert_allclose(moved.corner, 0.1)
+    whole = measures.surface_errors(
+        cube.positions, cube.triangles, cube.positions, cube.triangles, lines, cell
+    )
+    assert whole.wrong == 0
+    sheared = cube.positions + 0.5 * cube.positions[:, [2, 0, 0]] * [1, 0, 0]
+    leaning = measures.surface_errors(
+        sheared, cube.triangles, cube.positions, cube.triangles, lines, cell
+    )
+    side = 2 * 4 * np.sqrt(1.25)
+    np.testing.assert_allclose(leaning.wrong, side / (side + 16), atol=0.01)
+
+
+def test_cuts_are_found():
+    first = sharp_shapes.shape("cube")
+    second = first.moved(np.eye(3), 0.5)
+    positions = np.concatenate([first.positions, second.positions])
+    triangles = np.concatenate([first.triangles, second.triangles + len(first.positions)])
+    assert len(cuts(positions, triangles)) > 6
+    assert len(cuts(first.positions, first.triangles)) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "how"), [("cube", SHARP), ("cylinder", CLEAN), ("bracket", CLEAN)]
+)
+def test_edges_are_where_they_are(name, how):
+    subject = edges.single(name)
+    _, cell = edges.box_around(subject.sources, SIZE)
+    positions, triangles, _ = edges.contour(subject, SIZE, how)
+    errors = measures.edge_errors(positions, triangles, subject.edges, cell)
+    assert max(errors.surface_mean, errors.crease_mean) < edges.EDGE_MEAN, errors
+    assert max(errors.surface_95, errors.crease_95) < edges.EDGE_95, errors
+    truth = subject.truth
+    off = measures.surface_errors(
+        positions, triangles, truth.positions, truth.triangles, subject.edges, cell, 20_000
+    )
+    assert off.wrong < edges.AREA, off
+    check_sound(name, positions, triangles)
+
+
+@pytest.mark.parametrize("operation", list(booleans.OPERATORS))
+@pytest.mark.skipif(bool(booleans.missing()), reason="manifold3d is not there")
+def test_rims_are_where_surfaces_meet(operation):
+    subject = edges.boolean("cube", "cylinder", operation, 1)
+    _, cell = edges.box_around(subject.sources, SIZE)
+    positions, triangles, _ = edges.contour(subject, SIZE, CLEAN)
+    errors = measures.edge_errors(positions, triangles, subject.edges, cell)
+    assert max(errors.surface_mean, errors.crease_mean) < edges.EDGE_MEAN, errors
+    assert max(errors.surface_95, errors.crease_95) < edges.EDGE_95, errors
+
+
+def test_the_rim_of_two_cubes_is_exact():
+    """Along the axes: there is nothing but planes and their corners."""
+    first = sharp_shapes.shape("cube", turned=False)
+    second = first.moved(np.eye(3), [0.777, 0.613, 0.521])
+    subject = edges.Subject("", (first, second), "union", first, edges.NO_EDGES)
+    positions, triangles, _ = edges.contour(subject, 32, SHARP)
+    check_sound("cubes", positions, triangles)
+    inside = (1 - 0.777 + 1) * (1 - 0.613 + 1) * (1 - 0.521 + 1)
+    assert corpus.volume(positions, triangles) == pytest.approx(16 - inside, rel=1e-6)
+
+
+def solids():
+    made = corpus.made()
+    chosen = [s for s in made if s.name.split()[0] in ("ring", "gear", "joint", "plate", "cone")]
+    if (meshes.DATA / "suzanne.obj").exists():
+        read = meshes.read(meshes.DATA / "suzanne.obj")
+        chosen.append(corpus.fitted("suzanne", read.positions, read.triangles))
+    return chosen
+
+
+@pytest.mark.parametrize("how", [SHARP, CLEAN], ids=["sharp", "clean"])
+def test_contours_of_many_meshes_are_sound(how):
+    for shape in [*solids()[::2], corpus.clutter(0), corpus.clutter(3)]:
+        subject = edges.Subject(shape.name, (shape,), "", shape, edges.NO_EDGES)
+        check_sound(shape.name, *edges.contour(subject, 32, how)[:2])
+
+
+@pytest.mark.parametrize("how", [SHARP, CLEAN], ids=["sharp", "clean"])
+def test_random_booleans_are_sound(how):
+    closed = [shape for shape in solids() if corpus.is_closed(shape)]
+    for one in corpus.random_booleans(8, closed):
+        subject = edges.Subject("", one.sources, one.operation, one.sources[0], edges.NO_EDGES)
+        check_sound(one.name, *edges.contour(subject, 32, how)[:2])
