@@ -2,7 +2,12 @@
 // by themselves; then pairs of triangles whose boxes meet.
 #include "prefilter/remesh/intersections.h"
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -44,23 +49,74 @@ struct FloatBox {
   }
 };
 
-struct Item {
-  FloatBox box;
-  std::uint32_t triangle;
-  bool is_suspect;
-  bool is_degenerate;
+// Four boxes that are compared with another one at once.
+struct FourBoxes {
+  using Four [[gnu::vector_size(16)]] = float;
+
+  std::array<Four, 3> lows;
+  std::array<Four, 3> highs;
+
+  void set(std::size_t i, const FloatBox& box) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      lows[a][i] = box.low[a];
+      highs[a][i] = box.high[a];
+    }
+  }
+  FloatBox box(std::size_t i) const {
+    return {{lows[0][i], lows[1][i], lows[2][i]}, {highs[0][i], highs[1][i], highs[2][i]}};
+  }
+  // A bit for each that meets the other one.
+  unsigned meeting(const FloatBox& other) const {
+    const auto meets = (lows[0] <= other.high[0]) & (highs[0] >= other.low[0]) &
+                       (lows[1] <= other.high[1]) & (highs[1] >= other.low[1]) &
+                       (lows[2] <= other.high[2]) & (highs[2] >= other.low[2]);
+#if defined(__SSE2__)
+    return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(meets)));
+#else
+    return (meets[0] != 0 ? 1U : 0U) | (meets[1] != 0 ? 2U : 0U) | (meets[2] != 0 ? 4U : 0U) |
+           (meets[3] != 0 ? 8U : 0U);
+#endif
+  }
 };
 
-struct Node {
-  FloatBox box;
-  bool has_suspects = false;
-  bool has_others = false;
+struct Leaf {
+  std::array<FourBoxes, kLeafTriangles / 4> boxes;
+  std::array<std::uint32_t, kLeafTriangles> triangles;
+  std::array<std::array<std::int32_t, 3>, kLeafTriangles> vertices;
+  unsigned suspects = 0;    // a bit each
+  unsigned degenerate = 0;  // on one line
+  unsigned count = 0;
 
-  void include(const Node& other) {
-    box.include(other.box);
-    has_suspects = has_suspects || other.has_suspects;
-    has_others = has_others || other.has_others;
+  FloatBox box(std::size_t i) const { return boxes[i / 4].box(i % 4); }
+  unsigned meeting(const FloatBox& other) const {
+    return boxes[0].meeting(other) | boxes[1].meeting(other) << 4U;
   }
+};
+
+// Leaves and their boxes.
+struct NearLeaves {
+  std::vector<std::size_t> leaves;
+  std::vector<FourBoxes> boxes;
+
+  void clear() {
+    leaves.clear();
+    boxes.clear();
+  }
+  void add(std::size_t leaf, const FloatBox& box) {
+    const std::size_t place = leaves.size() % 4;
+    if (place == 0) {
+      boxes.emplace_back();
+      for (std::size_t i = 0; i < 4; ++i) boxes.back().set(i, FloatBox());
+    }
+    boxes.back().set(place, box);
+    leaves.push_back(leaf);
+  }
+};
+
+// Nodes of a tree, each above four of the level below; the lowest ones are leaves.
+struct Level {
+  std::vector<FourBoxes> boxes;          // of four nodes that are below the same one
+  std::vector<std::uint8_t> has_others;  // of each node: triangles that are not suspect
 };
 
 // The box of the mesh in which positions become floats from 0 to 1.
@@ -140,12 +196,12 @@ class Finder {
   }
 
   std::vector<Pair> find(const Progress& progress) const {
-    const auto leaves = static_cast<std::int64_t>(levels_[0].size());
+    const auto leaves = static_cast<std::int64_t>(leaves_.size());
     std::vector<std::vector<Pair>> found(
         static_cast<std::size_t>(range_count(leaves, kLeavesPerTask)));
     const auto find_some = [&](std::int64_t begin, std::int64_t end) {
       std::vector<Pair>& pairs = found[static_cast<std::size_t>(begin / kLeavesPerTask)];
-      std::vector<std::size_t> near;
+      NearLeaves near;
       for (std::int64_t leaf = begin; leaf < end; ++leaf) {
         find_at(static_cast<std::size_t>(leaf), &near, &pairs);
       }
@@ -193,17 +249,34 @@ class Finder {
     parallel_ranges(rows, kRowsPerTask, threads_, progress.part(0.1, 0.2), place);
     sort_in_parallel(&keys, progress.part(0.2, 0.8), threads_);
 
-    items_.resize(keys.size());
+    leaves_.resize((keys.size() + kLeafTriangles - 1) / kLeafTriangles);
+    const auto leaf_count = static_cast<std::int64_t>(leaves_.size());
     const auto fill = [&](std::int64_t begin, std::int64_t end) {
       for (std::int64_t i = begin; i < end; ++i) {
-        const auto place_of = static_cast<std::size_t>(i);
-        const auto triangle = static_cast<std::uint32_t>(keys[place_of]);
-        const std::array<Vector3, 3> corners = mesh_.corners(triangle);
-        items_[place_of] = {frame_.box_of(corners), triangle, is_suspect(triangle),
-                            are_on_one_line(corners[0], corners[1], corners[2])};
+        const auto leaf = static_cast<std::size_t>(i);
+        const std::size_t first = leaf * kLeafTriangles;
+        const std::size_t count = std::min(kLeafTriangles, keys.size() - first);
+        make_leaf(std::span(keys).subspan(first, count), &leaves_[leaf]);
       }
     };
-    parallel_ranges(rows, kRowsPerTask, threads_, progress.part(0.8, 1.0), fill);
+    parallel_ranges(leaf_count, kRowsPerTask / 8, threads_, progress.part(0.8, 1.0), fill);
+  }
+
+  void make_leaf(std::span<const std::uint64_t> keys, Leaf* leaf) const {
+    for (std::size_t i = 0; i < kLeafTriangles; ++i) {
+      if (i >= keys.size()) {
+        leaf->boxes[i / 4].set(i % 4, FloatBox());
+        continue;
+      }
+      const auto triangle = static_cast<std::uint32_t>(keys[i]);
+      const std::array<Vector3, 3> corners = mesh_.corners(triangle);
+      leaf->boxes[i / 4].set(i % 4, frame_.box_of(corners));
+      leaf->triangles[i] = triangle;
+      leaf->vertices[i] = mesh_.triangles[triangle];
+      if (is_suspect(triangle)) leaf->suspects |= 1U << i;
+      if (are_on_one_line(corners[0], corners[1], corners[2])) leaf->degenerate |= 1U << i;
+      ++leaf->count;
+    }
   }
 
   // The larger ones apart, in four classes; then the Morton curve.
@@ -221,83 +294,112 @@ class Finder {
   }
 
   void make_nodes(const Progress& progress) {
-    levels_.emplace_back((items_.size() + kLeafTriangles - 1) / kLeafTriangles);
-    const auto leaves = static_cast<std::int64_t>(levels_[0].size());
-    const auto make_leaves = [&](std::int64_t begin, std::int64_t end) {
-      for (std::int64_t i = begin; i < end; ++i) {
-        const auto leaf = static_cast<std::size_t>(i);
-        Node& node = levels_[0][leaf];
-        for (const Item& item : items_of(leaf)) {
-          node.include({item.box, item.is_suspect, !item.is_suspect});
-        }
+    std::vector<FloatBox> boxes(leaves_.size());
+    std::vector<std::uint8_t> has_others(leaves_.size());
+    const auto count = static_cast<std::int64_t>(leaves_.size());
+    const auto make_some = [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+        const Leaf& leaf = leaves_[i];
+        for (unsigned k = 0; k < leaf.count; ++k) boxes[i].include(leaf.box(k));
+        has_others[i] = static_cast<unsigned>(std::popcount(leaf.suspects)) < leaf.count ? 1 : 0;
       }
     };
-    parallel_ranges(leaves, kRowsPerTask, threads_, progress, make_leaves);
-    while (levels_.back().size() > 1) {
-      const std::vector<Node>& below = levels_.back();
-      std::vector<Node> level((below.size() + kChildren - 1) / kChildren);
-      for (std::size_t i = 0; i < below.size(); ++i) level[i / kChildren].include(below[i]);
+    parallel_ranges(count, kRowsPerTask, threads_, progress, make_some);
+    while (true) {
+      const std::size_t above = (boxes.size() + kChildren - 1) / kChildren;
+      std::vector<FloatBox> boxes_above(above);
+      std::vector<std::uint8_t> has_others_above(above);
+      Level level;
+      level.boxes.resize(above);
+      for (std::size_t i = 0; i < above * kChildren; ++i) {
+        const FloatBox box = i < boxes.size() ? boxes[i] : FloatBox();
+        level.boxes[i / kChildren].set(i % kChildren, box);
+        if (i >= boxes.size()) continue;
+        boxes_above[i / kChildren].include(box);
+        has_others_above[i / kChildren] |= has_others[i];
+      }
+      level.has_others = std::move(has_others);
       levels_.push_back(std::move(level));
+      if (above == 1) break;
+      boxes = std::move(boxes_above);
+      has_others = std::move(has_others_above);
     }
-  }
-
-  std::span<const Item> items_of(std::size_t leaf) const {
-    const std::size_t begin = leaf * kLeafTriangles;
-    return std::span(items_).subspan(begin, std::min(kLeafTriangles, items_.size() - begin));
   }
 
   // The leaves that meet this one, but for those before it without triangles that are not suspect:
   // they have found this one.
-  void find_near(std::size_t leaf, std::vector<std::size_t>* near) const {
+  void find_near(std::size_t leaf, NearLeaves* near) const {
     near->clear();
-    const FloatBox& box = levels_[0][leaf].box;
+    const FloatBox box = levels_[0].boxes[leaf / kChildren].box(leaf % kChildren);
     struct Waiting {
       std::size_t level;
-      std::size_t node;
+      std::size_t four;
     };
     // Four on each level: 2^32 triangles have at most 16 levels.
     std::array<Waiting, 64> waiting;
     std::size_t count = 0;
     waiting[count++] = {levels_.size() - 1, 0};
     while (count > 0) {
-      const auto [level, node] = waiting[--count];
-      const Node& found = levels_[level][node];
-      if (!found.box.meets(box)) continue;
-      if (!found.has_others && ((node + 1) << (2 * level)) <= leaf) continue;
-      if (level == 0) {
-        near->push_back(node);
-        continue;
+      const auto [at, four] = waiting[--count];
+      const Level& level = levels_[at];
+      const FourBoxes& boxes = level.boxes[four];
+      for (unsigned met = boxes.meeting(box); met != 0; met &= met - 1U) {
+        const auto k = static_cast<std::size_t>(std::countr_zero(met));
+        const std::size_t node = four * kChildren + k;
+        if (level.has_others[node] == 0 && ((node + 1) << (2 * at)) <= leaf) continue;
+        if (at == 0) {
+          near->add(node, boxes.box(k));
+        } else {
+          waiting[count++] = {at - 1, node};
+        }
       }
-      const std::size_t first = node * kChildren;
-      const std::size_t last = std::min(first + kChildren, levels_[level - 1].size());
-      for (std::size_t child = first; child < last; ++child) waiting[count++] = {level - 1, child};
     }
   }
 
-  Corners corners_of(const Item& item) const {
-    return {mesh_.corners(item.triangle), mesh_.triangles[item.triangle]};
+  Corners corners_of(const Leaf& leaf, std::size_t i) const {
+    const auto& [a, b, c] = leaf.vertices[i];
+    return {
+        {mesh_.positions[static_cast<std::size_t>(a)], mesh_.positions[static_cast<std::size_t>(b)],
+         mesh_.positions[static_cast<std::size_t>(c)]},
+        leaf.vertices[i]};
   }
 
-  void find_at(std::size_t leaf, std::vector<std::size_t>* near, std::vector<Pair>* pairs) const {
-    if (!levels_[0][leaf].has_suspects) return;
-    find_near(leaf, near);
-    for (const Item& item : items_of(leaf)) {
-      if (!item.is_suspect) continue;
-      if (item.is_degenerate) {
-        pairs->push_back({item.triangle, item.triangle});
+  void find_at(std::size_t at, NearLeaves* near, std::vector<Pair>* pairs) const {
+    const Leaf& leaf = leaves_[at];
+    if (leaf.suspects == 0) return;
+    find_near(at, near);
+    for (unsigned i = 0; i < leaf.count; ++i) {
+      const unsigned bit = 1U << i;
+      if ((leaf.suspects & bit) == 0) continue;
+      if ((leaf.degenerate & bit) != 0) {
+        pairs->push_back({leaf.triangles[i], leaf.triangles[i]});
         continue;
       }
-      const Corners corners = corners_of(item);
-      for (const std::size_t other_leaf : *near) {
-        if (!levels_[0][other_leaf].box.meets(item.box)) continue;
-        for (const Item& other : items_of(other_leaf)) {
-          if (!other.box.meets(item.box) || other.is_degenerate) continue;
-          if (other.is_suspect && &other <= &item) continue;
-          if (!do_intersect(corners, corners_of(other))) continue;
-          const auto [low, high] = std::minmax(item.triangle, other.triangle);
-          pairs->push_back({low, high});
+      const FloatBox box = leaf.box(i);
+      const Corners corners = corners_of(leaf, i);
+      for (std::size_t four = 0; four < near->boxes.size(); ++four) {
+        for (unsigned met = near->boxes[four].meeting(box); met != 0; met &= met - 1U) {
+          const auto k = static_cast<std::size_t>(std::countr_zero(met));
+          find_pairs(at, i, box, corners, near->leaves[4 * four + k], pairs);
         }
       }
+    }
+  }
+
+  // Those of a suspect with triangles of another leaf, or of its own.
+  void find_pairs(std::size_t at, unsigned i, const FloatBox& box, const Corners& corners,
+                  std::size_t other_at, std::vector<Pair>* pairs) const {
+    const Leaf& leaf = leaves_[at];
+    const Leaf& other = leaves_[other_at];
+    unsigned met = other.meeting(box) & ~other.degenerate;
+    // Two suspects are a pair of the first one.
+    if (other_at < at) met &= ~other.suspects;
+    if (other_at == at) met &= ~(other.suspects & ((2U << i) - 1U));
+    for (; met != 0; met &= met - 1U) {
+      const auto k = static_cast<std::size_t>(std::countr_zero(met));
+      if (!do_intersect(corners, corners_of(other, k))) continue;
+      const auto [low, high] = std::minmax(leaf.triangles[i], other.triangles[k]);
+      pairs->push_back({low, high});
     }
   }
 
@@ -305,8 +407,8 @@ class Finder {
   std::span<const std::uint8_t> is_suspect_;
   int threads_;
   Frame frame_;
-  std::vector<Item> items_;
-  std::vector<std::vector<Node>> levels_;  // the leaves first
+  std::vector<Leaf> leaves_;
+  std::vector<Level> levels_;  // that of leaves first
 };
 }  // namespace
 

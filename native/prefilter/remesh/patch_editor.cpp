@@ -17,6 +17,7 @@ constexpr float kNarrow = static_cast<float>(kSine * kSine);
 constexpr double kLeastGain = 0.05;
 // How far normals may be from the mean one, unless others were before: 20 degrees.
 constexpr double kFlatCosine = 0.9396926207859084;
+constexpr double kLeastCosine = 0.5;
 // The most that a change may cut off or fill: a mean depth, as a share of the square root of the
 // area.
 constexpr double kMostDepth = 0.04;
@@ -100,14 +101,9 @@ void PatchEditor::edit(std::uint32_t patch, std::span<const std::uint32_t> trian
     edited_.widths[t] = static_cast<float>(width_of(point(a), point(b), point(c)));
     if (edited_.widths[t] < kNarrow) waiting_.push_back(t);
   }
-  constexpr int kMostPasses = 4;
-  for (int pass = 0; pass < kMostPasses && !waiting_.empty(); ++pass) {
-    narrow_.clear();
-    for (std::size_t i = 0; i < waiting_.size(); ++i) {
-      const std::uint32_t t = waiting_[i];
-      if (!edited_.is_gone(t) && edited_.widths[t] < kNarrow) widen(t);
-    }
-    waiting_ = narrow_;
+  for (std::size_t i = 0; i < waiting_.size(); ++i) {
+    const std::uint32_t t = waiting_[i];
+    if (!edited_.is_gone(t) && edited_.widths[t] < kNarrow) widen(t);
   }
 }
 
@@ -223,15 +219,19 @@ bool PatchEditor::fill(const Fan& fan, std::size_t begin, std::size_t end, std::
   }
   const double mean_length = std::sqrt(squared(mean));
   if (!(mean_length > 0.0)) return false;
-  double least_cosine = kFlatCosine;
-  for (std::size_t i = 0; i < steps; ++i) {
-    const std::uint32_t t = fan.triangles[(begin + i) % fan.count];
-    const auto& [a, b, c] = edited_.mesh.triangles[t];
-    const Vector3 normal = normal_of(point(a), point(b), point(c));
-    const double normal_length = std::sqrt(squared(normal));
-    least_cosine = std::min(least_cosine, dot(normal, mean) / (normal_length * mean_length));
+  change->area += 0.5 * mean_length;
+  const double unit = 1.0 / mean_length;
+  const Vector3 direction = {unit * mean[0], unit * mean[1], unit * mean[2]};
+  std::array<std::array<double, kMostAround>, kMostAround> squares;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = i + 1; j < count; ++j) squares[i][j] = squared(points[j] - points[i]);
   }
-  least_cosine = std::max(least_cosine, 0.5);
+  const auto sides_of = [&](std::size_t i, std::size_t j, std::size_t k) {
+    const double u = squares[i][j];
+    const double v = squares[j][k];
+    const double w = squares[i][k];
+    return std::max({u, v, w}) * std::max(std::min(u, v), std::min(std::max(u, v), w));
+  };
 
   struct Best {
     double cost;
@@ -239,42 +239,44 @@ bool PatchEditor::fill(const Fan& fan, std::size_t begin, std::size_t end, std::
     std::size_t apex;
   };
   std::array<std::array<Best, kMostAround>, kMostAround> best;
-  std::array<std::array<double, kMostAround>, kMostAround> squares;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = i + 1; j < count; ++j) squares[i][j] = squared(points[j] - points[i]);
-    if (i + 1 < count) best[i][i + 1] = {0.0, 0.0, 0};
-  }
   constexpr double kForbidden = 1e30;
   constexpr double kFaultCost = 1e3;
-  const double unit = 1.0 / mean_length;
-  const Vector3 direction = {unit * mean[0], unit * mean[1], unit * mean[2]};
-  const double least = least_cosine * least_cosine;
-  for (std::size_t span = 2; span < count; ++span) {
-    for (std::size_t i = 0; i + span < count; ++i) {
-      const std::size_t j = i + span;
-      Best found = {kForbidden, 0.0, i + 1};
-      for (std::size_t k = i + 1; k < j; ++k) {
-        const double below = best[i][k].cost + best[k][j].cost;
-        if (!(below < found.cost)) continue;
-        const Vector3 normal = normal_of(points[i], points[k], points[j]);
-        const double along = dot(normal, direction);
-        const double area = squared(normal);
-        if (!(along > 0.0) || !(along * along > least * area)) continue;
-        const double uu = squares[i][k];
-        const double vv = squares[k][j];
-        const double ww = squares[i][j];
-        const double longest = std::max({uu, vv, ww});
-        const double middle = std::max(std::min(uu, vv), std::min(std::max(uu, vv), ww));
-        const double sides = longest * middle;
-        const double fault = area < kNarrow * sides ? fault_of(area / sides) : 0.0;
-        const double cost = below + (unit * along) * (unit * (uu + vv + ww)) + kFaultCost * fault;
-        if (cost < found.cost) found = {cost, best[i][k].fault + best[k][j].fault + fault, k};
+  const auto find_best = [&](double least) {
+    for (std::size_t i = 0; i + 1 < count; ++i) best[i][i + 1] = {0.0, 0.0, 0};
+    for (std::size_t span = 2; span < count; ++span) {
+      for (std::size_t i = 0; i + span < count; ++i) {
+        const std::size_t j = i + span;
+        Best found = {kForbidden, 0.0, i + 1};
+        for (std::size_t k = i + 1; k < j; ++k) {
+          const double below = best[i][k].cost + best[k][j].cost;
+          if (!(below < found.cost)) continue;
+          const Vector3 normal = normal_of(points[i], points[k], points[j]);
+          const double along = dot(normal, direction);
+          const double area = squared(normal);
+          if (!(along > 0.0) || !(along * along > least * least * area)) continue;
+          const double sides = sides_of(i, k, j);
+          const double fault = area < kNarrow * sides ? fault_of(area / sides) : 0.0;
+          const double squares_sum = squares[i][k] + squares[k][j] + squares[i][j];
+          const double cost = below + (unit * along) * (unit * squares_sum) + kFaultCost * fault;
+          if (cost < found.cost) found = {cost, best[i][k].fault + best[k][j].fault + fault, k};
+        }
+        best[i][j] = found;
       }
-      best[i][j] = found;
     }
+    return best[0][count - 1].cost < kForbidden;
+  };
+  if (!find_best(kFlatCosine)) {
+    double least = kFlatCosine;
+    for (std::size_t i = 0; i < steps; ++i) {
+      const std::uint32_t t = fan.triangles[(begin + i) % fan.count];
+      const auto& [a, b, c] = edited_.mesh.triangles[t];
+      const Vector3 normal = normal_of(point(a), point(b), point(c));
+      least = std::min(least, dot(normal, direction) / std::sqrt(squared(normal)));
+    }
+    least = std::max(least, kLeastCosine);
+    if (!(least < kFlatCosine) || !find_best(least)) return false;
   }
   const Best& whole = best[0][count - 1];
-  if (!(whole.cost < kForbidden)) return false;
   change->fault += whole.fault;
   // Depth first.
   std::array<std::array<std::size_t, 2>, kMostAround> waiting;
@@ -315,9 +317,10 @@ void PatchEditor::find_removal(std::int32_t vertex, Change* change) const {
   }
   change->vertex = vertex;
   change->fault = 0.0;
+  change->area = 0.0;
+  change->places = fan.triangles;
   std::size_t made = 0;
   if (crease_count == 0) {
-    change->places = fan.triangles;
     if (!fill(fan, 0, fan.count - 1, &made, change)) return;
   } else {
     const auto [low, high] = creases;
@@ -332,7 +335,6 @@ void PatchEditor::find_removal(std::int32_t vertex, Change* change) const {
         !(dot(way, chord) > 0.0) || !(dot(way, chord) < squared(chord))) {
       return;
     }
-    change->places = fan.triangles;
     if (!fill(fan, low, high, &made, change) || !fill(fan, high, low + fan.count, &made, change))
       return;
   }
@@ -343,14 +345,11 @@ void PatchEditor::find_removal(std::int32_t vertex, Change* change) const {
   // The volume between before and after, and the area.
   const Vector3& top = point(vertex);
   double volume = 0.0;
-  double area = 0.0;
   for (std::size_t i = 0; i < made; ++i) {
     const auto& [a, b, c] = change->triangles[i];
-    const Vector3 normal = normal_of(point(a), point(b), point(c));
-    volume += dot(normal, point(a) - top) / 6.0;
-    area += 0.5 * std::sqrt(squared(normal));
+    volume += dot(normal_of(point(a), point(b), point(c)), point(a) - top) / 6.0;
   }
-  change->depth = std::abs(volume) / (area * std::sqrt(area));
+  change->depth = std::abs(volume) / (change->area * std::sqrt(change->area));
   if (!(change->depth < kMostDepth)) return;
 
   // Diagonals must not be there yet, and vertices keep three triangles.

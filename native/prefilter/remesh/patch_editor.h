@@ -64,7 +64,8 @@ class PatchEditor {
     std::array<std::int32_t, kMostAround> labels;
     double fault = 0.0;  // of the triangles that it leaves
     double gain = 0.0;   // the faults before less those after
-    double depth = 0.0;  // of what it cuts off or fills, as a share of its width
+    double area = 0.0;   // as seen from above
+    double depth = 0.0;  // of what it cuts off or fills, as a share of the root of the area
   };
 
   const Vector3& point(std::int32_t vertex) const {

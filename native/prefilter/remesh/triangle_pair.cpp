@@ -5,9 +5,9 @@
 #include "prefilter/remesh/triangle_pair.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
 #include "prefilter/remesh/predicates.h"
 
@@ -16,12 +16,13 @@ namespace {
 
 using Points = std::array<Vector3, 3>;
 
-double largest(const Vector3& v) {
-  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
-}
+// Bounds of errors are products of these: of each product of components in a sum, every rounding is
+// at most 2^-53 of it.
+double sum_of_sizes(const Vector3& v) { return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]); }
 
-// Of a sum of three products of rounded differences with given numbers: 5 roundings each.
-constexpr double kErrorOfProduct = 3e-15;
+constexpr double kErrorOfProduct = 1e-15;  // of a rounded difference with a given vector
+constexpr double kErrorOfThree = 1.2e-15;  // of a determinant of rounded differences
+constexpr double kErrorOfNormals = 2e-15;  // of a product of two normals
 // Bounds below this may have lost digits.
 constexpr double kSmallestBound = 1e-280;
 
@@ -29,8 +30,9 @@ constexpr double kSmallestBound = 1e-280;
 // more.
 bool separates(const Vector3& direction, const Vector3& low_1, const Vector3& low_2,
                const Vector3& high_1, const Vector3& high_2) {
-  const double size = std::max({largest(low_1), largest(low_2), largest(high_1), largest(high_2)});
-  const double bound = kErrorOfProduct * size * largest(direction);
+  const double sizes =
+      sum_of_sizes(low_1) + sum_of_sizes(low_2) + sum_of_sizes(high_1) + sum_of_sizes(high_2);
+  const double bound = kErrorOfProduct * sizes * sum_of_sizes(direction);
   return bound > kSmallestBound && dot(direction, low_1) < -bound &&
          dot(direction, low_2) < -bound && dot(direction, high_1) > bound &&
          dot(direction, high_2) > bound;
@@ -46,9 +48,9 @@ bool is_beyond_an_edge(const Points& a, const Points& b) {
     const Vector3 outward = cross(edge, normal);
     const Vector3 third = a[(i + 2) % 3] - from;
     const std::array<Vector3, 3> others = {b[0] - from, b[1] - from, b[2] - from};
-    const double size = std::max({largest(edge), largest(third), largest(others[0]),
-                                  largest(others[1]), largest(others[2])});
-    const double bound = kErrorOfProduct * size * largest(outward);
+    const double sizes = sum_of_sizes(edge) + sum_of_sizes(third) + sum_of_sizes(others[0]) +
+                         sum_of_sizes(others[1]) + sum_of_sizes(others[2]);
+    const double bound = kErrorOfProduct * sizes * sum_of_sizes(outward);
     if (!(bound > kSmallestBound)) continue;
     const double reached = std::max({0.0, dot(outward, edge), dot(outward, third)}) + 3.0 * bound;
     if (std::all_of(others.begin(), others.end(),
@@ -76,10 +78,9 @@ bool are_surely_one_side(const Points& plane, const Points& points) {
   const Vector3 normal = cross(u, v);
   const std::array<Vector3, 3> others = {points[0] - plane[0], points[1] - plane[0],
                                          points[2] - plane[0]};
-  constexpr double kErrorOfThree = 8e-15;
-  const double size = std::max({largest(others[0]), largest(others[1]), largest(others[2])});
-  const double bound = kErrorOfThree * std::max(size, largest(u)) * std::max(size, largest(v)) *
-                       std::max({size, largest(u), largest(v)});
+  const double sizes =
+      std::max({sum_of_sizes(others[0]), sum_of_sizes(others[1]), sum_of_sizes(others[2])});
+  const double bound = kErrorOfThree * sum_of_sizes(u) * sum_of_sizes(v) * sizes;
   if (!(bound > kSmallestBound)) return false;
   const Vector3 heights = {dot(normal, others[0]), dot(normal, others[1]), dot(normal, others[2])};
   return std::min({heights[0], heights[1], heights[2]}) > bound ||
@@ -175,75 +176,73 @@ bool do_strangers_intersect(const Points& a, const Points& b) {
   return do_any_edges_meet(a, b, b_sides) || do_any_edges_meet(b, a, a_sides);
 }
 
-// Of triangles that share their first corner: what they have in common is convex, so that more than
-// the corner reaches the opposite edge of one of them.
-bool do_meet_at_a_corner(const Points& a, const Points& b) {
-  const std::array<Vector3, 4> out = {a[1] - a[0], a[2] - a[0], b[1] - a[0], b[2] - a[0]};
+// Of triangles that share a corner: what they have in common is convex, so that more than the
+// corner reaches the opposite edge of one of them.
+bool do_meet_at_a_corner(const Points& a, std::size_t a_place, const Points& b,
+                         std::size_t b_place) {
+  const Vector3& corner = a[a_place];
+  const Vector3& a1 = a[(a_place + 1) % 3];
+  const Vector3& a2 = a[(a_place + 2) % 3];
+  const Vector3& b1 = b[(b_place + 1) % 3];
+  const Vector3& b2 = b[(b_place + 2) % 3];
+  const Vector3 a1_out = a1 - corner;
+  const Vector3 a2_out = a2 - corner;
+  const Vector3 b1_out = b1 - corner;
+  const Vector3 b2_out = b2 - corner;
   // A plane between the triangles, as they are around a vertex of a surface.
-  const Vector3 middle = out[0] + out[1];
-  const Vector3 other_middle = out[2] + out[3];
+  const Vector3 middle = a1_out + a2_out;
+  const Vector3 other_middle = b1_out + b2_out;
+  if (separates(other_middle - middle, a1_out, a2_out, b1_out, b2_out)) return false;
   const double scale = std::sqrt(dot(middle, middle));
   const double other_scale = std::sqrt(dot(other_middle, other_middle));
   Vector3 direction;
   for (std::size_t i = 0; i < 3; ++i) {
     direction[i] = other_middle[i] * scale - middle[i] * other_scale;
   }
-  if (separates(direction, out[0], out[1], out[2], out[3])) return false;
-  const int b_side_1 = plane_side(a[0], a[1], a[2], b[1]);
-  const int b_side_2 = plane_side(a[0], a[1], a[2], b[2]);
-  if (b_side_1 * b_side_2 > 0) return false;
-  const int a_side_1 = plane_side(b[0], b[1], b[2], a[1]);
-  const int a_side_2 = plane_side(b[0], b[1], b[2], a[2]);
-  if (a_side_1 * a_side_2 > 0) return false;
-  return does_meet(a, b[1], b_side_1, b[2], b_side_2) ||
-         does_meet(b, a[1], a_side_1, a[2], a_side_2);
+  if (separates(direction, a1_out, a2_out, b1_out, b2_out)) return false;
+  const int b1_side = plane_side(corner, a1, a2, b1);
+  const int b2_side = plane_side(corner, a1, a2, b2);
+  if (b1_side * b2_side > 0) return false;
+  const int a1_side = plane_side(corner, b1, b2, a1);
+  const int a2_side = plane_side(corner, b1, b2, a2);
+  if (a1_side * a2_side > 0) return false;
+  return does_meet({corner, a1, a2}, b1, b1_side, b2, b2_side) ||
+         does_meet({corner, b1, b2}, a1, a1_side, a2, a2_side);
 }
 
-// Of triangles that share their first two corners.
-bool do_fold_over(const Points& a, const Points& b) {
-  const Vector3 edge = a[1] - a[0];
-  const Vector3 a_out = a[2] - a[0];
-  const Vector3 b_out = b[2] - a[0];
+// Of triangles that share an edge, whose other corners are given.
+bool do_fold_over(const Vector3& from, const Vector3& to, const Vector3& a, const Vector3& b) {
+  const Vector3 edge = to - from;
+  const Vector3 a_out = a - from;
+  const Vector3 b_out = b - from;
   // On different sides of a plane through the edge.
-  const Vector3 a_normal = cross(edge, a_out);
-  const Vector3 b_normal = cross(b_out, edge);
-  const double size = std::max({largest(edge), largest(a_out), largest(b_out)});
-  constexpr double kErrorOfNormals = 2e-14;
-  const double bound = kErrorOfNormals * size * size * size * size;
-  if (bound > kSmallestBound && dot(a_normal, b_normal) > bound) return false;
-  if (plane_side(a[0], a[1], a[2], b[2]) != 0) return false;
-  const int axis = view_axis(a);
-  return turn_along(axis, a[0], a[1], a[2]) == turn_along(axis, a[0], a[1], b[2]);
+  const double size = sum_of_sizes(edge);
+  const double bound = kErrorOfNormals * size * size * sum_of_sizes(a_out) * sum_of_sizes(b_out);
+  if (bound > kSmallestBound && dot(cross(edge, a_out), cross(b_out, edge)) > bound) return false;
+  if (plane_side(from, to, a, b) != 0) return false;
+  const int axis = view_axis({from, to, a});
+  return turn_along(axis, from, to, a) == turn_along(axis, from, to, b);
 }
 }  // namespace
 
 bool do_intersect(const Corners& a, const Corners& b) {
-  Points p = a.points;
-  Points q = b.points;
-  std::array<std::int32_t, 3> p_vertices = a.vertices;
-  std::array<std::int32_t, 3> q_vertices = b.vertices;
-  std::size_t shared = 0;
+  // A bit for each corner of the one and of the other that are the same vertex.
+  unsigned shared = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = shared; j < 3; ++j) {
-      if (p_vertices[i] != q_vertices[j]) continue;
-      std::swap(p_vertices[shared], p_vertices[i]);
-      std::swap(p[shared], p[i]);
-      std::swap(q_vertices[shared], q_vertices[j]);
-      std::swap(q[shared], q[j]);
-      ++shared;
-      break;
+    for (std::size_t j = 0; j < 3; ++j) {
+      shared |= (a.vertices[i] == b.vertices[j] ? 1U : 0U) << (3 * i + j);
     }
   }
-  switch (shared) {
-    case 0:
-      return do_strangers_intersect(p, q);
-    case 1:
-      return do_meet_at_a_corner(p, q);
-    case 2:
-      return do_fold_over(p, q);
-    default:
-      return true;
+  if (shared == 0) return do_strangers_intersect(a.points, b.points);
+  const auto first = static_cast<std::size_t>(std::countr_zero(shared));
+  if (std::has_single_bit(shared)) {
+    return do_meet_at_a_corner(a.points, first / 3, b.points, first % 3);
   }
+  shared &= shared - 1U;
+  if (!std::has_single_bit(shared)) return true;
+  const auto second = static_cast<std::size_t>(std::countr_zero(shared));
+  return do_fold_over(a.points[first / 3], a.points[second / 3],
+                      a.points[3 - first / 3 - second / 3], b.points[3 - first % 3 - second % 3]);
 }
 
 }  // namespace prefilter
