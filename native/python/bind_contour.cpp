@@ -52,17 +52,22 @@ MeshArrays to_arrays(TriangleMesh mesh) {
 // A mesh, and the groups of its triangles, of which there may be none.
 using SourceArrays = std::tuple<py::array, py::array, Array<std::int64_t>>;
 
+std::vector<SourceMesh> sources_of(const std::vector<SourceArrays>& arrays) {
+  std::vector<SourceMesh> sources;
+  for (const auto& [positions, triangles, groups] : arrays) {
+    sources.push_back(
+        {mesh_of(positions, triangles), {groups.data(), static_cast<std::size_t>(groups.size())}});
+  }
+  return sources;
+}
+
 MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpolant,
                                 float isovalue, const std::vector<SourceArrays>& source_arrays,
                                 bool clean_up, double adaptivity, const py::object& progress,
                                 int threads) {
   ContourOptions options =
       contour_options(interpolant, isovalue, clean_up, adaptivity, progress, threads);
-  std::vector<SourceMesh> sources;
-  for (const auto& [positions, triangles, groups] : source_arrays) {
-    sources.push_back(
-        {mesh_of(positions, triangles), {groups.data(), static_cast<std::size_t>(groups.size())}});
-  }
+  const std::vector<SourceMesh> sources = sources_of(source_arrays);
   options.sources = sources;
   TriangleMesh mesh;
   {
@@ -70,6 +75,25 @@ MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpo
     mesh = contour_occupancies(octree.cells, octree.bounds, options);
   }
   return to_arrays(std::move(mesh));
+}
+
+using TracedArrays = std::tuple<Array<double>, Array<std::int32_t>, Array<std::int64_t>>;
+
+TracedArrays bound_traced_contour(const Octree& octree,
+                                  const std::vector<SourceArrays>& source_arrays, bool clean_up,
+                                  double adaptivity, const py::object& progress, int threads) {
+  ContourOptions options = contour_options("sharp", 0.5F, clean_up, adaptivity, progress, threads);
+  const std::vector<SourceMesh> sources = sources_of(source_arrays);
+  options.sources = sources;
+  TracedMesh traced;
+  {
+    const py::gil_scoped_release unlocked;
+    traced = contour_traced(octree.cells, octree.bounds, options);
+  }
+  const auto count = static_cast<py::ssize_t>(traced.origins.size());
+  auto [positions, triangles] = to_arrays(std::move(traced.mesh));
+  return {std::move(positions), std::move(triangles),
+          to_array<std::int64_t>(std::move(traced.origins), {count})};
 }
 
 // The numbers of samples along the axes of a grid.
@@ -127,6 +151,8 @@ void bind_contour(py::module_& m) {
         py::arg("adaptivity"), py::arg("progress"), py::arg("threads"));
   m.def("contour_outlines", &bound_contour_outlines, py::arg("grid"), py::arg("interpolant"),
         py::arg("isovalue"), py::arg("spacing"), py::arg("origin"), py::arg("progress"));
+  m.def("traced_contour", &bound_traced_contour, py::arg("octree"), py::arg("sources"),
+        py::arg("clean_up"), py::arg("adaptivity"), py::arg("progress"), py::arg("threads"));
   m.def("contour_octree", &bound_contour_octree, py::arg("octree"), py::arg("interpolant"),
         py::arg("isovalue"), py::arg("sources"), py::arg("clean_up"), py::arg("adaptivity"),
         py::arg("progress"), py::arg("threads"));

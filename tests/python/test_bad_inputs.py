@@ -903,7 +903,18 @@ QUERY_ROWS = [
     ("box_occupancy", {"low": (0, 0, 0), "high": (0, 1, 1)}, ["box: ", "along x"]),
     ("box_occupancy", {"low": (0, 0), "high": (1, 1)}, ["box: shape (2, 2)", "(2, 3)"]),
     ("save", {"path": 3}, ["path: 3"]),
-    ("contour", {"interpolant": "cubic"}, ["interpolant: 'cubic'", "occupancy, plane, linear, sharp"]),
+    (
+        "contour",
+        {"interpolant": "cubic"},
+        ["interpolant: 'cubic'", "occupancy, plane, linear, sharp"],
+    ),
+    ("contour", {"sources": [BOX.positions]}, ["sources: item 0", "(positions, triangles)"]),
+    (
+        "traced_contour",
+        {"sources": [(BOX.positions, BOX.triangles, np.zeros(3, int))]},
+        ["sources: 3 groups of 12 triangles"],
+    ),
+    ("traced_contour", {"sources": []}, ["sources: there are none", "at least one"]),
     ("contour", {"isovalue": 0}, ["isovalue: 0", "above 0 and up to 1"]),
 ]
 NEAREST_ROWS = [
@@ -1092,6 +1103,7 @@ def test_every_function_is_there():
         "SvgDrawing",
         "SvgWarning",
         "TableSection",
+        "TracedContour",
     }
     # In test_normals_of_points, test_face_normals, test_scan_files, test_scan_failures,
     # test_shape_arguments and test_svg_files.

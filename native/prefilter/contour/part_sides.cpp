@@ -16,6 +16,7 @@ constexpr int kMajority = 10;  // times as many as against
 // Along an axis of a brick. Not a divisor of its cells: samples are off the planes of coordinates.
 constexpr int kSamples = 3;
 constexpr int kShares = 4;  // samples of a leaf along an axis
+constexpr int kClose = 5;   // samples, from half of them, where the centre decides
 constexpr std::int64_t kLeavesPerTask = 64;
 
 float value_at(const ContourTree& tree, const RootFrame& frame, const Vector3& point) {
@@ -94,6 +95,15 @@ std::optional<bool> PartSides::is_inside(const Parts& parts, unsigned inside) co
 std::optional<bool> PartSides::is_mostly_inside(const Vector3& centre, const Vector3& size) const {
   const std::optional<Parts> parts = parts_near(centre);
   if (!parts) return std::nullopt;
+  // Where but one part runs through, the occupancy tells.
+  int passing = 0;
+  for (std::size_t i = 0; i < parts->count; ++i) {
+    const SourcePoint& plane = parts->planes[i];
+    double reach = 0.0;
+    for (int a = 0; a < 3; ++a) reach += std::abs(plane.normal[a]) * size[a] / 2.0;
+    if (std::abs(dot(plane.normal, centre - plane.position)) < reach) ++passing;
+  }
+  if (passing < 2) return std::nullopt;
   int inside = 0;
   int outside = 0;
   for (int i = 0; i < kShares * kShares * kShares; ++i) {
@@ -104,9 +114,9 @@ std::optional<bool> PartSides::is_mostly_inside(const Vector3& centre, const Vec
     if (side) ++(*side ? inside : outside);
   }
   const int half = kShares * kShares * kShares / 2;
-  if (inside >= half) return true;
-  if (outside > half) return false;
-  return std::nullopt;
+  if (inside >= half + kClose) return true;
+  if (outside >= half + kClose) return false;
+  return inside + outside < 2 * half ? std::nullopt : is_inside(*parts, parts->inside_at(centre));
 }
 
 std::optional<SourcePoint> PartSides::exit(const Vector3& in, const Vector3& out,

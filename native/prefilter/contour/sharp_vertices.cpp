@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "prefilter/base/parallel.h"
@@ -11,6 +12,7 @@ namespace prefilter {
 namespace {
 
 constexpr int kTaskDepth = 3;
+constexpr double kTipCells = 3.0;     // of the vertex that goes to a tip
 constexpr double kReachCells = 1.25;  // of a vertex whose line does not cross the surface
 
 struct Block {
@@ -91,6 +93,57 @@ class Sampler {
   const PartSides* parts_;
   SurfaceVertices& vertices_;
 };
+
+// Cells of a grid by their coordinates.
+using Place = std::array<std::int64_t, 3>;
+
+void move_tips(const SourceSurface& surface, VertexSamples* samples, SurfaceVertices* vertices) {
+  const double reach = kTipCells * surface.cell();
+  const auto place_of = [&](const Vector3& p) {
+    Place place;
+    for (std::size_t a = 0; a < 3; ++a)
+      place[a] = static_cast<std::int64_t>(std::floor(p[a] / reach));
+    return place;
+  };
+  std::map<Place, std::vector<std::size_t>> tips;
+  const auto& corners = surface.regions().corners;
+  const auto tip_at = [&](std::size_t i) -> const Vector3& {
+    return surface.regions().positions[static_cast<std::size_t>(corners[i].vertex)];
+  };
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (corners[i].labels.size() == 1) tips[place_of(tip_at(i))].push_back(i);
+  }
+  if (tips.empty()) return;
+  struct Nearest {
+    std::int32_t vertex = -1;
+    double distance = 0.0;
+  };
+  std::vector<Nearest> found(corners.size());
+  for (std::size_t v = 0; v < samples->index.size(); ++v) {
+    const SourcePoint* sample = samples->of(static_cast<std::int32_t>(v));
+    if (sample == nullptr) continue;
+    const Place place = place_of(sample->position);
+    for (int k = 0; k < 27; ++k) {
+      const auto around =
+          tips.find({place[0] + k % 3 - 1, place[1] + k / 3 % 3 - 1, place[2] + k / 9 - 1});
+      if (around == tips.end()) continue;
+      for (const std::size_t i : around->second) {
+        const double distance = length(tip_at(i) - sample->position);
+        if (sample->label != corners[i].labels[0] || distance > reach) continue;
+        if (found[i].vertex >= 0 && distance >= found[i].distance) continue;
+        found[i] = {static_cast<std::int32_t>(v), distance};
+      }
+    }
+  }
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (found[i].vertex < 0) continue;
+    const auto vertex = static_cast<std::size_t>(found[i].vertex);
+    const auto sample = static_cast<std::size_t>(samples->index[vertex]);
+    samples->samples[sample].position = tip_at(i);
+    vertices->move(vertex, tip_at(i));
+    samples->tips.push_back(found[i].vertex);
+  }
+}
 }  // namespace
 
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
@@ -122,6 +175,7 @@ VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
       result.facing.push_back(task.facing[i]);
     }
   }
+  move_tips(surface, &result, vertices);
   return result;
 }
 

@@ -21,6 +21,7 @@ struct VertexSamples {
   // For each sample, how much its normal points from the leaf inside to the one outside, -1 to 1; 0
   // off the line.
   std::vector<float> facing;
+  std::vector<std::int32_t> tips;  // vertices where a smooth region comes to a point
 
   const SourcePoint* of(std::int32_t vertex) const {
     const std::int32_t i = index[static_cast<std::size_t>(vertex)];
@@ -29,7 +30,8 @@ struct VertexSamples {
 };
 
 /// Moves the vertices near edges to where the lines that they are on cross the surface; where these
-/// do not, to the nearest point. `parts` is for what was combined of several. Throws
+/// do not, to the nearest point. The vertex next to where a smooth region comes to a point goes
+/// there. `parts` is for what was combined of several. Throws
 /// Error(kCancelled).
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
                               const SourceSurface& surface, const PartSides* parts,

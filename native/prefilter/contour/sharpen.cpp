@@ -416,6 +416,9 @@ class Sharpener {
     mesh.triangles.resize(looped_.triangles.size());
     mesh.labels.resize(looped_.triangles.size());
     mesh.kinds.assign(mesh.positions.size(), VertexKind::kSurface);
+    for (const std::int32_t tip : samples_.tips) {
+      mesh.kinds[static_cast<std::size_t>(tip)] = VertexKind::kCorner;
+    }
     owners_.clear();
     std::vector<std::int32_t>& places = places_;
     places.assign(features_.size(), -1);
@@ -653,17 +656,19 @@ class Sharpener {
       return mesh.positions[static_cast<std::size_t>(corners[i])];
     };
     const Vector3 normal = cross(at(1) - at(0), at(2) - at(0));
-    const SourcePoint* surface = nullptr;
+    bool is_any = false;
     for (const std::int32_t corner : corners) {
       if (static_cast<std::size_t>(corner) >= samples_.index.size()) continue;
       const SourcePoint* sample = samples_.of(corner);
       // Those across an edge have no side of their own.
       if (sample == nullptr || sample->label != mesh.labels[t]) return false;
-      surface = sample;
+      const double height = dot(normal, sample->normal);
+      if ((turned_.contains(sample->label) ? -height : height) >= kLeast * length(normal)) {
+        return false;
+      }
+      is_any = true;
     }
-    if (surface == nullptr) return false;
-    const double height = dot(normal, surface->normal);
-    return (turned_.contains(surface->label) ? -height : height) < kLeast * length(normal);
+    return is_any;
   }
 
   bool put_on_line(std::int32_t vertex) {

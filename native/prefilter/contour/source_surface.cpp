@@ -269,6 +269,35 @@ SourcePoint SourceSurface::point_on(std::int32_t triangle, const Vector3& positi
   return {position, (1.0 / length(twice)) * twice, triangle, regions_.labels[t]};
 }
 
+std::vector<std::int64_t> SourceSurface::first_triangles() const {
+  std::vector<std::int64_t> firsts;
+  for (std::size_t t = regions_.labels.size(); t-- > 0;) {
+    const std::int32_t label = regions_.labels[t];
+    if (label < 0) continue;
+    if (static_cast<std::size_t>(label) >= firsts.size()) {
+      firsts.resize(static_cast<std::size_t>(label) + 1, 0);
+    }
+    firsts[static_cast<std::size_t>(label)] = static_cast<std::int64_t>(t);
+  }
+  return firsts;
+}
+
+std::int64_t SourceSurface::nearest_of_all(const Vector3& point) const {
+  std::int64_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
+    const std::array<Vector3, 3> corners = {regions_.corner(t, 0), regions_.corner(t, 1),
+                                            regions_.corner(t, 2)};
+    const Vector3 weights = nearest_weights(point, corners[0], corners[1], corners[2]);
+    const Vector3 offset =
+        weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2] - point;
+    if (dot(offset, offset) >= least) continue;
+    least = dot(offset, offset);
+    best = static_cast<std::int64_t>(t);
+  }
+  return best;
+}
+
 std::vector<SourceCrossing> SourceSurface::crossings(const Vector3& a, const Vector3& b) const {
   std::vector<SourceCrossing> found;
   triangle_tree_.for_overlapping(box_of(a, b), [&](std::size_t node) {

@@ -74,6 +74,12 @@ class SourceSurface {
   std::optional<SourcePoint> nearest_plane(const Vector3& point, double reach,
                                            std::int32_t part) const;
 
+  /// For each label, the first triangle that has it.
+  std::vector<std::int64_t> first_triangles() const;
+
+  /// The triangle nearest to a point, wherever that is. Looks at all of them.
+  std::int64_t nearest_of_all(const Vector3& point) const;
+
   /// The nearest point within `reach`, of one region unless `label` is -1.
   std::optional<SourcePoint> nearest(const Vector3& point, double reach, std::int32_t label) const;
 

@@ -21,6 +21,7 @@
 #include "prefilter/contour/surface_vertices.h"
 #include "prefilter/remesh/clean_up.h"
 #include "prefilter/remesh/simplify.h"
+#include "prefilter/remesh/spread_labels.h"
 #include "prefilter/wavelet/refine.h"
 
 namespace prefilter {
@@ -47,6 +48,10 @@ struct Division {
 
   bool operator()(std::int32_t a, std::int32_t b) const {
     return are_divided(surface, samples, a, b);
+  }
+  // Loops are fans around these.
+  bool is_tip(std::int32_t vertex) const {
+    return std::find(samples.tips.begin(), samples.tips.end(), vertex) != samples.tips.end();
   }
 };
 
@@ -189,7 +194,13 @@ class TriangleMaker {
                    const std::array<unsigned, 12>& faces, int count,
                    std::vector<Triangle>* triangles, std::vector<Vector3>* middles) const {
     const auto is_allowed = [&](int i, int j) { return (faces[i] & faces[j]) == 0U; };
+    int tip = -1;
+    for (int i = 0; i < count; ++i) {
+      if (division_ != nullptr && division_->is_tip(corners[i])) tip = i;
+    }
     const auto cost = [&](int i, int j, int k) {
+      constexpr double kForbidden = 1e30;
+      if (tip >= 0 && tip != i && tip != j && tip != k) return kForbidden;
       return sphere_gap(position(corners[i]), position(corners[j]), position(corners[k]));
     };
     const bool is_done = triangulate_loop(count, is_allowed, cost, [&](int i, int j, int k) {
@@ -271,8 +282,28 @@ std::vector<std::int32_t> leave_out_unused(Mesh* mesh) {
   return used;
 }
 
+// Gives all triangles labels; returns a triangle of the sources for each of these.
+std::vector<std::int64_t> trace_labels(const SourceSurface& surface, int threads,
+                                       FacetedMesh* mesh) {
+  std::vector<std::int64_t> triangles = surface.first_triangles();
+  const auto known = static_cast<std::int32_t>(triangles.size());
+  const int added = spread_labels(mesh, known, Progress(), threads);
+  triangles.resize(triangles.size() + static_cast<std::size_t>(added), -1);
+  // What has no edges close to it is of one region: one of its triangles tells.
+  for (std::size_t t = 0; t < mesh->triangles.size() && added > 0; ++t) {
+    std::int64_t& triangle = triangles[static_cast<std::size_t>(mesh->labels[t])];
+    if (triangle >= 0) continue;
+    const auto& [a, b, c] = mesh->triangles[t];
+    triangle = surface.nearest_of_all((1.0 / 3.0) * (mesh->positions[static_cast<std::size_t>(a)] +
+                                                     mesh->positions[static_cast<std::size_t>(b)] +
+                                                     mesh->positions[static_cast<std::size_t>(c)]));
+  }
+  return triangles;
+}
+
 // The contour of a tree whose root is split.
-TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options) {
+TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options,
+                           std::vector<std::int64_t>* origins) {
   constexpr double kPlacing = 0.98;
   const double simplifying = options.adaptivity > 0.0 ? 0.4 : kPlacing;
   const double cleaning = options.clean_up ? 0.3 * simplifying : simplifying;
@@ -331,6 +362,9 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
     mesh.positions = std::move(looped.positions);
     mesh.triangles = std::move(looped.triangles);
   }
+  std::vector<std::int64_t> triangles_of_labels;
+  if (origins != nullptr && surface)
+    triangles_of_labels = trace_labels(*surface, options.threads, &mesh);
   double cell = frame.cell(0, cells.depth());
   for (int a = 1; a < 3; ++a) cell = std::min(cell, frame.cell(a, cells.depth()));
   if (options.clean_up) {
@@ -341,6 +375,11 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   if (options.adaptivity > 0.0) {
     mesh = simplify(std::move(mesh), options.adaptivity * cell,
                     options.progress.part(simplifying, kPlacing), options.threads);
+  }
+  if (origins != nullptr) {
+    for (const std::int32_t label : mesh.labels) {
+      origins->push_back(triangles_of_labels[static_cast<std::size_t>(label)]);
+    }
   }
   frame.place(options.progress.part(kPlacing, 1.0), options.threads, &mesh.positions);
   return {std::move(mesh.positions), std::move(mesh.triangles)};
@@ -371,13 +410,16 @@ ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant inte
   return slab;
 }
 
-TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourOptions& options) {
+namespace {
+
+TriangleMesh contour_any(const CellTree& cells, const Box& root, const ContourOptions& options,
+                         std::vector<std::int64_t>* origins) {
   check_box(root, "bounds");
   if (!(options.adaptivity >= 0.0 && options.adaptivity <= kLargestAdaptivity)) {
     throw_invalid("adaptivity: found " + to_text(options.adaptivity) + "; allowed are 0 to " +
                   to_text(kLargestAdaptivity));
   }
-  if (!cells.levels.empty()) return contour_split(cells, root, options);
+  if (!cells.levels.empty()) return contour_split(cells, root, options, origins);
   CellTree split;
   split.root = cells.root;
   split.levels.resize(1);
@@ -385,21 +427,45 @@ TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourO
   split.levels[0].blocks[0].fill(cells.root);
   split.levels[0].split.push_back(0);
   link_blocks(split.levels.data());
-  return contour_split(split, root, options);
+  return contour_split(split, root, options, origins);
 }
 
-TriangleMesh contour_occupancies(const CellTree& cells, const Box& root,
-                                 const ContourOptions& options) {
+// As it is, or refined where the surface passes through cells of several sizes.
+TriangleMesh contour_refined(const CellTree& cells, const Box& root, const ContourOptions& options,
+                             std::vector<std::int64_t>* origins) {
   constexpr double kRefining = 0.3;
   if (options.isovalue != 0.5F || !has_coarse_surface(cells)) {
-    return contour_tree(cells, root, options);
+    return contour_any(cells, root, options, origins);
   }
   check_box(root, "bounds");
   const CellTree fine =
       refined(cells, cells.depth(), options.progress.part(0.0, kRefining), options.threads);
   ContourOptions rest = options;
   rest.progress = options.progress.part(kRefining, 1.0);
-  return contour_tree(fine, root, rest);
+  return contour_any(fine, root, rest, origins);
+}
+}  // namespace
+
+TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourOptions& options) {
+  return contour_any(cells, root, options, nullptr);
+}
+
+TriangleMesh contour_occupancies(const CellTree& cells, const Box& root,
+                                 const ContourOptions& options) {
+  return contour_refined(cells, root, options, nullptr);
+}
+
+TracedMesh contour_traced(const CellTree& cells, const Box& root, const ContourOptions& options) {
+  if (options.interpolant != Interpolant::kSharp || options.sources.empty()) {
+    throw_invalid("sources: there are none; origins need at least one, and 'sharp'");
+  }
+  if (options.isovalue != 0.5F) {
+    throw_invalid("isovalue: " + to_text(static_cast<double>(options.isovalue)) +
+                  "; origins need 0.5");
+  }
+  TracedMesh traced;
+  traced.mesh = contour_refined(cells, root, options, &traced.origins);
+  return traced;
 }
 
 }  // namespace prefilter

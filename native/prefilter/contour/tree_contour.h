@@ -28,6 +28,17 @@ TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourO
 TriangleMesh contour_occupancies(const CellTree& cells, const Box& root,
                                  const ContourOptions& options);
 
+/// A contour, and where its triangles come from.
+struct TracedMesh {
+  TriangleMesh mesh;
+  // For each triangle one of the sources, numbered through all of them, that belongs to the same
+  // source, group and smooth region.
+  std::vector<std::int64_t> origins;
+};
+
+/// The same with origins, for kSharp with sources. Throws Error, too, where there are none.
+TracedMesh contour_traced(const CellTree& cells, const Box& root, const ContourOptions& options);
+
 /// The part of a contour that is made of the dual cells at some heights. Parts at heights that
 /// follow each other have vertices in common, and together are the whole.
 struct ContourSlab {

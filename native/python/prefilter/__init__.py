@@ -35,7 +35,7 @@ from .svg import SvgDrawing, read_svg
 from .texture_use import fill_transparent, fill_unused, texel_weights
 from .textures.texture_files import write_dds, write_ktx2
 from .version import VERSION
-from .voxel import MAX_DEPTH, Octree, cube_around, voxelize
+from .voxel import MAX_DEPTH, Octree, TracedContour, cube_around, voxelize
 
 __version__ = VERSION
 
@@ -64,6 +64,7 @@ __all__ = [
     "SvgDrawing",
     "SvgWarning",
     "TableSection",
+    "TracedContour",
     "as_solid",
     "close_holes",
     "contour",

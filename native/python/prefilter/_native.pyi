@@ -507,6 +507,16 @@ def make_octree(
     bounds: tuple[list[float], list[float]],
     depth: int,
 ) -> Octree: ...
+def traced_contour(
+    octree: Octree,
+    sources: list[
+        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int64]]
+    ],
+    clean_up: bool,
+    adaptivity: float,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32], npt.NDArray[np.int64]]: ...
 def contour_octree(
     octree: Octree,
     interpolant: str,

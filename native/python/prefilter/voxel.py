@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
@@ -191,6 +192,43 @@ class Octree(_native.Octree):
             as_threads(threads),
         )
 
+    def traced_contour(
+        self,
+        sources: Sequence[Source],
+        *,
+        cleanup: bool = True,
+        adaptivity: float = 0.0,
+        progress: ProgressCallback | None = None,
+        threads: int = 0,
+    ) -> "TracedContour":
+        """The contour by "sharp", and which part of the sources each of its triangles shows.
+
+        What surfaces carry, such as materials and UV maps, can so be carried over without running
+        across an edge, a rim or a seam. See `contour`.
+
+        Args:
+            sources: As for `contour`, at least one.
+            cleanup: As for `contour`.
+            adaptivity: As for `contour`.
+            progress: Called with the fraction done; returning False stops the work.
+            threads: 0 means all processors. The result does not depend on it.
+
+        Raises:
+            ValueError: There is no source, one is no mesh, or `adaptivity` is out of range.
+            MemoryError: The surface would not fit into memory.
+            Cancelled: `progress` returned False.
+        """
+        return TracedContour(
+            *_native.traced_contour(
+                self,
+                _as_sources(sources),
+                bool(cleanup),
+                as_number("adaptivity", adaptivity),
+                as_progress(progress),
+                as_threads(threads),
+            )
+        )
+
     def coarsened(self, depth: int) -> "Octree":
         """The octree down to a depth of 0 to 12: means of what was finer."""
         return Octree(_native.coarsened(self, _as_depth(depth, 0)))
@@ -230,6 +268,22 @@ class Octree(_native.Octree):
         return Octree(
             _native.combine(self, other, operation, as_progress(progress), as_threads(threads))
         )
+
+
+@dataclass(frozen=True)
+class TracedContour:
+    """A contour, and where its triangles come from.
+
+    Attributes:
+        positions: (vertices, 3) float64.
+        triangles: (triangles, 3) int32, counter-clockwise seen from outside.
+        origins: (triangles,) int64: for each a triangle of the sources, numbered through all of
+            them, of the same source, group and smooth region. It need not be the nearest one.
+    """
+
+    positions: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.int32]
+    origins: npt.NDArray[np.int64]
 
 
 def voxelize(
