@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <optional>
+#include <queue>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -24,6 +25,7 @@ constexpr double kOnSurface = 0.05;
 constexpr double kCornerReach = 1.0;
 constexpr double kSettled = 1e-7;
 constexpr double kTooClose = 0.05;
+constexpr double kPlaceCells = 2.0;
 constexpr int kMostSteps = 12;
 constexpr int kMostAttempts = 2;
 constexpr int kMostHalvings = 3;
@@ -88,9 +90,19 @@ class Sharpener {
     claim_corners();
     find_joints();
     const Progress checking = progress.part(0.6, 1.0);
+    // What is near edges comes last, so that it can be looked at by itself.
+    const auto far_end =
+        std::stable_partition(looped_.triangles.begin(), looped_.triangles.end(),
+                              [&](const Triangle& triangle) { return !is_near(triangle); });
+    far_count_ = static_cast<std::size_t>(far_end - looped_.triangles.begin());
     FacetedMesh mesh;
     mesh.triangles = looped_.triangles;
     for (const Triangle& triangle : mesh.triangles) mesh.labels.push_back(label_of(triangle));
+    mesh.positions = looped_.positions;
+    mesh.kinds.assign(mesh.positions.size(), VertexKind::kSurface);
+    for (const std::int32_t tip : samples_.tips) {
+      mesh.kinds[static_cast<std::size_t>(tip)] = VertexKind::kCorner;
+    }
     is_changed_loop_.assign(features_.size(), 1);
     is_changed_vertex_.assign(crossings_.size(), 0);
     for (std::size_t v = 0; v < crossings_.size(); ++v) {
@@ -98,7 +110,7 @@ class Sharpener {
     }
     do {
       assemble(&mesh);
-    } while (drop_intersecting(mesh, checking));
+    } while (drop_intersecting(&mesh, checking));
     return mesh;
   }
 
@@ -298,6 +310,13 @@ class Sharpener {
     }
   }
 
+  bool is_near(const Triangle& triangle) const {
+    return std::any_of(triangle.begin(), triangle.end(), [&](std::int32_t corner) {
+      const auto v = static_cast<std::size_t>(corner);
+      return v < samples_.index.size() && samples_.index[v] >= 0;
+    });
+  }
+
   std::int32_t label_of(std::int32_t vertex) const {
     const SourcePoint* sample = samples_.of(vertex);
     return sample != nullptr ? sample->label : -1;
@@ -343,27 +362,49 @@ class Sharpener {
     return i;
   }
 
+  // The vertices of loops that have one together, and the first of these.
+  void find_shared_vertices() {
+    shared_.clear();
+    members_.clear();
+    for (std::size_t i = 0; i < merged_.size(); ++i) {
+      if (merged_[i] == i || is_sharp_[i] == 0) continue;
+      shared_[places_[i]] = merged_[i];
+      members_[merged_[i]].push_back(i);
+    }
+  }
+
+  bool unmerge(std::size_t root) {
+    std::vector<std::size_t> loops = {root};
+    const auto found = members_.find(root);
+    if (found != members_.end())
+      loops.insert(loops.end(), found->second.begin(), found->second.end());
+    bool is_any = false;
+    for (const std::size_t i : loops) {
+      is_any = is_any || is_single_[i] == 0;
+      is_single_[i] = 1;
+      is_changed_loop_[i] = 1;
+    }
+    return is_any;
+  }
+
   bool unmerge_repeated(const FacetedMesh& mesh) {
+    find_shared_vertices();
+    if (shared_.empty()) return false;
     std::unordered_map<std::uint64_t, std::size_t> sides;
     bool is_any = false;
     for (std::size_t t = looped_.triangles.size(); t < mesh.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint64_t key = (static_cast<std::uint64_t>(mesh.triangles[t][k]) << 32U) |
-                                  static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
+        const std::int32_t from = mesh.triangles[t][k];
+        const std::int32_t to = mesh.triangles[t][(k + 1) % 3];
+        if (!shared_.contains(from) && !shared_.contains(to)) continue;
+        const std::uint64_t key =
+            (static_cast<std::uint64_t>(from) << 32U) | static_cast<std::uint32_t>(to);
         const auto [found, is_new] = sides.try_emplace(key, t);
         if (is_new) continue;
         for (const std::size_t u : {t, found->second}) {
           for (const std::int32_t owner : owners_of(u)) {
             if (owner < 0) continue;
-            is_changed_loop_[static_cast<std::size_t>(owner)] = 1;
-            // All that share its vertex.
-            const std::size_t root = merged_[static_cast<std::size_t>(owner)];
-            for (std::size_t i = root; i < merged_.size(); ++i) {
-              if (merged_[i] != root || is_single_[i] != 0) continue;
-              is_single_[i] = 1;
-              is_changed_loop_[i] = 1;
-              is_any = true;
-            }
+            is_any = unmerge(merged_[static_cast<std::size_t>(owner)]) || is_any;
           }
         }
       }
@@ -373,15 +414,10 @@ class Sharpener {
 
   // Takes apart what has been merged to a vertex with several fans of triangles.
   bool unmerge_pinched(const FacetedMesh& mesh) {
-    std::unordered_map<std::int32_t, std::size_t> merged;  // vertices, and their loops
-    for (std::size_t i = 0; i < merged_.size(); ++i) {
-      if (merged_[i] != i && is_sharp_[i] != 0) merged[places_[i]] = merged_[i];
-    }
-    if (merged.empty()) return false;
     std::unordered_map<std::int32_t, std::vector<std::array<std::int32_t, 2>>> links;
     for (std::size_t t = looped_.triangles.size(); t < mesh.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        if (!merged.contains(mesh.triangles[t][k])) continue;
+        if (!shared_.contains(mesh.triangles[t][k])) continue;
         links[mesh.triangles[t][k]].push_back(
             {mesh.triangles[t][(k + 1) % 3], mesh.triangles[t][(k + 2) % 3]});
       }
@@ -398,13 +434,7 @@ class Sharpener {
         ++steps;
       }
       if (at == link[0][0] && steps == link.size()) continue;
-      const std::size_t root = merged[vertex];
-      for (std::size_t i = root; i < merged_.size(); ++i) {
-        if (merged_[i] != root || is_single_[i] != 0) continue;
-        is_single_[i] = 1;
-        is_changed_loop_[i] = 1;
-        is_any = true;
-      }
+      is_any = unmerge(shared_[vertex]) || is_any;
     }
     return is_any;
   }
@@ -412,13 +442,10 @@ class Sharpener {
   // The triangles of sharp loops, behind all others.
   void assemble_merged(FacetedMesh* result) {
     FacetedMesh& mesh = *result;
-    mesh.positions = looped_.positions;
+    mesh.positions.resize(looped_.positions.size());
+    mesh.kinds.resize(looped_.positions.size());
     mesh.triangles.resize(looped_.triangles.size());
     mesh.labels.resize(looped_.triangles.size());
-    mesh.kinds.assign(mesh.positions.size(), VertexKind::kSurface);
-    for (const std::int32_t tip : samples_.tips) {
-      mesh.kinds[static_cast<std::size_t>(tip)] = VertexKind::kCorner;
-    }
     owners_.clear();
     std::vector<std::int32_t>& places = places_;
     places.assign(features_.size(), -1);
@@ -484,11 +511,73 @@ class Sharpener {
     return other >= 0 && is_sharp_[static_cast<std::size_t>(other)] != 0;
   }
 
+  // Of the suspect triangles with any near edges; only those are looked at whose places these
+  // reach.
+  std::vector<std::array<std::uint32_t, 2>> intersections(
+      const FacetedMesh& mesh, const std::vector<std::uint8_t>& is_suspect,
+      const Progress& progress) const {
+    const double side = kPlaceCells * cell_;
+    std::unordered_set<std::uint64_t> places;
+    for (std::size_t t = far_count_; t < mesh.triangles.size(); ++t) {
+      if (is_suspect[t] == 0) continue;
+      for_places(mesh, t, side, [&](std::uint64_t place) { places.insert(place); });
+    }
+    std::vector<Triangle> triangles;
+    std::vector<std::uint8_t> suspects;
+    std::vector<std::uint32_t> numbers;
+    for (std::size_t t = far_count_; t < mesh.triangles.size(); ++t) {
+      bool is_reached = is_suspect[t] != 0;
+      if (!is_reached) {
+        for_places(mesh, t, side,
+                   [&](std::uint64_t place) { is_reached = is_reached || places.contains(place); });
+      }
+      if (!is_reached) continue;
+      triangles.push_back(mesh.triangles[t]);
+      suspects.push_back(is_suspect[t]);
+      numbers.push_back(static_cast<std::uint32_t>(t));
+    }
+    if (places.empty()) return {};
+    std::vector<std::array<std::uint32_t, 2>> pairs =
+        intersecting_triangles({mesh.positions, triangles}, suspects, progress, threads_);
+    for (auto& pair : pairs) {
+      for (std::uint32_t& t : pair) t = numbers[t];
+    }
+    return pairs;
+  }
+
+  // Calls visit(number) for the cubes of a grid that a triangle's box overlaps.
+  template <typename Visit>
+  static void for_places(const FacetedMesh& mesh, std::size_t t, double side, const Visit& visit) {
+    constexpr std::int64_t kBias = std::int64_t{1} << 20;
+    std::array<std::int64_t, 3> low;
+    std::array<std::int64_t, 3> high;
+    for (std::size_t a = 0; a < 3; ++a) {
+      double least = std::numeric_limits<double>::infinity();
+      double most = -least;
+      for (const std::int32_t corner : mesh.triangles[t]) {
+        const double x = mesh.positions[static_cast<std::size_t>(corner)][a];
+        least = std::min(least, x);
+        most = std::max(most, x);
+      }
+      low[a] = static_cast<std::int64_t>(std::floor(least / side)) + kBias;
+      high[a] = static_cast<std::int64_t>(std::floor(most / side)) + kBias;
+    }
+    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
+      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
+        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
+          visit((static_cast<std::uint64_t>(x) << 42U) | (static_cast<std::uint64_t>(y) << 21U) |
+                static_cast<std::uint64_t>(z));
+        }
+      }
+    }
+  }
+
   // Takes the edges out of loops that have intersecting triangles, and puts vertices back where no
   // loop is to blame; returns whether there were any.
-  bool drop_intersecting(const FacetedMesh& mesh, const Progress& progress) {
+  bool drop_intersecting(FacetedMesh* result, const Progress& progress) {
+    const FacetedMesh& mesh = *result;
     std::vector<std::uint8_t> is_suspect(mesh.triangles.size(), 0);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t t = far_count_; t < mesh.triangles.size(); ++t) {
       for (const std::int32_t owner : owners_of(t)) {
         if (owner >= 0 && is_changed_loop_[static_cast<std::size_t>(owner)] != 0) is_suspect[t] = 1;
       }
@@ -499,10 +588,9 @@ class Sharpener {
     }
     std::fill(is_changed_loop_.begin(), is_changed_loop_.end(), std::uint8_t{0});
     std::fill(is_changed_vertex_.begin(), is_changed_vertex_.end(), std::uint8_t{0});
-    auto pairs =
-        intersecting_triangles({mesh.positions, mesh.triangles}, is_suspect, progress, threads_);
+    std::vector<std::array<std::uint32_t, 2>> pairs = intersections(mesh, is_suspect, progress);
     // Triangles of a plane that overlap need not intersect, by rounding: then one is upside down.
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t t = far_count_; t < mesh.triangles.size(); ++t) {
       const auto number = static_cast<std::uint32_t>(t);
       if (is_suspect[t] != 0 && is_upside_down(mesh, t)) pairs.push_back({number, number});
     }
@@ -513,7 +601,7 @@ class Sharpener {
       bool has_moved = false;
       for (const std::uint32_t t : pairs[p]) {
         for (const std::int32_t corner : mesh.triangles[t]) {
-          has_moved = put_on_line(corner) || has_moved;
+          has_moved = put_on_line(corner, result) || has_moved;
         }
       }
       has_dropped = has_dropped || has_moved;
@@ -533,6 +621,7 @@ class Sharpener {
           if (!is_moved(corner)) continue;
           const auto v = static_cast<std::size_t>(corner);
           looped_.positions[v] = crossings_[v];
+          result->positions[v] = crossings_[v];
           is_changed_vertex_[v] = 1;
           has_dropped = true;
         }
@@ -615,25 +704,42 @@ class Sharpener {
   // first.
   void drop_fewest(std::vector<std::pair<std::int32_t, std::size_t>> blamed, std::size_t count) {
     std::sort(blamed.begin(), blamed.end());
+    std::vector<std::size_t> firsts;
+    for (std::size_t i = 0; i < blamed.size(); ++i) {
+      if (i == 0 || blamed[i].first != blamed[i - 1].first) firsts.push_back(i);
+    }
+    firsts.push_back(blamed.size());
     std::vector<std::uint8_t> is_settled(count, 0);
-    while (true) {
-      std::int32_t worst = -1;
-      std::size_t most = 0;
-      for (std::size_t i = 0; i < blamed.size();) {
-        const std::int32_t loop = blamed[i].first;
-        std::size_t open = 0;
-        for (; i < blamed.size() && blamed[i].first == loop; ++i) {
-          open += is_settled[blamed[i].second] == 0 ? 1U : 0U;
-        }
-        if (open > most) {
-          most = open;
-          worst = loop;
-        }
+    const auto open_of = [&](std::size_t f) {
+      std::size_t open = 0;
+      for (std::size_t i = firsts[f]; i < firsts[f + 1]; ++i) {
+        open += is_settled[blamed[i].second] == 0 ? 1U : 0U;
       }
-      if (worst < 0) return;
-      dropped_.push_back(static_cast<std::size_t>(worst));
-      for (const auto& [loop, pair] : blamed) {
-        if (loop == worst) is_settled[pair] = 1;
+      return open;
+    };
+    // Counts only fall: one that is still right at the top is the highest.
+    struct Entry {
+      std::size_t open;
+      std::size_t first;
+
+      bool operator<(const Entry& other) const {
+        return open != other.open ? open < other.open : first > other.first;
+      }
+    };
+    std::priority_queue<Entry> queue;
+    for (std::size_t f = 0; f + 1 < firsts.size(); ++f) queue.push({open_of(f), f});
+    while (!queue.empty()) {
+      const Entry top = queue.top();
+      queue.pop();
+      const std::size_t open = open_of(top.first);
+      if (open == 0) continue;
+      if (open < top.open) {
+        queue.push({open, top.first});
+        continue;
+      }
+      dropped_.push_back(static_cast<std::size_t>(blamed[firsts[top.first]].first));
+      for (std::size_t i = firsts[top.first]; i < firsts[top.first + 1]; ++i) {
+        is_settled[blamed[i].second] = 1;
       }
     }
   }
@@ -671,13 +777,14 @@ class Sharpener {
     return is_any;
   }
 
-  bool put_on_line(std::int32_t vertex) {
+  bool put_on_line(std::int32_t vertex, FacetedMesh* mesh) {
     const auto v = static_cast<std::size_t>(vertex);
     if (v >= samples_.index.size() || samples_.index[v] < 0) return false;
     const Vector3& on_line = samples_.on_lines[static_cast<std::size_t>(samples_.index[v])];
     const Vector3& sampled = samples_.samples[static_cast<std::size_t>(samples_.index[v])].position;
     if (looped_.positions[v] != sampled || sampled == on_line) return false;
     looped_.positions[v] = on_line;
+    mesh->positions[v] = on_line;
     is_changed_vertex_[v] = 1;
     return true;
   }
@@ -715,6 +822,9 @@ class Sharpener {
   std::vector<std::uint8_t> is_single_;  // not to be merged
   std::vector<std::int32_t> places_;     // of loops, their vertices
   std::vector<std::size_t> merged_;      // the first of the loops that have one vertex
+  std::size_t far_count_ = 0;            // of the triangles, those that are not near edges
+  std::unordered_map<std::int32_t, std::size_t> shared_;  // vertices, and the first of their loops
+  std::unordered_map<std::size_t, std::vector<std::size_t>> members_;  // the other loops
   std::vector<std::size_t> dropped_;
   std::vector<std::array<std::int32_t, 2>> owners_;  // of triangles: loops
   std::unordered_map<std::array<std::int64_t, 3>, std::vector<std::size_t>, PlaceHash> grid_;
