@@ -22,6 +22,7 @@ import demo_scene as demo
 
 DEPTH = 6
 SAMPLES = 24
+RADIUS = 0.52
 CREASE = math.radians(30)
 TOWARDS = mathutils.Vector((0.25, -0.55, 1.0)).normalized()
 WHOLE, CLOSE = 2.6, 0.5  # How wide the camera sees.
@@ -70,7 +71,7 @@ def operands() -> tuple[bpy.types.Object, bpy.types.Object]:
     bpy.ops.mesh.primitive_cube_add(size=1.5, rotation=(0.21, 0.33, 0.47))
     block = bpy.context.object
     bpy.ops.mesh.primitive_cylinder_add(
-        vertices=256, radius=0.52, depth=4, location=(0.1, 0.05, 0.2), rotation=(0.35, 0.3, 0.0)
+        vertices=256, radius=RADIUS, depth=4, location=(0.1, 0.05, 0.2), rotation=(0.35, 0.3, 0.0)
     )
     cutter = bpy.context.object
     for obj in (block, cutter):
@@ -119,15 +120,13 @@ def object_of(mesh: Mesh) -> bpy.types.Object:
 
 
 def rim_point(positions: np.ndarray, cutter: Mesh) -> tuple[float, ...]:
-    """The vertex of the cut that is leftmost of those towards the camera."""
-    centres = cutter[0].reshape(-1, 3)
-    middle = centres.mean(axis=0)
-    axis = np.linalg.svd(centres - middle, full_matrices=False)[2][0]
+    """The vertex of the cut that is nearest to the camera."""
+    middle = cutter[0].mean(axis=0)
+    axis = np.linalg.svd(cutter[0] - middle, full_matrices=False)[2][0]
     away = positions - middle
     radius = np.linalg.norm(away - np.outer(away @ axis, axis), axis=1)
-    rim = positions[np.abs(radius - 0.52) < 1e-3]
-    near = rim[rim @ np.array(TOWARDS) > np.median(rim @ np.array(TOWARDS))]
-    return tuple(near[near[:, 0].argmin()])
+    rim = positions[np.abs(radius - RADIUS) < 1e-3]
+    return tuple(rim[(rim @ np.array(TOWARDS)).argmax()])
 
 
 def set_up_light(scene: bpy.types.Scene) -> None:
