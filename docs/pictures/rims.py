@@ -22,7 +22,7 @@ import demo_scene as demo
 
 DEPTH = 6
 SAMPLES = 24
-RADIUS = 0.52
+RADIUS = 0.42
 CREASE = math.radians(30)
 TOWARDS = mathutils.Vector((0.25, -0.55, 1.0)).normalized()
 WHOLE, CLOSE = 2.6, 0.5  # How wide the camera sees.
@@ -71,7 +71,7 @@ def operands() -> tuple[bpy.types.Object, bpy.types.Object]:
     bpy.ops.mesh.primitive_cube_add(size=1.5, rotation=(0.21, 0.33, 0.47))
     block = bpy.context.object
     bpy.ops.mesh.primitive_cylinder_add(
-        vertices=256, radius=RADIUS, depth=4, location=(0.1, 0.05, 0.2), rotation=(0.35, 0.3, 0.0)
+        vertices=256, radius=RADIUS, depth=4, rotation=(0.25, 0.2, 0.0)
     )
     cutter = bpy.context.object
     for obj in (block, cutter):
