@@ -2,8 +2,10 @@
 // seconds of the processor, which others on the machine do not change.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <ctime>
 #include <functional>
+#include <numbers>
 
 #include "prefilter/contour/tree_contour.h"
 #include "prefilter/solid/close_holes.h"
@@ -117,6 +119,28 @@ TEST_F(ReportGaps, OfHoles) {
               holes.threads = 1;
               holes.progress = progress;
               close_holes({mesh.positions, all.subspan(0, all.size() - 7)}, holes);
+            }),
+            kLongest);
+}
+
+TEST_F(ReportGaps, OfALongHole) {
+  // A cone whose border waves, of as many edges as make the patch largest.
+  constexpr int kCount = 400;
+  std::vector<Vector3> positions;
+  std::vector<std::array<std::int64_t, 3>> faces;
+  for (int i = 0; i < kCount; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kCount;
+    positions.push_back({std::cos(angle), std::sin(angle), 0.1 * std::sin(5.0 * angle)});
+    faces.push_back({i, kCount, (i + 1) % kCount});
+  }
+  positions.push_back({0.0, 0.0, 2.0});
+  for (auto& face : faces) std::swap(face[1], face[2]);
+  for (auto& position : positions) position[2] *= -0.5;
+  EXPECT_LT(longest_gap([&](const Progress& progress) {
+              CloseHolesOptions holes;
+              holes.threads = 1;
+              holes.progress = progress;
+              EXPECT_GT(close_holes({positions, faces}, holes).triangles.size(), 10000U);
             }),
             kLongest);
 }
