@@ -106,7 +106,7 @@ HolePatch smooth_patch(const std::vector<Vector3>& loop, std::span<const Vector3
   }
   points = loop;
   points.insert(points.end(), within.begin(), within.end());
-  HolePatch whole(std::move(points), triangles);
+  HolePatch whole(std::move(points), triangles, {normals.begin(), normals.end()});
   put_in(loop, true, &whole, progress.part(0.9, 1.0));
   return whole;
 }

@@ -13,6 +13,9 @@ constexpr double kSameArea = 1e-7;
 // How many flips there may be for each triangle; as areas and angles both count, flips could go on
 // for ever.
 constexpr std::size_t kMostFlips = 12;
+// The cosine of the angle between the normals of triangles that count as folded.
+constexpr double kFolded = -0.866;
+constexpr double kFoldWeight = 2.0;
 constexpr std::size_t kFlipsPerReport = 1U << 14U;
 
 // Twice the area; coordinates are about 1 here.
@@ -30,9 +33,18 @@ double cotangent(const Vector3& a, const Vector3& b, const Vector3& c) {
 
 }  // namespace
 
+double fold_cost(const Vector3& doubled, const Vector3& other) {
+  const double size = size_of(doubled);
+  const double other_size = size_of(other);
+  return dot(doubled, other) < kFolded * size * other_size
+             ? kFoldWeight / 2.0 * std::min(size, other_size)
+             : 0.0;
+}
+
 HolePatch::HolePatch(std::vector<Vector3> points,
-                     std::span<const std::array<std::uint32_t, 3>> triangles)
-    : points_(std::move(points)) {
+                     std::span<const std::array<std::uint32_t, 3>> triangles,
+                     std::vector<Vector3> normals)
+    : points_(std::move(points)), normals_(std::move(normals)) {
   struct Side {
     std::uint64_t edge;
     std::uint32_t triangle;
@@ -128,6 +140,17 @@ bool HolePatch::has_edge(std::uint32_t triangle, int corner, std::uint32_t other
   return false;
 }
 
+// That of a triangle with this area and normal beside what is beyond an edge.
+double HolePatch::fold_cost(std::uint32_t triangle, int edge, const Vector3& doubled) const {
+  const Triangle& own = triangles_[triangle];
+  const std::uint32_t other = own.beyond[static_cast<std::size_t>(edge)];
+  if (other != kBorder) return prefilter::fold_cost(doubled, normal(other));
+  // The surface is as large as the triangle.
+  const Vector3& outer = normals_[own.corners[static_cast<std::size_t>(edge)]];
+  const double size = size_of(doubled);
+  return prefilter::fold_cost(doubled, {size * outer[0], size * outer[1], size * outer[2]});
+}
+
 bool HolePatch::is_better_flipped(std::uint32_t triangle, int edge, bool bends) const {
   const Triangle& one = triangles_[triangle];
   const std::uint32_t other = one.beyond[static_cast<std::size_t>(edge)];
@@ -145,13 +168,25 @@ bool HolePatch::is_better_flipped(std::uint32_t triangle, int edge, bool bends) 
   const Vector3 second = doubled_area(b, a, d);
   const Vector3 third = doubled_area(a, d, c);
   const Vector3 fourth = doubled_area(b, c, d);
-  const double before = size_of(first) + size_of(second);
-  const double after = size_of(third) + size_of(fourth);
+  const int ahead = next_corner(edge);
+  const int behind = previous_corner(edge);
+  const int far_ahead = next_corner(back);
+  const int far_behind = previous_corner(back);
+  const double before = (size_of(first) + size_of(second)) / 2.0 +
+                        prefilter::fold_cost(first, second) + fold_cost(triangle, ahead, first) +
+                        fold_cost(triangle, behind, first) + fold_cost(other, far_ahead, second) +
+                        fold_cost(other, far_behind, second);
+  const double after = (size_of(third) + size_of(fourth)) / 2.0 +
+                       prefilter::fold_cost(third, fourth) + fold_cost(triangle, behind, third) +
+                       fold_cost(other, far_ahead, third) + fold_cost(triangle, ahead, fourth) +
+                       fold_cost(other, far_behind, fourth);
   const double angles = cotangent(c, a, b) + cotangent(d, a, b);
   bool is_better = false;
   if (bends) {
     is_better = angles < -1e-6 && dot(first, second) > 0.5 * size_of(first) * size_of(second) &&
                 dot(third, fourth) > 0.0 && after < 1.1 * before;
+    // Folds are always flipped open.
+    is_better = is_better || (dot(first, second) < 0.0 && after < 0.999 * before);
   } else if (after < (1.0 - kSameArea) * before) {
     is_better = true;
   } else {

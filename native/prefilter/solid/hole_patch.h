@@ -24,8 +24,10 @@ class HolePatch {
     std::array<std::uint32_t, 3> beyond;  // the triangle across an edge, or kBorder
   };
 
-  /// Of triangles that together are a disc.
-  HolePatch(std::vector<Vector3> points, std::span<const std::array<std::uint32_t, 3>> triangles);
+  /// Of triangles that together are a disc. `normals`: the unit normals of the surface at each edge
+  /// of the loop, zero where there is none.
+  HolePatch(std::vector<Vector3> points, std::span<const std::array<std::uint32_t, 3>> triangles,
+            std::vector<Vector3> normals);
 
   std::span<const Vector3> points() const { return points_; }
   std::span<const Triangle> triangles() const { return triangles_; }
@@ -41,9 +43,10 @@ class HolePatch {
   void divide_border(std::uint32_t triangle, int edge, std::uint32_t point);
 
   /// Makes triangles smaller, until no flip makes the two at an edge smaller; and among those of
-  /// the same area flips to the greater smallest angle (Delaunay). With `bends`, only by the
-  /// angles, and never across an edge where the patch bends by more than about 60 degrees. Looks at
-  /// the edges of these triangles first, or at all of them.
+  /// the same area flips to the greater smallest angle (Delaunay). What is folded back onto its
+  /// neighbour, or onto the surface around, counts as larger. With `bends`, only by the
+  /// angles, and across an edge where the patch bends by more than 60 degrees only if it is folded
+  /// there. Looks at the edges of these triangles first, or at all of them.
   void flip(std::span<const std::uint32_t> first, bool bends, const Progress& progress);
   void flip_all(bool bends, const Progress& progress);
 
@@ -54,9 +57,16 @@ class HolePatch {
   void flip_edge(std::uint32_t triangle, int edge);
   int edge_to(std::uint32_t triangle, std::uint32_t other) const;
 
+  double fold_cost(std::uint32_t triangle, int edge, const Vector3& doubled) const;
+
   std::vector<Vector3> points_;
+  std::vector<Vector3> normals_;
   std::vector<Triangle> triangles_;
 };
+
+/// What a triangle beside another one counts more, if both are folded onto each other; both by
+/// twice their areas along their normals.
+double fold_cost(const Vector3& doubled, const Vector3& other);
 
 /// The corner of a triangle after one, in its order.
 constexpr int next_corner(int corner) { return corner == 2 ? 0 : corner + 1; }

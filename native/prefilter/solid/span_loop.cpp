@@ -13,17 +13,18 @@
 namespace prefilter {
 namespace {
 
-constexpr std::size_t kMostSpanned = 96;
-// The cosine of the angle between the normals of triangles that count as folded.
-constexpr double kFolded = -0.866;
-constexpr double kFoldWeight = 2.0;
+constexpr std::size_t kMostSpanned = 400;
 // How far from the middle of a chain, as a share of it, the point may lie that divides it: so no
 // chain is divided more often than its length allows.
 constexpr double kFromMiddle = 0.3;
 // What the squared length of a chord counts beside the squared distance from it.
 constexpr double kLengthRank = 0.003;
+// Larger than any triangle: the surface around.
+constexpr double kLarge = 1e6;
 
 double size_of(const Vector3& v) { return std::sqrt(dot(v, v)); }
+
+Vector3 scaled(const Vector3& v, double s) { return {s * v[0], s * v[1], s * v[2]}; }
 
 Vector3 unit(const Vector3& v) {
   const double size = size_of(v);
@@ -73,25 +74,19 @@ Chain chain_between(std::span<const Vector3> loop, std::size_t from, std::size_t
   return chain;
 }
 
-// What is added to the area for a triangle of this normal beside one of that area and normal.
-double fold_cost(const Vector3& normal, double area, const Vector3& other, double other_area) {
-  return dot(normal, other) < kFolded ? kFoldWeight * std::min(area, other_area) : 0.0;
-}
-
 std::vector<std::array<std::uint32_t, 3>> smallest_span(std::span<const Vector3> points,
                                                         std::span<const Vector3> normals,
                                                         const Progress& progress) {
   const std::size_t count = points.size();
   struct Best {
     double cost = 0.0;
-    double area = std::numeric_limits<double>::infinity();  // of the triangle at the chord
-    Vector3 normal{};
+    Vector3 doubled{};  // twice the area of the triangle at the chord, along its normal
     std::uint32_t tip = 0;
   };
   // The best over the points from one to another, with the chord between them.
   std::vector<Best> bests(count * count);
   const auto best = [&](std::size_t i, std::size_t k) -> Best& { return bests[i * count + k]; };
-  for (std::size_t i = 0; i + 1 < count; ++i) best(i, i + 1).normal = normals[i];
+  for (std::size_t i = 0; i + 1 < count; ++i) best(i, i + 1).doubled = scaled(normals[i], kLarge);
   for (std::size_t length = 2; length < count; ++length) {
     progress.report(static_cast<double>(length) / static_cast<double>(count));
     for (std::size_t i = 0; i + length < count; ++i) {
@@ -103,18 +98,11 @@ std::vector<std::array<std::uint32_t, 3>> smallest_span(std::span<const Vector3>
         const Best& high = best(j, k);
         if (low.cost + high.cost >= found.cost) continue;
         const Vector3 doubled = cross(points[j] - points[i], points[k] - points[i]);
-        const double size = size_of(doubled);
-        const double area = size / 2.0;
-        double cost = low.cost + high.cost + area;
+        double cost = low.cost + high.cost + size_of(doubled) / 2.0;
         if (cost >= found.cost) continue;
-        const Vector3 normal = unit(doubled);
-        cost += fold_cost(normal, area, low.normal, low.area) +
-                fold_cost(normal, area, high.normal, high.area);
-        if (length + 1 == count) {
-          cost +=
-              fold_cost(normal, area, normals[count - 1], std::numeric_limits<double>::infinity());
-        }
-        if (cost < found.cost) found = {cost, area, normal, static_cast<std::uint32_t>(j)};
+        cost += fold_cost(doubled, low.doubled) + fold_cost(doubled, high.doubled);
+        if (length + 1 == count) cost += fold_cost(doubled, scaled(normals[count - 1], kLarge));
+        if (cost < found.cost) found = {cost, doubled, static_cast<std::uint32_t>(j)};
       }
       best(i, k) = found;
     }
@@ -206,7 +194,7 @@ HolePatch span_loop(std::span<const Vector3> loop, std::span<const Vector3> norm
   for (auto& triangle : triangles) {
     for (std::uint32_t& corner : triangle) corner = kept[corner];
   }
-  HolePatch patch({loop.begin(), loop.end()}, triangles);
+  HolePatch patch({loop.begin(), loop.end()}, triangles, {normals.begin(), normals.end()});
   put_in(loop, false, &patch, progress.part(0.5, 0.9));
   patch.flip_all(false, progress.part(0.9, 1.0));
   return patch;

@@ -1,0 +1,197 @@
+"""Measures patches over holes whose surface is known.
+
+Usage: scripts/run python3 bench/voxels/holes.py [--markdown FILE] [--fill-holes PROGRAM]
+
+Of each hole and method: how far the patch is from the surface that had been there, on average and
+at most; the angle between triangles on either side of the border, at the 95th percentile; the error
+of the volume; triangles, and CPU time on one thread, with the search for the borders.
+`--fill-holes` is the program that bench/peers/fill_holes.cpp makes.
+"""
+
+import argparse
+import resource
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+import prefilter
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+SAMPLES = 20_000
+METHODS = ("smooth", "flat", "fan")
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A mesh with a hole, what it had been, and how far points are from that."""
+
+    name: str
+    positions: Floats
+    triangles: Ints
+    volume: float
+    distance: Callable[[Floats], Floats]
+
+
+def sphere(rounds: int) -> tuple[Floats, Ints]:
+    """An octahedron whose triangles are split into four, `rounds` times."""
+    corners = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
+    points, triangles = np.array(corners, float), np.array(faces)
+    for _ in range(rounds):
+        edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+        unique, which = np.unique(edges, axis=0, return_inverse=True)
+        middles = points[unique].sum(axis=1)
+        middles /= np.linalg.norm(middles, axis=1, keepdims=True)
+        ab, bc, ca = (len(points) + which.reshape(-1, 3)).T
+        a, b, c = triangles.T
+        points = np.concatenate([points, middles])
+        parts = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+        triangles = np.concatenate([np.stack(t, axis=1) for t in parts])
+    return points, triangles
+
+
+def volume(positions: Floats, triangles: Ints) -> float:
+    """The volume within a closed mesh."""
+    a, b, c = np.moveaxis(positions[triangles], 1, 0)
+    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6
+
+
+def holes() -> Iterator[Hole]:
+    """Caps of spheres of two densities, and the side of a torus."""
+    for rounds, degrees in ((4, 30), (5, 10), (5, 20), (5, 30), (5, 45), (5, 60), (7, 45)):
+        points, triangles = sphere(rounds)
+        middles = points[triangles].mean(axis=1)
+        along = middles @ np.array([0.3, -0.5, 0.8]) / np.linalg.norm([0.3, -0.5, 0.8])
+        kept = along / np.linalg.norm(middles, axis=1) < np.cos(np.radians(degrees))
+        yield Hole(
+            f"sphere of {len(triangles):,} triangles, a cap of {degrees}&deg;",
+            points,
+            triangles[kept],
+            volume(points, triangles),
+            lambda p: np.abs(np.linalg.norm(p, axis=1) - 1),
+        )
+    around, across = 160, 64
+    u, v = np.meshgrid(
+        2 * np.pi * np.arange(around) / around,
+        2 * np.pi * np.arange(across) / across,
+        indexing="ij",
+    )
+    ring = 1 + 0.4 * np.cos(v)
+    points = np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], -1).reshape(-1, 3)
+    i, j = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
+    a = (i * across + j).ravel()
+    b = ((i + 1) % around * across + j).ravel()
+    c = ((i + 1) % around * across + (j + 1) % across).ravel()
+    d = (i * across + (j + 1) % across).ravel()
+    triangles = np.concatenate([np.c_[a, b, c], np.c_[a, c, d]])
+    middles = points[triangles].mean(axis=1)
+
+    def distance(p: Floats) -> Floats:
+        return np.abs(np.hypot(np.hypot(p[:, 0], p[:, 1]) - 1, p[:, 2]) - 0.4)
+
+    for name, centre in (("outer", (1.4, 0, 0)), ("inner", (0.6, 0, 0)), ("upper", (1, 0, 0.4))):
+        kept = np.linalg.norm(middles - centre, axis=1) > 0.3
+        title = f"torus, {name} side"
+        yield Hole(title, points, triangles[kept], volume(points, triangles), distance)
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A mesh with its hole closed, its own triangles first."""
+
+    positions: Floats
+    triangles: Ints
+    seconds: float
+
+
+def ours(hole: Hole, method: str) -> Patch:
+    """By close_holes; the fastest of three times."""
+    times = []
+    for _ in range(3):
+        began = resource.getrusage(resource.RUSAGE_SELF)
+        found = prefilter.close_holes(hole.positions, hole.triangles, method=method, threads=1)
+        ended = resource.getrusage(resource.RUSAGE_SELF)
+        times.append(ended.ru_utime + ended.ru_stime - began.ru_utime - began.ru_stime)
+    return Patch(found.positions, found.triangles, min(times))
+
+
+def cgal(hole: Hole, program: Path) -> Patch:
+    """By CGAL; files are not counted."""
+    with tempfile.TemporaryDirectory() as folder:
+        source, target = Path(folder, "in.off"), Path(folder, "out.off")
+        used, triangles = np.unique(hole.triangles, return_inverse=True)
+        with source.open("w") as file:
+            file.write(f"OFF\n{len(used)} {len(hole.triangles)} 0\n")
+            np.savetxt(file, hole.positions[used], "%.17g")
+            rows = triangles.reshape(-1, 3)
+            np.savetxt(file, np.c_[np.full(len(rows), 3), rows], "%d")
+        done = subprocess.run([program, source, target], check=True, capture_output=True, text=True)
+        words = target.read_text().split()
+    count, faces = int(words[1]), int(words[2])
+    numbers = np.array(words[4:], float)
+    positions = numbers[: 3 * count].reshape(-1, 3)
+    triangles = numbers[3 * count :].reshape(faces, 4)[:, 1:].astype(int)
+    return Patch(positions, triangles, float(done.stdout))
+
+
+def border_angles(patch: Patch, first: int) -> Floats:
+    """Degrees between triangles on either side of the border."""
+    a, b, c = np.moveaxis(patch.positions[patch.triangles], 1, 0)
+    normals = np.cross(b - a, c - a)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    edges = np.sort(patch.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    order = np.lexsort(edges.T)
+    pairs = order[:-1][(edges[order[:-1]] == edges[order[1:]]).all(axis=1)] // 3
+    others = order[1:][(edges[order[:-1]] == edges[order[1:]]).all(axis=1)] // 3
+    across = (pairs < first) != (others < first)
+    cosines = np.einsum("ij,ij->i", normals[pairs[across]], normals[others[across]])
+    return np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+
+
+def row(hole: Hole, name: str, patch: Patch) -> str:
+    """Returns a line of the table."""
+    first = len(hole.triangles)
+    caps = patch.positions[patch.triangles[first:]]
+    areas = np.linalg.norm(np.cross(caps[:, 1] - caps[:, 0], caps[:, 2] - caps[:, 0]), axis=1)
+    random = np.random.default_rng(0)
+    chosen = random.choice(len(caps), SAMPLES, p=areas / areas.sum())
+    points = np.einsum("nc,ncd->nd", random.dirichlet((1, 1, 1), SAMPLES), caps[chosen])
+    away = hole.distance(points)
+    angle = np.percentile(border_angles(patch, first), 95)
+    error = 100 * (volume(patch.positions, patch.triangles) / hole.volume - 1)
+    return (
+        f"| {hole.name} | {name} | {away.mean():.4f} | {away.max():.4f} | {angle:.1f} "
+        f"| {error:+.2f} | {len(caps):,} | {patch.seconds:.3f} |"
+    )
+
+
+def main() -> None:
+    """Prints the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--markdown", type=Path)
+    parser.add_argument("--fill-holes", type=Path)
+    options = parser.parse_args()
+    lines = [
+        "| hole | method | mean distance | largest | angle at the border, &deg; | volume, % "
+        "| triangles | CPU s |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for hole in holes():
+        lines += [row(hole, method, ours(hole, method)) for method in METHODS]
+        if options.fill_holes:
+            lines.append(row(hole, "CGAL", cgal(hole, options.fill_holes)))
+        print("\n".join(lines[-4 if options.fill_holes else -3 :]), flush=True)
+    if options.markdown:
+        options.markdown.write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()
