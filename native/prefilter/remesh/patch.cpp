@@ -317,7 +317,7 @@ class Decimator {
   void prepare(std::int32_t u) {
     ring_error_ = 0.0;
     has_points_ = false;
-    least_height_ = kInfinity;
+    least_height_ = kLeastHeight * kLeastHeight;
     const Vector3& at = point(u);
     for (std::size_t i = 0; i < ring_.size; ++i) {
       const PatchTriangle& t = triangle(ring_.triangles[i]);
@@ -326,11 +326,10 @@ class Decimator {
       const Vector3 p = point(ring_.vertices[i]) - at;
       const Vector3 q = point(ring_.vertices[ring_.next(i)]) - at;
       normals_[i] = cross(p, q);
-      lengths_[i] = std::sqrt(squared(normals_[i]));
-      const double longest = std::sqrt(std::max({squared(p), squared(q), squared(q - p)}));
-      const double height = longest > 0.0 ? lengths_[i] / longest : 0.0;
-      is_sliver_[i] = !(height > kSliver * longest);
-      least_height_ = std::min(least_height_, height);
+      squared_normals_[i] = squared(normals_[i]);
+      const double longest = std::max({squared(p), squared(q), squared(q - p)});
+      is_sliver_[i] = !(squared_normals_[i] > kSliver * kSliver * longest * longest);
+      least_height_ = std::min(least_height_, longest > 0.0 ? squared_normals_[i] / longest : 0.0);
     }
     // Sides of creases, with the normals of each.
     std::size_t start = 0;
@@ -434,24 +433,21 @@ class Decimator {
   bool make_triangles(std::size_t spoke) {
     const std::size_t before = ring_.before(spoke);
     const Vector3& to = point(ring_.vertices[spoke]);
-    const double least_height = std::min(kLeastHeight, least_height_);
     for (std::size_t i = 0; i < ring_.size; ++i) {
       if (i == spoke || i == before) continue;
       const Vector3& p = point(ring_.vertices[i]);
       const Vector3& q = point(ring_.vertices[ring_.next(i)]);
       MeasuredTriangle& made = made_[i];
       made = MeasuredTriangle(to, p, q);
-      const double size = std::sqrt(made.squared_normal);
-      const double longest =
-          std::sqrt(std::max({squared(p - to), squared(q - to), squared(q - p)}));
-      if (!(size >= least_height * longest && size > 0.0)) return false;
-      if (is_sliver_[i]) {
-        if (!(dot(made.normal, sector_normals_[sectors_[i]]) >= kSliverLeastCosine * size)) {
-          return false;
-        }
-      } else if (!(dot(made.normal, normals_[i]) >= kLeastCosine * size * lengths_[i])) {
+      const double longest = std::max({squared(p - to), squared(q - to), squared(q - p)});
+      if (!(made.squared_normal >= least_height_ * longest && made.squared_normal > 0.0)) {
         return false;
       }
+      const bool is_free = is_sliver_[i];
+      const double along = dot(made.normal, is_free ? sector_normals_[sectors_[i]] : normals_[i]);
+      const double least = is_free ? kSliverLeastCosine * kSliverLeastCosine
+                                   : kLeastCosine * kLeastCosine * squared_normals_[i];
+      if (!(along > 0.0 && along * along >= least * made.squared_normal)) return false;
     }
     return true;
   }
@@ -687,14 +683,14 @@ class Decimator {
   // Of the vertex in hand.
   Ring ring_;
   std::array<Vector3, kMostNeighbours> normals_;
-  std::array<double, kMostNeighbours> lengths_;
+  std::array<double, kMostNeighbours> squared_normals_;
   std::array<bool, kMostNeighbours> is_sliver_;
   std::array<std::uint8_t, kMostNeighbours> sectors_;
   std::array<Vector3, 2> sector_normals_;
   std::array<MeasuredTriangle, kMostNeighbours> made_;
   double ring_error_ = 0.0;
   double range_ = 0.0;
-  double least_height_ = 0.0;
+  double least_height_ = 0.0;  // squared, and at most that of kLeastHeight
   bool has_points_ = false;
   std::vector<Place> places_;
   std::vector<Vector3> crossings_;
