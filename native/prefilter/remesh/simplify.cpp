@@ -321,7 +321,7 @@ class Simplifier {
       if (sides[i].low != sides[i + 1].low || sides[i].high != sides[i + 1].high) continue;
       PatchTriangle& a = patch->triangles[sides[i].side / 3];
       PatchTriangle& b = patch->triangles[sides[i + 1].side / 3];
-      const bool is_border = a.label != b.label && a.label >= 0 && b.label >= 0;
+      const bool is_border = a.label != b.label && a.label != kNoLabel && b.label != kNoLabel;
       const bool is_crease =
           is_border || (!kinds_.empty() && dot(unit_normal(a), unit_normal(b)) < kCreaseCosine);
       if (!is_crease) continue;
