@@ -236,7 +236,7 @@ def test_adaptive_surfaces_stay_within_their_distance(interpolant, adaptivity):
     assert len(fewer[1]) < len(full[1])
     assert solids.surface_faults(*fewer).none
     for one, other in ((full, fewer), (fewer, full)):
-        found = distances(sampled(*one, 700, 5), *other)
+        found = distances(sampled(*one, 300, 5), *other)
         assert found.max() <= adaptivity * cell
 
 
