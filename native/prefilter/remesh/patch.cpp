@@ -12,6 +12,9 @@
 #include <span>
 #include <utility>
 
+#include "prefilter/remesh/measured_triangle.h"
+#include "prefilter/remesh/quadric.h"
+
 namespace prefilter {
 namespace {
 
@@ -28,90 +31,11 @@ constexpr double kSliver = 0.1;                      // height over longest side
 constexpr double kLeastHeight = 1.0;                 // of triangles, in tolerances
 constexpr double kLargestCost = 16.0;                // squared distance from planes
 constexpr double kLengthWeight = 1e-6;
+constexpr double kBentCosine = 0.85;  // 32 degrees
+// Of the angle between two triangles: how high the edge between them may rise over what lies
+// between points as far apart as that.
+constexpr double kRise = 0.0625;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Vector3 scaled(double factor, const Vector3& v) {
-  return {factor * v[0], factor * v[1], factor * v[2]};
-}
-
-double squared(const Vector3& v) { return dot(v, v); }
-
-// The sum of squared distances from planes, weighted by areas.
-struct Quadric {
-  double xx = 0.0, yy = 0.0, zz = 0.0, xy = 0.0, yz = 0.0, zx = 0.0;
-  double x = 0.0, y = 0.0, z = 0.0, constant = 0.0;
-  double weight = 0.0;
-
-  void add_plane(const Vector3& unit, double offset, double area) {
-    const Vector3 n = scaled(area, unit);
-    xx += n[0] * unit[0];
-    yy += n[1] * unit[1];
-    zz += n[2] * unit[2];
-    xy += n[0] * unit[1];
-    yz += n[1] * unit[2];
-    zx += n[2] * unit[0];
-    x += n[0] * offset;
-    y += n[1] * offset;
-    z += n[2] * offset;
-    constant += area * offset * offset;
-    weight += area;
-  }
-  void add(const Quadric& other) {
-    xx += other.xx;
-    yy += other.yy;
-    zz += other.zz;
-    xy += other.xy;
-    yz += other.yz;
-    zx += other.zx;
-    x += other.x;
-    y += other.y;
-    z += other.z;
-    constant += other.constant;
-    weight += other.weight;
-  }
-  double mean_at(const Vector3& p) const {
-    const double rx = xx * p[0] + 2.0 * (xy * p[1] + x);
-    const double ry = yy * p[1] + 2.0 * (yz * p[2] + y);
-    const double rz = zz * p[2] + 2.0 * (zx * p[0] + z);
-    return std::abs(rx * p[0] + ry * p[1] + rz * p[2] + constant) / weight;
-  }
-};
-
-double squared_distance_to_segment(const Vector3& p, const Vector3& a, const Vector3& b) {
-  const Vector3 side = b - a;
-  const double all = squared(side);
-  const double along = all > 0.0 ? std::clamp(dot(p - a, side) / all, 0.0, 1.0) : 0.0;
-  return squared(p - (a + scaled(along, side)));
-}
-
-// A triangle that many points are measured from.
-struct MeasuredTriangle {
-  Vector3 a, b, c;
-  Vector3 normal;
-  double squared_normal;
-
-  MeasuredTriangle() = default;
-  MeasuredTriangle(const Vector3& p, const Vector3& q, const Vector3& r)
-      : a(p), b(q), c(r), normal(cross(q - p, r - p)), squared_normal(squared(normal)) {}
-
-  double squared_distance(const Vector3& p) const {
-    const Vector3 pa = a - p;
-    const Vector3 pb = b - p;
-    const Vector3 pc = c - p;
-    const double u = dot(normal, cross(pb, pc));
-    const double v = dot(normal, cross(pc, pa));
-    const double w = dot(normal, cross(pa, pb));
-    if (u >= 0.0 && v >= 0.0 && w >= 0.0 && squared_normal > 0.0) {
-      const double height = dot(normal, pa);
-      return height * height / squared_normal;
-    }
-    double least = kInfinity;
-    if (u < 0.0) least = std::min(least, squared_distance_to_segment(p, b, c));
-    if (v < 0.0) least = std::min(least, squared_distance_to_segment(p, c, a));
-    if (w < 0.0) least = std::min(least, squared_distance_to_segment(p, a, b));
-    return least;
-  }
-};
 
 struct Candidate {
   double cost;
@@ -134,6 +58,7 @@ struct Ring {
 // What a collapse that may be made does to what is known of the surface given up.
 struct Outcome {
   double error = 0.0;
+  double deviation = 0.0;
   double crease_error = 0.0;
   double crease_moved = 0.0;
   bool adds_points = false;
@@ -217,7 +142,7 @@ class Decimator {
       const Vector3 normal = cross(point(t.corners[1]) - a, point(t.corners[2]) - a);
       const double area = length(normal);
       if (!(area > 0.0)) continue;
-      const Vector3 unit = scaled(1.0 / area, normal);
+      const Vector3 unit = (1.0 / area) * normal;
       const double offset = -dot(unit, a);
       for (const std::int32_t v : t.corners) quadrics_[index(v)].add_plane(unit, offset, area);
     }
@@ -248,15 +173,16 @@ class Decimator {
       ring->is_crease[i] = ((t.creases >> corner) & 1U) != 0;
       ring->crease_count += ring->is_crease[i] ? 1 : 0;
       at = index(slots_[index(t.corners[(corner + 2) % 3])]);
+      if (at == 0) return i + 1 == count;  // otherwise there are several fans
     }
-    return true;
+    return false;
   }
 
   // Infinite where there is no point in trying.
   double cost_of(std::int32_t u, std::int32_t v) const {
     const double cost = quadrics_[index(u)].mean_at(point(v));
     if (!(cost < kLargestCost)) return kInfinity;
-    return cost + kLengthWeight * squared(point(v) - point(u));
+    return cost + kLengthWeight * squared_length(point(v) - point(u));
   }
 
   static bool may_follow(const Ring& ring, std::size_t spoke) {
@@ -316,18 +242,21 @@ class Decimator {
   // What is the same for all candidates of a vertex.
   void prepare(std::int32_t u) {
     ring_error_ = 0.0;
+    ring_deviation_ = 0.0;
     has_points_ = false;
     least_height_ = kLeastHeight * kLeastHeight;
     const Vector3& at = point(u);
     for (std::size_t i = 0; i < ring_.size; ++i) {
       const PatchTriangle& t = triangle(ring_.triangles[i]);
       ring_error_ = std::max(ring_error_, static_cast<double>(t.error));
+      ring_deviation_ = std::max(ring_deviation_, static_cast<double>(t.deviation));
       has_points_ = has_points_ || t.first_point >= 0;
       const Vector3 p = point(ring_.vertices[i]) - at;
       const Vector3 q = point(ring_.vertices[ring_.next(i)]) - at;
       normals_[i] = cross(p, q);
-      squared_normals_[i] = squared(normals_[i]);
-      const double longest = std::max({squared(p), squared(q), squared(q - p)});
+      squared_normals_[i] = squared_length(normals_[i]);
+      const double longest =
+          std::max({squared_length(p), squared_length(q), squared_length(q - p)});
       is_sliver_[i] = !(squared_normals_[i] > kSliver * kSliver * longest * longest);
       least_height_ = std::min(least_height_, longest > 0.0 ? squared_normals_[i] / longest : 0.0);
     }
@@ -346,16 +275,20 @@ class Decimator {
     double low = 0.0;
     double high = 0.0;
     range_ = 0.0;
+    is_bent_ = false;
     for (std::size_t s = 0; s < 2; ++s) {
-      const double size = std::sqrt(squared(sector_normals_[s]));
+      const double size = std::sqrt(squared_length(sector_normals_[s]));
       if (!(size > 0.0)) {
         sector_normals_[s] = {};
+        is_bent_ = is_bent_ || s == 0 || ring_.crease_count == 2;
         continue;
       }
-      sector_normals_[s] = scaled(1.0 / size, sector_normals_[s]);
+      sector_normals_[s] = (1.0 / size) * sector_normals_[s];
       low = high = 0.0;
       for (std::size_t i = 0; i < ring_.size; ++i) {
         if (sectors_[i] != s) continue;
+        is_bent_ = is_bent_ || !(dot(sector_normals_[s], normals_[i]) >=
+                                 kBentCosine * std::sqrt(squared_normals_[i]));
         for (const std::size_t j : {i, ring_.next(i)}) {
           const double height = dot(sector_normals_[s], point(ring_.vertices[j]) - at);
           low = std::min(low, height);
@@ -439,7 +372,8 @@ class Decimator {
       const Vector3& q = point(ring_.vertices[ring_.next(i)]);
       MeasuredTriangle& made = made_[i];
       made = MeasuredTriangle(to, p, q);
-      const double longest = std::max({squared(p - to), squared(q - to), squared(q - p)});
+      const double longest =
+          std::max({squared_length(p - to), squared_length(q - to), squared_length(q - p)});
       if (!(made.squared_normal >= least_height_ * longest && made.squared_normal > 0.0)) {
         return false;
       }
@@ -454,24 +388,42 @@ class Decimator {
 
   // The ring's triangle whose new one is nearest to a point, where that is near enough; -1 where
   // none is. The one that it was near to comes first.
-  std::int32_t find_near(const Vector3& p, std::size_t hint, std::size_t spoke, double most) const {
+  std::int32_t find_near(const Vector3& p, std::size_t hint, std::size_t spoke, double most) {
     const std::size_t before = ring_.before(spoke);
-    const bool is_hint_new = hint != spoke && hint != before;
     const double accepted = 0.25 * most;
-    if (is_hint_new && made_[hint].squared_distance(p) <= accepted) {
-      return static_cast<std::int32_t>(hint);
-    }
-    double least = most;
-    std::int32_t best = -1;
-    for (std::size_t i = 0; i < ring_.size; ++i) {
-      if (i == spoke || i == before) continue;
+    double least = kInfinity;
+    std::size_t best = hint;
+    if (hint != spoke && hint != before) least = made_[hint].squared_distance(p);
+    for (std::size_t i = 0; i < ring_.size && least > accepted; ++i) {
+      if (i == spoke || i == before || i == hint) continue;
       const double squared = made_[i].squared_distance(p);
-      if (squared <= least) {
+      if (squared < least) {
         least = squared;
-        best = static_cast<std::int32_t>(i);
+        best = i;
       }
     }
-    return best;
+    if (!(least <= most)) return -1;
+    farthest_ = std::max(farthest_, least);
+    return static_cast<std::int32_t>(best);
+  }
+
+  // How high edges of the new triangles may rise over what lies between points.
+  double rise(std::size_t spoke) const {
+    const std::size_t before = ring_.before(spoke);
+    double least_cosine = 1.0;
+    std::size_t last = spoke;
+    for (std::size_t i = ring_.next(spoke); i != before; i = ring_.next(i)) {
+      const double size = made_[i].squared_normal;
+      const double turned =
+          dot(made_[i].normal, normals_[i]) / std::sqrt(size * squared_normals_[i]);
+      if (!is_sliver_[i]) least_cosine = std::min(least_cosine, turned);
+      if (last != spoke && !ring_.is_crease[i]) {
+        least_cosine = std::min(least_cosine, dot(made_[i].normal, made_[last].normal) /
+                                                  std::sqrt(size * made_[last].squared_normal));
+      }
+      last = i;
+    }
+    return kRise * patch_.spacing * std::sqrt(std::max(0.0, 2.0 - 2.0 * least_cosine));
   }
 
   // The largest distance between old and new edges where they cross; -1 where it is above `most`.
@@ -490,7 +442,7 @@ class Decimator {
         if (j == spoke || j == before || j == after || j == i || !share_sector(i, j)) continue;
         const Vector3 new_side = point(ring_.vertices[j]) - to;
         const Vector3 normal = cross(old_side, new_side);
-        const double size = squared(normal);
+        const double size = squared_length(normal);
         if (!(size > 0.0)) continue;
         const double along_old = dot(cross(apart, new_side), normal);
         const double along_new = dot(cross(apart, old_side), normal);
@@ -498,10 +450,48 @@ class Decimator {
         const double gap = std::abs(dot(apart, normal)) / std::sqrt(size);
         if (!(gap <= most)) return -1.0;
         largest = std::max(largest, gap);
-        if (gap > kCrossing) crossings_.push_back(from + scaled(along_old / size, old_side));
+        if (gap > kCrossing) crossings_.push_back(from + (along_old / size) * old_side);
       }
     }
     return largest;
+  }
+
+  // Where the ring has no direction from which it is seen as a whole, crossings are not all: the
+  // largest distance of places on old triangles from new ones and of new ones from old ones; -1
+  // where it is above `most`.
+  double measure_places(std::int32_t u, std::size_t spoke, double most) {
+    const std::size_t before = ring_.before(spoke);
+    const Vector3& from = point(u);
+    const Vector3& to = point(ring_.vertices[spoke]);
+    for (std::size_t i = 0; i < ring_.size; ++i) {
+      old_[i] =
+          MeasuredTriangle(from, point(ring_.vertices[i]), point(ring_.vertices[ring_.next(i)]));
+    }
+    double largest = 0.0;
+    const auto is_near = [&](const Vector3& p, bool is_old) {
+      double least = kInfinity;
+      for (std::size_t i = 0; i < ring_.size; ++i) {
+        if (is_old && (i == spoke || i == before)) continue;
+        least = std::min(least, (is_old ? made_ : old_)[i].squared_distance(p));
+      }
+      largest = std::max(largest, least);
+      if (is_old && least > kCrossing * kCrossing) crossings_.push_back(p);
+      return least <= most * most;
+    };
+    for (std::size_t i = 0; i < ring_.size; ++i) {
+      const Vector3& p = point(ring_.vertices[i]);
+      const Vector3& q = point(ring_.vertices[ring_.next(i)]);
+      const bool is_made = i != spoke && i != before;
+      const Vector3 side = p - from;
+      const Vector3 other = p - to;
+      for (const double along : {0.25, 0.5, 0.75}) {
+        if (!is_near(from + along * side, true)) return -1.0;
+        if (is_made && !is_near(to + along * other, false)) return -1.0;
+      }
+      if (!is_near((1.0 / 3.0) * (from + p + q), true)) return -1.0;
+      if (is_made && !is_near((1.0 / 3.0) * (to + p + q), false)) return -1.0;
+    }
+    return std::sqrt(largest);
   }
 
   // Whether the edges to two neighbours are on one side of a crease.
@@ -520,18 +510,25 @@ class Decimator {
     }
     places_.clear();
     outcome->error = ring_error_;
+    outcome->deviation = ring_deviation_;
     outcome->adds_points = false;
     const double bound = ring_error_ + range_ + outcome->crease_moved;
-    if (!has_points_ && bound <= kAddedUp) {
+    if (!has_points_ && !is_bent_ && bound <= kAddedUp) {
       outcome->error = bound;
       return true;
     }
     const double most = 1.0 - ring_error_;
     const double squared_most = most * most;
+    farthest_ = 0.0;
     const std::int32_t near = find_near(point(u), spoke, spoke, squared_most);
     if (near < 0) return false;
-    const double gap = measure_crossings(u, spoke, most);
+    double gap = measure_crossings(u, spoke, most);
     if (gap < 0.0) return false;
+    if (is_bent_) {
+      const double other = measure_places(u, spoke, most);
+      if (other < 0.0) return false;
+      gap = std::max(gap, other);
+    }
     if (!has_points_) {
       const double moved = std::max(gap, std::sqrt(made_[index(near)].squared_distance(point(u))));
       if (ring_error_ + moved <= kAddedUp) {
@@ -553,6 +550,8 @@ class Decimator {
         places_.push_back({p, place});
       }
     }
+    outcome->deviation = std::min(ring_deviation_ + gap, std::sqrt(farthest_) + rise(spoke));
+    if (!(outcome->deviation <= most)) return false;
     places_.push_back({-1, near});
     outcome->adds_points = true;
     return true;
@@ -621,6 +620,7 @@ class Decimator {
     for (std::size_t i = 0; i < ring_.size; ++i) {
       PatchTriangle& t = triangle(ring_.triangles[i]);
       t.error = static_cast<float>(outcome.error);
+      t.deviation = static_cast<float>(outcome.deviation);
       t.is_new = true;
       if (ring_.crease_count > 0 && i != spoke && ring_.is_crease[i]) {
         t.crease_errors[ring_.corners[i]] = static_cast<float>(outcome.crease_error);
@@ -688,10 +688,14 @@ class Decimator {
   std::array<std::uint8_t, kMostNeighbours> sectors_;
   std::array<Vector3, 2> sector_normals_;
   std::array<MeasuredTriangle, kMostNeighbours> made_;
+  std::array<MeasuredTriangle, kMostNeighbours> old_;
   double ring_error_ = 0.0;
+  double ring_deviation_ = 0.0;
   double range_ = 0.0;
+  bool is_bent_ = false;
   double least_height_ = 0.0;  // squared, and at most that of kLeastHeight
   bool has_points_ = false;
+  double farthest_ = 0.0;  // of the points placed, squared
   std::vector<Place> places_;
   std::vector<Vector3> crossings_;
 };

@@ -17,6 +17,8 @@ struct PatchTriangle {
   std::uint8_t creases = 0;
   /// What the surface given up here is away from the triangles and `points` that stand for it.
   float error = 0.0F;
+  /// How far that, and what lies between it, may be from the triangle.
+  float deviation = 0.0F;
   /// The same of creases along sides.
   std::array<float, 3> crease_errors{};
   /// The first of the points of the surface that were given up, and lie near this triangle; -1:
@@ -46,6 +48,9 @@ struct Patch {
   std::vector<PatchPoint> points;
   /// For each vertex the one that it was collapsed onto; -1 for those that are there.
   std::vector<std::int32_t> targets;
+
+  /// About how far points of the surface that was there are apart.
+  double spacing = 0.0;
 
   /// Removes what can be removed. Triangles that are gone have their first corner twice.
   void simplify();

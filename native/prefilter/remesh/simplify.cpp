@@ -24,9 +24,10 @@ namespace prefilter {
 namespace {
 
 constexpr std::size_t kPatchTriangles = 1U << 14;
+constexpr std::size_t kMeasuredEdges = 1U << 12;
 constexpr int kMostPasses = 16;
 // Of the tolerance, for the points that are measured; the rest is for what lies between them.
-constexpr double kMeasuredShare = 0.8;
+constexpr double kMeasuredShare = 0.9;
 // A pass that removes less than this share of the triangles is the last one.
 constexpr double kLeastRemoved = 0.002;
 // Then patches that still meet others go back to what they were.
@@ -43,6 +44,7 @@ struct Facets {
   std::vector<std::int32_t> labels;
   std::vector<std::uint8_t> creases;
   std::vector<float> errors;
+  std::vector<float> deviations;
   std::vector<std::array<float, 3>> crease_errors;
   std::vector<std::uint32_t> point_ends;  // of each triangle's points
   std::vector<Vector3> points;
@@ -68,6 +70,15 @@ class Simplifier {
     is_frozen_.assign(positions_.size(), 0);
     places_.assign(positions_.size(), 0);
     targets_.assign(positions_.size(), -1);
+    const std::size_t step = facets_.triangles.size() / kMeasuredEdges + 1;
+    double sum = 0.0;
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < facets_.triangles.size(); t += step) {
+      const Triangle& triangle = facets_.triangles[t];
+      sum += length(positions_[index(triangle[1])] - positions_[index(triangle[0])]) / tolerance_;
+      ++count;
+    }
+    spacing_ = sum / static_cast<double>(count);
   }
 
   // Returns whether another pass is worth while.
@@ -206,6 +217,7 @@ class Simplifier {
     std::vector<std::int32_t> vertices;
     const std::vector<std::int32_t> shared = number_vertices(number, &vertices);
     Patch patch;
+    patch.spacing = spacing_;
     const Vector3 origin = positions_[index(vertices.front())];
     const auto local = [&](const Vector3& p) {
       const Vector3 d = p - origin;
@@ -242,6 +254,7 @@ class Simplifier {
       if (has_labels_) made.label = facets_.labels[t];
       if (!facets_.creases.empty()) made.creases = facets_.creases[t];
       if (!facets_.errors.empty()) made.error = facets_.errors[t];
+      if (!facets_.deviations.empty()) made.deviation = facets_.deviations[t];
       if (!facets_.crease_errors.empty()) made.crease_errors = facets_.crease_errors[t];
       if (facets_.point_ends.empty()) continue;
       for (std::uint32_t p = t == 0 ? 0 : facets_.point_ends[t - 1]; p < facets_.point_ends[t];
@@ -276,6 +289,7 @@ class Simplifier {
         made.crease_errors.push_back(t.crease_errors);
       }
       made.errors.push_back(t.error);
+      made.deviations.push_back(t.deviation);
       for (std::int32_t p = t.first_point; p >= 0; p = patch.points[index(p)].next) {
         made.points.push_back(global(patch.points[index(p)].position));
       }
@@ -418,6 +432,7 @@ class Simplifier {
       append(&facets_.labels, &part.facets.labels);
       append(&facets_.creases, &part.facets.creases);
       append(&facets_.errors, &part.facets.errors);
+      append(&facets_.deviations, &part.facets.deviations);
       append(&facets_.crease_errors, &part.facets.crease_errors);
       append(&facets_.points, &part.facets.points);
       for (const std::uint32_t end : part.facets.point_ends) {
@@ -433,6 +448,7 @@ class Simplifier {
   std::vector<Vector3>& positions_;
   std::vector<VertexKind>& kinds_;
   double tolerance_;
+  double spacing_ = 0.0;  // of vertices, in tolerances
   int threads_;
   bool has_labels_;
   Facets facets_;
