@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <cstddef>
 #include <numeric>
 #include <span>
@@ -55,8 +54,7 @@ class Cleaner {
     find_patches(progress.part(0.0, 0.1));
     edit_patches(progress.part(0.1, 0.5));
     edit_borders(progress.part(0.5, 0.6));
-    std::vector<std::uint32_t> crossing = crossing_triangles(progress.part(0.6, 0.9));
-    if (!crossing.empty()) mend(progress.part(0.6, 0.9));
+    if (!crossing_triangles(progress.part(0.6, 0.9)).empty()) mend(progress.part(0.6, 0.9));
     drop_gone(progress.part(0.9, 1.0));
     return std::move(edited_.mesh);
   }
@@ -245,25 +243,43 @@ class Cleaner {
                     progress.part(0.5, 1.0), edit);
   }
 
+  // The triangles that are left, and where they are among all.
+  void find_left(const Progress& progress) {
+    const auto tasks = static_cast<std::size_t>(range_count(triangle_count(), kRowsPerTask));
+    std::vector<std::size_t> begins(tasks + 1);
+    const auto count = [&](std::int64_t begin, std::int64_t end) {
+      std::size_t& some = begins[static_cast<std::size_t>(begin / kRowsPerTask) + 1];
+      for (std::int64_t t = begin; t < end; ++t) {
+        if (!edited_.is_gone(static_cast<std::size_t>(t))) ++some;
+      }
+    };
+    parallel_ranges(triangle_count(), kRowsPerTask, threads_, progress.part(0.0, 0.3), count);
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    left_.resize(begins.back());
+    left_places_.resize(begins.back());
+    is_suspect_.resize(begins.back());
+    const auto fill = [&](std::int64_t begin, std::int64_t end) {
+      std::size_t place = begins[static_cast<std::size_t>(begin / kRowsPerTask)];
+      for (std::int64_t i = begin; i < end; ++i) {
+        const auto t = static_cast<std::size_t>(i);
+        if (edited_.is_gone(t)) continue;
+        left_[place] = triangles()[t];
+        left_places_[place] = static_cast<std::uint32_t>(t);
+        is_suspect_[place] = is_changed(t) ? 1 : 0;
+        ++place;
+      }
+    };
+    parallel_ranges(triangle_count(), kRowsPerTask, threads_, progress.part(0.3, 1.0), fill);
+  }
+
   // Those among the changed ones that intersect others.
   std::vector<std::uint32_t> crossing_triangles(const Progress& progress) {
-    std::vector<Triangle> left;
-    std::vector<std::uint32_t> places;
-    std::vector<std::uint8_t> is_suspect;
-    left.reserve(original_.size());
-    places.reserve(original_.size());
-    is_suspect.reserve(original_.size());
-    for (std::size_t t = 0; t < original_.size(); ++t) {
-      if (edited_.is_gone(t)) continue;
-      left.push_back(triangles()[t]);
-      places.push_back(static_cast<std::uint32_t>(t));
-      is_suspect.push_back(is_changed(t) ? 1 : 0);
-    }
+    find_left(progress.part(0.0, 0.1));
     std::vector<std::uint32_t> crossing;
-    for (const auto& pair :
-         intersecting_triangles({edited_.mesh.positions, left}, is_suspect, progress, threads_)) {
+    for (const auto& pair : intersecting_triangles({edited_.mesh.positions, left_}, is_suspect_,
+                                                   progress.part(0.1, 1.0), threads_)) {
       for (const std::uint32_t t : pair) {
-        if (is_suspect[t] != 0) crossing.push_back(places[t]);
+        if (is_suspect_[t] != 0) crossing.push_back(left_places_[t]);
       }
     }
     return crossing;
@@ -354,20 +370,27 @@ class Cleaner {
     }
   }
 
+  // What was left when it was last looked at is the result.
   void drop_gone(const Progress& progress) {
     FacetedMesh& mesh = edited_.mesh;
-    std::vector<std::int32_t> places(mesh.positions.size(), -1);
-    std::size_t count = 0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (edited_.is_gone(t)) continue;
-      for (const std::int32_t v : mesh.triangles[t]) places[static_cast<std::size_t>(v)] = 0;
-      mesh.triangles[count] = mesh.triangles[t];
-      if (!mesh.labels.empty()) mesh.labels[count] = mesh.labels[t];
-      ++count;
+    mesh.triangles = std::move(left_);
+    if (!mesh.labels.empty()) {
+      for (std::size_t i = 0; i < left_places_.size(); ++i) {
+        mesh.labels[i] = mesh.labels[left_places_[i]];
+      }
+      mesh.labels.resize(left_places_.size());
     }
-    mesh.triangles.resize(count);
-    if (!mesh.labels.empty()) mesh.labels.resize(count);
-    progress.report(0.4);
+    const auto count = static_cast<std::int64_t>(mesh.triangles.size());
+    std::vector<std::int32_t> places(mesh.positions.size(), -1);
+    const auto mark = [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t t = begin; t < end; ++t) {
+        for (const std::int32_t v : mesh.triangles[static_cast<std::size_t>(t)]) {
+          std::atomic_ref place(places[static_cast<std::size_t>(v)]);
+          place.store(0, std::memory_order_relaxed);
+        }
+      }
+    };
+    parallel_ranges(count, kRowsPerTask, threads_, progress.part(0.0, 0.3), mark);
     std::int32_t next = 0;
     for (std::size_t v = 0; v < places.size(); ++v) {
       if (places[v] < 0) continue;
@@ -378,11 +401,14 @@ class Cleaner {
     }
     mesh.positions.resize(static_cast<std::size_t>(next));
     if (!mesh.kinds.empty()) mesh.kinds.resize(static_cast<std::size_t>(next));
-    progress.report(0.6);
-    for (Triangle& triangle : mesh.triangles) {
-      for (std::int32_t& v : triangle) v = places[static_cast<std::size_t>(v)];
-    }
-    progress.report(1.0);
+    const auto rename = [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t t = begin; t < end; ++t) {
+        for (std::int32_t& v : mesh.triangles[static_cast<std::size_t>(t)]) {
+          v = places[static_cast<std::size_t>(v)];
+        }
+      }
+    };
+    parallel_ranges(count, kRowsPerTask, threads_, progress.part(0.6, 1.0), rename);
   }
 
   EditedMesh edited_;
@@ -394,6 +420,9 @@ class Cleaner {
   Parts borders_;
   std::vector<Triangle> before_borders_;
   std::vector<std::int32_t> labels_before_borders_;
+  std::vector<Triangle> left_;
+  std::vector<std::uint32_t> left_places_;
+  std::vector<std::uint8_t> is_suspect_;
 };
 }  // namespace
 
