@@ -80,9 +80,19 @@ def outcome(mesh: HardMesh, cell: float, mends: bool) -> Outcome:
     if mends:
         solid = prefilter.as_solid(positions, triangles, cell=cell)
         positions, triangles = solid.positions, solid.triangles
-        names = ("parts", "welded_vertices", "duplicate_faces", "turned_faces", "turned_parts",
-                 "thickened_parts", "filled_parts", "lost_parts")
-        report = " ".join(f"{n.split('_')[0]}={getattr(solid, n)}" for n in names if getattr(solid, n))
+        names = (
+            "parts",
+            "welded_vertices",
+            "duplicate_faces",
+            "turned_faces",
+            "turned_parts",
+            "thickened_parts",
+            "filled_parts",
+            "lost_parts",
+        )
+        report = " ".join(
+            f"{n.split('_')[0]}={getattr(solid, n)}" for n in names if getattr(solid, n)
+        )
     closed = prefilter.close_holes(positions, triangles)
     bounds, depth = cube(mesh, cell)
     octree = prefilter.voxelize(closed.positions, closed.triangles, depth=depth, bounds=bounds)
@@ -111,7 +121,9 @@ def alpha_wrap(program: Path, mesh: HardMesh, cell: float) -> Outcome:
             np.savetxt(file, np.insert(mesh.triangles, 0, 3, axis=1), "%d")
         arguments = [str(program), str(source), str(target), str(2 * cell), str(cell / 2)]
         try:
-            done = subprocess.run(arguments, capture_output=True, text=True, timeout=600, check=True)
+            done = subprocess.run(
+                arguments, capture_output=True, text=True, timeout=600, check=True
+            )
         except (subprocess.TimeoutExpired, subprocess.CalledProcessError):
             return Outcome(0.0, 0.0, float("nan"), 0)
         words = target.read_text().split()
@@ -131,19 +143,28 @@ def main() -> None:
     parser.add_argument("--reports", action="store_true", help="what as_solid did, too")
     parser.add_argument("--markdown", type=Path, metavar="FILE")
     options = parser.parse_args()
-    lines = ["| mesh | triangles | kept before | kept | volume | CPU s | alpha wrap, kept | CPU s |",
-             "| :--- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"]
+    lines = [
+        "| mesh | triangles | kept before | kept | volume | CPU s | alpha wrap, kept | CPU s |",
+        "| :--- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |",
+    ]
     print("\n".join(lines), flush=True)
     for name, mesh in {**hard_meshes(), **dict(read_meshes())}.items():
         if options.names and name not in options.names:
             continue
-        low, high = (f(mesh.positions[mesh.triangles].reshape(-1, 3), axis=0)
-                     for f in (np.min, np.max))
+        low, high = (
+            f(mesh.positions[mesh.triangles].reshape(-1, 3), axis=0) for f in (np.min, np.max)
+        )
         cell = float((high - low).max()) / options.cells
         before, after = outcome(mesh, cell, False), outcome(mesh, cell, True)
         volume = f"{after.volume / mesh.volume:.4f}" if mesh.volume else ""
-        columns = [name, str(len(mesh.triangles)), f"{before.kept:.2%}", f"{after.kept:.2%}",
-                   volume, f"{after.seconds:.3f}"]
+        columns = [
+            name,
+            str(len(mesh.triangles)),
+            f"{before.kept:.2%}",
+            f"{after.kept:.2%}",
+            volume,
+            f"{after.seconds:.3f}",
+        ]
         if options.alpha_wrap:
             peer = alpha_wrap(options.alpha_wrap, mesh, cell)
             columns += [f"{peer.kept:.2%}", f"{peer.seconds:.2f}"]

@@ -34,9 +34,7 @@ class HardMesh:
 
 def sphere(rounds: int = 5, radius: float = 1.0, center: tuple[float, ...] = (0, 0, 0)) -> HardMesh:
     """An octahedron whose triangles are split into four, again and again."""
-    points = np.array(
-        [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], float
-    )
+    points = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], float)
     triangles = np.array(
         [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
     )

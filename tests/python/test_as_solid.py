@@ -252,14 +252,12 @@ def test_walls_inside_are_dropped():
 
 
 def test_origins_name_the_triangles_that_others_come_from():
-    both = join(sphere(0.5), Solid(square().positions + (0, 0, 2), square().triangles))
+    both = join(sphere(0.5), square().transformed(np.eye(3), (0, 0, 2)))
     found = prefilter.as_solid(both.positions, both.triangles, cell=0.05)
     assert found.thickened_parts == 1
     assert set(found.origins) == set(range(len(both.triangles)))
     kept = found.origins < len(sphere().triangles)
-    assert np.array_equal(
-        found.positions[found.triangles[kept]], both.corners[found.origins[kept]]
-    )
+    assert np.array_equal(found.positions[found.triangles[kept]], both.corners[found.origins[kept]])
 
 
 def test_nothing_with_an_area_is_no_solid():
@@ -277,9 +275,10 @@ def test_units_do_not_matter(scale):
     assert np.allclose(small.positions / scale, usual.positions)
     assert np.array_equal(small.triangles, usual.triangles)
     found = prefilter.as_solid(ball.positions * scale, shuffled(ball), cell=0.05 * scale)
-    assert found.turned_faces == prefilter.as_solid(
-        ball.positions, shuffled(ball), cell=0.05
-    ).turned_faces
+    assert (
+        found.turned_faces
+        == prefilter.as_solid(ball.positions, shuffled(ball), cell=0.05).turned_faces
+    )
 
 
 def test_threads_change_nothing_about_sheets_and_leaks():

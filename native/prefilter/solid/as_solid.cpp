@@ -108,7 +108,9 @@ Solid as_solid(const InputMesh& mesh, const SolidOptions& options) {
   report.duplicate_faces = drop_duplicates(&work, progress.part(0.25, 0.3), options.threads);
   if (options.weld > 0.0) {
     report.welded_vertices =
-        weld_borders(&work, options.weld * options.cell, progress.part(0.3, 0.45), options.threads);
+        weld_borders(&work, options.weld * options.cell, progress.part(0.3, 0.4), options.threads);
+    report.welded_vertices += split_borders(&work, options.weld * options.cell,
+                                            progress.part(0.4, 0.45), options.threads);
     report.duplicate_faces += drop_duplicates(&work, progress.part(0.45, 0.5), options.threads);
   }
   Patches patches = find_patches(work.view(), progress.part(0.5, 0.65), options.threads);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <unordered_map>
 
@@ -12,19 +13,36 @@
 namespace prefilter {
 namespace {
 
+constexpr double kLeastSlope = 1e-4;
+
 // The plane of triangles within a cell; in cells, with the cell's low corner for the origin.
 struct CellPlane {
   Vector3 normal{};  // away from what is filled; the sum of area vectors
   Vector3 middle{};  // times the area
   double area = 0.0;
 
-  // About the share of the cell that is behind it.
+  // The share of the cell that is behind it: the simplex that the plane cuts off the octant, less
+  // what of it is beyond the sides, by inclusion and exclusion.
   float share() const {
     const double across = std::abs(normal[0]) + std::abs(normal[1]) + std::abs(normal[2]);
     if (!(across > 0.0)) return 0.5F;
-    double distance = 0.0;
-    for (std::size_t a = 0; a < 3; ++a) distance += normal[a] * (0.5 - middle[a] / area);
-    return static_cast<float>(std::clamp(0.5 - distance / across, 0.0, 1.0));
+    Vector3 slopes;
+    double offset = 0.0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      // Mirrored so that all are positive; none so small that the quotient loses its digits.
+      slopes[a] = std::max(std::abs(normal[a]) / across, kLeastSlope);
+      const double at = middle[a] / area;
+      offset += slopes[a] * (normal[a] < 0.0 ? 1.0 - at : at);
+    }
+    double sum = 0.0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      double rest = offset;
+      for (std::size_t a = 0; a < 3; ++a) rest -= ((corner >> a) & 1U) != 0U ? slopes[a] : 0.0;
+      const double cube = rest > 0.0 ? rest * rest * rest : 0.0;
+      sum += (std::popcount(corner) & 1) != 0 ? -cube : cube;
+    }
+    return static_cast<float>(
+        std::clamp(sum / (6.0 * slopes[0] * slopes[1] * slopes[2]), 0.0, 1.0));
   }
 };
 
@@ -107,7 +125,7 @@ TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid&
     }
   }
   ContourOptions options;
-  options.interpolant = Interpolant::kOccupancy;
+  options.interpolant = Interpolant::kPlane;
   options.threads = threads;
   options.progress = progress.part(0.6, 1.0);
   const double cell = grid.cell();

@@ -213,10 +213,7 @@ class OpenParts {
     for (const Patch& patch : patches_.patches) box.include(patch.box);
     Octree octree = empty_tree_around(box, options_.cell);
     if (mesh.triangles.empty()) return octree;
-    std::vector<std::array<std::int64_t, 3>> triangles;
-    triangles.reserve(mesh.triangles.size());
     bool has_area = false;
-    for (const auto& [a, b, c] : mesh.triangles) triangles.push_back({a, b, c});
     for (std::size_t t = 0; t < mesh.triangles.size() && !has_area; ++t) {
       const std::array<Vector3, 3> p = mesh.corners(t);
       has_area = length(cross(p[1] - p[0], p[2] - p[0])) > 0.0;
@@ -228,10 +225,14 @@ class OpenParts {
     holes.leaves_losses = false;
     holes.progress = progress.part(0.0, 0.3);
     holes.threads = options_.threads;
-    const Caps caps = close_holes({mesh.positions, triangles}, holes);
+    const Caps caps = close_holes({mesh.positions, mesh.triangles}, holes);
     std::vector<Vector3> positions = mesh.positions;
     positions.insert(positions.end(), caps.positions.begin(), caps.positions.end());
-    triangles.insert(triangles.end(), caps.triangles.begin(), caps.triangles.end());
+    std::vector<std::array<std::int32_t, 3>> triangles = mesh.triangles;
+    for (const auto& [a, b, c] : caps.triangles) {
+      triangles.push_back({static_cast<std::int32_t>(a), static_cast<std::int32_t>(b),
+                           static_cast<std::int32_t>(c)});
+    }
     VoxelizeOptions options;
     options.depth = octree.depth;
     options.bounds = octree.bounds;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/pulse.h"
@@ -86,23 +87,88 @@ class NearbyPoints {
   std::vector<std::uint32_t> next_;
 };
 
-// The ends of edges with a single triangle, in order.
-std::vector<std::uint32_t> border_vertices(const WorkMesh& mesh, const Progress& progress,
-                                           int threads) {
+// An edge with a single triangle, as this runs along it.
+struct BorderEdge {
+  std::uint32_t triangle;
+  std::uint32_t from;
+  std::uint32_t to;
+};
+
+std::vector<BorderEdge> border_edges(const WorkMesh& mesh, const Progress& progress, int threads) {
   const EdgeTable edges(mesh.view(), progress, threads);
-  std::vector<bool> is_border(mesh.positions.size(), false);
+  std::vector<BorderEdge> found;
   for (std::size_t low = 0; low < edges.vertex_count(); ++low) {
     edges.for_edges_from(low, [&](std::size_t high, std::span<const std::uint64_t> uses) {
       if (uses.size() != 1) return;
-      is_border[low] = true;
-      is_border[high] = true;
+      const EdgeUse use = EdgeTable::use(uses[0]);
+      found.push_back({use.triangle, static_cast<std::uint32_t>(use.is_down ? high : low),
+                       static_cast<std::uint32_t>(use.is_down ? low : high)});
     });
   }
+  return found;
+}
+
+// The ends of edges, in order.
+std::vector<std::uint32_t> ends_of(const std::vector<BorderEdge>& edges, std::size_t vertex_count) {
+  std::vector<bool> is_end(vertex_count, false);
+  for (const BorderEdge& edge : edges) {
+    is_end[edge.from] = true;
+    is_end[edge.to] = true;
+  }
   std::vector<std::uint32_t> vertices;
-  for (std::size_t v = 0; v < is_border.size(); ++v) {
-    if (is_border[v]) vertices.push_back(static_cast<std::uint32_t>(v));
+  for (std::size_t v = 0; v < is_end.size(); ++v) {
+    if (is_end[v]) vertices.push_back(static_cast<std::uint32_t>(v));
   }
   return vertices;
+}
+
+// A vertex on a side of a triangle, from its corner `side` on.
+struct SplitPoint {
+  std::uint32_t triangle;
+  std::uint32_t side;
+  double along;
+  std::int32_t vertex;
+
+  bool operator<(const SplitPoint& other) const {
+    return std::tie(triangle, side, along, vertex) <
+           std::tie(other.triangle, other.side, other.along, other.vertex);
+  }
+};
+
+// Replaces a triangle by those between the vertices on its sides.
+void split_triangle(std::uint32_t t, std::span<const SplitPoint> points, WorkMesh* mesh) {
+  const std::array<std::int32_t, 3> whole = mesh->triangles[t];
+  const std::int64_t origin = mesh->origins[t];
+  bool is_first = true;
+  const auto add = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
+    if (is_first) {
+      mesh->triangles[t] = {a, b, c};
+    } else {
+      mesh->triangles.push_back({a, b, c});
+      mesh->origins.push_back(origin);
+    }
+    is_first = false;
+  };
+  // The vertices of a side, both ends included.
+  const auto side = [&](std::uint32_t i) {
+    std::vector<std::int32_t> vertices = {whole[i]};
+    for (const SplitPoint& point : points) {
+      if (point.side == i) vertices.push_back(point.vertex);
+    }
+    vertices.push_back(whole[(i + 1) % 3]);
+    return vertices;
+  };
+  const auto fan = [&](const std::vector<std::int32_t>& vertices, std::int32_t tip) {
+    for (std::size_t k = 0; k + 1 < vertices.size(); ++k) add(tip, vertices[k], vertices[k + 1]);
+  };
+  // A fan over the first side that is split; its outer triangles have the other two sides.
+  const std::uint32_t i = points.front().side;
+  const std::vector<std::int32_t> base = side(i);
+  for (std::size_t k = 1; k + 2 < base.size(); ++k) {
+    add(whole[(i + 2) % 3], base[k], base[k + 1]);
+  }
+  fan(side((i + 1) % 3), base[base.size() - 2]);
+  fan(side((i + 2) % 3), base[1]);
 }
 
 double squared_length(const Vector3& a) { return dot(a, a); }
@@ -139,7 +205,7 @@ std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads) {
 std::size_t weld_borders(WorkMesh* mesh, double distance, const Progress& progress, int threads) {
   const std::vector<Vector3>& positions = mesh->positions;
   const std::vector<std::uint32_t> vertices =
-      border_vertices(*mesh, progress.part(0.0, 0.5), threads);
+      ends_of(border_edges(*mesh, progress.part(0.0, 0.5), threads), positions.size());
   if (vertices.empty()) return 0;
   // Of each vertex, the square of how far it may be from what it is welded with.
   std::vector<double> reaches(positions.size(), distance * distance);
@@ -177,6 +243,60 @@ std::size_t weld_borders(WorkMesh* mesh, double distance, const Progress& progre
   const std::size_t count = rename(names, mesh);
   progress.report(1.0);
   return count;
+}
+
+std::size_t split_borders(WorkMesh* mesh, double distance, const Progress& progress, int threads) {
+  const std::vector<Vector3>& positions = mesh->positions;
+  const std::vector<BorderEdge> edges = border_edges(*mesh, progress.part(0.0, 0.5), threads);
+  if (edges.empty()) return 0;
+  const std::vector<std::uint32_t> vertices = ends_of(edges, positions.size());
+  double sum = 0.0;
+  for (const BorderEdge& edge : edges) sum += length(positions[edge.to] - positions[edge.from]);
+  const double reach = std::max(distance, sum / static_cast<double>(edges.size()));
+  NearbyPoints points(vertices.size(), reach);
+  for (std::uint32_t i = 0; i < vertices.size(); ++i) points.add(i, positions[vertices[i]]);
+  const Progress splitting = progress.part(0.5, 0.9);
+  std::vector<SplitPoint> found;
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (e % 4096 == 0) splitting.report(static_cast<double>(e) / static_cast<double>(edges.size()));
+    const auto& [t, from, to] = edges[e];
+    const Vector3 way = positions[to] - positions[from];
+    const double squared = squared_length(way);
+    if (!(squared > 4.0 * distance * distance)) continue;
+    std::uint32_t side = 0;
+    while (mesh->triangles[t][side] != static_cast<std::int32_t>(from)) ++side;
+    const auto tip = static_cast<std::uint32_t>(mesh->triangles[t][(side + 2) % 3]);
+    const double parts = std::ceil(std::sqrt(squared) / reach);
+    for (double part = 0.0; part < parts; part += 1.0) {
+      Vector3 at = positions[from];
+      for (std::size_t a = 0; a < 3; ++a) at[a] += way[a] * ((part + 0.5) / parts);
+      points.visit(at, [&](std::uint32_t i) {
+        const std::uint32_t v = vertices[i];
+        if (v == from || v == to || v == tip) return;
+        const Vector3 offset = positions[v] - positions[from];
+        const double along = dot(offset, way) / squared;
+        if (!(along > 0.0 && along < 1.0)) return;
+        const double off_line = squared_length(offset) - along * along * squared;
+        const double from_end = std::min(along, 1.0 - along);
+        const double limit = distance * distance;
+        if (off_line > limit || from_end * from_end * squared <= limit) return;
+        found.push_back({t, side, along, static_cast<std::int32_t>(v)});
+      });
+    }
+  }
+  std::sort(found.begin(), found.end());
+  const auto is_same = [](const SplitPoint& a, const SplitPoint& b) {
+    return a.triangle == b.triangle && a.side == b.side && a.vertex == b.vertex;
+  };
+  found.erase(std::unique(found.begin(), found.end(), is_same), found.end());
+  for (std::size_t i = 0; i < found.size();) {
+    std::size_t end = i + 1;
+    while (end < found.size() && found[end].triangle == found[i].triangle) ++end;
+    split_triangle(found[i].triangle, std::span(found).subspan(i, end - i), mesh);
+    i = end;
+  }
+  progress.report(1.0);
+  return found.size();
 }
 
 std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int threads) {

@@ -32,6 +32,11 @@ std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads);
 /// its vertices. Of those welded the first stays in its place. Returns how many others there were.
 std::size_t weld_borders(WorkMesh* mesh, double distance, const Progress& progress, int threads);
 
+/// Splits edges that have one triangle at ends of others that are no further away than `distance`,
+/// and further than that from its own: where finer borders meet coarser ones. Returns at how many
+/// places.
+std::size_t split_borders(WorkMesh* mesh, double distance, const Progress& progress, int threads);
+
 /// Removes triangles that name a vertex twice, and of those with the same three vertices all but
 /// the first of the direction that more of them have. Returns how many of the latter were removed.
 std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int threads);

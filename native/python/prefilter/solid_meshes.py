@@ -63,8 +63,8 @@ def as_solid(
     A mesh that is closed, consistently oriented and not too thin is unchanged. In others, vertices
     along open edges that are close to each other are welded, faces that are there twice count once,
     faces are turned to go with their neighbors, and parts to have their outside where it is seen
-    from outside. Where the mesh winds around nothing, inside is what the outside does not reach, and
-    sheets and thin parts get a thickness.
+    from outside. Where the mesh winds around nothing, inside is what the outside does not reach.
+    Sheets and thin parts get a thickness.
 
     Args:
         positions: (vertices, 3), in any unit of length.
@@ -94,4 +94,5 @@ def as_solid(
         as_progress(progress),
         as_threads(threads),
     )
-    return SolidMesh(*(mesh or (points, indices, None)), *report)
+    found, corners, origins = mesh or (points, indices, None)
+    return SolidMesh(found, corners, origins, *report)
