@@ -324,10 +324,10 @@ def house() -> HardMesh:
 
 def hard_meshes() -> dict[str, HardMesh]:
     """Those that are made, by name."""
-    whole, ring, cube = sphere(), torus(), box()
+    whole, inner, ring, cube = sphere(), sphere(4, 0.5), torus(), box()
     twice = np.concatenate([whole.triangles, whole.triangles])
     both_ways = np.concatenate([whole.triangles, whole.triangles[:, ::-1]])
-    offset = HardMesh(whole.positions * 0.5 + (0.4, 0, 0), whole.triangles)
+    offset = HardMesh(whole.positions * 0.5 + (0.8, 0, 0), whole.triangles)
     plane = grid(lambda u, v: np.stack([2 * u - 1, 2 * v - 1, 0 * u], axis=-1), 8, 8)
     return {
         "soup": soup(whole),
@@ -351,8 +351,10 @@ def hard_meshes() -> dict[str, HardMesh]:
             flipped(sphere(4, 0.5, (0.6, 0, 0))),
             volume=2 * sphere(4, 0.5).volume,
         ),
-        "nested, unoriented": shuffled(joined(whole, sphere(4, 0.5), volume=whole.volume)),
-        "crossing, unoriented": shuffled(joined(whole, offset, volume=whole.volume)),
+        "nested, unoriented": shuffled(
+            joined(whole, inner, volume=(whole.volume or 0) - (inner.volume or 0))
+        ),
+        "crossing, unoriented": shuffled(joined(whole, offset)),
         "mirrored halves": mirrored_halves(),
         "divided box": turned(divided_box()),
         "finned box": turned(finned_box()),

@@ -73,6 +73,36 @@ def test_a_hollow_inside_out_stays_hollow():
     assert volume(found) == pytest.approx(-solid.volume)
 
 
+def test_shells_in_shells_are_cavities_where_faces_say_nothing():
+    shells = join(sphere(), sphere(0.8), sphere(0.6))
+    found = prefilter.as_solid(shells.positions, shuffled(shells), cell=CELL)
+    expected = sphere().volume - sphere(0.8).volume + sphere(0.6).volume
+    assert volume(found) == pytest.approx(expected)
+
+
+def test_finer_borders_are_sewn_to_coarser_ones():
+    """Two halves of a cube, with another number of vertices along their border."""
+    low, high = box((-1, -1, -1), (1, 1, 0)), box((-1, -1, 0), (1, 1, 1))
+    coarse = Solid(low.positions, low.triangles[:10])  # without its top
+    fine = Solid(high.positions, np.delete(high.triangles, [8, 9], axis=0))
+    # Each side of the upper half is a fan over its lower edge, cut in five.
+    sides, points = list(fine.triangles[8:]), list(fine.positions)
+    for a, b in ((0, 1), (1, 3), (3, 2), (2, 0)):
+        cuts = [a]
+        for k in range(1, 5):
+            points.append(points[a] + (points[b] - points[a]) * (k / 5))
+            cuts.append(len(points) - 1)
+        cuts.append(b)
+        sides += [(cuts[k], cuts[k + 1], a + 4) for k in range(5)]
+        sides.append((b, b + 4, a + 4))
+    both = join(coarse, Solid(np.array(points), np.array(sides)))
+    found = prefilter.as_solid(both.positions, both.triangles, cell=CELL)
+    assert found.parts == 1
+    assert edge_balance(found.triangles) == 0
+    assert volume(found) == pytest.approx(8.0)
+    assert found.thickened_parts == found.filled_parts == 0
+
+
 def test_one_part_inside_out_is_turned():
     solid = join(sphere(0.7), box((2, 2, 2), (3, 3, 3)).flipped())
     found = prefilter.as_solid(solid.positions, solid.triangles, cell=CELL)

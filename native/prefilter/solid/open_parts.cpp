@@ -244,6 +244,7 @@ class OpenParts {
   // Decides on the parts that are still wound. Returns whether any other is left to be looked at
   // again.
   bool judge(int round, const Progress& progress) {
+    if (std::find(fates_.begin(), fates_.end(), Fate::kWound) == fates_.end()) return false;
     const Octree octree = voxels_of(wound(), progress.part(0.0, 0.7));
     shares_ = kept_shares(mesh_->view(), octree, progress.part(0.7, 0.9), options_.threads);
     const bool is_filling = round == 0 && grid_ && options_.gap > 0.0 && fill_regions(octree);

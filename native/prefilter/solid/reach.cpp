@@ -19,27 +19,38 @@ constexpr std::int64_t kRowsPerTask = 1 << 10;
 // The cells within `radius` of those that are set, along each axis.
 std::vector<std::uint8_t> widened(std::vector<std::uint8_t> cells, const std::array<int, 3>& size,
                                   int radius, int threads) {
-  if (radius == 0) return cells;
   std::vector<std::uint8_t> other(cells.size());
-  const std::array<std::size_t, 3> strides = {
-      static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]),
-      static_cast<std::size_t>(size[2]), 1};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto stride = static_cast<std::ptrdiff_t>(strides[axis]);
-    parallel_for(size[0], threads, Progress(), [&](std::int64_t x) {
-      const std::size_t begin = static_cast<std::size_t>(x) * strides[0];
-      for (std::size_t i = begin; i < begin + strides[0]; ++i) {
-        const auto place =
-            static_cast<int>(i / strides[axis] % static_cast<std::size_t>(size[axis]));
-        const int low = std::max(-radius, -place);
-        const int high = std::min(radius, size[axis] - 1 - place);
-        std::uint8_t any = 0;
-        for (int k = low; k <= high; ++k) {
-          any |= cells[static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + k * stride)];
+  const auto rows = static_cast<std::size_t>(size[1]);
+  const auto row = static_cast<std::size_t>(size[2]);
+  const auto plane = rows * row;
+  const auto include = [](const std::uint8_t* from, std::size_t count, std::uint8_t* to) {
+    for (std::size_t i = 0; i < count; ++i) to[i] |= from[i];
+  };
+  // Axis by axis, in strips that are one behind the other along it.
+  const auto pass = [&](std::size_t axis, std::int64_t x) {
+    const std::uint8_t* const from = cells.data();
+    const std::size_t begin = static_cast<std::size_t>(x) * plane;
+    std::copy_n(from + begin, plane, other.data() + begin);
+    for (int k = 1; k <= radius; ++k) {
+      const auto shift = static_cast<std::size_t>(k);
+      if (axis == 0) {
+        if (x >= k) include(from + begin - shift * plane, plane, &other[begin]);
+        if (x + k < size[0]) include(from + begin + shift * plane, plane, &other[begin]);
+      } else if (axis == 1 && shift < rows) {
+        const std::size_t count = (rows - shift) * row;
+        include(from + begin, count, &other[begin + shift * row]);
+        include(from + begin + shift * row, count, &other[begin]);
+      } else if (axis == 2 && shift < row) {
+        for (std::size_t y = 0; y < rows; ++y) {
+          const std::size_t first = begin + y * row;
+          include(from + first, row - shift, &other[first + shift]);
+          include(from + first + shift, row - shift, &other[first]);
         }
-        other[i] = any;
       }
-    });
+    }
+  };
+  for (std::size_t axis = 0; axis < 3 && radius > 0; ++axis) {
+    parallel_for(size[0], threads, Progress(), [&](std::int64_t x) { pass(axis, x); });
     cells.swap(other);
   }
   return cells;
@@ -122,38 +133,66 @@ void ReachGrid::mark_met(const MeshView<std::int32_t>& mesh, const Progress& pro
 }
 
 void ReachGrid::flood(std::size_t seed, Label label, const std::vector<std::uint8_t>& is_blocked) {
-  labels_[seed] = label;
+  const auto rows = static_cast<std::size_t>(size_[1]);
+  const auto row = static_cast<std::size_t>(size_[2]);
+  const std::size_t plane = rows * row;
+  const auto is_free = [&](std::size_t i) { return labels_[i] == kUnset && is_blocked[i] == 0; };
+  // Run by run along z; of each run beside one, a cell is put on the stack.
   stack_.assign(1, seed);
   while (!stack_.empty()) {
-    const std::size_t cell = stack_.back();
+    std::size_t begin = stack_.back();
     stack_.pop_back();
-    for_neighbours(cell, [&](std::size_t next) {
-      if (labels_[next] != kUnset || is_blocked[next] != 0) return;
-      labels_[next] = label;
-      stack_.push_back(next);
-    });
+    if (!is_free(begin)) continue;
+    const std::size_t first = begin / row * row;
+    std::size_t end = begin + 1;
+    while (begin > first && is_free(begin - 1)) --begin;
+    while (end < first + row && is_free(end)) ++end;
+    std::fill(labels_.begin() + static_cast<std::ptrdiff_t>(begin),
+              labels_.begin() + static_cast<std::ptrdiff_t>(end), label);
+    const std::size_t y = first / row % rows;
+    const std::size_t x = first / plane;
+    const auto look_beside = [&](std::ptrdiff_t shift) {
+      bool was_free = false;
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::size_t beside = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + shift);
+        const bool is_open = is_free(beside);
+        if (is_open && !was_free) stack_.push_back(beside);
+        was_free = is_open;
+      }
+    };
+    if (y > 0) look_beside(-static_cast<std::ptrdiff_t>(row));
+    if (y + 1 < rows) look_beside(static_cast<std::ptrdiff_t>(row));
+    if (x > 0) look_beside(-static_cast<std::ptrdiff_t>(plane));
+    if (x + 1 < static_cast<std::size_t>(size_[0])) look_beside(static_cast<std::ptrdiff_t>(plane));
   }
 }
 
 void ReachGrid::grow(int steps) {
-  std::vector<std::size_t> front;
+  struct Grown {
+    std::size_t cell;
+    Label label;
+  };
+  std::vector<std::size_t> waiting;
   for (std::size_t i = 0; i < labels_.size() && steps > 0; ++i) {
-    if (labels_[i] == kMet || labels_[i] == kUnset) continue;
-    bool is_front = false;
-    for_neighbours(i, [&](std::size_t next) { is_front = is_front || labels_[next] == kUnset; });
-    if (is_front) front.push_back(i);
+    if (labels_[i] == kUnset) waiting.push_back(i);
   }
-  std::vector<std::size_t> next_front;
+  std::vector<Grown> grown;
   for (int step = 0; step < steps; ++step) {
-    next_front.clear();
-    for (const std::size_t cell : front) {
+    grown.clear();
+    std::size_t left = 0;
+    for (const std::size_t cell : waiting) {
+      Label label = kUnset;
       for_neighbours(cell, [&](std::size_t next) {
-        if (labels_[next] != kUnset) return;
-        labels_[next] = labels_[cell];
-        next_front.push_back(next);
+        if (labels_[next] != kMet) label = std::min(label, labels_[next]);
       });
+      if (label != kUnset) {
+        grown.push_back({cell, label});
+      } else {
+        waiting[left++] = cell;
+      }
     }
-    front.swap(next_front);
+    waiting.resize(left);
+    for (const Grown& each : grown) labels_[each.cell] = each.label;
   }
 }
 
