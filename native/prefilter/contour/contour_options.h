@@ -30,7 +30,7 @@ struct ContourOptions {
   // How far a surface may be from the full contour where it gets larger triangles, in cells of the
   // finest depth, along their shortest side; 0: it is the full one.
   double adaptivity = 0.0;
-  // What kSharp takes the edges and corners from.
+  // What kSharp takes the edges and corners from; none: from the occupancies alone.
   std::span<const SourceMesh> sources;
   int threads = 0;  // 0: all processors
   Progress progress;

@@ -74,7 +74,7 @@ std::uint64_t side_key(std::int32_t a, std::int32_t b) {
 
 class Sharpener {
  public:
-  Sharpener(LoopedMesh looped, const std::vector<Vector3>& crossings, const SourceSurface& surface,
+  Sharpener(LoopedMesh looped, const std::vector<Vector3>& crossings, const FeatureSurface& surface,
             const VertexSamples& samples, int threads)
       : looped_(std::move(looped)),
         crossings_(crossings),
@@ -193,8 +193,9 @@ class Sharpener {
   std::optional<Vector3> corner_near(const Vector3& start, const Labels& labels) const {
     std::optional<Vector3> found;
     double least = kFeatureReach * cell_;
-    for (const RegionCorner& corner : surface_.regions().corners) {
-      const Vector3& at = surface_.regions().positions[static_cast<std::size_t>(corner.vertex)];
+    for (std::size_t c = 0; c < surface_.corner_count(); ++c) {
+      const FeatureCorner corner = surface_.corner(c);
+      const Vector3& at = corner.position;
       const double distance = length(at - start);
       if (distance >= least) continue;
       if (!std::includes(corner.labels.begin(), corner.labels.end(), labels.begin(),
@@ -240,8 +241,9 @@ class Sharpener {
     for (std::size_t i = 0; i < features_.size(); ++i)
       grid_[place_of(features_[i].position)].push_back(i);
     std::vector<std::uint8_t> is_taken(features_.size(), 0);
-    for (const RegionCorner& corner : surface_.regions().corners) {
-      const Vector3& at = surface_.regions().positions[static_cast<std::size_t>(corner.vertex)];
+    for (std::size_t c = 0; c < surface_.corner_count(); ++c) {
+      const FeatureCorner corner = surface_.corner(c);
+      const Vector3& at = corner.position;
       std::size_t best = features_.size();
       double least = kCornerReach * cell_;
       for_around(at, [&](std::size_t i) {
@@ -807,7 +809,7 @@ class Sharpener {
 
   LoopedMesh looped_;
   const std::vector<Vector3>& crossings_;
-  const SourceSurface& surface_;
+  const FeatureSurface& surface_;
   const VertexSamples& samples_;
   int threads_;
   double cell_;
@@ -831,7 +833,7 @@ class Sharpener {
 };
 }  // namespace
 
-bool are_divided(const SourceSurface& surface, const VertexSamples& samples, std::int32_t a,
+bool are_divided(const FeatureSurface& surface, const VertexSamples& samples, std::int32_t a,
                  std::int32_t b) {
   const SourcePoint* p = samples.of(a);
   const SourcePoint* q = samples.of(b);
@@ -844,7 +846,7 @@ bool are_divided(const SourceSurface& surface, const VertexSamples& samples, std
 }
 
 FacetedMesh sharpen(LoopedMesh looped, const std::vector<Vector3>& crossings,
-                    const SourceSurface& surface, const VertexSamples& samples,
+                    const FeatureSurface& surface, const VertexSamples& samples,
                     const Progress& progress, int threads) {
   return Sharpener(std::move(looped), crossings, surface, samples, threads).run(progress);
 }

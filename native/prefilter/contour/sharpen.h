@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "prefilter/base/progress.h"
+#include "prefilter/contour/feature_surface.h"
 #include "prefilter/contour/sharp_vertices.h"
-#include "prefilter/contour/source_surface.h"
 #include "prefilter/remesh/faceted_mesh.h"
 
 namespace prefilter {
@@ -32,7 +32,7 @@ struct LoopedMesh {
 };
 
 /// Whether there is an edge between two vertices.
-bool are_divided(const SourceSurface& surface, const VertexSamples& samples, std::int32_t a,
+bool are_divided(const FeatureSurface& surface, const VertexSamples& samples, std::int32_t a,
                  std::int32_t b);
 
 /// Puts a vertex into each sharp loop, where the surfaces of its vertices meet, and joins those of
@@ -42,7 +42,7 @@ bool are_divided(const SourceSurface& surface, const VertexSamples& samples, std
 /// without its edges. `crossings` are the positions of the vertices between cells, the first ones,
 /// before they were sampled. Throws Error(kCancelled).
 FacetedMesh sharpen(LoopedMesh looped, const std::vector<Vector3>& crossings,
-                    const SourceSurface& surface, const VertexSamples& samples,
+                    const FeatureSurface& surface, const VertexSamples& samples,
                     const Progress& progress, int threads);
 
 }  // namespace prefilter

@@ -456,4 +456,9 @@ std::optional<Vector3> SourceSurface::nearest_border(const Vector3& point, doubl
   return found;
 }
 
+FeatureCorner SourceSurface::corner(std::size_t index) const {
+  const RegionCorner& corner = regions_.corners[index];
+  return {regions_.positions[static_cast<std::size_t>(corner.vertex)], corner.labels};
+}
+
 }  // namespace prefilter

@@ -11,18 +11,11 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/contour/feature_surface.h"
 #include "prefilter/contour/source_regions.h"
 #include "prefilter/spatial/box_tree.h"
 
 namespace prefilter {
-
-/// A point of a source, with the unit normal of its triangle.
-struct SourcePoint {
-  Vector3 position;
-  Vector3 normal;
-  std::int32_t triangle;
-  std::int32_t label;
-};
 
 /// Where a segment meets a triangle, as a share of it.
 struct SourceCrossing {
@@ -31,14 +24,14 @@ struct SourceCrossing {
 };
 
 /// What searches find is the same for any number of threads. Lengths are the frame's.
-class SourceSurface {
+class SourceSurface final : public FeatureSurface {
  public:
   /// `cell` is the side of the finest cells. Throws as find_regions does.
   SourceSurface(std::span<const SourceMesh> sources, const RootFrame& frame, double cell,
                 const Progress& progress, int threads);
 
   const SourceRegions& regions() const { return regions_; }
-  double cell() const { return cell_; }
+  double cell() const override { return cell_; }
 
   /// Whether there may be a border, or where two parts meet, within about two cells.
   bool is_near(const Vector3& point) const;
@@ -80,13 +73,13 @@ class SourceSurface {
   /// The triangle nearest to a point, wherever that is. Looks at all of them.
   std::int64_t nearest_of_all(const Vector3& point) const;
 
-  /// The nearest point within `reach`, of one region unless `label` is -1.
-  std::optional<SourcePoint> nearest(const Vector3& point, double reach, std::int32_t label) const;
+  std::optional<SourcePoint> nearest(const Vector3& point, double reach,
+                                     std::int32_t label) const override;
 
-  /// The nearest point, within `reach`, of the borders between two regions; the same label twice
-  /// asks for sharp edges within a region.
   std::optional<Vector3> nearest_border(const Vector3& point, double reach, std::int32_t label,
-                                        std::int32_t other) const;
+                                        std::int32_t other) const override;
+  std::size_t corner_count() const override { return regions_.corners.size(); }
+  FeatureCorner corner(std::size_t index) const override;
 
  private:
   void mark_borders(const Progress& progress);

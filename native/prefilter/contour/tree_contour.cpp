@@ -13,6 +13,7 @@
 #include "prefilter/contour/dual_cells.h"
 #include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/marching_table.h"
+#include "prefilter/contour/occupancy_surface.h"
 #include "prefilter/contour/part_sides.h"
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/sharp_vertices.h"
@@ -43,7 +44,7 @@ struct TaskTriangles {
 
 // What tells whether there is an edge of the shape between two vertices.
 struct Division {
-  const SourceSurface& surface;
+  const FeatureSurface& surface;
   const VertexSamples& samples;
 
   bool operator()(std::int32_t a, std::int32_t b) const {
@@ -328,6 +329,7 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   if (fits) {
     fit_vertices(tree, frame, cutting.part(0.5, 0.6), options.threads, &vertices);
   }
+  std::optional<OccupancySurface> smooth_parts;  // where there are no sources
   VertexSamples samples;
   std::vector<Vector3> crossings;
   std::optional<Division> division;
@@ -336,6 +338,11 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
     samples = sample_vertices(tree, frame, *surface, part_sides ? &*part_sides : nullptr,
                               Progress(), options.threads, &vertices);
     division.emplace(*surface, samples);
+  } else if (fits && options.interpolant == Interpolant::kSharp) {
+    crossings = vertices.positions();
+    smooth_parts.emplace(tree, frame, vertices, Progress(), options.threads);
+    samples = smooth_parts->sample_vertices(Progress(), options.threads, &vertices);
+    division.emplace(*smooth_parts, samples);
   }
   const DualCells dual(tree);
   const TriangleMaker maker(vertices, division ? &*division : nullptr);
@@ -351,8 +358,9 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   parallel_ranges(parts, kPartsPerTask, options.threads, cutting.part(0.6, 0.95), make_some);
   LoopedMesh looped = join(cutting.part(0.95, 1.0), &vertices, &tasks);
   FacetedMesh mesh;
-  if (surface) {
-    mesh = sharpen(std::move(looped), crossings, *surface, samples, Progress(), options.threads);
+  if (division) {
+    mesh = sharpen(std::move(looped), crossings, division->surface, samples, Progress(),
+                   options.threads);
     const std::vector<std::int32_t> used = leave_out_unused(&mesh);
     for (std::size_t i = 0; i < used.size() && !mesh.kinds.empty(); ++i) {
       mesh.kinds[i] = mesh.kinds[static_cast<std::size_t>(used[i])];

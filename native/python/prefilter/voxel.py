@@ -157,7 +157,9 @@ class Octree(_native.Octree):
             sources: The meshes that the shape was made of, each (positions, triangles) or
                 (positions, triangles, groups), for "sharp": vertices are placed on their edges and
                 corners, and where one meets another; no triangle runs across an edge, or from one
-                group, (triangles,) whole numbers, to another.
+                group, (triangles,) whole numbers, to another. Without them edges are those that the
+                occupancies fix by themselves: where flat or gently curved faces of a few cells
+                meet.
             cleanup: Remove narrow triangles; there are fewer then.
             adaptivity: How far from the full contour the surface may be, in cells of the finest
                 depth, where larger triangles take its place: on flat and gently curved parts. 0.1

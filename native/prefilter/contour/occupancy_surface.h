@@ -1,0 +1,101 @@
+// The smooth surfaces that occupancies fix by themselves, for edges and corners where they meet.
+//
+// Beyond the text. Where 3 x 3 columns of cells run from full to empty, and their sums lie on a
+// gently curved quadratic, the surface is smooth and known; cells beside each other whose surfaces
+// go on into one another are a region. Around an edge no columns tell anything. There the
+// quadratics of the regions on its sides are carried on, as far as they explain the occupancies.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <unordered_map>
+#include <vector>
+
+#include "prefilter/contour/contour_tree.h"
+#include "prefilter/contour/feature_surface.h"
+#include "prefilter/contour/root_frame.h"
+#include "prefilter/contour/sharp_vertices.h"
+#include "prefilter/contour/surface_vertices.h"
+
+namespace prefilter {
+
+/// Of a tree of occupancies whose surface is in its finest cells.
+class OccupancySurface final : public FeatureSurface {
+ public:
+  /// Throws Error(kCancelled).
+  OccupancySurface(const ContourTree& tree, const RootFrame& frame, const SurfaceVertices& vertices,
+                   const Progress& progress, int threads);
+
+  /// Moves the vertices beside edges onto the regions that they are on. Throws Error(kCancelled).
+  VertexSamples sample_vertices(const Progress& progress, int threads,
+                                SurfaceVertices* vertices) const;
+
+  double cell() const override { return frame_.cell(0, depth_); }
+  std::optional<SourcePoint> nearest(const Vector3& point, double reach,
+                                     std::int32_t label) const override;
+  std::optional<Vector3> nearest_border(const Vector3&, double, std::int32_t,
+                                        std::int32_t) const override {
+    return std::nullopt;
+  }
+  std::size_t corner_count() const override { return 0; }
+  FeatureCorner corner(std::size_t) const override { return {}; }
+
+ private:
+  // A quadratic over the side of a cell, in cells of the root.
+  struct Patch {
+    Vector3 centre{};
+    int axis = 0;
+    bool is_up = true;
+    double height = 0.0;
+    std::array<double, 2> slopes{};
+    std::array<double, 2> curvatures{};
+    double twist = 0.0;
+
+    /// How far a point is above, along the axis, and its derivatives: the normal's direction.
+    double above(const Vector3& point, Vector3* gradient) const;
+    /// The point next to another that is on it, with the gradient there.
+    Vector3 projected(Vector3 point, Vector3* gradient) const;
+    Vector3 normal() const;
+    Vector3 foot() const;
+  };
+  struct SurfaceCell {
+    CellCoordinates at;
+    std::size_t first_vertex;
+    std::uint8_t faces;  // with vertices
+    bool is_smooth = false;
+    bool is_deep = false;  // and so are all around it
+    bool is_beside_edge = false;
+    std::int32_t region = -1;
+    Patch patch;
+  };
+  // A region near a cell, by its most telling patch.
+  struct Candidate {
+    std::int32_t region;
+    std::size_t cell;
+    double score;
+  };
+
+  void gather(const CellNode& node, const CellCoordinates& at, const SurfaceVertices& vertices);
+  bool fit(SurfaceCell* cell) const;
+  void join_regions();
+  void merge_across_gaps();
+  void mark_edges();
+  std::int32_t root_of(std::int32_t region) const;
+  void unite(std::int32_t a, std::int32_t b);
+  const SurfaceCell* find(const CellCoordinates& at) const;
+  std::vector<Candidate> candidates(const CellCoordinates& at) const;
+  bool explains(const std::vector<Candidate>& all, const CellCoordinates& at) const;
+  Vector3 to_cells(const Vector3& point) const;
+  Vector3 to_frame(const Vector3& point) const;
+  Vector3 normal_in_frame(const Vector3& normal) const;
+
+  const ContourTree& tree_;
+  const RootFrame& frame_;
+  int depth_;
+  std::vector<SurfaceCell> cells_;
+  std::unordered_map<std::uint64_t, std::uint32_t> places_;
+  std::vector<std::int32_t> parents_;
+  std::vector<std::vector<Candidate>> near_;  // of cells that are not smooth, the nearest first
+};
+
+}  // namespace prefilter
