@@ -51,6 +51,7 @@ HEAD = (
 )
 MARGIN = 2  # Cells on every side.
 NO_EDGES = measures.Edges(np.zeros((0, 2, 3)), np.zeros(0))
+WEDGE_DEGREES = 40.0
 EDGE_MEAN, EDGE_95, AREA = 0.02, 0.1, 0.001
 
 
@@ -202,9 +203,14 @@ def subjects_of(options: argparse.Namespace) -> list[Subject]:
 
 
 def boolean(first: str, second: str, operation: str, number: int = 0) -> Subject:
-    """Two shapes combined; its edges are the rims, where faces of both meet."""
+    """Two shapes combined; its edges are the rims, where faces of both meet.
+
+    Without those of wedges of less than 40 degrees, whose tips leave cells mostly empty.
+    """
     sources = sharp_shapes.pair(first, second, number)
     truth, rims = booleans.combined(sources, operation)
+    wide = rims.degrees <= 180 - WEDGE_DEGREES
+    rims = measures.Edges(rims.ends[wide], rims.degrees[wide])
     return Subject(f"{first} {operation} {second}", sources, operation, truth, rims)
 
 
