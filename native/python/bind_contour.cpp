@@ -50,13 +50,12 @@ MeshArrays to_arrays(TriangleMesh mesh) {
 }
 
 // A mesh, and the groups of its triangles, of which there may be none.
-using SourceArrays = std::tuple<py::array, py::array, Array<std::int64_t>>;
+using SourceArrays = std::tuple<py::array, py::array, Array<std::int32_t>>;
 
 std::vector<SourceMesh> sources_of(const std::vector<SourceArrays>& arrays) {
   std::vector<SourceMesh> sources;
   for (const auto& [positions, triangles, groups] : arrays) {
-    sources.push_back(
-        {mesh_of(positions, triangles), {groups.data(), static_cast<std::size_t>(groups.size())}});
+    sources.push_back({mesh_of(positions, triangles), values_of(groups)});
   }
   return sources;
 }

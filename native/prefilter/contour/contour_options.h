@@ -20,7 +20,7 @@ enum class Interpolant {
 struct SourceMesh {
   InputMesh mesh;
   // Of each triangle; those of different groups are kept apart. None: all are of one.
-  std::span<const std::int64_t> groups;
+  std::span<const std::int32_t> groups;
 };
 
 struct ContourOptions {

@@ -1,8 +1,10 @@
 #include "prefilter/contour/source_regions.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
@@ -15,6 +17,8 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kRowsPerTask = 1 << 14;
+constexpr std::int64_t kSidesPerSweep = 1 << 21;
+constexpr std::int64_t kMostSweeps = 16;
 constexpr double kSharpCosine = 0.9396926207859084;  // 20 degrees
 constexpr double kTurnCosine = 0.8660254037844387;   // 30 degrees: of a border at a corner
 constexpr double kPointedShare = 0.9;                // of a mean normal's length, at a tip
@@ -24,30 +28,37 @@ constexpr double kLargest = 1e150;
 
 using Triangle = std::array<std::int32_t, 3>;
 
+// Several threads may join at a time. The lower root stays one, so that the outcome does not depend
+// on the order.
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t count) : above_(count) {
-    std::iota(above_.begin(), above_.end(), 0);
+  explicit DisjointSets(std::size_t count)
+      : count_(count), above_(std::make_unique<std::atomic<std::int32_t>[]>(count)) {
+    for (std::size_t i = 0; i < count; ++i) above_[i] = static_cast<std::int32_t>(i);
   }
   std::int32_t root(std::int32_t i) {
-    while (above_[static_cast<std::size_t>(i)] != i) {
-      std::int32_t& above = above_[static_cast<std::size_t>(i)];
-      above = above_[static_cast<std::size_t>(above)];
-      i = above;
+    for (std::int32_t above = at(i).load(); above != i; above = at(i).load()) {
+      const std::int32_t next = at(above).load();
+      // A root is only ever joined to a lower one, so whatever is above stays so.
+      if (next != above) at(i).store(next);
+      i = next;
     }
     return i;
   }
-  // The lower root stays one, so that the outcome does not depend on the order of joining.
   void join(std::int32_t i, std::int32_t j) {
-    const std::int32_t a = root(i);
-    const std::int32_t b = root(j);
-    above_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+    while (true) {
+      const std::int32_t a = root(i);
+      const std::int32_t b = root(j);
+      if (a == b) return;
+      std::int32_t high = std::max(a, b);
+      if (at(high).compare_exchange_strong(high, std::min(a, b))) return;
+    }
   }
   // Numbers of the sets, in order of their first members.
   std::vector<std::int32_t> numbers(int* count) {
-    std::vector<std::int32_t> result(above_.size());
+    std::vector<std::int32_t> result(count_);
     std::int32_t next = 0;
-    for (std::size_t i = 0; i < above_.size(); ++i) {
+    for (std::size_t i = 0; i < count_; ++i) {
       const auto at = static_cast<std::size_t>(root(static_cast<std::int32_t>(i)));
       result[i] = at == i ? next++ : result[at];
     }
@@ -56,196 +67,193 @@ class DisjointSets {
   }
 
  private:
-  std::vector<std::int32_t> above_;
+  std::atomic<std::int32_t>& at(std::int32_t i) { return above_[static_cast<std::size_t>(i)]; }
+
+  std::size_t count_;
+  std::unique_ptr<std::atomic<std::int32_t>[]> above_;
 };
 
-// A side of a triangle; `half` is three times the triangle plus the corner where it begins.
-struct HalfEdge {
-  std::uint64_t ends;  // the lower vertex in the high bits
+// A side of a triangle, as its lower vertex keeps it; `half` is three times the triangle plus the
+// corner where it begins.
+struct Side {
+  std::uint32_t other;  // the higher vertex
   std::uint32_t half;
 
-  bool operator<(const HalfEdge& other) const {
-    return ends != other.ends ? ends < other.ends : half < other.half;
+  bool operator<(const Side& side) const {
+    return other != side.other ? other < side.other : half < side.half;
   }
+};
+
+// Two triangles that meet at an edge of theirs alone, and are not of one smooth surface.
+struct Wall {
+  std::array<std::int32_t, 2> ends;  // the lower vertex first
+  std::array<std::int32_t, 2> triangles;
 };
 
 class RegionFinder {
  public:
-  RegionFinder(double cell, int threads) : cell_(cell), threads_(threads) {}
+  RegionFinder(std::span<const SourceMesh> sources, const RootFrame& frame, double cell,
+               int threads)
+      : cell_(cell),
+        threads_(threads),
+        meshes_(sources),
+        found_{FramedPositions(meshes_, frame), JoinedTriangles(meshes_), {}, {}, {}, {}, 0},
+        count_(meshes_.triangle_count()) {}
 
-  SourceRegions find(std::span<const SourceMesh> sources, const RootFrame& frame,
-                     const Progress& progress) {
-    gather(sources, frame, progress.part(0.0, 0.2));
-    measure(progress.part(0.2, 0.3));
-    pair_sides(progress.part(0.3, 0.7));
-    join_smooth(sources);
-    progress.report(0.8);
+  SourceRegions find(const Progress& progress) {
+    join_smooth(progress.part(0.0, 0.7));
+    measure(progress.part(0.7, 0.85));
     join_small();
-    progress.report(0.85);
-    find_borders();
     progress.report(0.9);
+    find_borders();
     find_corners();
     progress.report(1.0);
     return std::move(found_);
   }
 
  private:
-  void gather(std::span<const SourceMesh> sources, const RootFrame& frame,
-              const Progress& progress) {
-    std::size_t vertices = 0;
-    std::size_t triangles = 0;
-    for (const SourceMesh& source : sources) {
-      check_mesh(source.mesh, kLargest);
-      if (!source.groups.empty() && source.groups.size() != source.mesh.triangles.size()) {
-        throw_invalid("sources: " + std::to_string(source.groups.size()) + " groups of " +
-                      std::to_string(source.mesh.triangles.size()) +
-                      " triangles; one each is needed");
-      }
-      vertices += source.mesh.positions.size();
-      triangles += source.mesh.triangles.size();
+  // The vertices of a triangle, with one for each place if that is needed.
+  Triangle places(std::size_t t) const {
+    Triangle triangle = found_.triangles[t];
+    if (!firsts_.empty()) {
+      for (std::int32_t& vertex : triangle) vertex = firsts_[static_cast<std::size_t>(vertex)];
     }
-    constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 3;
-    if (vertices > kMost || triangles > kMost) {
-      throw_invalid("sources: " + std::to_string(std::max(vertices, triangles)) +
-                    " vertices or triangles; at most " + std::to_string(kMost) + " are allowed");
-    }
-    found_.positions.reserve(vertices);
-    found_.triangles.reserve(triangles);
-    for (const SourceMesh& source : sources) {
-      const auto first = static_cast<std::int64_t>(found_.positions.size());
-      for (const Vector3& position : source.mesh.positions) {
-        found_.positions.push_back(frame.from_space(position));
-      }
-      progress.report(0.5);
-      for (const auto& triangle : source.mesh.triangles) {
-        found_.triangles.push_back({static_cast<std::int32_t>(triangle[0] + first),
-                                    static_cast<std::int32_t>(triangle[1] + first),
-                                    static_cast<std::int32_t>(triangle[2] + first)});
-      }
-      source_ends_.push_back(found_.triangles.size());
-    }
+    return triangle;
   }
 
-  void measure(const Progress& progress) {
-    normals_.resize(found_.triangles.size());
-    areas_.resize(found_.triangles.size());
-    const auto measure_some = [&](std::int64_t begin, std::int64_t end) {
-      for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-        const Vector3 a = found_.corner(t, 0);
-        const Vector3 twice = cross(found_.corner(t, 1) - a, found_.corner(t, 2) - a);
-        const double size = length(twice);
-        areas_[t] = size / 2.0;
-        normals_[t] = size > 0.0 ? (1.0 / size) * twice : Vector3{};
+  // As long as twice the area.
+  Vector3 normal(std::size_t t) const {
+    const Vector3 a = found_.corner(t, 0);
+    return cross(found_.corner(t, 1) - a, found_.corner(t, 2) - a);
+  }
+
+  // Calls visit(sweep, low, sides) for the sides of every edge, in order within a sweep, which is
+  // of a range of lower vertices; sweeps are in parallel.
+  template <typename Visit>
+  void for_edges(std::int64_t sweeps, const Progress& progress, const Visit& visit) const {
+    const std::size_t vertices = found_.positions.size();
+    parallel_for(sweeps, threads_, progress, [&](std::int64_t sweep) {
+      const std::size_t first = vertices * static_cast<std::size_t>(sweep) / sweeps;
+      const std::size_t end = vertices * static_cast<std::size_t>(sweep + 1) / sweeps;
+      std::vector<std::uint32_t> ends(end - first + 1, 0);
+      const auto for_sides = [&](const auto& take) {
+        for (std::size_t t = 0; t < count_; ++t) {
+          const Triangle corners = places(t);
+          for (std::size_t i = 0; i < 3; ++i) {
+            const auto [low, high] = std::minmax(corners[i], corners[(i + 1) % 3]);
+            const auto lower = static_cast<std::size_t>(low);
+            if (low == high || lower < first || lower >= end) continue;
+            take(lower - first,
+                 Side{static_cast<std::uint32_t>(high), static_cast<std::uint32_t>(3 * t + i)});
+          }
+        }
+      };
+      for_sides([&](std::size_t row, const Side&) { ++ends[row + 1]; });
+      std::partial_sum(ends.begin(), ends.end(), ends.begin());
+      std::vector<Side> sides(ends.back());
+      // Each row's begin moves to its end, which is where the next one begins.
+      for_sides([&](std::size_t row, const Side& side) { sides[ends[row]++] = side; });
+      std::size_t begin = 0;
+      for (std::size_t row = 0; row + 1 < ends.size(); ++row) {
+        const std::size_t row_end = ends[row];
+        std::sort(sides.begin() + static_cast<std::ptrdiff_t>(begin),
+                  sides.begin() + static_cast<std::ptrdiff_t>(row_end));
+        while (begin < row_end) {
+          std::size_t next = begin + 1;
+          while (next < row_end && sides[next].other == sides[begin].other) ++next;
+          visit(static_cast<std::size_t>(sweep), static_cast<std::int32_t>(first + row),
+                std::span<const Side>(sides).subspan(begin, next - begin));
+          begin = next;
+        }
+      }
+    });
+  }
+
+  bool runs_up(const Side& side) const {
+    const Triangle corners = places(side.half / 3);
+    return corners[side.half % 3] < corners[(side.half + 1) % 3];
+  }
+
+  // Where some edges have one side alone, vertices at one place become one first.
+  void join_smooth(const Progress& progress) {
+    if (join_smooth_once(progress.part(0.0, 0.5))) return;
+    weld(progress.part(0.5, 0.6));
+    join_smooth_once(progress.part(0.6, 1.0));
+  }
+
+  // Returns whether no edge has one side alone.
+  bool join_smooth_once(const Progress& progress) {
+    DisjointSets regions(count_);
+    DisjointSets parts(count_);
+    const auto rows = static_cast<std::int64_t>(3 * count_);
+    const std::int64_t sweeps = std::min(range_count(rows, kSidesPerSweep), kMostSweeps);
+    std::vector<std::vector<Wall>> walls(static_cast<std::size_t>(sweeps));
+    std::atomic<bool> has_single = false;
+    const auto join = [&](std::size_t sweep, std::int32_t low, std::span<const Side> sides) {
+      if (sides.size() == 1) has_single = true;
+      if (sides.size() != 2 || runs_up(sides[0]) == runs_up(sides[1])) return;
+      const std::size_t t = sides[0].half / 3;
+      const std::size_t u = sides[1].half / 3;
+      const Vector3 of_t = normal(t);
+      const Vector3 of_u = normal(u);
+      const double sizes = std::sqrt(dot(of_t, of_t) * dot(of_u, of_u));
+      if (!(sizes > 0.0)) return;
+      const std::array<std::int32_t, 2> both = {static_cast<std::int32_t>(t),
+                                                static_cast<std::int32_t>(u)};
+      parts.join(both[0], both[1]);
+      if (dot(of_t, of_u) >= kSharpCosine * sizes && meshes_.group(t) == meshes_.group(u)) {
+        regions.join(both[0], both[1]);
+      } else {
+        walls[sweep].push_back({{low, static_cast<std::int32_t>(sides[0].other)}, both});
       }
     };
-    parallel_ranges(static_cast<std::int64_t>(found_.triangles.size()), kRowsPerTask, threads_,
-                    progress, measure_some);
+    for_edges(sweeps, progress, join);
+    if (has_single && firsts_.empty()) return false;
+    walls_.clear();
+    for (std::vector<Wall>& some : walls) {
+      walls_.insert(walls_.end(), some.begin(), some.end());
+      some = {};
+    }
+    found_.labels = regions.numbers(&region_count_);
+    found_.parts = parts.numbers(&found_.part_count);
+    return true;
   }
 
-  // Sorts the sides of triangles by their ends. Where some have no partner, vertices at one place
-  // become one first.
-  void pair_sides(const Progress& progress) {
-    corners_ = found_.triangles;
-    sort_sides(progress.part(0.0, 0.5));
-    if (!has_single()) return;
-    std::vector<std::int32_t> order(found_.positions.size());
+  void weld(const Progress& progress) {
+    const FramedPositions& positions = found_.positions;
+    std::vector<std::int32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0);
-    const auto& positions = found_.positions;
     const auto less = [&](std::int32_t a, std::int32_t b) {
-      const Vector3& p = positions[static_cast<std::size_t>(a)];
-      const Vector3& q = positions[static_cast<std::size_t>(b)];
+      const Vector3 p = positions[static_cast<std::size_t>(a)];
+      const Vector3 q = positions[static_cast<std::size_t>(b)];
       return p != q ? p < q : a < b;
     };
-    sort_in_parallel(&order, progress.part(0.5, 0.7), threads_, less);
-    std::vector<std::int32_t> firsts(order.size());
+    sort_in_parallel(&order, progress, threads_, less);
+    firsts_.resize(order.size());
     for (std::size_t i = 0; i < order.size(); ++i) {
       const auto v = static_cast<std::size_t>(order[i]);
       const bool is_same =
           i > 0 && positions[v] == positions[static_cast<std::size_t>(order[i - 1])];
-      firsts[v] = is_same ? firsts[static_cast<std::size_t>(order[i - 1])] : order[i];
-    }
-    for (std::size_t s = 0; s < source_ends_.size(); ++s) {
-      const std::size_t begin = s == 0 ? 0 : source_ends_[s - 1];
-      for (std::size_t t = begin; t < source_ends_[s]; ++t) {
-        for (std::int32_t& vertex : corners_[t]) vertex = firsts[static_cast<std::size_t>(vertex)];
-      }
-    }
-    sort_sides(progress.part(0.7, 1.0));
-  }
-
-  void sort_sides(const Progress& progress) {
-    sides_.resize(3 * corners_.size());
-    const auto list = [&](std::int64_t begin, std::int64_t end) {
-      for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-        for (std::size_t i = 0; i < 3; ++i) {
-          const auto [low, high] = std::minmax(corners_[t][i], corners_[t][(i + 1) % 3]);
-          sides_[3 * t + i] = {
-              (static_cast<std::uint64_t>(low) << 32U) | static_cast<std::uint32_t>(high),
-              static_cast<std::uint32_t>(3 * t + i)};
-        }
-      }
-    };
-    parallel_ranges(static_cast<std::int64_t>(corners_.size()), kRowsPerTask, threads_,
-                    progress.part(0.0, 0.1), list);
-    sort_in_parallel(&sides_, progress.part(0.1, 1.0), threads_);
-  }
-
-  bool has_single() const {
-    for (std::size_t i = 0; i < sides_.size(); ++i) {
-      const bool before = i > 0 && sides_[i - 1].ends == sides_[i].ends;
-      const bool after = i + 1 < sides_.size() && sides_[i + 1].ends == sides_[i].ends;
-      if (!before && !after) return true;
-    }
-    return false;
-  }
-
-  static std::size_t triangle_of(const HalfEdge& side) { return side.half / 3; }
-  bool runs_up(const HalfEdge& side) const {
-    const Triangle& corners = corners_[triangle_of(side)];
-    return corners[side.half % 3] < corners[(side.half + 1) % 3];
-  }
-
-  // Calls visit(i, j) for the sides of two triangles that meet there alone, both with an area and
-  // seen from one side.
-  template <typename Visit>
-  void for_pairs(const Visit& visit) const {
-    for (std::size_t i = 0; i < sides_.size();) {
-      std::size_t end = i + 1;
-      while (end < sides_.size() && sides_[end].ends == sides_[i].ends) ++end;
-      if (end == i + 2 && runs_up(sides_[i]) != runs_up(sides_[i + 1]) &&
-          areas_[triangle_of(sides_[i])] > 0.0 && areas_[triangle_of(sides_[i + 1])] > 0.0) {
-        visit(sides_[i], sides_[i + 1]);
-      }
-      i = end;
+      firsts_[v] = is_same ? firsts_[static_cast<std::size_t>(order[i - 1])] : order[i];
     }
   }
 
-  bool is_sharp(std::size_t t, std::size_t u) const {
-    return dot(normals_[t], normals_[u]) < kSharpCosine;
-  }
-
-  void join_smooth(std::span<const SourceMesh> sources) {
-    const auto group_of = [&](std::size_t t) -> std::int64_t {
-      std::size_t s = 0;
-      while (t >= source_ends_[s]) ++s;
-      const std::size_t begin = s == 0 ? 0 : source_ends_[s - 1];
-      return sources[s].groups.empty() ? 0 : sources[s].groups[t - begin];
-    };
-    DisjointSets regions(corners_.size());
-    DisjointSets parts(corners_.size());
-    for_pairs([&](const HalfEdge& a, const HalfEdge& b) {
-      const std::size_t t = triangle_of(a);
-      const std::size_t u = triangle_of(b);
-      parts.join(static_cast<std::int32_t>(t), static_cast<std::int32_t>(u));
-      if (!is_sharp(t, u) && group_of(t) == group_of(u)) {
-        regions.join(static_cast<std::int32_t>(t), static_cast<std::int32_t>(u));
+  // The areas of regions and around vertices.
+  void measure(const Progress& progress) {
+    region_areas_.assign(static_cast<std::size_t>(region_count_), 0.0);
+    vertex_areas_.assign(found_.positions.size(), 0.0F);
+    for (std::size_t t = 0; t < count_; ++t) {
+      if (t % kRowsPerTask == 0) {
+        progress.report(static_cast<double>(t) / static_cast<double>(count_));
       }
-    });
-    found_.labels = regions.numbers(&region_count_);
-    found_.parts = parts.numbers(&found_.part_count);
-    groups_of_regions_.resize(static_cast<std::size_t>(region_count_));
-    for (std::size_t t = 0; t < corners_.size(); ++t) {
-      groups_of_regions_[static_cast<std::size_t>(found_.labels[t])] = group_of(t);
+      const Vector3 twice = normal(t);
+      const double area = std::sqrt(dot(twice, twice)) / 2.0;
+      std::int32_t& label = found_.labels[t];
+      region_areas_[static_cast<std::size_t>(label)] += area;
+      if (!(area > 0.0)) label = -1;
+      for (const std::int32_t vertex : places(t)) {
+        vertex_areas_[static_cast<std::size_t>(vertex)] += static_cast<float>(area);
+      }
     }
   }
 
@@ -256,25 +264,19 @@ class RegionFinder {
   };
 
   void join_small() {
-    std::vector<double> sizes(static_cast<std::size_t>(region_count_), 0.0);
-    for (std::size_t t = 0; t < corners_.size(); ++t) {
-      sizes[static_cast<std::size_t>(found_.labels[t])] += areas_[t];
-    }
     const auto is_small = [&](std::int32_t label) {
-      return sizes[static_cast<std::size_t>(label)] < kLeastRegion * cell_ * cell_;
+      return region_areas_[static_cast<std::size_t>(label)] < kLeastRegion * cell_ * cell_;
     };
     std::vector<Shared> shared;
-    for_pairs([&](const HalfEdge& a, const HalfEdge& b) {
-      const std::int32_t p = found_.labels[triangle_of(a)];
-      const std::int32_t q = found_.labels[triangle_of(b)];
-      if (p == q || groups_of_regions_[static_cast<std::size_t>(p)] !=
-                        groups_of_regions_[static_cast<std::size_t>(q)]) {
-        return;
-      }
-      const double size = side_length(a);
+    for (const Wall& wall : walls_) {
+      const std::int32_t p = label_of(wall, 0);
+      const std::int32_t q = label_of(wall, 1);
+      if (p == q || group_of(wall, 0) != group_of(wall, 1)) continue;
+      const double size = wall_length(wall);
       if (is_small(p)) shared.push_back({p, q, size});
       if (is_small(q)) shared.push_back({q, p, size});
-    });
+    }
+    if (shared.empty()) return;
     std::sort(shared.begin(), shared.end(), [](const Shared& a, const Shared& b) {
       if (a.small != b.small) return a.small < b.small;
       return a.other != b.other ? a.other < b.other : a.length < b.length;
@@ -282,7 +284,7 @@ class RegionFinder {
     DisjointSets joined(static_cast<std::size_t>(region_count_));
     for (std::size_t i = 0; i < shared.size();) {
       const std::int32_t small = shared[i].small;
-      std::int32_t best = -1;
+      std::int32_t best = small;
       double longest = -1.0;
       while (i < shared.size() && shared[i].small == small) {
         const std::int32_t other = shared[i].other;
@@ -298,43 +300,40 @@ class RegionFinder {
       joined.join(small, best);
     }
     const std::vector<std::int32_t> numbers = joined.numbers(&region_count_);
-    for (std::size_t t = 0; t < corners_.size(); ++t) {
-      std::int32_t& label = found_.labels[t];
-      label = areas_[t] > 0.0 ? numbers[static_cast<std::size_t>(label)] : -1;
+    for (std::int32_t& label : found_.labels) {
+      if (label >= 0) label = numbers[static_cast<std::size_t>(label)];
     }
   }
 
-  double side_length(const HalfEdge& side) const {
-    return length(found_.positions[side.ends >> 32U] - found_.positions[side.ends & 0xFFFFFFFFU]);
+  std::int32_t label_of(const Wall& wall, std::size_t side) const {
+    return found_.labels[static_cast<std::size_t>(wall.triangles[side])];
+  }
+  std::int32_t group_of(const Wall& wall, std::size_t side) const {
+    return meshes_.group(static_cast<std::size_t>(wall.triangles[side]));
+  }
+  double wall_length(const Wall& wall) const {
+    return length(found_.positions[static_cast<std::size_t>(wall.ends[0])] -
+                  found_.positions[static_cast<std::size_t>(wall.ends[1])]);
   }
 
   void find_borders() {
     std::vector<RegionBorder> within;
-    for_pairs([&](const HalfEdge& a, const HalfEdge& b) {
-      const std::size_t t = triangle_of(a);
-      const std::size_t u = triangle_of(b);
-      const std::int32_t p = found_.labels[t];
-      const std::int32_t q = found_.labels[u];
-      const RegionBorder border = {{static_cast<std::int32_t>(a.ends >> 32U),
-                                    static_cast<std::int32_t>(a.ends & 0xFFFFFFFFU)},
-                                   {p, q},
-                                   {static_cast<std::int32_t>(t), static_cast<std::int32_t>(u)}};
-      if (p != q) {
-        found_.borders.push_back(border);
-      } else if (is_sharp(t, u)) {
-        within.push_back(border);
-      }
-    });
+    for (const Wall& wall : walls_) {
+      const std::int32_t p = label_of(wall, 0);
+      const std::int32_t q = label_of(wall, 1);
+      const RegionBorder border = {wall.ends, {p, q}, wall.triangles};
+      (p != q ? found_.borders : within).push_back(border);
+    }
+    walls_ = {};
+    if (within.empty()) return;
     DisjointSets chains(found_.positions.size());
     for (const RegionBorder& border : within) chains.join(border.ends[0], border.ends[1]);
-    std::vector<std::pair<std::int32_t, double>> lengths;
+    std::vector<double> sums(found_.positions.size(), 0.0);
     for (const RegionBorder& border : within) {
-      lengths.emplace_back(chains.root(border.ends[0]),
-                           length(found_.positions[static_cast<std::size_t>(border.ends[0])] -
-                                  found_.positions[static_cast<std::size_t>(border.ends[1])]));
+      sums[static_cast<std::size_t>(chains.root(border.ends[0]))] +=
+          length(found_.positions[static_cast<std::size_t>(border.ends[0])] -
+                 found_.positions[static_cast<std::size_t>(border.ends[1])]);
     }
-    std::vector<double> sums(lengths.empty() ? 0 : found_.positions.size(), 0.0);
-    for (const auto& [chain, size] : lengths) sums[static_cast<std::size_t>(chain)] += size;
     for (const RegionBorder& border : within) {
       if (sums[static_cast<std::size_t>(chains.root(border.ends[0]))] >= kLeastRidge * cell_) {
         found_.borders.push_back(border);
@@ -379,21 +378,43 @@ class RegionFinder {
       }
       i = end;
     }
-    std::vector<Vector3> sums(found_.positions.size(), Vector3{});
-    std::vector<double> areas(found_.positions.size(), 0.0);
-    std::vector<std::int32_t> labels(found_.positions.size(), -1);
-    for (std::size_t t = 0; t < corners_.size(); ++t) {
-      for (const std::int32_t corner : corners_[t]) {
-        const auto v = static_cast<std::size_t>(corner);
-        sums[v] = sums[v] + areas_[t] * normals_[t];
-        areas[v] += areas_[t];
-        labels[v] = std::max(labels[v], found_.labels[t]);
+    find_tips(has_border);
+  }
+
+  // Vertices without a border where the normals around differ much.
+  void find_tips(const std::vector<std::uint8_t>& has_border) {
+    const double least = kLeastRegion * cell_ * cell_;
+    std::vector<std::int32_t> candidates;
+    for (std::size_t v = 0; v < has_border.size(); ++v) {
+      if (has_border[v] == 0 && static_cast<double>(vertex_areas_[v]) > least) {
+        candidates.push_back(static_cast<std::int32_t>(v));
       }
     }
-    for (std::size_t v = 0; v < sums.size(); ++v) {
-      if (has_border[v] != 0 || !(areas[v] > kLeastRegion * cell_ * cell_)) continue;
-      if (length(sums[v]) < kPointedShare * areas[v]) {
-        found_.corners.push_back({static_cast<std::int32_t>(v), {labels[v]}});
+    if (candidates.empty()) return;
+    struct Around {
+      Vector3 sum{};
+      double area = 0.0;
+      std::int32_t label = -1;
+    };
+    std::vector<Around> around(candidates.size());
+    std::vector<std::int32_t> numbers(has_border.size(), -1);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      numbers[static_cast<std::size_t>(candidates[i])] = static_cast<std::int32_t>(i);
+    }
+    for (std::size_t t = 0; t < count_; ++t) {
+      for (const std::int32_t vertex : places(t)) {
+        const std::int32_t number = numbers[static_cast<std::size_t>(vertex)];
+        if (number < 0) continue;
+        Around& one = around[static_cast<std::size_t>(number)];
+        const Vector3 half = 0.5 * normal(t);
+        one.sum = one.sum + half;
+        one.area += length(half);
+        one.label = std::max(one.label, found_.labels[t]);
+      }
+    }
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (length(around[i].sum) < kPointedShare * around[i].area) {
+        found_.corners.push_back({candidates[i], {around[i].label}});
       }
     }
   }
@@ -407,20 +428,40 @@ class RegionFinder {
 
   double cell_;
   int threads_;
+  JoinedMeshes meshes_;
   SourceRegions found_;
-  std::vector<std::size_t> source_ends_;
-  std::vector<Vector3> normals_;
-  std::vector<double> areas_;
-  std::vector<Triangle> corners_;  // with one vertex a place
-  std::vector<HalfEdge> sides_;
+  std::size_t count_;                 // of triangles
+  std::vector<std::int32_t> firsts_;  // of each vertex, the first at its place; empty if not needed
+  std::vector<Wall> walls_;
+  std::vector<double> region_areas_;
+  std::vector<float> vertex_areas_;
   int region_count_ = 0;
-  std::vector<std::int64_t> groups_of_regions_;
 };
 }  // namespace
 
+JoinedMeshes::JoinedMeshes(std::span<const SourceMesh> sources) {
+  for (const SourceMesh& source : sources) {
+    check_mesh(source.mesh, kLargest);
+    if (!source.groups.empty() && source.groups.size() != source.mesh.triangles.size()) {
+      throw_invalid("sources: " + std::to_string(source.groups.size()) + " groups of " +
+                    std::to_string(source.mesh.triangles.size()) +
+                    " triangles; one each is needed");
+    }
+    meshes_.push_back(source.mesh);
+    groups_.push_back(source.groups);
+    first_vertices_.push_back(first_vertices_.back() + source.mesh.positions.size());
+    first_triangles_.push_back(first_triangles_.back() + source.mesh.triangles.size());
+  }
+  constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max() / 3;
+  if (vertex_count() > kMost || triangle_count() > kMost) {
+    throw_invalid("sources: " + std::to_string(std::max(vertex_count(), triangle_count())) +
+                  " vertices or triangles; at most " + std::to_string(kMost) + " are allowed");
+  }
+}
+
 SourceRegions find_regions(std::span<const SourceMesh> sources, const RootFrame& frame, double cell,
                            const Progress& progress, int threads) {
-  return RegionFinder(cell, threads).find(sources, frame, progress);
+  return RegionFinder(sources, frame, cell, threads).find(progress);
 }
 
 }  // namespace prefilter

@@ -26,10 +26,78 @@ struct RegionCorner {
   std::vector<std::int32_t> labels;  // of the regions around it, in order
 };
 
-/// Meshes as one, cut into regions along edges of more than 20 degrees, and between groups.
+/// The vertices and triangles of several meshes, numbered through, as their owners hold them.
+class JoinedMeshes {
+ public:
+  JoinedMeshes() = default;
+  /// Throws Error as check_mesh does, and for too many.
+  explicit JoinedMeshes(std::span<const SourceMesh> sources);
+
+  std::size_t vertex_count() const { return first_vertices_.back(); }
+  std::size_t triangle_count() const { return first_triangles_.back(); }
+  /// Where a vertex is, in its mesh's space.
+  Vector3 position(std::size_t vertex) const {
+    const std::size_t i = mesh_of(first_vertices_, vertex);
+    return meshes_[i].positions[vertex - first_vertices_[i]];
+  }
+  std::array<std::int32_t, 3> triangle(std::size_t triangle) const {
+    const std::size_t i = mesh_of(first_triangles_, triangle);
+    const auto [a, b, c] = meshes_[i].triangles[triangle - first_triangles_[i]];
+    const auto first = static_cast<std::int32_t>(first_vertices_[i]);
+    return {static_cast<std::int32_t>(a) + first, static_cast<std::int32_t>(b) + first,
+            static_cast<std::int32_t>(c) + first};
+  }
+  /// 0 where the mesh has no groups.
+  std::int32_t group(std::size_t triangle) const {
+    const std::size_t i = mesh_of(first_triangles_, triangle);
+    return groups_[i].empty() ? 0 : groups_[i][triangle - first_triangles_[i]];
+  }
+
+ private:
+  static std::size_t mesh_of(const std::vector<std::size_t>& firsts, std::size_t index) {
+    std::size_t i = 0;
+    while (index >= firsts[i + 1]) ++i;
+    return i;
+  }
+
+  std::vector<InputMesh> meshes_;
+  std::vector<std::span<const std::int32_t>> groups_;
+  std::vector<std::size_t> first_vertices_ = {0};
+  std::vector<std::size_t> first_triangles_ = {0};
+};
+
+/// Vertices in a frame, carried there as they are read.
+class FramedPositions {
+ public:
+  FramedPositions(const JoinedMeshes& meshes, const RootFrame& frame)
+      : meshes_(meshes), frame_(frame) {}
+  std::size_t size() const { return meshes_.vertex_count(); }
+  Vector3 operator[](std::size_t vertex) const {
+    return frame_.from_space(meshes_.position(vertex));
+  }
+
+ private:
+  JoinedMeshes meshes_;
+  RootFrame frame_;
+};
+
+class JoinedTriangles {
+ public:
+  explicit JoinedTriangles(const JoinedMeshes& meshes) : meshes_(meshes) {}
+  std::size_t size() const { return meshes_.triangle_count(); }
+  std::array<std::int32_t, 3> operator[](std::size_t triangle) const {
+    return meshes_.triangle(triangle);
+  }
+
+ private:
+  JoinedMeshes meshes_;
+};
+
+/// Meshes as one, cut into regions along edges of more than 20 degrees, and between groups. Holds
+/// no copy of the meshes, which have to live as long.
 struct SourceRegions {
-  std::vector<Vector3> positions;  // the frame's
-  std::vector<std::array<std::int32_t, 3>> triangles;
+  FramedPositions positions;
+  JoinedTriangles triangles;
   std::vector<std::int32_t> labels;  // of each triangle, its region; -1 without an area
   std::vector<std::int32_t> parts;   // of each triangle, what hangs together by its edges
   std::vector<RegionBorder> borders;

@@ -522,7 +522,7 @@ def contour_octree(
     interpolant: str,
     isovalue: float,
     sources: list[
-        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int64]]
+        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]
     ],
     clean_up: bool,
     adaptivity: float,

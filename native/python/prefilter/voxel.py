@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
-from ._border.arrays import as_floats, as_mesh, as_threads
+from ._border.arrays import as_floats, as_labels, as_mesh, as_threads
 from .octree_files import read_octree, write_octree
 
 Corner = Sequence[float] | npt.NDArray[np.floating]
@@ -348,7 +348,7 @@ def cube_around(bounds: Box, *, depth: int = 8) -> tuple[np.ndarray, np.ndarray]
 
 def _as_sources(
     sources: Sequence[Source] | None,
-) -> list[tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int64]]]:
+) -> list[tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]]:
     if sources is None:
         return []
     checked = []
@@ -358,19 +358,13 @@ def _as_sources(
                 f"sources: item {i} is a {type(source).__name__}; (positions, triangles) or "
                 "(positions, triangles, groups) is needed"
             )
-        groups = np.empty(0, np.int64)
-        if len(source) == 3:
-            groups = np.ascontiguousarray(source[2], np.int64)
-        checked.append(
-            (
-                *as_mesh(
-                    source[0],
-                    source[1],
-                    names=(f"sources[{i}] positions", f"sources[{i}] triangles"),
-                ),
-                groups,
-            )
+        mesh = as_mesh(
+            source[0], source[1], names=(f"sources[{i}] positions", f"sources[{i}] triangles")
         )
+        groups = np.empty(0, np.int32)
+        if len(source) == 3:
+            groups = as_labels(f"sources[{i}] groups", source[2], len(mesh[1]), "triangles")
+        checked.append((*mesh, groups))
     return checked
 
 
