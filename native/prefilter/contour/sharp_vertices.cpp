@@ -107,7 +107,7 @@ void move_tips(const SourceSurface& surface, VertexSamples* samples, SurfaceVert
   };
   std::map<Place, std::vector<std::size_t>> tips;
   const auto& corners = surface.regions().corners;
-  const auto tip_at = [&](std::size_t i) -> const Vector3& {
+  const auto tip_at = [&](std::size_t i) -> Vector3 {
     return surface.regions().positions[static_cast<std::size_t>(corners[i].vertex)];
   };
   for (std::size_t i = 0; i < corners.size(); ++i) {

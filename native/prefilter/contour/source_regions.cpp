@@ -21,9 +21,14 @@ constexpr std::int64_t kSidesPerSweep = 1 << 21;
 constexpr std::int64_t kMostSweeps = 16;
 constexpr double kSharpCosine = 0.9396926207859084;  // 20 degrees
 constexpr double kTurnCosine = 0.8660254037844387;   // 30 degrees: of a border at a corner
-constexpr double kPointedShare = 0.9;                // of a mean normal's length, at a tip
-constexpr double kLeastRegion = 0.5;                 // of a cell's face
-constexpr double kLeastRidge = 3.0;                  // cells
+constexpr double kPointedShare = 0.75;               // of a mean normal's length, at a tip
+constexpr double kLeastRegion = 4.0;                 // of a cell's face
+constexpr double kStraight = 0.5176380902050415;     // twice the sine of 15 degrees
+// A chain of edges is roughness where it turns or parts this often, and they are this blunt.
+constexpr double kRoughCells = 12.0;
+constexpr int kRoughEdges = 4;
+constexpr double kRoughAngle = 0.6981317007977318;  // 40 degrees, on average
+constexpr double kLeastRidge = 8.0;                 // cells
 constexpr double kLargest = 1e150;
 
 using Triangle = std::array<std::int32_t, 3>;
@@ -318,27 +323,102 @@ class RegionFinder {
 
   void find_borders() {
     std::vector<RegionBorder> within;
+    std::vector<RegionBorder> between;
+    on_wall_.assign(found_.positions.size(), 0);
     for (const Wall& wall : walls_) {
+      for (const std::int32_t end : wall.ends) on_wall_[static_cast<std::size_t>(end)] = 1;
       const std::int32_t p = label_of(wall, 0);
       const std::int32_t q = label_of(wall, 1);
-      const RegionBorder border = {wall.ends, {p, q}, wall.triangles};
-      (p != q ? found_.borders : within).push_back(border);
-    }
-    walls_ = {};
-    if (within.empty()) return;
-    DisjointSets chains(found_.positions.size());
-    for (const RegionBorder& border : within) chains.join(border.ends[0], border.ends[1]);
-    std::vector<double> sums(found_.positions.size(), 0.0);
-    for (const RegionBorder& border : within) {
-      sums[static_cast<std::size_t>(chains.root(border.ends[0]))] +=
-          length(found_.positions[static_cast<std::size_t>(border.ends[0])] -
-                 found_.positions[static_cast<std::size_t>(border.ends[1])]);
-    }
-    for (const RegionBorder& border : within) {
-      if (sums[static_cast<std::size_t>(chains.root(border.ends[0]))] >= kLeastRidge * cell_) {
-        found_.borders.push_back(border);
+      if (p != q && group_of(wall, 0) != group_of(wall, 1)) {
+        found_.borders.push_back({wall.ends, {p, q}, wall.triangles});
+      } else {
+        (p != q ? between : within).push_back({wall.ends, {p, q}, wall.triangles});
       }
     }
+    walls_ = {};
+    const std::vector<std::uint8_t> is_ridge = are_smooth(within, kLeastRidge);
+    for (std::size_t i = 0; i < within.size(); ++i) {
+      if (is_ridge[i] != 0) found_.borders.push_back(within[i]);
+    }
+    const std::vector<std::uint8_t> is_border = are_smooth(between, 0.0);
+    DisjointSets joined(static_cast<std::size_t>(region_count_));
+    bool has_joined = false;
+    for (std::size_t i = 0; i < between.size(); ++i) {
+      if (is_border[i] != 0) {
+        found_.borders.push_back(between[i]);
+      } else {
+        joined.join(between[i].labels[0], between[i].labels[1]);
+        has_joined = true;
+      }
+    }
+    if (!has_joined) return;
+    const std::vector<std::int32_t> numbers = joined.numbers(&region_count_);
+    for (std::int32_t& label : found_.labels) {
+      if (label >= 0) label = numbers[static_cast<std::size_t>(label)];
+    }
+    for (RegionBorder& border : found_.borders) {
+      for (std::int32_t& label : border.labels) label = numbers[static_cast<std::size_t>(label)];
+    }
+  }
+
+  double angle_between(const std::array<std::int32_t, 2>& triangles) const {
+    const Vector3 a = normal(static_cast<std::size_t>(triangles[0]));
+    const Vector3 b = normal(static_cast<std::size_t>(triangles[1]));
+    return std::atan2(length(cross(a, b)), dot(a, b));
+  }
+
+  // Of edges that hang together: whether they are `least` cells long, and no roughness: blunt, and
+  // with many vertices where they turn, end or meet.
+  std::vector<std::uint8_t> are_smooth(const std::vector<RegionBorder>& borders,
+                                       double least) const {
+    std::vector<std::uint8_t> result(borders.size(), 0);
+    if (borders.empty()) return result;
+    DisjointSets chains(found_.positions.size());
+    struct Meeting {
+      Vector3 sum{};  // of the directions of the edges that end there
+      int edges = 0;
+    };
+    std::vector<Meeting> meetings(found_.positions.size());
+    for (const RegionBorder& border : borders) {
+      chains.join(border.ends[0], border.ends[1]);
+      const Vector3 along = direction(border.ends[0], border.ends[1]);
+      for (int end = 0; end < 2; ++end) {
+        Meeting& meeting = meetings[static_cast<std::size_t>(border.ends[end])];
+        meeting.sum = end == 0 ? meeting.sum + along : meeting.sum - along;
+        ++meeting.edges;
+      }
+    }
+    struct Chain {
+      double cells = 0.0;
+      double angles = 0.0;
+      int edges = 0;
+      int rough = 0;
+    };
+    std::vector<Chain> sums(found_.positions.size());
+    const auto chain_of = [&](std::int32_t vertex) -> Chain& {
+      return sums[static_cast<std::size_t>(chains.root(vertex))];
+    };
+    for (const RegionBorder& border : borders) {
+      Chain& chain = chain_of(border.ends[0]);
+      chain.angles += angle_between(border.triangles);
+      ++chain.edges;
+      chain.cells += length(found_.positions[static_cast<std::size_t>(border.ends[0])] -
+                            found_.positions[static_cast<std::size_t>(border.ends[1])]) /
+                     cell_;
+    }
+    for (std::size_t v = 0; v < meetings.size(); ++v) {
+      if (meetings[v].edges == 0) continue;
+      if (meetings[v].edges == 2 && length(meetings[v].sum) < kStraight) continue;
+      ++chain_of(static_cast<std::int32_t>(v)).rough;
+    }
+    for (std::size_t i = 0; i < borders.size(); ++i) {
+      const Chain& chain = chain_of(borders[i].ends[0]);
+      const bool is_rough = chain.rough > 2 + chain.edges / kRoughEdges &&
+                            chain.cells < kRoughCells * chain.rough &&
+                            chain.angles < kRoughAngle * chain.edges;
+      result[i] = chain.cells >= least && !is_rough ? 1 : 0;
+    }
+    return result;
   }
 
   void find_corners() {
@@ -354,12 +434,10 @@ class RegionFinder {
     }
     std::stable_sort(ends.begin(), ends.end(),
                      [](const End& a, const End& b) { return a.vertex < b.vertex; });
-    std::vector<std::uint8_t> has_border(found_.positions.size(), 0);
     for (std::size_t i = 0; i < ends.size();) {
       std::size_t end = i + 1;
       while (end < ends.size() && ends[end].vertex == ends[i].vertex) ++end;
       const std::int32_t vertex = ends[i].vertex;
-      has_border[static_cast<std::size_t>(vertex)] = 1;
       bool is_corner = end - i != 2;
       if (!is_corner) {
         const Vector3 u = direction(vertex, ends[i].other);
@@ -378,15 +456,15 @@ class RegionFinder {
       }
       i = end;
     }
-    find_tips(has_border);
+    find_tips();
   }
 
   // Vertices without a border where the normals around differ much.
-  void find_tips(const std::vector<std::uint8_t>& has_border) {
+  void find_tips() {
     const double least = kLeastRegion * cell_ * cell_;
     std::vector<std::int32_t> candidates;
-    for (std::size_t v = 0; v < has_border.size(); ++v) {
-      if (has_border[v] == 0 && static_cast<double>(vertex_areas_[v]) > least) {
+    for (std::size_t v = 0; v < on_wall_.size(); ++v) {
+      if (on_wall_[v] == 0 && static_cast<double>(vertex_areas_[v]) > least) {
         candidates.push_back(static_cast<std::int32_t>(v));
       }
     }
@@ -397,7 +475,7 @@ class RegionFinder {
       std::int32_t label = -1;
     };
     std::vector<Around> around(candidates.size());
-    std::vector<std::int32_t> numbers(has_border.size(), -1);
+    std::vector<std::int32_t> numbers(on_wall_.size(), -1);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       numbers[static_cast<std::size_t>(candidates[i])] = static_cast<std::int32_t>(i);
     }
@@ -433,6 +511,7 @@ class RegionFinder {
   std::size_t count_;                 // of triangles
   std::vector<std::int32_t> firsts_;  // of each vertex, the first at its place; empty if not needed
   std::vector<Wall> walls_;
+  std::vector<std::uint8_t> on_wall_;  // of each vertex
   std::vector<double> region_areas_;
   std::vector<float> vertex_areas_;
   int region_count_ = 0;

@@ -109,9 +109,9 @@ struct SourceRegions {
   }
 };
 
-/// Vertices at one place count as one. Regions of less than half of a cell's face join the
+/// Vertices at one place count as one. Regions of less than four faces of a cell join the
 /// neighbour with which they share the longest border, and edges within a region count only where
-/// those that hang together are three cells long: what is smaller is roughness. `cell` is the side
+/// those that hang together are eight cells long: what is smaller is roughness. `cell` is the side
 /// of a cell.
 ///
 /// Throws Error as check_mesh does, and for groups that are not as many as the triangles;
