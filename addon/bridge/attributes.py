@@ -38,6 +38,11 @@ def corner_vertices(mesh: bpy.types.Mesh) -> NDArray[np.int32]:
     return found
 
 
+def is_triangulated(mesh: bpy.types.Mesh) -> bool:
+    """Returns whether all faces are triangles."""
+    return len(mesh.loops) == 3 * len(mesh.polygons)
+
+
 def corner_triangles(
     mesh: bpy.types.Mesh,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -101,6 +106,21 @@ def read_weights(
     values: NDArray[Any] = np.empty(count, types[attribute.data_type])
     attribute.data.foreach_get("value", values)
     return Weights(attribute.domain, values.astype(np.float64))
+
+
+def group_weights(
+    shown: bpy.types.Object, mesh: bpy.types.Mesh
+) -> list[tuple[str, NDArray[np.float32]]]:
+    """Returns the names and the weights, (n,), of all vertex groups; 0 stands for no member."""
+    names = [group.name for group in shown.vertex_groups]
+    if not names:
+        return []
+    weights = np.zeros((len(names), len(mesh.vertices)), np.float32)
+    for i, vertex in enumerate(mesh.vertices):
+        for element in vertex.groups:
+            if element.group < len(names):
+                weights[element.group, i] = element.weight
+    return list(zip(names, weights, strict=True))
 
 
 def _group_weights(mesh: bpy.types.Mesh, index: int) -> NDArray[np.float64]:

@@ -8,7 +8,11 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .layers import COLOR, NORMALS, UV_MAP, VERTEX_GROUP, NewLayer, write_layer
 from .solids import SOLID_TYPES, MaterialKey
+
+_WEIGHT_STEPS = 65535
+"""Of vertex groups: so many weights are told apart, and vertices with one are added together."""
 
 
 @dataclass(frozen=True)
@@ -20,22 +24,20 @@ class Contour:
         triangles: (m, 3) int32.
         materials: What the indices mean.
         face_materials: (m,) int32, or None where there is one material or none.
-        colors: By name: the type of the attribute, and (n, 4) scene-linear values.
-        active_color: The name of the active colour attribute.
-        render_color: The name of the one that renders use.
+        layers: Its attributes; vertex groups are the object's, and normals come last.
+        active: By kind, the names of the active color attribute and UV map.
+        rendered: Likewise of those that renders use.
         sharp_angle: Edges with a greater angle are sharp, in radians; None for flat faces.
-        numbers: By name: (n,) values of a FLOAT attribute.
     """
 
     positions: NDArray[np.float32]
     triangles: NDArray[np.int32]
     materials: Sequence[MaterialKey | None] = ()
     face_materials: NDArray[np.int32] | None = None
-    colors: dict[str, tuple[str, NDArray[np.float32]]] = field(default_factory=dict)
-    active_color: str = ""
-    render_color: str = ""
+    layers: Sequence[NewLayer] = ()
+    active: dict[str, str] = field(default_factory=dict)
+    rendered: dict[str, str] = field(default_factory=dict)
     sharp_angle: float | None = None
-    numbers: dict[str, NDArray[np.float32]] = field(default_factory=dict)
 
 
 def is_editable(obj: bpy.types.Object) -> bool:
@@ -73,12 +75,9 @@ def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
     if contour.face_materials is not None and contour.face_materials.any():
         indices = mesh.attributes.new("material_index", "INT", "FACE")
         indices.data.foreach_set("value", contour.face_materials)
-    for color_name, (data_type, values) in contour.colors.items():
-        attribute = mesh.color_attributes.new(color_name, data_type, "POINT")
-        attribute.data.foreach_set("color", np.ascontiguousarray(values, np.float32).ravel())
-    for number_name, numbers in contour.numbers.items():
-        attribute = mesh.attributes.new(number_name, "FLOAT", "POINT")
-        attribute.data.foreach_set("value", np.ascontiguousarray(numbers, np.float32))
+    for layer in contour.layers:
+        if layer.kind not in {VERTEX_GROUP, NORMALS}:
+            write_layer(mesh, layer)
     mesh.update(calc_edges=True)
     if contour.sharp_angle is None:
         mesh.shade_flat()
@@ -86,11 +85,10 @@ def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
         mesh.shade_smooth()
     if contour.sharp_angle is not None and contour.sharp_angle < math.pi:
         mesh.set_sharp_from_angle(angle=contour.sharp_angle)
-    colors = mesh.color_attributes
-    if contour.active_color in colors:
-        colors.active_color_name = contour.active_color
-    if contour.render_color in colors:
-        colors.render_color_index = colors.find(contour.render_color)
+    _choose_active(mesh, contour)
+    for layer in contour.layers:
+        if layer.kind == NORMALS:
+            mesh.normals_split_custom_set(layer.values)
     return mesh
 
 
@@ -104,6 +102,7 @@ def show_contour(obj: bpy.types.Object, contour: Contour) -> bpy.types.Object:
         _replace_mesh(obj, contour)
         return obj
     made = new_object_beside(obj, new_mesh(obj.name, contour), ".voxels")
+    _add_groups(made, contour)
     obj.hide_set(True)
     obj.hide_render = True
     return made
@@ -139,7 +138,33 @@ def _replace_mesh(obj: bpy.types.Object, contour: Contour) -> None:
     obj.modifiers.clear()
     obj.instance_type = "NONE"
     obj.data = mesh
+    _add_groups(obj, contour)
     if old.users == 0 and old.library is None:
         name = old.name
         bpy.data.meshes.remove(old)
         mesh.name = name
+
+
+def _choose_active(mesh: bpy.types.Mesh, contour: Contour) -> None:
+    colors, maps = mesh.color_attributes, mesh.uv_layers
+    if contour.active.get(COLOR, "") in colors:
+        colors.active_color_name = contour.active[COLOR]
+    if contour.rendered.get(COLOR, "") in colors:
+        colors.render_color_index = colors.find(contour.rendered[COLOR])
+    if contour.active.get(UV_MAP, "") in maps:
+        maps.active = maps[contour.active[UV_MAP]]
+    if contour.rendered.get(UV_MAP, "") in maps:
+        maps[contour.rendered[UV_MAP]].active_render = True
+
+
+def _add_groups(obj: bpy.types.Object, contour: Contour) -> None:
+    for layer in contour.layers:
+        if layer.kind != VERTEX_GROUP:
+            continue
+        group = obj.vertex_groups.new(name=layer.name)
+        steps = np.round(np.clip(layer.values[:, 0], 0.0, 1.0) * _WEIGHT_STEPS).astype(np.int64)
+        order = np.argsort(steps, kind="stable")
+        found, starts = np.unique(steps[order], return_index=True)
+        for step, members in zip(found, np.split(order, starts[1:]), strict=True):
+            if step:
+                group.add(members.tolist(), float(step / _WEIGHT_STEPS), "REPLACE")

@@ -40,12 +40,23 @@ class Place:
         to_local = np.asarray(np.linalg.inv(linear), np.float64)
         return cls(obj.name, matrix[:3, 3].copy(), to_local)
 
+    @property
+    def is_mirrored(self) -> bool:
+        """Whether triangles go the other way around in the object's space."""
+        return bool(np.linalg.det(self.to_local) < 0)
+
+    def localize_normals(self, normals: NDArray[np.floating]) -> NDArray[np.float32]:
+        """Returns normals in the object's space."""
+        local = normals.astype(np.float64) @ np.linalg.inv(self.to_local)
+        lengths = np.linalg.norm(local, axis=1, keepdims=True)
+        return np.asarray(local / np.maximum(lengths, 1e-30), np.float32)
+
     def localize(
         self, positions: NDArray[np.floating], triangles: NDArray[np.int32]
     ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
         """Returns triangles in the object's space, right side out there too."""
         local = (positions.astype(np.float64) @ self.to_local.T).astype(np.float32)
-        return local, triangles[:, ::-1] if np.linalg.det(self.to_local) < 0 else triangles
+        return local, triangles[:, ::-1] if self.is_mirrored else triangles
 
 
 def still_there(name: str) -> bpy.types.Object:

@@ -1,4 +1,4 @@
-"""Evaluated objects to triangles in space: what a solid is made of, with its materials and colours.
+"""Evaluated objects to triangles in space: what a solid is made of, with its materials and layers.
 
 Positions are in the axes and units of the world, from an origin that is near, so that objects far
 away keep their precision.
@@ -12,26 +12,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import attributes
+from .layers import COLOR, UV_MAP, Layer, Wanted, read_layers
 
 FloatArray = NDArray[np.float64]
+Positions = NDArray[np.floating]
+
+_ROWS = 1 << 18
+_NEAR = 8.0
+"""How many times its extent a mesh may be away from the origin, for single precision."""
 
 SOLID_TYPES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
 """Types of objects that evaluate to a mesh."""
-
-
-@dataclass(frozen=True)
-class Colors:
-    """A colour attribute of a mesh.
-
-    Attributes:
-        data_type: FLOAT_COLOR or BYTE_COLOR.
-        values: (k, 4) float32, scene-linear.
-        corners: (m, 3) int32, which of them the corners of the triangles have.
-    """
-
-    data_type: str
-    values: NDArray[np.float32]
-    corners: NDArray[np.int32]
 
 
 @dataclass(frozen=True)
@@ -59,16 +50,16 @@ class Part:
     """A mesh, placed once.
 
     Attributes:
-        positions: (n, 3) float64.
+        positions: (n, 3), float32 where that is precise enough, else float64.
         triangles: (m, 3) int32; counter-clockwise from outside, mirrored or not.
-        materials: (m,) int32, indices in the materials of the solid.
-        colors: Its colour attributes.
+        materials: (m,) int32, indices in the materials of the solid; or (1,) for one of all.
+        layers: Its attributes.
     """
 
-    positions: FloatArray
+    positions: Positions
     triangles: NDArray[np.int32]
     materials: NDArray[np.int32]
-    colors: dict[str, Colors]
+    layers: list[Layer]
 
 
 @dataclass
@@ -79,15 +70,15 @@ class Solid:
         name: The object's.
         parts: Its meshes, in space.
         materials: Those of the object's slots, in their order, then those of its instances.
-        active_color: The name of the active colour attribute; empty for none.
-        render_color: The name of the one that renders use.
+        active: By kind, the names of the active color attribute and UV map.
+        rendered: Likewise of those that renders use.
     """
 
     name: str
     parts: list[Part] = field(default_factory=list)
     materials: list[MaterialKey | None] = field(default_factory=list)
-    active_color: str = ""
-    render_color: str = ""
+    active: dict[str, str] = field(default_factory=dict)
+    rendered: dict[str, str] = field(default_factory=dict)
 
 
 def frame_origin(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> FloatArray:
@@ -99,6 +90,7 @@ def read_solids(
     objects: Iterable[bpy.types.Object],
     depsgraph: bpy.types.Depsgraph,
     origins: Iterable[FloatArray],
+    wanted: Wanted,
 ) -> list[Solid]:
     """Copies what objects show, with modifiers, shape keys and instances.
 
@@ -106,13 +98,15 @@ def read_solids(
         objects: Objects, each once.
         depsgraph: The evaluated dependency graph.
         origins: For each object, what its positions are relative to.
+        wanted: Which layers to read.
 
     Raises:
         ValueError: A coordinate is not finite; the message names the object.
     """
     objects = list(objects)
     readers = {
-        obj: _Reader(Solid(obj.name), origin) for obj, origin in zip(objects, origins, strict=True)
+        obj: _Reader(Solid(obj.name), origin, wanted)
+        for obj, origin in zip(objects, origins, strict=True)
     }
     for obj, reader in readers.items():
         evaluated = obj.evaluated_get(depsgraph)
@@ -152,16 +146,17 @@ class _LocalMesh:
     triangles: NDArray[np.int32]
     face_materials: NDArray[np.int32]
     slots: list[MaterialKey | None]
-    colors: dict[str, Colors]
+    layers: list[Layer]
 
 
 class _Reader:
     """Reads the meshes of one solid; a mesh that is placed often is read once."""
 
-    def __init__(self, solid: Solid, origin: FloatArray) -> None:
+    def __init__(self, solid: Solid, origin: FloatArray, wanted: Wanted) -> None:
         """Starts without parts."""
         self.solid = solid
         self._origin = origin
+        self._wanted = wanted
         self._known: dict[int, _LocalMesh] = {}
 
     def read(
@@ -181,18 +176,14 @@ class _Reader:
             self._known[key] = self._copied(shown, shown.data, is_made_up=is_made_up)
         local = self._known[key]
         linear = matrix[:3, :3]
-        positions = local.positions.astype(np.float64) @ linear.T
-        positions += matrix[:3, 3] - self._origin
+        positions = _placed(local.positions, linear, matrix[:3, 3] - self._origin)
         triangles = local.triangles
-        colors = local.colors
+        layers = [layer.rotated(linear) for layer in local.layers]
         if np.linalg.det(linear) < 0:
             triangles = triangles[:, ::-1]
-            colors = {
-                name: Colors(color.data_type, color.values, color.corners[:, ::-1])
-                for name, color in colors.items()
-            }
+            layers = [layer.turned() for layer in layers]
         slots = np.array([self._slot(key) for key in local.slots] or [self._slot(None)], np.int32)
-        self.solid.parts.append(Part(positions, triangles, slots[local.face_materials], colors))
+        self.solid.parts.append(Part(positions, triangles, slots[local.face_materials], layers))
 
     def _slot(self, key: MaterialKey | None) -> int:
         if key not in self.solid.materials:
@@ -203,29 +194,63 @@ class _Reader:
         self, shown: bpy.types.Object, mesh: bpy.types.Mesh, *, is_made_up: bool
     ) -> _LocalMesh:
         positions = attributes.positions(mesh)
-        broken = np.flatnonzero(~np.isfinite(positions).all(axis=1))
-        if len(broken):
-            raise ValueError(
-                f"object '{self.solid.name}': vertex {broken[0]} is at "
-                f"{tuple(positions[broken[0]].tolist())}; coordinates must be finite"
-            )
-        corners, faces = attributes.corner_triangles(mesh)
+        self._check_finite(positions)
+        corners = faces = None
+        triangles = attributes.corner_vertices(mesh)
+        if attributes.is_triangulated(mesh):
+            triangles = triangles.reshape(-1, 3)
+        else:
+            corners, faces = attributes.corner_triangles(mesh)
+            triangles = triangles[corners]
         if is_made_up:
             slots = [MaterialKey.of(material) for material in mesh.materials]
         else:
             slots = [MaterialKey.of(slot.material) for slot in shown.material_slots]
-        face_materials = attributes.face_materials(mesh, len(slots))
-        triangles = attributes.corner_vertices(mesh)[corners]
-        colors = {}
-        for attribute in mesh.color_attributes:
-            values = np.empty((len(attribute.data), 4), np.float32)
-            attribute.data.foreach_get("color", values.ravel())
-            indices = triangles if attribute.domain == "POINT" else corners
-            colors[attribute.name] = Colors(attribute.data_type, values, indices)
-        self.solid.active_color = self.solid.active_color or (
-            mesh.color_attributes.active_color_name or ""
+        materials = attributes.face_materials(mesh, len(slots))
+        if not (materials != materials[0]).any():
+            materials = materials[:1]
+        elif faces is not None:
+            materials = materials[faces]
+        layers = list(read_layers(shown, mesh, corners, triangles, faces, self._wanted))
+        self._note_active(mesh)
+        return _LocalMesh(positions, triangles, materials, slots, layers)
+
+    def _check_finite(self, positions: NDArray[np.float32]) -> None:
+        # Sums in double precision do not overflow, and hold no memory.
+        if np.isfinite(positions.sum(dtype=np.float64)):
+            return
+        broken = np.flatnonzero(~np.isfinite(positions).all(axis=1))
+        raise ValueError(
+            f"object '{self.solid.name}': vertex {broken[0]} is at "
+            f"{tuple(positions[broken[0]].tolist())}; coordinates must be finite"
         )
-        default = mesh.color_attributes.render_color_index
-        if not self.solid.render_color and 0 <= default < len(mesh.color_attributes):
-            self.solid.render_color = mesh.color_attributes[default].name
-        return _LocalMesh(positions, triangles, face_materials[faces], slots, colors)
+
+    def _note_active(self, mesh: bpy.types.Mesh) -> None:
+        colors, maps = mesh.color_attributes, mesh.uv_layers
+        found = {COLOR: colors.active_color_name or "", UV_MAP: maps.active.name if maps else ""}
+        for kind, name in found.items():
+            if name:
+                self.solid.active.setdefault(kind, name)
+        default = colors.render_color_index
+        if 0 <= default < len(colors):
+            self.solid.rendered.setdefault(COLOR, colors[default].name)
+        rendered = next((layer.name for layer in maps if layer.active_render), "")
+        if rendered:
+            self.solid.rendered.setdefault(UV_MAP, rendered)
+
+
+def _placed(
+    positions: NDArray[np.float32], linear: FloatArray, offset: FloatArray
+) -> Positions:
+    """Returns where points are; in double precision only where they are far from the origin."""
+    if np.array_equal(linear, np.eye(3)) and not offset.any():
+        return positions
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    placed: Positions = np.empty_like(positions)
+    for start in range(0, len(positions), _ROWS):
+        some = positions[start : start + _ROWS].astype(np.float64) @ linear.T + offset
+        placed[start : start + _ROWS] = some
+        low, high = np.minimum(low, some.min(axis=0)), np.maximum(high, some.max(axis=0))
+    if np.abs([low, high]).max() <= _NEAR * (high - low).max():
+        return placed
+    return np.asarray(positions.astype(np.float64) @ linear.T + offset)

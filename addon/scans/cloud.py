@@ -8,6 +8,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
+from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_meshes import Contour
 from ..bridge.place import Place
 from ..bridge.points import Carried, Points
@@ -67,24 +68,24 @@ class Surface:
                 f"fewer or larger cells, or write a file with the command reconstruct"
             )
         local, turned = place.localize(self.positions, self.triangles.astype(np.int32, copy=False))
-        numbers = {
-            name: one.values[:, 0]
+        layers = [
+            NewLayer(
+                ATTRIBUTE if one.data_type == "FLOAT" else COLOR,
+                name,
+                one.data_type,
+                "POINT",
+                one.values,
+            )
             for name, one in self.attributes.items()
-            if one.data_type == "FLOAT"
-        }
+        ]
         return Contour(
             local,
             turned,
             source.materials,
-            colors={
-                name: (one.data_type, one.values)
-                for name, one in self.attributes.items()
-                if name not in numbers
-            },
-            active_color=source.active_color,
-            render_color=source.render_color,
+            layers=layers,
+            active={COLOR: source.active_color},
+            rendered={COLOR: source.render_color},
             sharp_angle=np.pi if settings.use_smooth_shading else None,
-            numbers=numbers,
         )
 
 

@@ -16,8 +16,8 @@ from ..core.outcome import Outcome
 from ..core.wording import listed
 from .choices import BooleanSettings
 from .grid import Box, check_memory, choose_grid
-from .solid_meshes import SolidMesh, join, solid_mesh
-from .steps import VOXELIZED, Load, Result, contoured, tell_defects, told, voxelized
+from .steps import VOXELIZED, Load, Operand, Result, Told, contoured, told, voxelized, wanted
+from .transfer import renumbered
 
 
 class Boolean:
@@ -25,9 +25,8 @@ class Boolean:
 
     def __init__(self, place: Place, read: list[solids.Solid], settings: BooleanSettings) -> None:
         """Keeps copies of what was read; use `Boolean.read`."""
-        self.warnings: list[str] = []
+        self._told = Told()
         self.loads: list[Load] = []
-        self._notes: list[str] = []
         self._place = place
         self._read = read
         self._names = [solid.name for solid in read[1:]]
@@ -62,7 +61,9 @@ class Boolean:
                 new_meshes.check_editable(obj)
         place = Place.of(active, depsgraph)
         objects = [active, *others]
-        read = solids.read_solids(objects, depsgraph, [place.origin] * len(objects))
+        read = solids.read_solids(
+            objects, depsgraph, [place.origin] * len(objects), wanted(settings)
+        )
         for solid in read:
             if not solid.parts:
                 raise ValueError(f"object '{solid.name}': found no faces")
@@ -76,19 +77,23 @@ class Boolean:
             MemoryError: The result does not fit into memory.
             prefilter.Cancelled: `progress` has said so.
         """
-        meshes = [solid_mesh(solid) for solid in self._read]
-        for solid, mesh in zip(self._read, meshes, strict=True):
-            tell_defects(solid.name, mesh, self.warnings, self._notes)
-        with naming(self._place.name):
-            box = self._box([mesh.box for mesh in meshes])
-            self.loads = [Load.of(box, meshes)]
-            grid = choose_grid(box, self._settings)
-            check_memory(grid, sum(mesh.area for mesh in meshes))
-        trees = []
-        steps = parts(share(progress, 0.0, VOXELIZED), len(meshes))
-        for solid, mesh, part in zip(self._read, meshes, steps, strict=True):
+        operands = []
+        for solid in self._read:
             with naming(solid.name):
-                trees.append(voxelized(mesh, grid, self._settings, part))
+                operands.append(Operand.of(solid, self._settings))
+        operands = _sharing_materials(self._read, operands)
+        with naming(self._place.name):
+            box = self._box([one.measures.box for one in operands])
+            self.loads = [Load.of(box, operands)]
+            grid = choose_grid(box, self._settings)
+            check_memory(grid, sum(one.measures.area for one in operands))
+        trees, sources = [], []
+        steps = parts(share(progress, 0.0, VOXELIZED), len(operands))
+        for operand, part in zip(operands, steps, strict=True):
+            with naming(operand.name):
+                tree, source = voxelized(operand, grid, self._settings, self._told, part)
+            trees.append(tree)
+            sources.append(source)
         combine = getattr(prefilter.Octree, self._settings.operation)
         tree = reduce(
             partial(
@@ -101,7 +106,7 @@ class Boolean:
             self._result = contoured(
                 tree,
                 grid,
-                join(_sharing_materials(self._read, meshes)),
+                sources,
                 self._merged(),
                 self._place,
                 self._settings,
@@ -137,8 +142,8 @@ class Boolean:
         return Outcome(
             f"{what}: {told(result)}",
             objects=[made.name],
-            warnings=self.warnings,
-            notes=self._notes,
+            warnings=self._told.warnings,
+            notes=self._told.notes,
         )
 
     def discard(self) -> None:
@@ -159,22 +164,19 @@ class Boolean:
         return low, high
 
     def _merged(self) -> solids.Solid:
-        first = next((solid for solid in self._read if solid.active_color), self._read[0])
-        return solids.Solid(
-            self._place.name,
-            [],
-            self._read[0].materials,
-            first.active_color,
-            first.render_color,
-        )
+        merged = solids.Solid(self._place.name, [], self._read[0].materials)
+        for solid in reversed(self._read):
+            merged.active |= solid.active
+            merged.rendered |= solid.rendered
+        return merged
 
 
-def _sharing_materials(read: list[solids.Solid], meshes: list[SolidMesh]) -> list[SolidMesh]:
+def _sharing_materials(read: list[solids.Solid], operands: list[Operand]) -> list[Operand]:
     """Returns the operands with materials numbered as the first one's, which gets the others'."""
     shared = read[0].materials
-    renumbered = []
-    for solid, mesh in zip(read, meshes, strict=True):
+    numbers = []
+    for solid in read:
         shared.extend(key for key in dict.fromkeys(solid.materials) if key not in shared)
-        numbers = np.array([shared.index(key) for key in solid.materials], np.int32)
-        renumbered.append(replace(mesh, materials=numbers[mesh.materials]))
-    return renumbered
+        numbers.append(np.array([shared.index(key) for key in solid.materials], np.int32))
+    meshes = renumbered([one.mesh for one in operands], numbers)
+    return [replace(one, mesh=mesh) for one, mesh in zip(operands, meshes, strict=True)]

@@ -12,7 +12,15 @@ RESOLUTIONS = {
     "depth": Choice("Depth", "Halve the cube around the object this many times"),
     "size": Choice("Voxel Size", "Cells of this size, in the units of the world"),
 }
+HOLES = {
+    "smooth": Choice("Smooth", "Patches that continue the surface around each hole"),
+    "flat": Choice("Flat", "Patches of the least area"),
+    "fan": Choice("Fan", "Triangles to the center of the border"),
+}
 INTERPOLANTS = {
+    "sharp": Choice(
+        "Sharp", "As Plane, with the edges and corners of the meshes, and where they meet"
+    ),
     "plane": Choice(
         "Plane", "A plane fitted to each cell and its neighbors: the most exact vertices"
     ),
@@ -67,18 +75,49 @@ class VoxelSettings:
         metavar="LENGTH",
     )
     interpolant: str = one_of(
-        "occupancy",
+        "sharp",
         "Interpolant",
         "How the surface is placed inside the cells",
         INTERPOLANTS,
         metavar="NAME",
     )
+    adaptivity: float = number(
+        0.0,
+        "Adaptivity",
+        "Make triangles larger where the surface is flat or gently curved, as long as it stays "
+        "within this distance, in cells. Edges stay sharp",
+        low=0.0,
+        high=10.0,
+        display={"soft_max": 1.0, "precision": 2, "step": 1},
+        metavar="CELLS",
+    )
+    thickness: float = number(
+        1.5,
+        "Minimum Thickness",
+        "Sheets and parts too thin for any cell get this thickness, in cells. If 0, they are lost",
+        low=0.0,
+        high=100.0,
+        display={"soft_max": 5.0, "precision": 2, "step": 10},
+        metavar="CELLS",
+    )
+    gap: float = number(
+        2.0,
+        "Largest Gap",
+        "Where faces enclose nothing by their orientation, inside is what the outside does not "
+        "reach through gaps of this width, in cells",
+        low=0.0,
+        high=100.0,
+        display={"soft_max": 10.0, "precision": 2, "step": 10},
+        metavar="CELLS",
+    )
     use_close_holes: bool = switch(
         True,
         "Close Holes",
-        "Close each hole with triangles to the center of its border. If off, the surface ends in "
-        "steps there",
+        "Close the holes of the mesh first. If off, the surface ends in steps there",
         flag_description="Leave holes open; the surface ends in steps there",
+    )
+    holes: str = one_of(
+        "smooth", "Holes", "What holes are closed with", HOLES, metavar="NAME"
     )
     use_cleanup: bool = switch(
         True,
@@ -89,14 +128,26 @@ class VoxelSettings:
     use_materials: bool = switch(
         True,
         "Materials",
-        "Triangles get the material of the nearest face",
-        flag_description="Do not keep the materials of the nearest faces",
+        "Triangles get the material of the face that they come from",
+        flag_description="Do not keep materials",
+    )
+    use_uv_maps: bool = switch(
+        True,
+        "UV Maps",
+        "Corners get UVs of the surface. No triangle crosses a seam",
+        flag_description="Do not keep UV maps",
     )
     use_colors: bool = switch(
         True,
         "Color Attributes",
-        "Vertices get the colors of the nearest point of the surface",
-        flag_description="Do not keep the color attributes of the nearest points",
+        "Keep color attributes, up to the edges where objects or charts meet",
+        flag_description="Do not keep color attributes",
+    )
+    use_attributes: bool = switch(
+        True,
+        "Other Attributes",
+        "Keep vertex groups, custom normals and other attributes of the surface",
+        flag_description="Do not keep vertex groups, custom normals and other attributes",
     )
     use_smooth: bool = switch(True, "Smooth Shading", "Shade the result smooth", flag="")
     smooth_angle: float = number(

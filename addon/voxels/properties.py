@@ -23,18 +23,27 @@ class VoxelProperties:
         self._draw_first(layout)
         layout.prop(self, "resolution")
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
+        if self._makes_mesh():
+            layout.prop(self, "adaptivity")
 
     def draw_others(self, layout: bpy.types.UILayout) -> None:
         """Draws the other settings."""
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(self, "use_close_holes")
+        column = layout.column(align=True)
+        column.prop(self, "thickness")
+        column.prop(self, "gap")
+        row = layout.row(heading="Close Holes", align=True)
+        row.prop(self, "use_close_holes", text="")
+        part = row.row()
+        part.active = self.use_close_holes
+        part.prop(self, "holes", text="")
         if self._makes_mesh():
             layout.prop(self, "interpolant")
             layout.prop(self, "use_cleanup")
             column = layout.column(heading="Transfer", align=True)
-            column.prop(self, "use_materials")
-            column.prop(self, "use_colors")
+            for name in ("use_materials", "use_uv_maps", "use_colors", "use_attributes"):
+                column.prop(self, name)
             row = layout.row(heading="Smooth Shading", align=True)
             row.prop(self, "use_smooth", text="")
             part = row.row()

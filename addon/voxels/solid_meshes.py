@@ -1,19 +1,15 @@
-"""Arithmetic on what solids are made of: one mesh, right side out, and what is wrong with it."""
+"""Arithmetic on what solids are made of: one mesh, with the layers and materials of all parts."""
 
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bridge.solids import Colors, Part, Solid
+from ..bridge.layers import COLOR, NORMALS, UV_MAP, Layer
+from ..bridge.solids import Part, Positions
 
-FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int32]
-
-_LEAST_VOLUME = 1e-6
-"""Share of the box around a mesh below which its volume has no sign to speak of."""
-_WHITE = np.ones((1, 4), np.float32)
 
 
 @dataclass(frozen=True)
@@ -21,50 +17,38 @@ class SolidMesh:
     """The parts of solids as one mesh.
 
     Attributes:
-        positions: (n, 3) float64.
+        positions: (n, 3), float32 or float64.
         triangles: (m, 3) int32, counter-clockwise from outside.
-        materials: (m,) int32.
-        colors: Its colour attributes; parts that lack one are white there.
-        open_edges: How many edges its faces do not close.
-        flipped: How many parts were inside out.
+        materials: (m,) int32, or (1,) for one of all.
+        layers: Its attributes; parts that lack one are white there, or 0.
     """
 
-    positions: FloatArray
+    positions: Positions
     triangles: IntArray
     materials: IntArray
-    colors: dict[str, Colors]
-    open_edges: int = 0
-    flipped: int = 0
+    layers: list[Layer] = field(default_factory=list)
 
-    @cached_property
-    def box(self) -> tuple[FloatArray, FloatArray]:
-        """The corners of the box around the triangles."""
-        used = self.positions[np.unique(self.triangles)]
-        return used.min(axis=0), used.max(axis=0)
-
-    @cached_property
-    def area(self) -> float:
-        """The area of the triangles."""
-        return float(np.linalg.norm(_area_vectors(self.positions, self.triangles), axis=1).sum())
-
+    @property
     def has_several_materials(self) -> bool:
-        """Returns whether the triangles differ in their materials."""
-        return bool(np.any(self.materials != self.materials[:1]))
+        """Whether the triangles differ in their materials."""
+        return len(self.materials) > 1
+
+    @property
+    def uvs(self) -> list[NDArray[np.float32]]:
+        """The UVs of the triangles' corners, (m, 3, 2), of each map."""
+        return [layer.values[layer.corners] for layer in self.layers if layer.kind == UV_MAP]
+
+    def material_of(self, triangles: NDArray[np.integer]) -> IntArray:
+        """Returns the materials of some triangles."""
+        if self.has_several_materials:
+            return self.materials[triangles]
+        return np.full(len(triangles), self.materials[0], np.int32)
 
 
-def solid_mesh(solid: Solid) -> SolidMesh:
-    """Joins the parts of a solid; those that are inside out as a whole are turned."""
-    turned = [_is_inside_out(part) for part in solid.parts]
-    joined = join(
-        [_as_mesh(part, turn=turn) for part, turn in zip(solid.parts, turned, strict=True)]
-    )
-    return SolidMesh(
-        joined.positions,
-        joined.triangles,
-        joined.materials,
-        joined.colors,
-        count_open_edges(joined.positions, joined.triangles),
-        sum(turned),
+def solid_mesh(parts: list[Part]) -> SolidMesh:
+    """Joins the parts of a solid."""
+    return join(
+        [SolidMesh(one.positions, one.triangles, one.materials, one.layers) for one in parts]
     )
 
 
@@ -73,90 +57,61 @@ def join(meshes: list[SolidMesh]) -> SolidMesh:
     if len(meshes) == 1:
         return meshes[0]
     starts = np.cumsum([0, *(len(mesh.positions) for mesh in meshes)])
+    materials = np.concatenate(
+        [mesh.material_of(np.arange(len(mesh.triangles))) for mesh in meshes]
+    )
     return SolidMesh(
         np.concatenate([mesh.positions for mesh in meshes]),
         np.concatenate(
             [mesh.triangles + start for mesh, start in zip(meshes, starts[:-1], strict=True)]
         ).astype(np.int32),
-        np.concatenate([mesh.materials for mesh in meshes]),
-        _joined_colors(meshes),
+        materials if (materials != materials[0]).any() else materials[:1],
+        _joined_layers(meshes),
     )
 
 
-def signed_volume(positions: FloatArray, triangles: IntArray) -> float:
-    """Returns the volume that triangles enclose as seen from the middle of their box."""
-    if len(triangles) == 0:
-        return 0.0
-    used = positions[triangles]
-    middle = (used.min(axis=(0, 1)) + used.max(axis=(0, 1))) / 2
-    a, b, c = np.moveaxis(used - middle, 1, 0)
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6.0)
-
-
-def count_open_edges(positions: FloatArray, triangles: IntArray) -> int:
-    """Returns how many edges are not run through as often one way as the other.
-
-    Vertices at the same place count as one, so that seams between them are none.
-    """
-    count = _unmatched_edges(triangles)
-    return _unmatched_edges(_welded(positions)[triangles]) if count else 0
-
-
-def _unmatched_edges(triangles: NDArray[np.integer]) -> int:
-    ends = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).astype(np.int64)
-    ends = ends[ends[:, 0] != ends[:, 1]]
-    if len(ends) == 0:
-        return 0
-    keys = (ends.min(axis=1) << 32) | ends.max(axis=1)
-    order = np.argsort(keys)
-    keys = keys[order]
-    ways = np.where(ends[order, 0] < ends[order, 1], 1, -1)
-    starts = np.flatnonzero(np.concatenate([[True], keys[1:] != keys[:-1]]))
-    return int(np.count_nonzero(np.add.reduceat(ways, starts)))
-
-
-def _welded(positions: FloatArray) -> NDArray[np.int64]:
-    """Returns a number for each vertex, the same for vertices at the same place."""
-    rows = np.ascontiguousarray(positions + 0.0).view([("", np.float64)] * 3).ravel()
-    return np.unique(rows, return_inverse=True)[1]
-
-
-def _is_inside_out(part: Part) -> bool:
-    used = part.positions[part.triangles]
-    box = np.prod(used.max(axis=(0, 1)) - used.min(axis=(0, 1)))
-    return signed_volume(part.positions, part.triangles) < -_LEAST_VOLUME * float(box)
-
-
-def _as_mesh(part: Part, *, turn: bool) -> SolidMesh:
-    if not turn:
-        return SolidMesh(part.positions, part.triangles, part.materials, part.colors)
-    colors = {
-        name: Colors(color.data_type, color.values, color.corners[:, ::-1])
-        for name, color in part.colors.items()
-    }
-    return SolidMesh(part.positions, part.triangles[:, ::-1], part.materials, colors)
-
-
-def _joined_colors(meshes: list[SolidMesh]) -> dict[str, Colors]:
-    types: dict[str, str] = {}
+def _joined_layers(meshes: list[SolidMesh]) -> list[Layer]:
+    """Returns the layers of all; those of one name are one if they are of one type and domain."""
+    firsts: dict[tuple[str, str], Layer] = {}
     for mesh in meshes:
-        for name, color in mesh.colors.items():
-            types.setdefault(name, color.data_type)
-    joined = {}
-    for name, data_type in types.items():
-        values, corners, start = [], [], 0
-        for mesh in meshes:
-            white = Colors(data_type, _WHITE, np.zeros_like(mesh.triangles))
-            color = mesh.colors.get(name, white)
-            values.append(color.values)
-            corners.append(color.corners + start)
-            start += len(color.values)
-        joined[name] = Colors(
-            data_type, np.concatenate(values), np.concatenate(corners).astype(np.int32)
-        )
-    return joined
+        for layer in mesh.layers:
+            firsts.setdefault(layer.key, layer)
+    return [_joined_layer(first, meshes) for first in firsts.values()]
 
 
-def _area_vectors(positions: FloatArray, triangles: IntArray) -> FloatArray:
-    a, b, c = np.moveaxis(positions[triangles], 1, 0)
-    return np.cross(b - a, c - a) / 2
+def _joined_layer(first: Layer, meshes: list[SolidMesh]) -> Layer:
+    values: list[NDArray[Any]] = []
+    corners = []
+    start = 0
+    for mesh in meshes:
+        layer = next((one for one in mesh.layers if _are_alike(one, first)), None)
+        if layer is None:
+            layer = _missing(first, mesh)
+        values.append(layer.values)
+        corners.append(layer.corners + start)
+        start += len(layer.values)
+    return replace(
+        first, values=np.concatenate(values), corners=np.concatenate(corners).astype(np.int32)
+    )
+
+
+def _are_alike(one: Layer, other: Layer) -> bool:
+    if one.key != other.key or one.values.dtype != other.values.dtype:
+        return False
+    width, faces = one.values.shape[1], one.domain == "FACE"
+    return width == other.values.shape[1] and faces == (other.domain == "FACE")
+
+
+def _missing(first: Layer, mesh: SolidMesh) -> Layer:
+    """Returns a layer for a mesh that lacks it: white, the mesh's own normals, or 0."""
+    width = 1 if first.domain == "FACE" else 3
+    if first.kind == NORMALS:
+        a, b, c = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
+        normals = np.cross(b - a, c - a)
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        values = (normals / np.maximum(lengths, 1e-30)).astype(np.float32)
+        corners = np.repeat(np.arange(len(values), dtype=np.int32)[:, None], 3, axis=1)
+        return replace(first, values=values, corners=corners)
+    fill = 1 if first.kind == COLOR else 0
+    values = np.full((1, first.values.shape[1]), fill, first.values.dtype)
+    return replace(first, values=values, corners=np.zeros((len(mesh.triangles), width), np.int32))

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import prefilter
@@ -10,20 +9,22 @@ from numpy.typing import NDArray
 
 from ..bridge import solids
 from ..bridge.files.staging import StagedFile
+from ..bridge.layers import Wanted
 from ..bridge.new_meshes import Contour
 from ..bridge.place import Place
 from ..bridge.units import length, volume
-from ..core.jobs import Progress, share
+from ..core.jobs import Progress, go_on, share
 from ..core.wording import amount
 from .choices import VoxelSettings
 from .grid import Box, Grid, cells_crossed, choose_grid
-from .solid_meshes import SolidMesh
+from .solid_meshes import SolidMesh, solid_mesh
+from .transfer import Source, Transfer, find_groups, find_labels, groups_of
 
 # What a load takes in seconds, as measured once on two cores; ratios are what counts.
 _ALWAYS = 0.01
 _PER_TRIANGLE = 1e-6
 _VOXELIZING = 0.5e-6
-_CONTOURING = {"plane": 4e-6, "occupancy": 2e-6, "linear": 2e-6}
+_CONTOURING = {"sharp": 6e-6, "plane": 4e-6, "occupancy": 2e-6, "linear": 2e-6}
 _CLEANING = 12e-6
 _TRANSFERRING = 3e-6
 _WRITING = 1e-8
@@ -44,6 +45,28 @@ class Result:
 
 
 @dataclass(frozen=True)
+class Operand:
+    """A mesh, and how large it is.
+
+    Attributes:
+        name: Of the object.
+        mesh: What was read.
+        measures: Of the mesh.
+    """
+
+    name: str
+    mesh: SolidMesh
+    measures: "prefilter.MeshMeasures"
+
+    @classmethod
+    def of(cls, solid: solids.Solid, settings: VoxelSettings) -> "Operand":
+        """Returns the mesh of a solid."""
+        mesh = solid_mesh(solid.parts)
+        measures = prefilter.measure_mesh(mesh.positions, mesh.triangles, threads=settings.threads)
+        return cls(solid.name, mesh, measures)
+
+
+@dataclass(frozen=True)
 class Load:
     """What decides how long meshes in one grid take.
 
@@ -51,7 +74,7 @@ class Load:
         box: What the grid is around.
         area: The area of the triangles.
         triangles: How many there are.
-        transfers: Whether the result gets materials or colours of the nearest points.
+        transfers: Whether the result gets values of the nearest points.
     """
 
     box: Box
@@ -60,13 +83,13 @@ class Load:
     transfers: bool
 
     @classmethod
-    def of(cls, box: Box, meshes: Sequence[SolidMesh]) -> "Load":
+    def of(cls, box: Box, operands: Sequence[Operand]) -> "Load":
         """Returns the load of meshes in a box."""
         return cls(
             box,
-            sum(mesh.area for mesh in meshes),
-            sum(len(mesh.triangles) for mesh in meshes),
-            any(mesh.colors or mesh.has_several_materials() for mesh in meshes),
+            sum(one.measures.area for one in operands),
+            sum(len(one.mesh.triangles) for one in operands),
+            any(one.mesh.layers for one in operands),
         )
 
     def seconds(self, settings: VoxelSettings) -> float:
@@ -82,21 +105,55 @@ class Load:
         per_cell = _CONTOURING[settings.interpolant]
         if settings.use_cleanup:
             per_cell += _CLEANING
-        if self.transfers and (settings.use_materials or settings.use_colors):
+        if self.transfers:
             per_cell += _TRANSFERRING
         return seconds + per_cell * crossed
 
 
+def wanted(settings: VoxelSettings) -> Wanted:
+    """Returns the layers to read."""
+    if getattr(settings, "output", "mesh") == "volume":
+        return Wanted(colors=False, uv_maps=False, attributes=False)
+    return Wanted(
+        colors=settings.use_colors,
+        uv_maps=settings.use_uv_maps,
+        attributes=settings.use_attributes,
+    )
+
+
 def voxelized(
-    mesh: SolidMesh, grid: Grid, settings: VoxelSettings, progress: Progress
-) -> "prefilter.Octree":
-    """Returns the occupancy of a mesh, its holes closed if that is asked for."""
-    positions = mesh.positions
-    triangles: NDArray[np.integer[Any]] = mesh.triangles
-    if settings.use_close_holes and mesh.open_edges:
-        closed = prefilter.close_holes(positions, triangles, progress=share(progress, 0.0, 0.3))
+    operand: Operand,
+    grid: Grid,
+    settings: VoxelSettings,
+    told: "Told",
+    progress: Progress,
+) -> tuple["prefilter.Octree", Source]:
+    """Returns the occupancy of a mesh made a solid, and what it was made of."""
+    mesh = operand.mesh
+    solid = prefilter.as_solid(
+        mesh.positions,
+        mesh.triangles,
+        cell=grid.spacing,
+        gap=settings.gap,
+        thickness=settings.thickness,
+        progress=share(progress, 0.0, 0.2),
+        threads=settings.threads,
+    )
+    positions, triangles, origins = solid.positions, solid.triangles, solid.origins
+    closed = prefilter.close_holes(
+        positions,
+        triangles,
+        method=settings.holes,
+        progress=share(progress, 0.2, 0.3),
+        threads=settings.threads,
+    )
+    added = len(closed.triangles) - len(triangles)
+    if settings.use_close_holes and added:
+        own = np.arange(len(triangles)) if origins is None else origins
+        origins = np.concatenate([own, np.full(added, -1, np.int64)])
         positions, triangles = closed.positions, closed.triangles
-    return prefilter.voxelize(
+    told.tell(operand.name, solid, closed.open_edges)
+    tree = prefilter.voxelize(
         positions,
         triangles,
         depth=grid.depth,
@@ -104,97 +161,129 @@ def voxelized(
         progress=share(progress, 0.3, 1.0),
         threads=settings.threads,
     )
+    if getattr(settings, "output", "mesh") == "volume":
+        return tree, Source(mesh, positions, triangles, origins)
+    labels = find_labels(mesh, settings.threads)
+    groups = groups_of(find_groups(mesh, labels, grid.spacing), origins)
+    return tree, Source(mesh, positions, triangles, origins, labels, groups)
 
 
 def contoured(
     tree: "prefilter.Octree",
     grid: Grid,
-    mesh: SolidMesh,
+    sources: list[Source],
     solid: solids.Solid,
     place: Place,
     settings: VoxelSettings,
     progress: Progress,
 ) -> Result:
-    """Returns the surface of a tree, with what it gets from the mesh.
+    """Returns the surface of a tree, with what it gets from its sources.
 
     Raises:
         ValueError: There is no surface.
     """
     middle = (_CONTOURED - VOXELIZED) / (1.0 - VOXELIZED)
-    positions, triangles = tree.contour(
-        interpolant=settings.interpolant,
-        cleanup=settings.use_cleanup,
-        progress=share(progress, 0.0, middle),
-        threads=settings.threads,
-    )
+    positions, triangles, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
     if len(triangles) == 0:
         raise ValueError(
             "the result is empty: no cell is at least half full. Parts that are thinner than a "
             "cell, or enclose nothing, have no voxels"
         )
-    face_materials, colors = _transferred(
-        mesh, positions, triangles, settings, share(progress, middle, 1.0)
-    )
+    transfer = Transfer(sources, positions, triangles, origins, settings.threads)
+    face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
+    go_on(progress, 1.0)
     local, turned = place.localize(positions, triangles)
     contour = Contour(
         local,
         turned,
         solid.materials if settings.use_materials else (),
-        face_materials,
-        colors,
-        solid.active_color,
-        solid.render_color,
+        face_materials if settings.use_materials else None,
+        layers,
+        solid.active,
+        solid.rendered,
         settings.smooth_angle if settings.use_smooth else None,
     )
     return Result(place, grid, tree.volume, len(triangles), contour)
 
 
-def _transferred(
-    mesh: SolidMesh,
-    positions: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    settings: VoxelSettings,
-    progress: Progress,
-) -> tuple[NDArray[np.int32] | None, dict[str, tuple[str, NDArray[np.float32]]]]:
-    """Returns the materials of triangles and the colours of vertices, from the nearest surface."""
-    with_materials = settings.use_materials and mesh.has_several_materials()
-    with_colors = settings.use_colors and bool(mesh.colors)
-    face_materials = None
-    if settings.use_materials and len(mesh.materials):
-        face_materials = np.full(len(triangles), mesh.materials[0], np.int32)
-    colors: dict[str, tuple[str, NDArray[np.float32]]] = {}
-    if not with_materials and not with_colors:
-        return face_materials, colors
-    # One call for both, as each prepares the mesh anew.
-    points = [
-        *([positions[triangles].mean(axis=1)] if with_materials else []),
-        *([positions] if with_colors else []),
-    ]
-    nearest, weights, _ = prefilter.nearest_points(
-        np.concatenate(points),
-        mesh.positions,
-        mesh.triangles,
+def _surface(
+    tree: "prefilter.Octree", sources: list[Source], settings: VoxelSettings, progress: Progress
+) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64] | None]:
+    """Returns a surface, and the sources' triangles that its own come from where that is known."""
+    if settings.interpolant != "sharp":
+        found = tree.contour(
+            interpolant=settings.interpolant,
+            adaptivity=settings.adaptivity,
+            cleanup=settings.use_cleanup,
+            progress=progress,
+            threads=settings.threads,
+        )
+        return (*found, None)
+    traced = tree.traced_contour(
+        [source.for_contour for source in sources],
+        adaptivity=settings.adaptivity,
+        cleanup=settings.use_cleanup,
         progress=progress,
         threads=settings.threads,
     )
-    if with_materials:
-        face_materials = mesh.materials[nearest[: len(triangles)]]
-    if with_colors:
-        nearest, weights = nearest[-len(positions) :], weights[-len(positions) :]
-        for name, color in mesh.colors.items():
-            corners = color.values[color.corners[nearest]]
-            blended = np.einsum("ij,ijk->ik", weights, corners).astype(np.float32)
-            colors[name] = (color.data_type, blended)
-    return face_materials, colors
+    return traced.positions, traced.triangles, traced.origins
 
 
-def tell_defects(name: str, mesh: SolidMesh, warnings: list[str], notes: list[str]) -> None:
-    """Adds what is odd about a mesh to warnings and notes."""
-    if mesh.flipped:
-        warnings.append(f"object '{name}' was inside out; its normals were flipped")
-    if mesh.open_edges:
-        edges = "1 open edge" if mesh.open_edges == 1 else f"{mesh.open_edges} open edges"
-        notes.append(f"object '{name}' has {edges}; the result is closed")
+class Told:
+    """What is odd about meshes, and what was done about it, in words."""
+
+    def __init__(self) -> None:
+        """Starts with nothing."""
+        self.warnings: list[str] = []
+        self.notes: list[str] = []
+
+    def tell(self, name: str, solid: "prefilter.SolidMesh", open_edges: int) -> None:
+        """Adds what was found in a mesh.
+
+        Args:
+            name: Of its object.
+            solid: What was made of it.
+            open_edges: How many edges its faces left open.
+        """
+        who = f"object '{name}'"
+        if solid.turned_parts:
+            if solid.turned_parts >= solid.parts:
+                what = f"{who} was inside out"
+            else:
+                what = f"{solid.turned_parts} of {solid.parts} parts of {who} were inside out"
+            self.warnings.append(f"{what}; {_their(solid.turned_parts)} normals were flipped")
+        if solid.lost_parts:
+            self.warnings.append(
+                f"{amount(solid.lost_parts, 'part')} of {who} {_were(solid.lost_parts)} lost: too "
+                "small for a cell"
+            )
+        rows = [
+            (solid.thickened_parts, "part", "thinner than a cell got the minimum thickness"),
+            (solid.filled_parts, "part", "filled where the outside does not reach"),
+            (solid.turned_faces, "face", "turned to go with the neighbors"),
+            (solid.welded_vertices, "vertex", "welded"),
+            (solid.duplicate_faces, "duplicate face", "dropped"),
+        ]
+        done = [f"{_counted(count, thing)} {what}" for count, thing, what in rows if count]
+        if done:
+            self.notes.append(f"{who}: {', '.join(done)}")
+        if open_edges:
+            edges = "1 open edge" if open_edges == 1 else f"{open_edges} open edges"
+            self.notes.append(f"{who} has {edges}; the result is closed")
+
+
+def _counted(count: int, thing: str) -> str:
+    if thing == "vertex" and count != 1:
+        return f"{count} vertices"
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
+def _their(count: int) -> str:
+    return "its" if count == 1 else "their"
+
+
+def _were(count: int) -> str:
+    return "was" if count == 1 else "were"
 
 
 def told(result: Result) -> str:

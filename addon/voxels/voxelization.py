@@ -18,8 +18,7 @@ from ..core.outcome import Outcome
 from ..core.wording import amount, counted, listed
 from .choices import VoxelizeSettings
 from .grid import check_dense_memory, check_memory, choose_grid
-from .solid_meshes import solid_mesh
-from .steps import VOXELIZED, Load, Result, contoured, tell_defects, told, voxelized
+from .steps import VOXELIZED, Load, Operand, Result, Told, contoured, told, voxelized, wanted
 
 
 class Voxelization:
@@ -36,9 +35,8 @@ class Voxelization:
         targets: list[Path],
     ) -> None:
         """Keeps copies of what was read; use `Voxelization.read`."""
-        self.warnings: list[str] = []
+        self._told = Told()
         self.loads: list[Load] = []
-        self._notes: list[str] = []
         self._read = read
         self._settings = settings
         self._targets = targets
@@ -72,7 +70,9 @@ class Voxelization:
             for obj in objects:
                 new_meshes.check_editable(obj)
         places = [Place.of(obj, depsgraph) for obj in objects]
-        found = solids.read_solids(objects, depsgraph, [place.origin for place in places])
+        found = solids.read_solids(
+            objects, depsgraph, [place.origin for place in places], wanted(settings)
+        )
         read = cls(list(zip(places, found, strict=True)), settings, [])
         read._leave_out_empty()
         if is_volume:
@@ -80,7 +80,7 @@ class Voxelization:
         return read
 
     def compute(self, progress: Progress) -> None:
-        """Voxelizes and new_meshes.
+        """Voxelizes and contours.
 
         Raises:
             ValueError: An object encloses nothing, or its cells are too small.
@@ -107,13 +107,14 @@ class Voxelization:
             self._show(obj, result).name for obj, result in zip(targets, self._results, strict=True)
         ]
         lines = [told(result) for result in self._results]
+        notes = self._told.notes
         if len(lines) == 1:
             summary = f"Voxelized {lines[0]}"
         else:
             total = sum(result.triangles for result in self._results)
             summary = f"Voxelized {counted(lines, 'object')}: {amount(total, 'triangle')}"
-            self._notes = [*lines, *self._notes]
-        return Outcome(summary, objects=made, warnings=self.warnings, notes=self._notes)
+            notes = [*lines, *notes]
+        return Outcome(summary, objects=made, warnings=self._told.warnings, notes=notes)
 
     def discard(self) -> None:
         """Removes what was staged."""
@@ -129,19 +130,23 @@ class Voxelization:
                 f"object{'s' if len(empty) > 1 else ''} {listed(empty)}: found no faces"
             )
         if empty:
-            self.warnings.append(f"left out, as they have no faces: {listed(empty)}")
+            self._told.warnings.append(f"left out, as they have no faces: {listed(empty)}")
 
     def _compute_one(
         self, index: int, place: Place, solid: solids.Solid, progress: Progress
     ) -> Result:
-        mesh = solid_mesh(solid)
-        tell_defects(place.name, mesh, self.warnings, self._notes)
-        self.loads.append(Load.of(mesh.box, [mesh]))
-        grid = choose_grid(mesh.box, self._settings)
-        check_memory(grid, mesh.area)
+        operand = Operand.of(solid, self._settings)
+        # Memory counts: what was read is the operand's, and goes with it.
+        solid.parts.clear()
+        box, area = operand.measures.box, operand.measures.area
+        self.loads.append(Load.of(box, [operand]))
+        grid = choose_grid(box, self._settings)
+        check_memory(grid, area)
         if self._targets:
             check_dense_memory(grid)
-        tree = voxelized(mesh, grid, self._settings, share(progress, 0.0, VOXELIZED))
+        steps = share(progress, 0.0, VOXELIZED)
+        tree, source = voxelized(operand, grid, self._settings, self._told, steps)
+        del operand
         if self._targets:
             staged = staging.stage_with(
                 self._targets[index],
@@ -151,7 +156,7 @@ class Voxelization:
             )
             return Result(place, grid, tree.volume, 0, staged=staged)
         return contoured(
-            tree, grid, mesh, solid, place, self._settings, share(progress, VOXELIZED, 1.0)
+            tree, grid, [source], solid, place, self._settings, share(progress, VOXELIZED, 1.0)
         )
 
     def _show(self, obj: bpy.types.Object, result: Result) -> bpy.types.Object:

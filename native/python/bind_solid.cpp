@@ -23,10 +23,11 @@ HoleMethod hole_method(const std::string& name) {
   throw_invalid("method: '" + name + "' is not one of smooth, flat, fan");
 }
 
-// The mesh with its caps, and the numbers of open edges, of holes, and of those left open.
-std::tuple<Array<double>, Array<std::int64_t>, std::size_t, std::size_t, std::size_t>
-bound_close_holes(const py::array& positions, const py::array& triangles, const std::string& method,
-                  const py::object& callback, int threads) {
+// The mesh with its caps, or as it was without any; and the numbers of open edges, of holes, and of
+// those left open.
+std::tuple<py::array, py::array, std::size_t, std::size_t, std::size_t> bound_close_holes(
+    const py::array& positions, const py::array& triangles, const std::string& method,
+    const py::object& callback, int threads) {
   CloseHolesOptions options;
   options.method = hole_method(method);
   options.threads = threads;
@@ -36,6 +37,9 @@ bound_close_holes(const py::array& positions, const py::array& triangles, const 
   {
     const py::gil_scoped_release unlocked;
     caps = close_holes(mesh, options);
+  }
+  if (caps.triangles.empty()) {
+    return {positions, triangles, caps.open_edges, caps.holes, caps.left_open};
   }
   const auto joined = []<typename T>(const auto& own, const std::vector<std::array<T, 3>>& added) {
     Array<T> result({static_cast<py::ssize_t>(own.size() + added.size()), py::ssize_t{3}});

@@ -8,6 +8,7 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/solid/border_loops.h"
+#include "prefilter/solid/closed_parts.h"
 #include "prefilter/solid/fair_patch.h"
 #include "prefilter/solid/span_loop.h"
 #include "prefilter/spatial/winding_numbers.h"
@@ -429,6 +430,7 @@ class Closing {
 
 Caps close_holes(const InputMesh& mesh, const CloseHolesOptions& options) {
   check_mesh(mesh, kLargestCoordinate);
+  if (is_balanced(mesh, options.progress.part(0.0, 0.05), options.threads)) return {};
   return Closing(mesh, options).caps();
 }
 

@@ -45,25 +45,6 @@ EdgeHash hash_of(std::int64_t from, std::int64_t to) {
   return from < to ? hash : EdgeHash{0 - hash.first, 0 - hash.second};
 }
 
-// Whether the hashes of all edges, with signs, cancel.
-bool is_balanced(const InputMesh& mesh, const Progress& progress, int threads) {
-  const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
-  std::vector<EdgeHash> sums(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
-  parallel_ranges(rows, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-    EdgeHash sum;
-    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
-      const auto [a, b, c] = mesh.triangles[t];
-      sum += hash_of(a, b);
-      sum += hash_of(b, c);
-      sum += hash_of(c, a);
-    }
-    sums[static_cast<std::size_t>(begin / kRowsPerTask)] = sum;
-  });
-  EdgeHash all;
-  for (const EdgeHash& sum : sums) all += sum;
-  return all.first == 0 && all.second == 0;
-}
-
 // What hangs together by vertices.
 class VertexParts {
  public:
@@ -136,6 +117,24 @@ bool has_thin_part(const std::vector<ClosedPart>& parts, double thickness) {
 }
 
 }  // namespace
+
+bool is_balanced(const InputMesh& mesh, const Progress& progress, int threads) {
+  const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
+  std::vector<EdgeHash> sums(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
+  parallel_ranges(rows, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
+    EdgeHash sum;
+    for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
+      const auto [a, b, c] = mesh.triangles[t];
+      sum += hash_of(a, b);
+      sum += hash_of(b, c);
+      sum += hash_of(c, a);
+    }
+    sums[static_cast<std::size_t>(begin / kRowsPerTask)] = sum;
+  });
+  EdgeHash all;
+  for (const EdgeHash& sum : sums) all += sum;
+  return all.first == 0 && all.second == 0;
+}
 
 bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress, int threads,
               std::size_t* part_count) {

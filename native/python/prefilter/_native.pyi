@@ -500,7 +500,7 @@ def close_holes(
     method: str,
     progress: ProgressCallback | None,
     threads: int,
-) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], int, int, int]: ...
+) -> tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], int, int, int]: ...
 def make_octree(
     levels: Sequence[tuple[npt.NDArray[np.float32], npt.NDArray[np.uint8]]],
     root: float,

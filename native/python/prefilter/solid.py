@@ -15,15 +15,16 @@ class ClosedMesh:
     """A mesh and the caps of its holes.
 
     Attributes:
-        positions: (vertices, 3) float64: the mesh's own, and those of the caps.
-        triangles: (triangles, 3) int64: the mesh's own first.
+        positions: (vertices, 3) float64: the mesh's own, and those of the caps; or what was passed
+            if there are no caps.
+        triangles: (triangles, 3) int64: the mesh's own first; likewise.
         open_edges: Unbalanced edges of the mesh: traversed more often in one direction.
         holes: Loops of such edges.
         left_open: Of these loops, those without a cap, which would cancel the surface.
     """
 
-    positions: npt.NDArray[np.float64]
-    triangles: npt.NDArray[np.int64]
+    positions: npt.NDArray[np.floating]
+    triangles: npt.NDArray[np.integer]
     open_edges: int
     holes: int
     left_open: int

@@ -198,6 +198,61 @@ def test_materials_of_the_nearest_faces():
         assert face.material_index == int(face.center.x > 0)
 
 
+def test_materials_and_uvs_end_at_edges():
+    box = bodies.cube(rotation_euler=(0.3, 0.2, 0.1))
+    for side, face in enumerate(box.data.polygons):
+        box.data.materials.append(bpy.data.materials.new(f"Side {side}"))
+        face.material_index = side
+    layer = box.data.uv_layers.new(name="Map")
+    for face in box.data.polygons:
+        flat = [axis for axis in range(3) if abs(face.normal[axis]) < 0.5]
+        for corner in face.loop_indices:
+            place = box.data.vertices[box.data.loops[corner].vertex_index].co
+            uv = [(place[axis] + 1) / 2 for axis in flat]
+            layer.data[corner].uv = (uv[0] + 2 * face.index, uv[1])
+    sides = {tuple(round(x) for x in face.normal): face.index for face in box.data.polygons}
+    assert voxelize(depth=6) == {"FINISHED"}
+    made = box.data.uv_layers["Map"]
+    area = 0.0
+    for face in box.data.polygons:
+        # Of the cube, as some corners of the surface are blunt.
+        axis = int(np.abs(face.center).argmax())
+        side = sides[tuple(int(np.sign(face.center[axis])) * (axis == k) for k in range(3))]
+        assert face.material_index == side
+        a, b, c = (np.array(made.data[corner].uv) for corner in face.loop_indices)
+        assert 2 * side - 1e-4 <= min(a[0], b[0], c[0]) <= max(a[0], b[0], c[0]) <= 2 * side + 1.0001
+        area += abs(np.linalg.det([b - a, c - a])) / 2
+    assert area == pytest.approx(6.0, rel=1e-3)
+
+
+def test_vertex_groups_and_attributes():
+    ball = bodies.sphere(subdivisions=4)
+    group = ball.vertex_groups.new(name="Top")
+    for vertex in ball.data.vertices:
+        if vertex.co.z > 0:
+            group.add([vertex.index], vertex.co.z, "REPLACE")
+    heights = ball.data.attributes.new("Height", "FLOAT", "POINT")
+    heights.data.foreach_set("value", [vertex.co.z for vertex in ball.data.vertices])
+    halves = ball.data.attributes.new("Half", "INT", "FACE")
+    halves.data.foreach_set("value", [int(face.center.x > 0) for face in ball.data.polygons])
+    assert voxelize() == {"FINISHED"}
+    assert ball.vertex_groups.keys() == ["Top"]
+    for vertex in ball.data.vertices:
+        weight = sum(element.weight for element in vertex.groups)
+        assert weight == pytest.approx(max(vertex.co.z, 0.0), abs=0.05)
+        assert ball.data.attributes["Height"].data[vertex.index].value == pytest.approx(
+            vertex.co.z, abs=0.05
+        )
+    made = ball.data.attributes["Half"]
+    assert made.domain == "FACE"
+    for face in ball.data.polygons:
+        if abs(face.center.x) > 0.1:
+            assert made.data[face.index].value == int(face.center.x > 0)
+    voxelize(use_attributes=False)
+    assert len(ball.vertex_groups) == 0
+    assert "Height" not in ball.data.attributes
+
+
 def test_material_of_an_object_slot():
     box = bodies.cube()
     box.data.materials.append(bpy.data.materials.new("Of the mesh"))
@@ -241,7 +296,7 @@ def test_flat_shading():
 def test_edges_are_sharp_above_the_angle(degrees):
     """By the angles of the result's own faces; none is as sharp as 120 degrees."""
     box = bodies.cube(rotation_euler=(0.2, 0.3, 0.1))
-    voxelize(use_smooth=True, smooth_angle=math.radians(degrees))
+    voxelize(use_smooth=True, smooth_angle=math.radians(degrees), interpolant="occupancy")
     assert all(face.use_smooth for face in box.data.polygons)
     angles, is_sharp = bodies.face_angles(box), bodies.sharp_edges(box)
     clear = np.abs(angles - degrees) > 0.5
@@ -435,7 +490,7 @@ def plane():
         (with_a_broken_vertex, {}, "object 'Cube': vertex 3 .*nan.*finite"),
         (at_one_place, {}, "object 'Cube': all its vertices coincide"),
         (flat, {}, "object 'Cube': its scale is 0 along an axis"),
-        (plane, {}, "object 'Plane': the result is empty"),
+        (plane, {"thickness": 0.0}, "object 'Plane': the result is empty"),
         (
             bodies.cube,
             {"resolution": "size", "voxel_size": 1e-6},

@@ -1,0 +1,197 @@
+"""Attributes of meshes that are carried from the corners of triangles to other triangles."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import Any
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from . import attributes
+
+COLOR = "COLOR"
+UV_MAP = "UV_MAP"
+ATTRIBUTE = "ATTRIBUTE"
+VERTEX_GROUP = "VERTEX_GROUP"
+NORMALS = "NORMALS"
+
+# By the type of an attribute: what its values are called, how many there are, and of which type.
+_TYPES: dict[str, tuple[str, int, Any]] = {
+    "FLOAT": ("value", 1, np.float32),
+    "INT": ("value", 1, np.int32),
+    "INT8": ("value", 1, np.int8),
+    "BOOLEAN": ("value", 1, np.bool_),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+}
+_DOMAINS = ("POINT", "CORNER", "FACE")
+# What Blender keeps in attributes, and the add-on carries by itself or not at all.
+_BUILT_IN = frozenset(
+    {
+        *("position", "material_index", "sharp_face", "sharp_edge", "custom_normal"),
+        *("crease_vert", "crease_edge", "bevel_weight_vert", "bevel_weight_edge", "freestyle_face"),
+    }
+)
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Values of a mesh, and which of them the corners of its triangles have.
+
+    Attributes:
+        kind: COLOR, UV_MAP, ATTRIBUTE, VERTEX_GROUP or NORMALS.
+        name: The attribute's; empty for normals.
+        data_type: As Blender names types of attributes.
+        domain: POINT, CORNER or FACE.
+        values: (k, c).
+        corners: (m, 3) int32, of POINT and CORNER; (m, 1) of FACE.
+    """
+
+    kind: str
+    name: str
+    data_type: str
+    domain: str
+    values: NDArray[Any]
+    corners: NDArray[np.int32]
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """What layers of several meshes have in common that become one."""
+        return self.kind, self.name
+
+    def turned(self) -> "Layer":
+        """Returns the layer of triangles that go the other way around."""
+        return self if self.domain == "FACE" else replace(self, corners=self.corners[:, ::-1])
+
+    def rotated(self, linear: NDArray[np.float64]) -> "Layer":
+        """Returns the layer of a mesh in another space: normals turn with it."""
+        if self.kind != NORMALS:
+            return self
+        normals = self.values @ np.linalg.inv(linear)
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        return replace(self, values=(normals / np.maximum(lengths, 1e-30)).astype(np.float32))
+
+
+@dataclass(frozen=True)
+class NewLayer:
+    """Values of a new mesh: one for each vertex, corner or face.
+
+    Attributes:
+        kind: As of `Layer`.
+        name: Likewise.
+        data_type: Likewise.
+        domain: Likewise.
+        values: (k, c).
+    """
+
+    kind: str
+    name: str
+    data_type: str
+    domain: str
+    values: NDArray[Any]
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """Which layers to read.
+
+    Attributes:
+        colors: Color attributes.
+        uv_maps: UV maps.
+        attributes: Vertex groups, custom normals and all other attributes.
+    """
+
+    colors: bool = True
+    uv_maps: bool = True
+    attributes: bool = True
+
+
+def read_layers(
+    shown: bpy.types.Object,
+    mesh: bpy.types.Mesh,
+    corners: NDArray[np.int32] | None,
+    triangles: NDArray[np.int32],
+    faces: NDArray[np.int32] | None,
+    wanted: Wanted,
+) -> Iterator[Layer]:
+    """Yields the layers of an evaluated mesh.
+
+    Args:
+        shown: The object that shows it, which knows the names of vertex groups.
+        mesh: The mesh.
+        corners: (m, 3), the corners of its triangles; None where all faces are triangles.
+        triangles: (m, 3), their vertices.
+        faces: (m,), their faces, likewise.
+        wanted: What to read.
+    """
+    count = len(triangles)
+
+    @cache
+    def indices(domain: str) -> NDArray[np.int32]:
+        if domain == "POINT":
+            return triangles
+        if domain == "FACE":
+            return (np.arange(count, dtype=np.int32) if faces is None else faces)[:, None]
+        if corners is None:
+            return np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
+        return corners
+
+    uv_maps = {layer.name for layer in mesh.uv_layers}
+    colors = {layer.name for layer in mesh.color_attributes}
+    for attribute in mesh.attributes:
+        kind = COLOR if attribute.name in colors else ATTRIBUTE
+        if attribute.name in uv_maps:
+            kind = UV_MAP
+        is_wanted = {
+            COLOR: wanted.colors,
+            UV_MAP: wanted.uv_maps,
+            ATTRIBUTE: wanted.attributes and _is_free(attribute),
+        }
+        if not is_wanted[kind] or attribute.data_type not in _TYPES:
+            continue
+        if attribute.domain not in _DOMAINS:
+            continue
+        field, width, dtype = _TYPES[attribute.data_type]
+        values = np.empty((len(attribute.data), width), dtype)
+        attribute.data.foreach_get(field, values.ravel())
+        yield Layer(
+            kind,
+            attribute.name,
+            attribute.data_type,
+            attribute.domain,
+            values,
+            indices(attribute.domain),
+        )
+    if not wanted.attributes:
+        return
+    for name, values in attributes.group_weights(shown, mesh):
+        yield Layer(VERTEX_GROUP, name, "FLOAT", "POINT", values[:, None], triangles)
+    if mesh.has_custom_normals:
+        normals = np.empty((len(mesh.loops), 3), np.float32)
+        mesh.corner_normals.foreach_get("vector", normals.ravel())
+        yield Layer(NORMALS, "", "FLOAT_VECTOR", "CORNER", normals, indices("CORNER"))
+
+
+def write_layer(mesh: bpy.types.Mesh, layer: NewLayer) -> None:
+    """Adds a color attribute, a UV map or another attribute to a mesh."""
+    if layer.kind == UV_MAP:
+        # Attributes of UVs that are made as such become no maps in all versions.
+        made = mesh.uv_layers.new(name=layer.name, do_init=False)
+        attribute = mesh.attributes[made.name]
+    else:
+        attribute = mesh.attributes.new(layer.name, layer.data_type, layer.domain)
+    field, _, dtype = _TYPES[layer.data_type]
+    attribute.data.foreach_set(field, np.ascontiguousarray(layer.values, dtype).ravel())
+
+
+def _is_free(attribute: bpy.types.Attribute) -> bool:
+    name = attribute.name
+    return (
+        not name.startswith(".")
+        and name not in _BUILT_IN
+        and not attribute.is_internal
+    )
