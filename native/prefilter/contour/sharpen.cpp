@@ -343,6 +343,7 @@ class Sharpener {
   }
 
   void find_merged() {
+    const std::vector<std::size_t> before = merged_;
     merged_.resize(features_.size());
     std::iota(merged_.begin(), merged_.end(), 0);
     for (std::size_t i = 0; i < features_.size(); ++i) {
@@ -357,6 +358,14 @@ class Sharpener {
       }
     }
     for (std::size_t i = 0; i < features_.size(); ++i) merged_[i] = root_of(i);
+    // What becomes of one loop becomes of all that have its vertex.
+    for (std::size_t i = 0; i < features_.size(); ++i) {
+      if (!before.empty() && before[i] != merged_[i]) is_changed_loop_[i] = 1;
+      if (is_changed_loop_[i] != 0) is_changed_loop_[merged_[i]] = 1;
+    }
+    for (std::size_t i = 0; i < features_.size(); ++i) {
+      if (merged_[i] != i && is_changed_loop_[merged_[i]] != 0) is_changed_loop_[i] = 1;
+    }
   }
 
   std::size_t root_of(std::size_t i) const {
@@ -764,6 +773,9 @@ class Sharpener {
       return mesh.positions[static_cast<std::size_t>(corners[i])];
     };
     const Vector3 normal = cross(at(1) - at(0), at(2) - at(0));
+    // Nor may it be one that rounding in space makes flat.
+    constexpr double kLeastArea = 1e-9;  // of a cell's face
+    if (length(normal) < kLeastArea * cell_ * cell_) return true;
     bool is_any = false;
     for (const std::int32_t corner : corners) {
       if (static_cast<std::size_t>(corner) >= samples_.index.size()) continue;
