@@ -84,7 +84,7 @@ class Sharpener {
         cell_(surface.cell()) {}
 
   FacetedMesh run(const Progress& progress) {
-    find_sides();
+    find_sides(progress.part(0.0, 0.1));
     find_turned();
     place_features(progress.part(0.1, 0.5));
     claim_corners();
@@ -129,7 +129,7 @@ class Sharpener {
     return looped_.positions[static_cast<std::size_t>(vertex)];
   }
 
-  void find_sides() {
+  void find_sides(const Progress& progress) {
     sides_.resize(looped_.loops.size());
     const auto find_some = [&](std::int64_t begin, std::int64_t end) {
       for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
@@ -139,7 +139,7 @@ class Sharpener {
         }
       }
     };
-    parallel_ranges(static_cast<std::int64_t>(sides_.size()), kLoopsPerTask, threads_, Progress(),
+    parallel_ranges(static_cast<std::int64_t>(sides_.size()), kLoopsPerTask, threads_, progress,
                     find_some);
   }
 
@@ -774,7 +774,7 @@ class Sharpener {
     };
     const Vector3 normal = cross(at(1) - at(0), at(2) - at(0));
     // Nor may it be one that rounding in space makes flat.
-    constexpr double kLeastArea = 1e-9;  // of a cell's face
+    constexpr double kLeastArea = 1e-12;  // of a cell's face
     if (length(normal) < kLeastArea * cell_ * cell_) return true;
     bool is_any = false;
     for (const std::int32_t corner : corners) {

@@ -312,22 +312,23 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   ContourTree tree(cells, options.isovalue, cutting.part(0.0, 0.1), options.threads);
   const bool fits = options.isovalue == 0.5F && (options.interpolant == Interpolant::kPlane ||
                                                  options.interpolant == Interpolant::kSharp);
-  if (fits) settle_sides(cutting.part(0.1, 0.3), options.threads, &tree);
+  const bool is_sharp = fits && options.interpolant == Interpolant::kSharp;
+  if (fits) settle_sides(cutting.part(0.1, 0.2), options.threads, &tree);
   const RootFrame frame(root);
   std::optional<SourceSurface> surface;
   std::optional<PartSides> part_sides;
-  if (fits && !options.sources.empty()) {
-    surface.emplace(options.sources, frame, frame.cell(0, cells.depth()), Progress(),
+  if (is_sharp && !options.sources.empty()) {
+    surface.emplace(options.sources, frame, frame.cell(0, cells.depth()), cutting.part(0.2, 0.3),
                     options.threads);
     if (surface->has_meetings()) {
-      part_sides.emplace(tree, frame, *surface, Progress());
-      part_sides->settle(Progress(), options.threads, &tree);
+      part_sides.emplace(tree, frame, *surface, cutting.part(0.3, 0.33));
+      part_sides->settle(cutting.part(0.33, 0.35), options.threads, &tree);
     }
   }
-  SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.3, 0.5),
+  SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.35, 0.45),
                            options.threads);
   if (fits) {
-    fit_vertices(tree, frame, cutting.part(0.5, 0.6), options.threads, &vertices);
+    fit_vertices(tree, frame, cutting.part(0.45, 0.5), options.threads, &vertices);
   }
   std::optional<OccupancySurface> smooth_parts;  // where there are no sources
   VertexSamples samples;
@@ -336,12 +337,12 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   if (surface) {
     crossings = vertices.positions();
     samples = sample_vertices(tree, frame, *surface, part_sides ? &*part_sides : nullptr,
-                              Progress(), options.threads, &vertices);
+                              cutting.part(0.5, 0.6), options.threads, &vertices);
     division.emplace(*surface, samples);
-  } else if (fits && options.interpolant == Interpolant::kSharp) {
+  } else if (is_sharp) {
     crossings = vertices.positions();
-    smooth_parts.emplace(tree, frame, vertices, Progress(), options.threads);
-    samples = smooth_parts->sample_vertices(Progress(), options.threads, &vertices);
+    smooth_parts.emplace(tree, frame, vertices, cutting.part(0.5, 0.55), options.threads);
+    samples = smooth_parts->sample_vertices(cutting.part(0.55, 0.6), options.threads, &vertices);
     division.emplace(*smooth_parts, samples);
   }
   const DualCells dual(tree);
@@ -355,12 +356,12 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
                     [&](const Meeting& leaves) { maker.add(leaves, &task); });
     }
   };
-  parallel_ranges(parts, kPartsPerTask, options.threads, cutting.part(0.6, 0.95), make_some);
-  LoopedMesh looped = join(cutting.part(0.95, 1.0), &vertices, &tasks);
+  parallel_ranges(parts, kPartsPerTask, options.threads, cutting.part(0.6, 0.8), make_some);
+  LoopedMesh looped = join(cutting.part(0.8, 0.85), &vertices, &tasks);
   FacetedMesh mesh;
   if (division) {
-    mesh = sharpen(std::move(looped), crossings, division->surface, samples, Progress(),
-                   options.threads);
+    mesh = sharpen(std::move(looped), crossings, division->surface, samples,
+                   cutting.part(0.85, 1.0), options.threads);
     const std::vector<std::int32_t> used = leave_out_unused(&mesh);
     for (std::size_t i = 0; i < used.size() && !mesh.kinds.empty(); ++i) {
       mesh.kinds[i] = mesh.kinds[static_cast<std::size_t>(used[i])];
