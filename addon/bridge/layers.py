@@ -190,8 +190,4 @@ def write_layer(mesh: bpy.types.Mesh, layer: NewLayer) -> None:
 
 def _is_free(attribute: bpy.types.Attribute) -> bool:
     name = attribute.name
-    return (
-        not name.startswith(".")
-        and name not in _BUILT_IN
-        and not attribute.is_internal
-    )
+    return not name.startswith(".") and name not in _BUILT_IN and not attribute.is_internal

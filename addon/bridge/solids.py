@@ -239,9 +239,7 @@ class _Reader:
             self.solid.rendered.setdefault(UV_MAP, rendered)
 
 
-def _placed(
-    positions: NDArray[np.float32], linear: FloatArray, offset: FloatArray
-) -> Positions:
+def _placed(positions: NDArray[np.float32], linear: FloatArray, offset: FloatArray) -> Positions:
     """Returns where points are; in double precision only where they are far from the origin."""
     if np.array_equal(linear, np.eye(3)) and not offset.any():
         return positions

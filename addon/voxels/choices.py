@@ -116,9 +116,7 @@ class VoxelSettings:
         "Close the holes of the mesh first. If off, the surface ends in steps there",
         flag_description="Leave holes open; the surface ends in steps there",
     )
-    holes: str = one_of(
-        "smooth", "Holes", "What holes are closed with", HOLES, metavar="NAME"
-    )
+    holes: str = one_of("smooth", "Holes", "What holes are closed with", HOLES, metavar="NAME")
     use_cleanup: bool = switch(
         True,
         "Clean Up",

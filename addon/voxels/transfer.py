@@ -56,9 +56,11 @@ class Source:
 
 def find_labels(mesh: SolidMesh, threads: int) -> Labels | None:
     """Returns a number for each triangle, by its material and its chart; None where all are one."""
-    charts = prefilter.uv_charts(mesh.positions, mesh.triangles, mesh.uvs, threads=threads) if (
-        mesh.uvs
-    ) else None
+    charts = (
+        prefilter.uv_charts(mesh.positions, mesh.triangles, mesh.uvs, threads=threads)
+        if (mesh.uvs)
+        else None
+    )
     if charts is None:
         return mesh.materials if mesh.has_several_materials else None
     if not mesh.has_several_materials:

@@ -1010,7 +1010,17 @@ CONTOUR_ROWS = [
         ({"progress": 3}, ["progress: 3", "a callable"]),
     )
 ]
-ROWS += VOXEL_ROWS + NEAREST_ROWS + CORNER_ROWS + MEASURE_ROWS + CHART_ROWS + CUBE_ROWS + CLOSE_ROWS + SOLID_ROWS + CONTOUR_ROWS
+ROWS += (
+    VOXEL_ROWS
+    + NEAREST_ROWS
+    + CORNER_ROWS
+    + MEASURE_ROWS
+    + CHART_ROWS
+    + CUBE_ROWS
+    + CLOSE_ROWS
+    + SOLID_ROWS
+    + CONTOUR_ROWS
+)
 # Where something stands in the way on the disk.
 PLACES = [
     ("nowhere/out.dds", ["path: there is no folder", "nowhere"]),

@@ -111,8 +111,7 @@ def test_measures_do_not_depend_on_threads_and_precision():
     narrow = SPHERE.positions.astype(np.float32), SPHERE.triangles.astype(np.int32)
     wide = narrow[0].astype(np.float64), narrow[1].astype(np.int64)
     one, other = (
-        prefilter.measure_mesh(*mesh, threads=threads)
-        for mesh, threads in ((narrow, 1), (wide, 4))
+        prefilter.measure_mesh(*mesh, threads=threads) for mesh, threads in ((narrow, 1), (wide, 4))
     )
     assert (one.area, one.volume) == (other.area, other.volume)
     np.testing.assert_array_equal(one.box, other.box)

@@ -1,4 +1,4 @@
-"""Contours with edges and corners: polyhedra whose edges are known, and what is combined of them."""
+"""Contours with edges and corners: polyhedra whose edges are known, and what they combine to."""
 
 import itertools
 

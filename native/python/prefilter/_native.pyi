@@ -509,9 +509,7 @@ def make_octree(
 ) -> Octree: ...
 def traced_contour(
     octree: Octree,
-    sources: list[
-        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int64]]
-    ],
+    sources: list[tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]],
     clean_up: bool,
     adaptivity: float,
     progress: ProgressCallback | None,
@@ -521,9 +519,7 @@ def contour_octree(
     octree: Octree,
     interpolant: str,
     isovalue: float,
-    sources: list[
-        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]
-    ],
+    sources: list[tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]],
     clean_up: bool,
     adaptivity: float,
     progress: ProgressCallback | None,

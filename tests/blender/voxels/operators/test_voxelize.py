@@ -220,7 +220,9 @@ def test_materials_and_uvs_end_at_edges():
         side = sides[tuple(int(np.sign(face.center[axis])) * (axis == k) for k in range(3))]
         assert face.material_index == side
         a, b, c = (np.array(made.data[corner].uv) for corner in face.loop_indices)
-        assert 2 * side - 1e-4 <= min(a[0], b[0], c[0]) <= max(a[0], b[0], c[0]) <= 2 * side + 1.0001
+        assert (
+            2 * side - 1e-4 <= min(a[0], b[0], c[0]) <= max(a[0], b[0], c[0]) <= 2 * side + 1.0001
+        )
         area += abs(np.linalg.det([b - a, c - a])) / 2
     assert area == pytest.approx(6.0, rel=1e-3)
 
