@@ -36,6 +36,9 @@ class RootFrame {
   /// A point of the space that the root is in.
   Vector3 from_space(const Vector3& point) const { return (1.0 / unit_) * (point - origin_); }
 
+  /// The frame's unit of length, in that space.
+  double unit() const { return unit_; }
+
   /// Moves the vertices to where the root is. Throws Error(kCancelled).
   void place(const Progress& progress, int threads, std::vector<Vector3>* positions) const;
 

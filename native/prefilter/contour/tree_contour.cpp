@@ -306,6 +306,7 @@ std::vector<std::int64_t> trace_labels(const SourceSurface& surface, int threads
 TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options,
                            std::vector<std::int64_t>* origins) {
   constexpr double kPlacing = 0.98;
+  constexpr double kSmallest = 1e-30;  // unit of length that may be multiplied
   const double simplifying = options.adaptivity > 0.0 ? 0.4 : kPlacing;
   const double cleaning = options.clean_up ? 0.3 * simplifying : simplifying;
   const Progress cutting = options.progress.part(0.0, cleaning);
@@ -376,10 +377,18 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
     triangles_of_labels = trace_labels(*surface, options.threads, &mesh);
   double cell = frame.cell(0, cells.depth());
   for (int a = 1; a < 3; ++a) cell = std::min(cell, frame.cell(a, cells.depth()));
+  // Where rounding may let triangles meet, what changes them has to see the positions that come
+  // out.
+  const bool places_first = frame.unit() > kSmallest && frame.unit() < 1.0 / kSmallest;
+  const Progress placing = options.progress.part(cleaning, cleaning + 0.02);
+  if (places_first) {
+    frame.place(placing, options.threads, &mesh.positions);
+    cell *= frame.unit();
+  }
   if (options.clean_up) {
     constexpr double kCreaseTolerance = 0.01;  // cells
     mesh = clean_up(std::move(mesh), kCreaseTolerance * cell,
-                    options.progress.part(cleaning, simplifying), options.threads);
+                    options.progress.part(cleaning + 0.02, simplifying), options.threads);
   }
   if (options.adaptivity > 0.0) {
     mesh = simplify(std::move(mesh), options.adaptivity * cell,
@@ -390,7 +399,10 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
       origins->push_back(triangles_of_labels[static_cast<std::size_t>(label)]);
     }
   }
-  frame.place(options.progress.part(kPlacing, 1.0), options.threads, &mesh.positions);
+  if (!places_first) {
+    frame.place(options.progress.part(kPlacing, 1.0), options.threads, &mesh.positions);
+  }
+  options.progress.report(1.0);
   return {std::move(mesh.positions), std::move(mesh.triangles)};
 }
 }  // namespace
