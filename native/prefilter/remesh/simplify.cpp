@@ -27,7 +27,7 @@ constexpr std::size_t kPatchTriangles = 1U << 14;
 constexpr std::size_t kMeasuredEdges = 1U << 12;
 constexpr int kMostPasses = 16;
 // Of the tolerance, for the points that are measured; the rest is for what lies between them.
-constexpr double kMeasuredShare = 0.8;
+constexpr double kMeasuredShare = 0.78;
 // A pass that removes less than this share of the triangles is the last one.
 constexpr double kLeastRemoved = 0.002;
 // Then patches that still meet others go back to what they were.
