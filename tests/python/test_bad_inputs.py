@@ -912,7 +912,7 @@ QUERY_ROWS = [
     (
         "traced_contour",
         {"sources": [(BOX.positions, BOX.triangles, np.zeros(3, int))]},
-        ["sources: 3 groups of 12 triangles"],
+        ["sources[0] groups: found 3 for 12 triangles", "one each"],
     ),
     ("traced_contour", {"sources": []}, ["sources: there are none", "at least one"]),
     ("contour", {"isovalue": 0}, ["isovalue: 0", "above 0 and up to 1"]),

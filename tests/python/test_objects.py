@@ -34,6 +34,7 @@ USES = {
         "intersection": lambda octree: octree.intersection(OCTREE),
         "difference": lambda octree: OCTREE.difference(octree),
         "contour": lambda octree: octree.contour(),
+        "traced_contour": lambda octree: octree.traced_contour([(np.eye(3), [[0, 1, 2]])]),
         "coarsened": lambda octree: octree.coarsened(1),
         "save": lambda octree: octree.save("never.npz"),
         "load": None,
