@@ -319,7 +319,7 @@ def resize(
     threads: int,
 ) -> npt.NDArray[np.float32]: ...
 def compress_blocks(
-    rgba: npt.NDArray[np.uint8],
+    rgba: npt.NDArray[np.uint8] | npt.NDArray[np.uint16],
     format: str,
     weigh_by_alpha: bool,
     progress: ProgressCallback | None,

@@ -7,24 +7,24 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..version import VERSION
-from .texel_formats import Container, Texture
+from .texel_formats import Container, TexelFormat, Texture
 
 _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 _HEADER_BYTES, _LEVEL_INDEX_BYTES = 80, 24
 _BASIC_FORMAT_VERSION = 2
-_MODELS = {"bc1": 128, "bc3": 130, "bc4": 131, "bc5": 132}
 _MODEL_RGBSDA = 1
 _PRIMARIES_BT709 = 1
 _TRANSFER_LINEAR, _TRANSFER_SRGB = 1, 2
 _FLAG_PREMULTIPLIED = 1
 _RED, _GREEN, _BLUE, _ALPHA = 0, 1, 2, 15
 _BLOCK_COLOR, _BLOCK_COLOR_AND_CUT_OUT = 0, 1
-_BLOCK_CHANNELS = {
-    "bc1": (_BLOCK_COLOR_AND_CUT_OUT,),
-    "bc3": (_ALPHA, _BLOCK_COLOR),
-    "bc4": (_RED,),
-    "bc5": (_RED, _GREEN),
+_BLOCKS = {
+    "bc1": (128, (_BLOCK_COLOR_AND_CUT_OUT,)),
+    "bc3": (130, (_ALPHA, _BLOCK_COLOR)),
+    "bc4": (131, (_RED,)),
+    "bc5": (132, (_RED, _GREEN)),
 }
+"""Block formats: their color model and their channels, which have the same number of bits."""
 _LINEAR, _SIGNED, _FLOAT = 0x10, 0x40, 0x80
 
 
@@ -47,7 +47,8 @@ def _parts(texture: Texture) -> Iterator[bytes]:
         end += len(level)
 
     yield _IDENTIFIER
-    channel_bytes = np.dtype(texture.texel_format.channel_type).itemsize
+    channel_type = np.uint8 if texture.texel_format.is_block else texture.texel_format.channel_type
+    channel_bytes = np.dtype(channel_type).itemsize
     counts = (0, 0, 1, len(texture.levels), 0)  # depth, layers, faces, levels, supercompression
     yield struct.pack("<9I", texture.code, channel_bytes, texture.width, texture.height, *counts)
     yield struct.pack(
@@ -63,27 +64,32 @@ def _descriptor(texture: Texture) -> bytes:
     texel_format = texture.texel_format
     samples = b"".join(_samples(texture))
     size = 24 + len(samples)
-    block = 3 if texel_format.is_block else 0
+    model, _ = _model_and_channels(texel_format)
+    columns, rows = texel_format.block or (1, 1)
     return (
         struct.pack("<I2I", 4 + size, 0, size << 16 | _BASIC_FORMAT_VERSION)
         + struct.pack(
             "<4B",
-            _MODELS.get(texel_format.name, _MODEL_RGBSDA),
+            model,
             _PRIMARIES_BT709,
             _TRANSFER_SRGB if texture.is_srgb else _TRANSFER_LINEAR,
             _FLAG_PREMULTIPLIED if texture.alpha == "premultiplied" else 0,
         )
-        + struct.pack("<4B", block, block, 0, 0)
+        + struct.pack("<4B", columns - 1, rows - 1, 0, 0)
         + struct.pack("<8B", texel_format.unit_bytes, *(0,) * 7)
         + samples
     )
 
 
+def _model_and_channels(texel_format: TexelFormat) -> tuple[int, tuple[int, ...]]:
+    if texel_format.is_block:
+        return _BLOCKS[texel_format.name]
+    return _MODEL_RGBSDA, (_RED, _GREEN, _BLUE, _ALPHA)[: texel_format.channels]
+
+
 def _samples(texture: Texture) -> Iterator[bytes]:
     texel_format = texture.texel_format
-    channels = _BLOCK_CHANNELS.get(
-        texel_format.name, (_RED, _GREEN, _BLUE, _ALPHA)[: texel_format.channels]
-    )
+    _, channels = _model_and_channels(texel_format)
     bits = 8 * texel_format.unit_bytes // len(channels)
     for number, channel in enumerate(channels):
         if texel_format.is_float:

@@ -12,6 +12,9 @@ from .._border.arguments import ProgressCallback
 from .._border.arrays import as_bytes, as_image
 from ..color import to_linear
 
+Codes = tuple[int | None, int | None]
+"""What a container calls a format with linear and with sRGB colours; None where it has no word."""
+
 
 @dataclass(frozen=True)
 class TexelFormat:
@@ -20,8 +23,8 @@ class TexelFormat:
     Attributes:
         name: As `write_dds` and `write_ktx2` take it.
         channels: How many a texel has.
-        unit_bytes: Of a texel, or of a block of 4 x 4 texels.
-        is_block: Whether texels are compressed in blocks of 4 x 4.
+        unit_bytes: Of a texel, or of a block of texels.
+        block: The columns and rows of a block that is compressed; None where texels are not.
         channel_type: Of a channel; of what is compressed for blocks.
         dxgi: The DXGI_FORMAT of linear and of sRGB colours; None where there is none.
         vulkan: The VkFormat of the same.
@@ -30,10 +33,14 @@ class TexelFormat:
     name: str
     channels: int
     unit_bytes: int
-    is_block: bool
+    block: tuple[int, int] | None
     channel_type: type[np.uint8] | type[np.float16] | type[np.float32]
-    dxgi: tuple[int, int | None]
-    vulkan: tuple[int, int | None]
+    dxgi: Codes
+    vulkan: Codes
+
+    @property
+    def is_block(self) -> bool:
+        return self.block is not None
 
     @property
     def is_float(self) -> bool:
@@ -67,8 +74,7 @@ class Container(NamedTuple):
     """A kind of file."""
 
     name: str
-    codes: Callable[[TexelFormat], tuple[int, int | None]]
-    """What it calls a format with linear and with sRGB colours; None where it cannot hold that."""
+    codes: Callable[[TexelFormat], Codes]
     parts: Callable[[Texture], Iterator[bytes]]
     """The file, piece by piece."""
 
@@ -77,21 +83,23 @@ def _plain(
     name: str,
     channels: int,
     channel_type: type[np.uint8] | type[np.float16] | type[np.float32],
-    dxgi: tuple[int, int | None],
-    vulkan: tuple[int, int | None],
+    dxgi: Codes,
+    vulkan: Codes,
 ) -> TexelFormat:
     size = channels * np.dtype(channel_type).itemsize
-    return TexelFormat(name, channels, size, False, channel_type, dxgi, vulkan)
+    return TexelFormat(name, channels, size, None, channel_type, dxgi, vulkan)
 
 
 def _blocks(
     name: str,
     channels: int,
     unit_bytes: int,
-    dxgi: tuple[int, int | None],
-    vulkan: tuple[int, int | None],
+    dxgi: Codes,
+    vulkan: Codes,
+    block: tuple[int, int] = (4, 4),
+    channel_type: type[np.uint8] | type[np.float16] = np.uint8,
 ) -> TexelFormat:
-    return TexelFormat(name, channels, unit_bytes, True, np.uint8, dxgi, vulkan)
+    return TexelFormat(name, channels, unit_bytes, block, channel_type, dxgi, vulkan)
 
 
 ALPHAS = ("straight", "premultiplied", "independent")
@@ -180,13 +188,15 @@ def encoded(
     """A level as a file holds it, the top row first."""
     flipped = np.ascontiguousarray(level[::-1])
     if texel_format.is_float:
-        texels = _linear_floats(flipped, srgb, texel_format.channel_type, threads)
+        texels = _linear_floats(flipped, srgb, texel_format, threads)
     elif flipped.dtype == np.uint8:
         texels = flipped
     else:
         texels = _native.to_bytes(flipped, srgb, threads)
     if texel_format.is_block:
         rgba = _with_channels(texels, 4)
+        if texel_format.is_float:
+            rgba = rgba.view(np.uint16)
         return _native.compress_blocks(rgba, texel_format.name, weigh_by_alpha, progress, threads)
     return _with_channels(texels, texel_format.channels).tobytes()
 
@@ -194,7 +204,7 @@ def encoded(
 def _linear_floats(
     level: np.ndarray,
     srgb: bool,
-    channel_type: type[np.uint8] | type[np.float16] | type[np.float32],
+    texel_format: TexelFormat,
     threads: int,
 ) -> np.ndarray:
     if level.dtype == np.uint8:
@@ -202,11 +212,11 @@ def _linear_floats(
         if srgb:
             level = to_linear(level, threads=threads)
     with np.errstate(over="ignore"):
-        values = level.astype(channel_type)
+        values = level.astype(texel_format.channel_type)
     if not np.isfinite(values).all():
         raise ValueError(
             f"levels: hold {level.ravel()[np.abs(level).argmax()]}, beyond the half floats of "
-            f"format 'rgba16f' (65504); 'rgba32f' is needed"
+            f"format '{texel_format.name}' (65504); 'rgba32f' is needed"
         )
     return values
 

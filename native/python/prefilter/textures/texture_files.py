@@ -92,7 +92,10 @@ def _write(
     srgb = is_srgb(encoding)
     texel_format = as_format(format, images[0], needs_srgb=srgb)
     srgb = srgb and not texel_format.is_float
-    code = container.codes(texel_format)[srgb]
+    codes = container.codes(texel_format)
+    if codes == (None, None):
+        raise ValueError(f"format: {container.name} files have no '{texel_format.name}'")
+    code = codes[srgb]
     if code is None:
         raise ValueError(
             f"encoding: 'srgb' with the format '{texel_format.name}', which has no sRGB form in "

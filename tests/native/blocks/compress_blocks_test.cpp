@@ -1,4 +1,4 @@
-#include "prefilter/color/compress_blocks.h"
+#include "prefilter/blocks/compress_blocks.h"
 
 #include <gtest/gtest.h>
 

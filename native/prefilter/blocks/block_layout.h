@@ -1,0 +1,31 @@
+// The formats of compressed blocks: how many texels and bytes a block has.
+#pragma once
+
+#include <string>
+
+namespace prefilter {
+
+enum class BlockFormat {
+  kBc1,  // red, green, blue, and an alpha that is 0 or 1
+  kBc3,  // red, green, blue and alpha
+  kBc4,  // red
+  kBc5,  // red and green
+};
+
+struct BlockLayout {
+  BlockFormat format;
+  const char* name;  // as Python knows it, such as "bc1"
+  int columns;       // texels along a block's sides
+  int rows;
+  int bytes;
+  bool is_float;  // compressed from half floats, not from bytes
+};
+
+const BlockLayout& layout_of(BlockFormat format);
+
+/// The format of that name.
+///
+/// Throws Error where there is none.
+const BlockLayout& layout_named(const std::string& name);
+
+}  // namespace prefilter

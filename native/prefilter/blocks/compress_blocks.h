@@ -1,0 +1,35 @@
+// Texels compressed in blocks, as graphics cards decode them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/base/progress.h"
+#include "prefilter/blocks/block_layout.h"
+
+namespace prefilter {
+
+struct BlockOptions {
+  BlockFormat format = BlockFormat::kBc1;
+  /// Whether colours of texels with little alpha count little, for kBc3.
+  bool weigh_by_alpha = false;
+  int threads = 0;  // 0 = one per processor
+};
+
+/// A half float as IEEE 754 stores it.
+using HalfBits = std::uint16_t;
+
+/// The blocks, row by row from the first one, of interleaved RGBA bytes. Blocks that reach over the
+/// edge are fitted to the texels inside. For kBc1 texels with an alpha below 128 become transparent
+/// black, and all others opaque.
+///
+/// Throws Error where a side is less than 1, where the format is one of floats, and where
+/// `progress` cancels.
+std::vector<std::uint8_t> compress_blocks(const std::uint8_t* rgba, int width, int height,
+                                          const BlockOptions& options, const Progress& progress);
+
+/// The same for formats of floats, of finite half floats.
+std::vector<std::uint8_t> compress_blocks(const HalfBits* rgba, int width, int height,
+                                          const BlockOptions& options, const Progress& progress);
+
+}  // namespace prefilter

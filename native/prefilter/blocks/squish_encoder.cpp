@@ -1,0 +1,51 @@
+// The fitting is libsquish's: clusters along the principal axis of a block's colours, all ways to
+// split them tried, and least squares for the ends (Simon Brown, "DXT Compression Techniques").
+#include <squish.h>
+
+#include "prefilter/blocks/encoders.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kSide = 4;
+
+int squish_flags(const BlockOptions& options) {
+  switch (options.format) {
+    case BlockFormat::kBc3:
+      return squish::kDxt5 | (options.weigh_by_alpha ? squish::kWeightColourByAlpha : 0);
+    case BlockFormat::kBc4:
+      return squish::kBc4;
+    case BlockFormat::kBc5:
+      return squish::kBc5;
+    default:
+      return squish::kDxt1;
+  }
+}
+
+class SquishEncoder final : public ByteEncoder {
+ public:
+  explicit SquishEncoder(const BlockOptions& options)
+      : flags_(squish_flags(options)), bytes_(layout_of(options.format).bytes) {}
+
+  void encode(const BlockRow<std::uint8_t>& row, std::uint8_t* blocks) override {
+    for (int i = 0; i < row.count; ++i) {
+      const int columns = i == row.count - 1 ? row.last_columns : kSide;
+      int inside = 0;
+      for (int y = 0; y < row.rows_inside; ++y) inside |= ((1 << columns) - 1) << (kSide * y);
+      squish::CompressMasked(row.texels + std::ptrdiff_t{4} * kSide * kSide * i, inside,
+                             blocks + std::ptrdiff_t{bytes_} * i, flags_);
+    }
+  }
+
+ private:
+  int flags_;
+  int bytes_;
+};
+
+}  // namespace
+
+std::unique_ptr<ByteEncoder> make_squish_encoder(const BlockOptions& options) {
+  return std::make_unique<SquishEncoder>(options);
+}
+
+}  // namespace prefilter
