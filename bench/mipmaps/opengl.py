@@ -1,0 +1,314 @@
+"""Measures what OpenGL shows of the levels of each filter: error and flicker of turning models.
+
+Usage: PYTHONPATH=PACKAGE python3 bench/mipmaps/opengl.py [MODEL...] [--filters FILTER...]
+       (--help lists the options; bench/mipmaps/opengl_models.py has to be run before, in Blender)
+
+A model wears its base colour, unlit, and turns through 12 frames of 0.4 degrees. The reference
+looks up the full image (level 0, bilinear) at 16 x 16 points of each pixel. Against it are lookups
+of the levels: one a pixel, 4 x 4 samples a pixel, and one with 16x anisotropy. The error is the
+RMSE over the pixels that the model covers fully and the channels, in scene-linear values; flicker
+is the root mean square of the difference of consecutive frames less that of the reference.
+
+A filter is NAME, or NAME:KEY=VALUE:..., with arguments of `prefilter.mipmaps`.
+"""
+
+import argparse
+import hashlib
+import inspect
+import json
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.mipmaps import opengl_renderer
+from bench.mipmaps.opengl_renderer import Model, Renderer, Texels, averaged
+from bench.report import Report
+
+FOLDER = Path(__file__).resolve().parents[2] / "build/opengl"
+MODELS = ("spot", "DamagedHelmet", "AntiqueCamera", "FlightHelmet", "BoomBox")
+FILTERS = ("box", "lanczos3", "pam-bilinear", "pam-trilinear")
+BASELINE = "lanczos3"
+SIZES = (200, 64)
+FRAMES = 12
+STEP = np.radians(0.4)
+REFERENCE = 16  # Samples along each side of a pixel.
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A way to look levels up."""
+
+    about: str
+    samples: int = 1  # Along each side of a pixel.
+    filters: tuple[int, int] = opengl_renderer.TRILINEAR
+    anisotropy: float = 1.0
+    result: str = opengl_renderer.LOOKUP
+
+
+MODES = {
+    "one": Mode("one trilinear lookup a pixel"),
+    "4x4": Mode("4 x 4 trilinear lookups a pixel", samples=4),
+    "16x": Mode("one lookup a pixel with the driver's 16x anisotropy", anisotropy=16.0),
+    "probes": Mode(
+        "one lookup a pixel with up to 16 trilinear probes, as EXT_texture_filter_anisotropic "
+        "describes them",
+        result=opengl_renderer.PROBES,
+    ),
+    "nearest": Mode(
+        "one bilinear lookup a pixel in the nearest level", filters=opengl_renderer.NEAREST_LEVEL
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Frames:
+    """Renders: (views, frames, size, size, 4), colours and coverage."""
+
+    pixels: Texels
+
+    def error(self, truth: "Frames") -> float:
+        """Returns the RMSE where the truth is covered fully."""
+        covered = truth.covered()
+        difference = (self.pixels - truth.pixels)[..., :3][covered]
+        return float(np.sqrt(np.mean(difference.astype(float) ** 2)))
+
+    def flicker(self, truth: "Frames") -> float:
+        """Returns the RMS of what changes from frame to frame, but not in the truth."""
+        covered = truth.covered()
+        both = covered[:, 1:] & covered[:, :-1]
+        changes = np.diff((self.pixels - truth.pixels)[..., :3], axis=1)[both]
+        return float(np.sqrt(np.mean(changes.astype(float) ** 2)))
+
+    def covered(self) -> NDArray[np.bool_]:
+        """Returns which pixels the model covers fully."""
+        return self.pixels[..., 3] == 1
+
+
+@dataclass(frozen=True)
+class Found:
+    """What was measured, by the key "SIZE MODE"."""
+
+    error: dict[str, float]
+    flicker: dict[str, float]
+
+
+def main() -> None:
+    """Measures the models of the command line."""
+    options = parse()
+    report = Report()
+    found: dict[str, dict[str, Found]] = {}
+    for name in options.models:
+        model = Model.read(options.folder / f"{name}.npz")
+        known = Results(options.folder / "results" / f"{name}.json", settings(options))
+        missing = [f for f in options.filters if options.fresh or f not in known.found]
+        if missing:
+            renderer = Renderer(model)
+            truth = references(renderer, model, options)
+            for filter_ in missing:
+                known.add(filter_, measure(renderer, model, filter_, truth, options))
+        found[name] = {f: known.found[f] for f in options.filters}
+    add_tables(report, found, options)
+    if options.markdown is not None:
+        options.markdown.write_text("\n".join(report.markdown))
+
+
+def parse() -> argparse.Namespace:
+    """Reads the arguments."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("models", nargs="*", default=MODELS)
+    parser.add_argument("--filters", nargs="+", default=FILTERS, metavar="FILTER")
+    parser.add_argument("--modes", nargs="+", default=tuple(MODES), choices=MODES, metavar="MODE")
+    parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, metavar="PIXELS")
+    parser.add_argument("--views", type=int, default=2, help="starts of the turn")
+    parser.add_argument(
+        "--fresh", action="store_true", help="measure again what this build has measured before"
+    )
+    parser.add_argument(
+        "--folder",
+        type=Path,
+        default=FOLDER,
+        help="of the models; renders and results are kept there too (default: %(default)s)",
+    )
+    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    options = parser.parse_args()
+    if BASELINE not in options.filters:
+        options.filters = [BASELINE, *options.filters]
+    for model in options.models:
+        if not (options.folder / f"{model}.npz").exists():
+            parser.error(f"there is no {options.folder / model}.npz: run opengl_models.py")
+    return options
+
+
+def settings(options: argparse.Namespace) -> str:
+    """Returns what results depend on besides model and filter: the build, and what is drawn."""
+    hashed = hashlib.sha256(Path(prefilter._native.__file__).read_bytes())
+    for module in (prefilter.mipmap, opengl_renderer):
+        hashed.update(inspect.getsource(module).encode())
+    hashed.update(repr((options.views, options.sizes, options.modes)).encode())
+    return hashed.hexdigest()[:16]
+
+
+class Results:
+    """What was found of a model, in a file."""
+
+    def __init__(self, path: Path, settings_: str) -> None:
+        """Reads the file, if there is one."""
+        self._path, self._settings = path, settings_
+        self._all = json.loads(path.read_text()) if path.exists() else {}
+        kept = self._all.setdefault(settings_, {})
+        self.found = {name: Found(**fields) for name, fields in kept.items()}
+
+    def add(self, name: str, found: Found) -> None:
+        """Adds a filter and writes the file."""
+        self.found[name] = found
+        self._all[self._settings][name] = vars(found)
+        self._path.parent.mkdir(parents=True, exist_ok=True)
+        self._path.write_text(json.dumps(self._all, indent=1))
+
+
+def angles(views: int) -> list[list[float]]:
+    """Returns those of the frames, by view."""
+    starts = [0.35 + 2 * np.pi * view / views for view in range(views)]
+    return [[start + frame * STEP for frame in range(FRAMES)] for start in starts]
+
+
+def drawn(views: int, draw: Callable[[float], Texels]) -> Frames:
+    """Draws all frames."""
+    return Frames(np.array([[draw(angle) for angle in view] for view in angles(views)]))
+
+
+def references(renderer: Renderer, model: Model, options: argparse.Namespace) -> dict[int, Frames]:
+    """Returns the true frames by size, from files if they were drawn before."""
+    found = {}
+    source = inspect.getsource(opengl_renderer) + inspect.getsource(references)
+    for size in options.sizes:
+        key = hashlib.sha256((source + repr(angles(options.views))).encode()).hexdigest()[:12]
+        path = options.folder / "references" / f"{model.name}-{size}-{key}.npy"
+        if not path.exists():
+            textures = renderer.textures([[image] for image in model.images])
+
+            def draw(angle: float, size: int = size, textures: list = textures) -> Texels:
+                samples = renderer.draw(
+                    textures, angle, REFERENCE * size, filters=opengl_renderer.FULL
+                )
+                return averaged(samples, REFERENCE)
+
+            path.parent.mkdir(parents=True, exist_ok=True)
+            np.save(path, drawn(options.views, draw).pixels)
+            for texture in textures:
+                texture.release()
+        found[size] = Frames(np.load(path))
+    return found
+
+
+def measure(
+    renderer: Renderer,
+    model: Model,
+    filter_: str,
+    truth: dict[int, Frames],
+    options: argparse.Namespace,
+) -> Found:
+    """Returns what a filter gives."""
+    began = time.monotonic()
+    textures = renderer.textures([baked(model, i, filter_) for i in range(len(model.images))])
+    baked_in = time.monotonic() - began
+    error, flicker = {}, {}
+    for size in options.sizes:
+        for name in options.modes:
+            frames = rendered(renderer, textures, size, MODES[name], options.views)
+            error[f"{size} {name}"] = frames.error(truth[size])
+            flicker[f"{size} {name}"] = frames.flicker(truth[size])
+    for texture in textures:
+        texture.release()
+    seconds = time.monotonic() - began - baked_in
+    print(f"{model.name}, {filter_}: {baked_in:.0f} s, {seconds:.0f} s", file=sys.stderr)
+    return Found(error, flicker)
+
+
+def rendered(renderer: Renderer, textures: list, size: int, mode: Mode, views: int) -> Frames:
+    """Draws all frames in a mode."""
+
+    def draw(angle: float) -> Texels:
+        samples = renderer.draw(
+            textures,
+            angle,
+            mode.samples * size,
+            filters=mode.filters,
+            anisotropy=mode.anisotropy,
+            result=mode.result,
+        )
+        return averaged(samples, mode.samples)
+
+    return drawn(views, draw)
+
+
+def baked(model: Model, image: int, filter_: str) -> list[Texels]:
+    """Returns the levels of an image."""
+    name, *arguments = filter_.split(":")
+    of_image = model.used == image
+    vertices, triangles = np.unique(
+        model.corners[of_image].reshape(-1, 3), axis=0, return_inverse=True
+    )
+    surface = prefilter.Surface(vertices, triangles.reshape(-1, 3), model.uvs[of_image])
+    return prefilter.mipmaps(
+        model.images[image],
+        surface,
+        filter=name,
+        wrap=model.wraps[image],
+        **dict(map(argument, arguments)),
+    )
+
+
+def argument(text: str) -> tuple[str, object]:
+    """Reads KEY=VALUE."""
+    key, _, value = text.partition("=")
+    for kind in (int, float):
+        try:
+            return key, kind(value)
+        except ValueError:
+            pass
+    return key, value
+
+
+def add_tables(
+    report: Report, found: dict[str, dict[str, Found]], options: argparse.Namespace
+) -> None:
+    """Adds a table for each mode, as shares of the baseline, with means over models."""
+    others = [name for name in options.filters if name != BASELINE]
+    for mode in options.modes:
+        rows = []
+        for size in options.sizes:
+            key = f"{size} {mode}"
+            shares = []
+            for model, by_filter in found.items():
+                base = by_filter[BASELINE]
+                shares.append(
+                    [
+                        share
+                        for name in others
+                        for share in (
+                            by_filter[name].error[key] / base.error[key],
+                            by_filter[name].flicker[key] / base.flicker[key],
+                        )
+                    ]
+                )
+                figures = [f"{base.error[key]:.5f}", f"{base.flicker[key]:.5f}"]
+                rows.append([model, str(size), *figures, *(f"{share:.3f}" for share in shares[-1])])
+            means = [f"{share:.3f}" for share in np.mean(shares, axis=0)]
+            rows.append(["mean", str(size), "", "", *means])
+        shares = [[float(cell) for cell in row[4:]] for row in rows if row[0] == "mean"]
+        rows.append(["mean", "", "", "", *(f"{share:.3f}" for share in np.mean(shares, axis=0))])
+        head = ["model", "pixels", f"{BASELINE}: error", "flicker"]
+        head += [cell for name in others for cell in (f"{name}: error", "flicker")]
+        report.table(f"{mode}: {MODES[mode].about}; shares of {BASELINE}", head, rows)
+
+
+if __name__ == "__main__":
+    main()
