@@ -1,0 +1,12 @@
+"""The commands."""
+
+from typing import Any
+
+from . import bake, bake_cache, plot
+
+
+def add(commands: Any) -> None:
+    """Adds the commands."""
+    bake.add(commands)
+    plot.add(commands)
+    bake_cache.add(commands)

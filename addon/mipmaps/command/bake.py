@@ -1,0 +1,123 @@
+"""The command `bake`."""
+
+import argparse
+import os
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ...bridge import images
+from ...bridge.files import engines, scenes, staging, textures
+from ...core import command
+from ...core.flags import add_flags, given, tables
+from ...core.outcome import FAILURES
+from ...core.wording import listed
+from .. import reading, udim, unnamed
+from ..choices import Settings
+from . import source
+
+_HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
+_NOTES = """\
+Without --image, the images are baked that are base colors of the meshes' materials; or all that
+the materials show where none is. Of several, each gets a file: texture.exr becomes
+texture.NAME.exr. A picture file that no material uses is taken as the texture of all faces, with
+the active UV map.
+
+examples:
+  prefilter bake scene.blend --image Wood --save
+  prefilter bake spot.obj --image spot.png --output spot.exr
+  prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif
+  prefilter bake helmet.gltf --object Visor --output visor.ktx2 --texture-format bc3"""
+
+
+def add(commands: Any) -> None:
+    """Adds the command."""
+    parser = command.add_command(commands, "bake", _HELP, *tables(Settings), _NOTES)
+    source.add_arguments(parser)
+    add_flags(parser, Settings)
+    parser.add_argument(
+        "--frames",
+        metavar="START:END[:STEP]",
+        type=_frames,
+        help="average over these frames of the animation (default: the current frame only)",
+    )
+    parser.add_argument(
+        "--save",
+        action="store_true",
+        help="keep the levels as packed images in the .blend FILE, and save it",
+    )
+    parser.set_defaults(execute=_bake, usage_error=parser.error)
+
+
+def _bake(options: argparse.Namespace) -> None:
+    extension = command.check_ending(options, "FILE", options.file, scenes.SOURCES)
+    settings = _settings(options)
+    if options.save and extension != ".blend":
+        options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
+    if not options.save and not settings.filepath:
+        options.usage_error("nothing to write: give --output FILE or --save")
+    paths = (settings.filepath, settings.roughness_filepath)
+    if settings.texture_format != "auto" and not any(map(engines.has_formats, paths)):
+        options.usage_error(
+            f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
+            f"files"
+        )
+    path = os.path.abspath(options.file)
+    objects = source.objects_of(options)
+    if options.save:
+        staging.check_writable(Path(path))
+    chosen, is_picture = source.images_of(options.image, objects, settings.content)
+    if len(chosen) > 1 and (settings.roughness or settings.roughness_filepath):
+        raise ValueError(f"--roughness: needs --image, as {len(chosen)} images are baked without")
+    targets = unnamed.output_paths(settings.filepath, chosen)
+    for image, target in zip(chosen, targets, strict=True):
+        for file in udim.paths(target, images.tile_numbers(image)):
+            textures.check_target(file)
+    settings = replace(settings, roughness=_roughness_name(settings.roughness))
+    failed: list[str] = []
+    for image, target in zip(chosen, targets, strict=True):
+        users_of_it, warnings = source.users_of(image, objects, options.object)
+        command.warn(warnings)
+        try:
+            work = reading.read(
+                image,
+                users_of_it,
+                replace(settings, filepath=target),
+                bpy.context.evaluated_depsgraph_get(),
+                all_faces=is_picture,
+            )
+            command.tell(command.done(work))
+        except FAILURES as error:
+            if len(chosen) == 1:
+                raise
+            command.warn([str(error)])
+            failed.append(image.name)
+    if options.save and len(failed) < len(chosen):
+        scenes.save_open(path)
+    if failed:
+        raise ValueError(f"not baked: {listed(failed)}")
+
+
+def _frames(text: str) -> tuple[int, int, int]:
+    found = re.fullmatch(r"(-?\d+):(-?\d+)(?::(\d+))?", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"found '{text}'; START:END or START:END:STEP is needed")
+    return int(found[1]), int(found[2]), int(found[3] or 1)
+
+
+def _settings(options: argparse.Namespace) -> Settings:
+    settings = Settings(**given(options, Settings), use_images=options.save)
+    if not options.frames:
+        return settings
+    start, end, step = options.frames
+    return replace(settings, use_frames=True, frame_start=start, frame_end=end, frame_step=step)
+
+
+def _roughness_name(name: str) -> str:
+    """Returns the name of the image; a picture file is loaded as data."""
+    if not name or name in bpy.data.images or not os.path.isfile(name):
+        return name
+    return images.load("--roughness", name, is_data=True).name

@@ -1,0 +1,67 @@
+"""The command `bake-cache`."""
+
+import argparse
+import os
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ...bridge import meshes
+from ...bridge.files import scenes, staging
+from ...core import command
+from ...core.flags import add_flags, given
+from ...core.wording import listed
+from .. import texture_cache
+from ..choices import Settings
+from .source import WANTED
+
+_HELP = "bake PAM into Cycles' texture cache, for every image of a scene"
+_NOTES = """\
+Blender makes the cache files, in the folder of its preferences or beside the images; their levels
+are then replaced. Files that are there are overwritten. When an image file changes, Blender makes
+its cache file anew, and it has to be baked again. Needs Blender 5.2 LTS or later.
+
+example:
+  prefilter bake-cache scene.blend --save"""
+
+
+def add(commands: Any) -> None:
+    """Adds the command."""
+    parser = command.add_command(commands, "bake-cache", _HELP, _NOTES)
+    parser.add_argument("file", metavar="FILE", help="a .blend file")
+    parser.add_argument(
+        "--scene", metavar="NAME", help="the scene that is rendered (default: the active one)"
+    )
+    parser.add_argument(
+        "--unpack",
+        action="store_true",
+        help="write packed images to the folder textures beside FILE first, and bake these; FILE "
+        "uses them if it is saved",
+    )
+    add_flags(parser, Settings, "threads")
+    parser.add_argument(
+        "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
+    )
+    parser.set_defaults(execute=_bake_cache, usage_error=parser.error)
+
+
+def _bake_cache(options: argparse.Namespace) -> None:
+    command.check_ending(options, "FILE", options.file, [".blend"])
+    path = os.path.abspath(options.file)
+    scenes.load([path], meshes.may_show_image, WANTED)
+    if options.save:
+        staging.check_writable(Path(path))
+    scene = bpy.context.scene if options.scene is None else bpy.data.scenes.get(options.scene)
+    if scene is None:
+        known = listed(other.name for other in bpy.data.scenes)
+        raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {known}")
+    bpy.context.window.scene = scene
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    work = texture_cache.CacheBake.read(
+        scene, depsgraph, unpack=options.unpack, **given(options, Settings)
+    )
+    outcome = command.done(work)
+    if options.save:
+        scenes.save_open(path)
+    command.tell(outcome)

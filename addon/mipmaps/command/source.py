@@ -1,0 +1,65 @@
+"""What `bake` and `plot` read: a file with objects, and images that these use."""
+
+import argparse
+import os
+from collections.abc import Sequence
+
+import bpy
+
+from ...bridge import images, meshes
+from ...bridge.files import scenes
+from ...core.wording import either
+from .. import unnamed, users
+
+WANTED = "mesh object"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help=f"a file: {either(scenes.SOURCES)}")
+    parser.add_argument(
+        "--object",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="a mesh object or collection instance that counts; repeat for several (default: all "
+        "visible ones that use the image)",
+    )
+    parser.add_argument(
+        "--image",
+        metavar="NAME",
+        help="the image: its name in the file, or the path of a picture file",
+    )
+
+
+def objects_of(options: argparse.Namespace) -> list[bpy.types.Object]:
+    (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)
+    return scenes.chosen(objects, options.object, WANTED)
+
+
+def users_of(
+    image: bpy.types.Image,
+    objects: list[bpy.types.Object],
+    names: Sequence[str],
+) -> tuple[list[bpy.types.Object], list[str]]:
+    """Returns those that use the image of objects that nobody has named, and warnings.
+
+    Where none does, all are returned.
+    """
+    if names:
+        return objects, []
+    shown, warnings = users.users_of(image, bpy.context)
+    return [obj for obj in objects if obj in shown] or objects, warnings
+
+
+def images_of(
+    name: str | None, objects: Sequence[bpy.types.Object], content: str
+) -> tuple[list[bpy.types.Image], bool]:
+    """Returns the images to bake, and whether it is a picture file from the command line."""
+    if name is None:
+        chosen, line = unnamed.images_to_bake(objects)
+        if line:
+            print(line)
+        return chosen, False
+    if name not in bpy.data.images and os.path.isfile(name):
+        return [images.load("--image", name, is_data=content in {"normal", "data"})], True
+    return [images.find(name)], False
