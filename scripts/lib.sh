@@ -19,6 +19,15 @@ headers_dir=$cache_dir/python-headers
 opensubdiv_dir=$cache_dir/opensubdiv-3.6.0
 squish_dir=$cache_dir/squish-1.15
 clipper2_dir=$cache_dir/clipper2-2.0.1
+etcpak_dir=$cache_dir/etcpak-0.6.1
+astcenc_dir=$cache_dir/astcenc-0.6.1
+basisu_dir=$cache_dir/basisu-1.16
+zstd_dir=$cache_dir/zstd-1.5.7
+# Libraries that are linked in, and where their sources are.
+linked_sources=("OPENSUBDIV=$opensubdiv_dir" "SQUISH=$squish_dir" "CLIPPER2=$clipper2_dir" "ETCPAK=$etcpak_dir"
+  "ASTCENC=$astcenc_dir" "BASISU=$basisu_dir" "ZSTD=$zstd_dir")
+source_options=("${linked_sources[@]/#/PREFILTER_}")
+source_options=("${source_options[@]/=/_SOURCE=}")
 # Each list has its own: checkouts may differ.
 wheels_dir=$cache_dir/wheels-$(sha256sum <"$source_dir/scripts/bundled.txt" | cut -c 1-12)
 log_dir=$cache_dir/logs
@@ -261,6 +270,60 @@ ensure_clipper2() {
   rm -rf "$source"
 }
 
+# fetch_crate FOLDER NAME VERSION SHA256: the same for a package of crates.io, in FOLDER.source/NAME-VERSION.
+fetch_crate() {
+  fetch_source "$1" "https://static.crates.io/crates/$2/$2-$3.crate" "$4"
+}
+
+# etcpak is linked in likewise. Debian 12 and 13 have none; the crate ctt-etcpak brings it along, of 2026.
+ensure_etcpak() {
+  [[ ! -e $etcpak_dir ]] || return 0
+  local version=${etcpak_dir##*-} source=$etcpak_dir.source
+  fetch_crate "$etcpak_dir" ctt-etcpak "$version" 9d56f34893228fab7feeb599eeff99a4202b5cbfccd8a280c630365a7f49bce0
+  mkdir "$source/kept"
+  mv "$source/ctt-etcpak-$version/LICENSE-BSD-ETCPAK.md" "$source/kept/LICENSE.txt"
+  mv "$source/ctt-etcpak-$version"/cpp/* "$source/kept/"
+  mv "$source/kept" "$etcpak_dir"
+  rm -rf "$source"
+}
+
+# astcenc is linked in likewise. Debian's source is 34 MB of test images; the crate ctt-astcenc brings the encoder alone.
+ensure_astcenc() {
+  [[ ! -e $astcenc_dir ]] || return 0
+  local version=${astcenc_dir##*-} source=$astcenc_dir.source
+  fetch_crate "$astcenc_dir" ctt-astcenc "$version" dc6dc5595dd5b65dd4cf644bf0d9159f0bd3de2e37c539a1a8df12fb1ecfdd77
+  mkdir "$source/kept"
+  mv "$source/ctt-astcenc-$version/LICENSE-APACHE-ASTCENC.md" "$source/kept/LICENSE.txt"
+  mv "$source/ctt-astcenc-$version"/cpp/* "$source/kept/"
+  mv "$source/kept" "$astcenc_dir"
+  rm -rf "$source"
+}
+
+# The encoder of Basis Universal is linked in likewise, from the crate basis-universal-sys 0.3.1.
+ensure_basisu() {
+  [[ ! -e $basisu_dir ]] || return 0
+  local source=$basisu_dir.source
+  fetch_crate "$basisu_dir" basis-universal-sys 0.3.1 fd9bde5e9547958fb0e77d79fc7879edcf91d5e0c8e372ef8959916cf35e8506
+  mkdir "$source/kept"
+  mv "$source"/basis-universal-sys-0.3.1/vendor/basis_universal/LICENSE "$source/kept/LICENSE.txt"
+  mv "$source"/basis-universal-sys-0.3.1/vendor/basis_universal/{encoder,transcoder} "$source/kept/"
+  mv "$source/kept" "$basisu_dir"
+  rm -rf "$source"
+}
+
+# zstd is linked in likewise.
+ensure_zstd() {
+  [[ ! -e $zstd_dir ]] || return 0
+  local version=${zstd_dir##*-} source=$zstd_dir.source
+  fetch_source "$zstd_dir" "libz/libzstd/libzstd_$version+dfsg.orig.tar.xz" \
+    0c092ef267edce57ba7f3f2645c861f72eaf5e76273c6c3632869423464b90a5
+  mkdir "$source/kept"
+  mv "$source/zstd-$version/LICENSE" "$source/kept/LICENSE.txt"
+  mv "$source/zstd-$version"/lib/{common,compress,zstd.h,zstd_errors.h} "$source/kept/"
+  mv "$source/kept" "$zstd_dir"
+  rm -rf "$source"
+}
+
 # ensure_wheels: fetches what the package imports and the extension brings along: pure Python, as its authors publish it.
 ensure_wheels() {
   [[ ! -e $wheels_dir ]] || return 0
@@ -352,6 +415,10 @@ setup_host() {
   ensure_opensubdiv
   ensure_squish
   ensure_clipper2
+  ensure_etcpak
+  ensure_astcenc
+  ensure_basisu
+  ensure_zstd
   ensure_wheels
   unlock "$cache_dir/.lock"
 }
@@ -412,8 +479,7 @@ compile() {
 
 configure_release() {
   configure release "PREFILTER_PYTHON_HEADERS=$python_headers" "PREFILTER_PYBIND11_INCLUDE=$pybind11_include" \
-    "PREFILTER_OPENSUBDIV_SOURCE=$opensubdiv_dir" "PREFILTER_SQUISH_SOURCE=$squish_dir" \
-    "PREFILTER_CLIPPER2_SOURCE=$clipper2_dir" "PREFILTER_WHEELS=$wheels_dir"
+    "${source_options[@]}" "PREFILTER_WHEELS=$wheels_dir"
 }
 
 # build_packages: brings the Python package of every Python up to date.
@@ -448,8 +514,8 @@ package_with() {
 # extension_zip to it. Packages must be built. FOLDER, for BLENDER_USER_RESOURCES, then has it installed and enabled.
 package_extension() {
   lock "$(build_lock release)"
-  extension_zip=$(package_with extension "${python_tags[@]/#/--tag=}" "--linked=$opensubdiv_dir" "--linked=$squish_dir" \
-    "--linked=$clipper2_dir" "--wheels=$wheels_dir" "$@")
+  extension_zip=$(package_with extension "${python_tags[@]/#/--tag=}" "${linked_sources[@]/#*=/--linked=}" \
+    "--wheels=$wheels_dir" "$@")
   unlock "$(build_lock release)"
 }
 
