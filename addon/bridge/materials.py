@@ -2,10 +2,12 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import bpy
 from mathutils import Euler, Matrix
+
+from . import nodes
+from .nodes import Groups
 
 WRAP_OF_EXTENSION = {
     "REPEAT": "repeat",
@@ -20,9 +22,6 @@ WHITE = (1.0, 1.0, 1.0, 1.0)
 """The color of what has no material."""
 
 _ONE_COLOR = frozenset({"BSDF_DIFFUSE", "EMISSION"})
-_FACTORS = frozenset({"Fac", "Factor"})
-
-Groups = tuple[bpy.types.Node, ...]
 
 
 @dataclass(frozen=True)
@@ -57,9 +56,7 @@ def image_uses(
     """
     uses: list[ImageUse] = []
     warnings: list[str] = []
-    if not material.use_nodes or material.node_tree is None:
-        return uses, warnings
-    for node, groups in _image_nodes(material.node_tree, ()):
+    for node, groups in _image_nodes(material):
         if node.image != image:
             continue
         try:
@@ -74,62 +71,14 @@ def image_uses(
     return uses, warnings
 
 
-def images_of(
-    owner: bpy.types.Material | bpy.types.World | bpy.types.Light, kind: str = "TEX_IMAGE"
-) -> list[bpy.types.Image]:
+def images_of(owner: nodes.Owner, kind: str = "TEX_IMAGE") -> list[bpy.types.Image]:
     """Returns the images of a material's Image Texture nodes, each once.
 
     Args:
         owner: The material, or something else with shader nodes.
         kind: The type of the nodes; "TEX_ENVIRONMENT" for Environment Texture nodes.
     """
-    if not owner.use_nodes or owner.node_tree is None:
-        return []
-    nodes = _image_nodes(owner.node_tree, (), kind)
-    return list(dict.fromkeys(node.image for node, _ in nodes))
-
-
-def feeds_normal_map(material: bpy.types.Material, image: bpy.types.Image) -> bool:
-    """Tells whether a Normal Map node of a material gets its color from an image.
-
-    Reroutes, groups and nodes that change colors, such as those that turn green over, are followed.
-    """
-    if not material.use_nodes or material.node_tree is None:
-        return False
-    return any(
-        _comes_from(node.inputs["Color"], groups, image, set())
-        for node, groups in _nodes_of_type(material.node_tree, (), "NORMAL_MAP")
-    )
-
-
-def has_base_color_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
-    """Tells whether a shader of a material gets its base color from an image.
-
-    That is the input Base Color, or the only color of a Diffuse BSDF and an Emission.
-    """
-    if not material.use_nodes or material.node_tree is None:
-        return False
-    return any(
-        _comes_from(socket, groups, image, set(), output="Color")
-        for node, groups in _nodes(material.node_tree, ())
-        for socket in node.inputs
-        if socket.name == ("Color" if node.type in _ONE_COLOR else "Base Color")
-    )
-
-
-def has_alpha_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
-    """Tells whether a material shows as much of the surface as the alpha of an image says.
-
-    So it does where the Alpha output of an Image Texture node leads to the input Alpha of a shader,
-    or to the factor of a Mix Shader that has a Transparent BSDF on one side. An image whose alpha
-    mode is None has no alpha to a shader.
-    """
-    if image.alpha_mode == "NONE" or not material.use_nodes or material.node_tree is None:
-        return False
-    return any(
-        _comes_from(socket, groups, image, set(), output="Alpha")
-        for socket, groups in _coverage_inputs(material.node_tree)
-    )
+    return list(dict.fromkeys(node.image for node, _ in _image_nodes(owner, kind)))
 
 
 def base_color(material: bpy.types.Material | None) -> tuple[float, float, float, float]:
@@ -149,9 +98,9 @@ def base_color(material: bpy.types.Material | None) -> tuple[float, float, float
         return red, green, blue, alpha
     name = "Color" if shader.type in _ONE_COLOR else "Base Color"
     socket = shader.inputs[name]
-    link = _link_into(socket)
+    link = nodes.link_into(socket)
     while link is not None and link.from_node.type == "REROUTE":
-        link = _link_into(link.from_node.inputs[0])
+        link = nodes.link_into(link.from_node.inputs[0])
     if link is not None and link.from_node.type == "RGB":
         socket = link.from_socket
     red, green, blue = socket.default_value[:3]
@@ -162,14 +111,13 @@ def base_color(material: bpy.types.Material | None) -> tuple[float, float, float
 
 def _shown_shader(material: bpy.types.Material) -> bpy.types.Node | None:
     """Returns the shader with a base color that the output of a material shows directly."""
-    if not material.use_nodes or material.node_tree is None:
+    tree = nodes.tree_of(material)
+    if tree is None:
         return None
-    output = material.node_tree.get_output_node("ALL") or material.node_tree.get_output_node(
-        "EEVEE"
-    )
-    link = _link_into(output.inputs["Surface"]) if output is not None else None
+    output = tree.get_output_node("ALL") or tree.get_output_node("EEVEE")
+    link = nodes.link_into(output.inputs["Surface"]) if output is not None else None
     while link is not None and link.from_node.type == "REROUTE":
-        link = _link_into(link.from_node.inputs[0])
+        link = nodes.link_into(link.from_node.inputs[0])
     if link is None:
         return None
     shader = link.from_node
@@ -177,87 +125,12 @@ def _shown_shader(material: bpy.types.Material) -> bpy.types.Node | None:
     return shader if name in shader.inputs else None
 
 
-def _coverage_inputs(tree: bpy.types.NodeTree) -> Iterator[tuple[bpy.types.NodeSocket, Groups]]:
-    """Yields the inputs of shaders that say how much of the surface they show."""
-    for node, groups in _nodes(tree, ()):
-        if node.type == "MIX_SHADER":
-            factor, *shaders = node.inputs
-            if any(_is_transparent(shader) for shader in shaders):
-                yield factor, groups
-        elif any(output.type == "SHADER" for output in node.outputs):
-            yield from ((socket, groups) for socket in node.inputs if socket.name == "Alpha")
-
-
-def _is_transparent(shader: bpy.types.NodeSocket) -> bool:
-    link = _link_into(shader)
-    while link is not None and link.from_node.type == "REROUTE":
-        link = _link_into(link.from_node.inputs[0])
-    return link is not None and link.from_node.type == "BSDF_TRANSPARENT"
-
-
-def _comes_from(
-    socket: bpy.types.NodeSocket,
-    groups: Groups,
-    image: bpy.types.Image,
-    seen: set[Any],
-    output: str = "",
-) -> bool:
-    """Tells whether a socket gets its value from an image, or from an output of its node."""
-    link = _link_into(socket)
-    if link is None:
-        return False
-    node, source = link.from_node, link.from_socket
-    place = (groups, node, source)
-    if place in seen:
-        return False
-    seen.add(place)
-    if node.type == "TEX_IMAGE":
-        return node.image == image and not node.mute and output in {"", source.name}
-    if node.type == "GROUP" and node.node_tree is not None and not node.mute:
-        ends = [
-            inner
-            for inner in node.node_tree.nodes
-            if inner.type == "GROUP_OUTPUT" and inner.is_active_output
-        ]
-        inside = (*groups, node)
-        return any(
-            _comes_from(_socket(end.inputs, source.identifier), inside, image, seen, output)
-            for end in ends
-        )
-    if node.type == "GROUP_INPUT" and groups:
-        outside = _socket(groups[-1].inputs, source.identifier)
-        return _comes_from(outside, groups[:-1], image, seen, output)
-    # What a factor holds is no normals, and other textures make their colors themselves.
-    inputs = [] if node.type.startswith("TEX_") else node.inputs
-    return any(
-        _comes_from(input_, groups, image, seen, output)
-        for input_ in inputs
-        if input_.name not in _FACTORS
-    )
-
-
-def _nodes(tree: bpy.types.NodeTree, groups: Groups) -> Iterator[tuple[bpy.types.Node, Groups]]:
-    """Yields the nodes that are not muted, those in groups too, each with the groups around it."""
-    for node in tree.nodes:
-        if node.mute:
-            continue
-        if node.type == "GROUP" and node.node_tree is not None:
-            yield from _nodes(node.node_tree, (*groups, node))
-        else:
-            yield node, groups
-
-
-def _nodes_of_type(
-    tree: bpy.types.NodeTree, groups: Groups, node_type: str
-) -> Iterator[tuple[bpy.types.Node, Groups]]:
-    return ((node, inside) for node, inside in _nodes(tree, groups) if node.type == node_type)
-
-
 def _image_nodes(
-    tree: bpy.types.NodeTree, groups: Groups, kind: str = "TEX_IMAGE"
+    owner: nodes.Owner, kind: str = "TEX_IMAGE"
 ) -> Iterator[tuple[bpy.types.Node, Groups]]:
-    nodes = _nodes_of_type(tree, groups, kind)
-    return ((node, inside) for node, inside in nodes if node.image is not None)
+    for node, groups in nodes.walk(nodes.tree_of(owner)):
+        if node.type == kind and node.image is not None:
+            yield node, groups
 
 
 def _use(node: bpy.types.Node, groups: Groups) -> ImageUse:
@@ -270,7 +143,7 @@ def _trace(socket: bpy.types.NodeSocket, groups: Groups) -> tuple[str, Matrix]:
     """Follows an input socket back to a UV map, gathering the mappings on the way."""
     matrix = Matrix.Identity(4)
     while True:
-        link = _link_into(socket)
+        link = nodes.link_into(socket)
         if link is None:
             if socket.node.type == "TEX_IMAGE":
                 return "", matrix
@@ -279,7 +152,10 @@ def _trace(socket: bpy.types.NodeSocket, groups: Groups) -> tuple[str, Matrix]:
             )
         node, source = link.from_node, link.from_socket
         if node.mute:
-            socket = _bypassed(node, source)
+            handed_on = nodes.bypassed(node, source)
+            if handed_on is None:
+                raise _NotUvError(f"gets its coordinates from the muted node '{node.name}'")
+            socket = handed_on
         elif node.type == "REROUTE":
             socket = node.inputs[0]
         elif node.type == "MAPPING":
@@ -287,34 +163,17 @@ def _trace(socket: bpy.types.NodeSocket, groups: Groups) -> tuple[str, Matrix]:
             socket = node.inputs["Vector"]
         elif node.type == "GROUP" and node.node_tree is not None:
             groups = (*groups, node)
-            socket = _group_output(node, source.identifier)
+            inside = nodes.group_output(node, source.identifier)
+            if inside is None:
+                raise _NotUvError(
+                    f"gets its coordinates from the group '{node.name}', which has no output"
+                )
+            socket = inside
         elif node.type == "GROUP_INPUT" and groups:
-            socket = _socket(groups[-1].inputs, source.identifier)
+            socket = nodes.group_input(groups[-1], source.identifier)
             groups = groups[:-1]
         else:
             return _uv_map(node, source), matrix
-
-
-def _link_into(socket: bpy.types.NodeSocket) -> bpy.types.NodeLink | None:
-    return next((link for link in socket.links if not link.is_muted), None)
-
-
-def _socket(sockets: bpy.types.bpy_prop_collection, identifier: str) -> bpy.types.NodeSocket:
-    return next(socket for socket in sockets if socket.identifier == identifier)
-
-
-def _bypassed(node: bpy.types.Node, output: bpy.types.NodeSocket) -> bpy.types.NodeSocket:
-    for link in node.internal_links:
-        if link.to_socket == output:
-            return link.from_socket
-    raise _NotUvError(f"gets its coordinates from the muted node '{node.name}'")
-
-
-def _group_output(group: bpy.types.Node, identifier: str) -> bpy.types.NodeSocket:
-    for node in group.node_tree.nodes:
-        if node.type == "GROUP_OUTPUT" and node.is_active_output:
-            return _socket(node.inputs, identifier)
-    raise _NotUvError(f"gets its coordinates from the group '{group.name}', which has no output")
 
 
 def _uv_map(node: bpy.types.Node, source: bpy.types.NodeSocket) -> str:
@@ -332,7 +191,7 @@ def _uv_map(node: bpy.types.Node, source: bpy.types.NodeSocket) -> str:
 def _mapping_matrix(node: bpy.types.Node) -> Matrix:
     values = {}
     for name in ("Location", "Rotation", "Scale"):
-        if name in node.inputs and _link_into(node.inputs[name]) is not None:
+        if name in node.inputs and nodes.link_into(node.inputs[name]) is not None:
             raise _NotUvError(f"has a '{node.name}' node whose {name} is not a constant")
         values[name] = node.inputs[name].default_value[:] if name in node.inputs else (0, 0, 0)
     turned = Euler(values["Rotation"], "XYZ").to_matrix().to_4x4() @ Matrix.Diagonal(

@@ -4,7 +4,8 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from .materials import has_alpha_of, image_uses, images_of
+from .image_roles import has_alpha_of
+from .materials import image_uses, images_of
 from .users import materials_of_evaluated
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import bpy
 
-from ..bridge import images, materials, meshes
+from ..bridge import image_roles, images, meshes
 from ..bridge.files import engines, textures
 from ..bridge.images import Picture
 from ..core.options import check
@@ -78,8 +78,8 @@ def reading(
     for picture in pictures:
         _check_levels(picture, settings.levels)
     used_by = meshes.materials_of_objects(objects)
-    is_normal_map = any(materials.feeds_normal_map(material, image) for material in used_by)
-    if any(materials.has_alpha_of(material, image) for material in used_by):
+    is_normal_map = any(image_roles.feeds_normal_map(material, image) for material in used_by)
+    if any(image_roles.has_alpha_of(material, image) for material in used_by):
         pictures = [replace(picture, covers=True) for picture in pictures]
     content = contents.resolved(settings.content, pictures[0], is_normal_map=is_normal_map)
     is_encoded = pictures[0].encoding is not images.Encoding.NONE

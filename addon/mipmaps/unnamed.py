@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import bpy
 
-from ..bridge import materials, meshes
+from ..bridge import image_roles, meshes
 from ..core.wording import listed
 
 
@@ -28,7 +28,7 @@ def images_to_bake(objects: Sequence[bpy.types.Object]) -> tuple[list[bpy.types.
     colors = [
         image
         for image in used
-        if any(materials.has_base_color_of(material, image) for material in shown_by)
+        if any(image_roles.has_base_color_of(material, image) for material in shown_by)
     ]
     chosen = colors or used
     if len(used) == 1:

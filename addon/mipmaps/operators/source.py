@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import bpy
 
-from ...bridge import derived, images, materials
+from ...bridge import derived, image_roles, images, materials
 from ...core.operator import BackgroundOperator
 from .. import users
 from ..bake import Bake
@@ -103,5 +103,5 @@ def _image_of(obj: bpy.types.Object | None) -> bpy.types.Image | None:
     if material is None:
         return None
     found = materials.images_of(material)
-    colors = [image for image in found if materials.has_base_color_of(material, image)]
+    colors = [image for image in found if image_roles.has_base_color_of(material, image)]
     return next(iter(colors or found)) if len(colors or found) == 1 else None

@@ -103,7 +103,7 @@ def test_use_in_a_normal_map_node_is_found(bake):
 
 @pytest.mark.parametrize("way", ["direct", "reroute", "turned", "group", "in group", "factor"])
 def test_how_a_normal_map_node_gets_its_color(addon, way):
-    feeds = addon("bridge.materials").feeds_normal_map
+    feeds = addon("bridge.image_roles").feeds_normal_map
     image = scenes.image("Bumps", bumps(8, 8), colorspace="Non-Color")
     other = scenes.image("Other", bumps(8, 8), colorspace="Non-Color")
     material = bpy.data.materials.new("Bumpy")
