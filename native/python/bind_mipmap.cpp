@@ -25,8 +25,8 @@ Reader reader_of(const std::string& name) {
 
 MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::optional<float> low,
                          std::optional<float> high, int levels, bool premultiplied,
-                         const std::string& reader, double seam_weight, const py::object& progress,
-                         int threads) {
+                         const std::string& reader, double seam_weight, double footprint,
+                         const py::object& progress, int threads) {
   MipmapOptions options;
   options.filter = mipmap_filter(filter);
   options.wrap = wrap_modes(wrap);
@@ -35,6 +35,7 @@ MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::
   options.premultiplied = premultiplied;
   options.reader = reader_of(reader);
   options.seam_weight = seam_weight;
+  options.footprint = footprint;
   options.threads = threads;
   options.progress = to_progress(progress);
   return options;
@@ -152,10 +153,12 @@ Array<float> bound_fill_unused(const Array<float>& array,
 void bind_mipmap(py::module_& m) {
   using ForFloats = std::vector<Array<float>> (*)(
       const Array<float>&, const std::vector<const Surface*>&, std::string, WrapNames,
-      std::optional<float>, std::optional<float>, int, bool, std::string, double, py::object, int);
+      std::optional<float>, std::optional<float>, int, bool, std::string, double, double,
+      py::object, int);
   using ForBytes = std::vector<Array<std::uint8_t>> (*)(
       const Array<std::uint8_t>&, bool, const std::vector<const Surface*>&, std::string, WrapNames,
-      std::optional<float>, std::optional<float>, int, bool, std::string, double, py::object, int);
+      std::optional<float>, std::optional<float>, int, bool, std::string, double, double,
+      py::object, int);
   m.def("mipmap_filters", [] {
     std::vector<std::tuple<std::string, bool, bool>> filters;
     for (const MipmapFilter& filter : mipmap_filters()) {
@@ -166,11 +169,11 @@ void bind_mipmap(py::module_& m) {
   m.def("coarser_levels", static_cast<ForFloats>(&bound_mipmaps), py::arg("image"),
         py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"), py::arg("high"),
         py::arg("levels"), py::arg("premultiplied"), py::arg("reader"), py::arg("seam_weight"),
-        py::arg("progress"), py::arg("threads"));
+        py::arg("footprint"), py::arg("progress"), py::arg("threads"));
   m.def("coarser_byte_levels", static_cast<ForBytes>(&bound_byte_mipmaps), py::arg("image"),
         py::arg("srgb"), py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"),
         py::arg("high"), py::arg("levels"), py::arg("premultiplied"), py::arg("reader"),
-        py::arg("seam_weight"), py::arg("progress"), py::arg("threads"));
+        py::arg("seam_weight"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));
   m.def("mipmap_error", &bound_mipmap_error, py::arg("levels"), py::arg("image"),
         py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("reader"),
         py::arg("progress"), py::arg("threads"));

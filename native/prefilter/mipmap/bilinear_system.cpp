@@ -19,7 +19,34 @@ void tent_products(const double* moments, int stride, double* products) {
   products[2] = m2;
 }
 
+// The integral over a cell of what has these moments times the tent that is 1 at the corner (i, j).
+template <typename Moments>
+float tent_integral(const Moments& m, int row_stride, int i, int j) {
+  const double low_x = i == 0 ? m[0] - m[1] : m[1];
+  const double high_x = i == 0 ? m[row_stride] - m[row_stride + 1] : m[row_stride + 1];
+  return static_cast<float>(j == 0 ? low_x - high_x : high_x);
+}
+
+// Integrals of the image over a cell times the tents there.
+template <int C>
+NinePointSystem<float>::TentIntegrals tent_integrals(const CellMoments<C>& moments) {
+  NinePointSystem<float>::TentIntegrals integrals{};
+  for (int k = 0; k < 4; ++k) {
+    for (int c = 0; c < C; ++c) {
+      integrals[k].v[c] = tent_integral(moments.image[c], 2, k % 2, k / 2);
+    }
+  }
+  return integrals;
+}
+
 }  // namespace
+
+TargetShares target_shares(double footprint) {
+  const double variance = footprint * footprint;
+  if (variance <= 1.0) return {1.0 - variance, variance, 0.0};
+  const double own = (variance - 1.0) / 3.0;
+  return {0.0, 1.0 - own, own};
+}
 
 template <int C>
 BilinearSystem<C>::BilinearSystem(int width, int height, WrapModes wrap)
@@ -42,21 +69,42 @@ void BilinearSystem<C>::add_dual_cell(const CellMoments<C>& moments, int column,
     tent_products(lines + a, 3, along_y);
     for (int b = 0; b < 3; ++b) products[3 * b + a] = static_cast<float>(along_y[b]);
   }
-  NinePointSystem<float>::TentIntegrals right{};
   for (int k = 0; k < 4; ++k) {
-    const int i = k % 2;
-    const int j = k / 2;
-    const auto tent = [&](const auto& m, int row_stride) {
-      const double low_x = i == 0 ? m[0] - m[1] : m[1];
-      const double high_x = i == 0 ? m[row_stride] - m[row_stride + 1] : m[row_stride + 1];
-      return static_cast<float>(j == 0 ? low_x - high_x : high_x);
-    };
-    for (int c = 0; c < C; ++c) right[k].v[c] = tent(moments.image[c], 2);
-    const int x = wrap_index(column + i, system_.width(), wrap_.u);
-    const int y = wrap_index(row + j, system_.height(), wrap_.v);
-    if (x >= 0 && y >= 0) weights_[system_.at(x, y)] += tent(moments.weight, 3);
+    const std::ptrdiff_t texel = corner(column, row, k);
+    if (texel >= 0) weights_[texel] += tent_integral(moments.weight, 3, k % 2, k / 2);
   }
-  system_.add_cell(column, row, products, right);
+  system_.add_cell(column, row, products, tent_integrals(moments));
+}
+
+template <int C>
+std::ptrdiff_t BilinearSystem<C>::corner(int column, int row, int k) const {
+  const int x = wrap_index(column + k % 2, system_.width(), wrap_.u);
+  const int y = wrap_index(row + k / 2, system_.height(), wrap_.v);
+  return x >= 0 && y >= 0 ? system_.at(x, y) : -1;
+}
+
+template <int C>
+void BilinearSystem<C>::add_finer_means(const MomentBlock<C>& block) {
+  for_each_dual_cell(block, [this](const CellMoments<C>& moments, int column, int row) {
+    const NinePointSystem<float>::TentIntegrals integrals = tent_integrals(moments);
+    for (int k = 0; k < 4; ++k) {
+      const std::ptrdiff_t texel = corner(column, row, k);
+      if (texel >= 0) finer_means_[texel].v += integrals[k].v;
+    }
+  });
+}
+
+template <int C>
+Image BilinearSystem<C>::means() const {
+  Image means(system_.width(), system_.height(), C);
+  for (int y = 0; y < system_.height(); ++y) {
+    for (int x = 0; x < system_.width(); ++x) {
+      const std::ptrdiff_t j = system_.at(x, y);
+      if (!(weights_[j] > 0.0F)) continue;
+      for (int c = 0; c < C; ++c) means.texel(x, y)[c] = system_.right_side(j).v[c] / weights_[j];
+    }
+  }
+  return means;
 }
 
 template <int C>
@@ -65,7 +113,7 @@ void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double wei
 }
 
 template <int C>
-void BilinearSystem<C>::prepare(float image_share, const Progress& progress) {
+void BilinearSystem<C>::prepare(const TargetShares& target, const Progress& progress) {
   double sum = 0.0;
   std::int64_t used = 0;
   const auto size = static_cast<std::ptrdiff_t>(system_.size());
@@ -82,14 +130,26 @@ void BilinearSystem<C>::prepare(float image_share, const Progress& progress) {
       system_.diagonal(j) = 0.0F;
       continue;
     }
-    system_.diagonal(j) += static_cast<float>(pull);
     for (int c = 0; c < C; ++c) {
       const double mean = static_cast<double>(system_.right_side(j).v[c]) / weights_[j];
       system_.texel(j).v[c] = static_cast<float>(mean);
-      system_.right_side(j).v[c] =
-          image_share * system_.right_side(j).v[c] + static_cast<float>(pull * mean);
     }
   }
+  const auto image_share = static_cast<float>(target.image);
+  const auto finer_share = static_cast<float>(target.finer_means);
+  const auto own_share = static_cast<float>(target.own_means);
+  std::vector<LaneValues> own_means;
+  if (own_share != 0.0F) own_means = system_.product();
+  for (std::ptrdiff_t j = 0; j < size; ++j) {
+    if (j % kTexelsPerReport == 0) progress.report(0.0);
+    if (!(system_.diagonal(j) > 0.0F)) continue;
+    Lanes right = image_share * system_.right_side(j).v;
+    if (finer_share != 0.0F) right += finer_share * finer_means_[j].v;
+    if (own_share != 0.0F) right += own_share * own_means[j].v;
+    system_.right_side(j).v = right + static_cast<float>(pull) * system_.texel(j).v;
+    system_.diagonal(j) += static_cast<float>(pull);
+  }
+  std::vector<LaneValues>().swap(finer_means_);
   std::vector<float>().swap(weights_);
   system_.add_links(std::move(links_), progress);
   progress.report(0.0);
@@ -97,8 +157,9 @@ void BilinearSystem<C>::prepare(float image_share, const Progress& progress) {
 }
 
 template <int C>
-auto BilinearSystem<C>::solve(const SolveOptions& options, const Progress& progress) -> Solution {
-  prepare(1.0F, progress);
+auto BilinearSystem<C>::solve(const TargetShares& target, const SolveOptions& options,
+                              const Progress& progress) -> Solution {
+  prepare(target, progress);
   const int sweeps = system_.solve(options, progress);
   Solution solution = take_solution();
   solution.sweeps = sweeps;

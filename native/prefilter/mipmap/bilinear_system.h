@@ -14,11 +14,29 @@
 
 namespace prefilter {
 
+/// What stands on the right of a level's equations in place of the image: a sum of images, each
+/// times its share.
+struct TargetShares {
+  double image = 1.0;
+  double finer_means = 0.0;  // the means p of the next finer level, interpolated between its texels
+  double own_means = 0.0;    // the same of this level
+};
+
+/// The target of a level whose pixels cover `footprint` of its texels, from 0 to kMostFootprint.
+///
+/// Tents that weigh the image for a mean, and tents that interpolate the means, make a kernel that
+/// is a cubic B-spline on average over its places: with the tents of the next finer level its
+/// variance is that of a box as wide as a texel of this level, with those of this level of one
+/// twice as wide. Between them kernels are mixed so that their variances are the box's.
+TargetShares target_shares(double footprint);
+inline constexpr double kMostFootprint = 2.0;
+
 /// Minimises, over the texels t of a level and for each channel,
 ///   integral over the surface of (sum_j b_j t_j - I)^2  +  kPull * m * sum_j (t_j - p_j)^2
-/// where b_j are the bilinear basis functions, m is the mean of the integrals of b_j^2 over the
-/// texels in use, and p_j is the mean of the image under b_j. The second term decides for texels
-/// that hardly any of the surface reads, and leaves the others alone.
+/// where I is the image, or another target; b_j are the bilinear basis functions, m is the mean of
+/// the integrals of b_j^2 over the texels in use, and p_j is the mean of the image under b_j. The
+/// second term decides for texels that hardly any of the surface reads, and leaves the others
+/// alone.
 template <int C>
 class BilinearSystem {
  public:
@@ -29,6 +47,14 @@ class BilinearSystem {
   /// Adds the integrals over the cells of one block of this level. Blocks that share texels must
   /// not be added at the same time.
   void add(const MomentBlock<C>& block);
+
+  /// The means p_j, 0 for texels that nothing reads; to be called once all blocks are there.
+  Image means() const;
+
+  /// Makes room for `add_finer_means`, which adds the integrals over the cells of one block whose
+  /// image is the means of the next finer level. Blocks as for `add`.
+  void expect_finer_means() { finer_means_.resize(system_.size()); }
+  void add_finer_means(const MomentBlock<C>& block);
 
   struct Solution {
     Image image;                      // texels that nothing reads are 0
@@ -41,20 +67,23 @@ class BilinearSystem {
   void add_links(const std::vector<SeamLink>& links, double weight);
 
   /// Solves for all channels, within their ranges. Can be called once.
-  Solution solve(const SolveOptions& options, const Progress& progress);
+  Solution solve(const TargetShares& target, const SolveOptions& options, const Progress& progress);
 
   /// The steps of `solve`, for those who go on from there. `prepare` makes the system ready, with
-  /// texels at their means p_j; in its right side that of the image counts `image_share` times.
-  void prepare(float image_share, const Progress& progress);
+  /// texels at their means p_j.
+  void prepare(const TargetShares& target, const Progress& progress);
   NinePointSystem<float>& system() { return system_; }
   Solution take_solution();
 
  private:
   void add_dual_cell(const CellMoments<C>& moments, int column, int row);
+  // The texel at corner k, [2 * y + x], of a cell between texel centres; -1 for the border.
+  std::ptrdiff_t corner(int column, int row, int k) const;
 
   WrapModes wrap_;
   NinePointSystem<float> system_;
-  std::vector<float> weights_;  // integrals of b_j
+  std::vector<float> weights_;           // integrals of b_j
+  std::vector<LaneValues> finer_means_;  // integrals of b_j times the finer level's means
   std::vector<TexelLink> links_;
 };
 

@@ -11,8 +11,8 @@ std::vector<MipmapFilter> mipmap_filters() {
       filters.emplace_back(TextureSpaceFilter{&kernel, weighting});
     }
   }
-  for (const SurfaceFilter filter :
-       {SurfaceFilter::kBox, SurfaceFilter::kBilinear, SurfaceFilter::kTrilinear}) {
+  for (const SurfaceFilter filter : {SurfaceFilter::kUnitSquare, SurfaceFilter::kBox,
+                                     SurfaceFilter::kBilinear, SurfaceFilter::kTrilinear}) {
     filters.emplace_back(filter);
   }
   return filters;
@@ -30,6 +30,8 @@ std::string name_of(const MipmapFilter& filter) {
       return "pam-bilinear";
     case SurfaceFilter::kTrilinear:
       return "pam-trilinear";
+    case SurfaceFilter::kUnitSquare:
+      return "ls-bilinear";
   }
   return {};
 }
@@ -45,8 +47,10 @@ MipmapFilter mipmap_filter(const std::string& name) {
 }
 
 bool needs_surface(const MipmapFilter& filter) {
-  const auto* in_texture = std::get_if<TextureSpaceFilter>(&filter);
-  return in_texture == nullptr || in_texture->weighting != Weighting::kAll;
+  if (const auto* in_texture = std::get_if<TextureSpaceFilter>(&filter)) {
+    return in_texture->weighting != Weighting::kAll;
+  }
+  return std::get<SurfaceFilter>(filter) != SurfaceFilter::kUnitSquare;
 }
 
 bool is_fit(const MipmapFilter& filter) {

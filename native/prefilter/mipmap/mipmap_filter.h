@@ -24,10 +24,11 @@ struct TextureSpaceFilter {
 
 /// A filter over the surface: texels count by its area.
 enum class SurfaceFilter {
-  kBox,        // "pam-box", means over the surface: equation 7.1 with a box
-  kBilinear,   // "pam-bilinear", least squares for bilinear lookups, each level by itself:
-               // section 7.3
-  kTrilinear,  // "pam-trilinear", least squares for trilinear lookups, all levels together
+  kBox,         // "pam-box", means over the surface: equation 7.1 with a box
+  kBilinear,    // "pam-bilinear", least squares for bilinear lookups, each level by itself:
+                // section 7.3
+  kUnitSquare,  // "ls-bilinear", the same over the unit square in place of a surface
+  kTrilinear,   // "pam-trilinear", least squares for trilinear lookups, all levels together
 };
 
 using MipmapFilter = std::variant<TextureSpaceFilter, SurfaceFilter>;

@@ -16,6 +16,7 @@
 #include "prefilter/color/transfer.h"
 #include "prefilter/filters/filtered_image.h"
 #include "prefilter/filters/push_pull.h"
+#include "prefilter/filters/tent_means.h"
 #include "prefilter/mipmap/argument_checks.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/encoded_fit.h"
@@ -97,7 +98,8 @@ class Builder {
       case Reads::kLookedUp:
         break;
     }
-    return options_.reader != Reader::kLinear || options_.seam_weight != 0.0;
+    return options_.reader != Reader::kLinear || options_.seam_weight != 0.0 ||
+           options_.footprint != 0.0;
   }
 
   std::vector<unsigned char> find_covered() const {
@@ -174,6 +176,26 @@ class Builder {
     }
   }
 
+  // The means of every level's texels are what the next sees: a second sweep, for which the image
+  // is its own means.
+  template <int C, typename Add>
+  void sweep_finer_means(const std::vector<Image>& means, const Progress& progress,
+                         const Add& add) const {
+    const std::vector<unsigned char> read =
+        options_.filter == MipmapFilter(SurfaceFilter::kUnitSquare)
+            ? std::vector<unsigned char>()
+            : looked_up_texels(surfaces_, width_, height_, options_.wrap, progress.part(0.0, 0.1),
+                               options_.threads);
+    const Image image = tent_means(image_.floats(), read, options_.wrap, options_.threads);
+    const TexelSource source(image.view());
+    sweep_moments<C>(mapped(progress.part(0.1, 0.2)), source, options_.wrap,
+                     {.first_level = 1,
+                      .last_level = static_cast<int>(means.size()),
+                      .level_images = &means,
+                      .threads = options_.threads},
+                     progress.part(0.2, 1.0), add);
+  }
+
   // All levels there are are solved for, also where fewer are asked for.
   template <int C>
   std::vector<Image> solve_together() const {
@@ -183,14 +205,20 @@ class Builder {
                      {.first_level = 1,
                       .last_level = full_level_count(width_, height_) - 1,
                       .threads = options_.threads},
-                     options_.progress.part(0.2, 0.5),
+                     options_.progress.part(0.2, options_.footprint != 0.0 ? 0.35 : 0.5),
                      [&](const MomentBlock<C>& block) { system.add(block); });
+    if (options_.footprint != 0.0) {
+      system.expect_finer_means();
+      sweep_finer_means<C>(system.means(), options_.progress.part(0.35, 0.5),
+                           [&](const MomentBlock<C>& block) { system.add_finer_means(block); });
+    }
     for_each_level_of_seams(image_.floats(), full_level_count(width_, height_) - 2,
                             options_.progress.part(0.5, 0.5),
                             [&](int level, const std::vector<SeamLink>& links, double weight) {
                               system.add_links(level, links, weight);
                             });
-    auto solutions = system.solve(solve_options(), options_.progress.part(0.5, 0.95));
+    auto solutions =
+        system.solve(options_.footprint, solve_options(), options_.progress.part(0.5, 0.95));
     std::vector<Image> levels;
     for (int level = 1; level < level_count_; ++level) {
       levels.push_back(filled(std::move(solutions[level - 1].image), solutions[level - 1].used,
@@ -234,6 +262,7 @@ class Builder {
   template <int C>
   std::vector<Image> solve_levels() const {
     const bool encoded = options_.reader == Reader::kSrgbAfter;
+    const bool has_footprint = options_.footprint != 0.0;
     std::vector<std::unique_ptr<BilinearSystem<C>>> systems;
     std::vector<std::unique_ptr<EncodedFit<C>>> fits;
     for (int level = 1; level < level_count_; ++level) {
@@ -251,11 +280,24 @@ class Builder {
                       .last_level = level_count_ - 1,
                       .reader = options_.reader,
                       .threads = options_.threads},
-                     options_.progress.part(0.2, encoded ? 0.3 : 0.5),
+                     options_.progress.part(0.2, encoded         ? 0.3
+                                                 : has_footprint ? 0.35
+                                                                 : 0.5),
                      [&](const MomentBlock<C>& block) {
                        systems[block.level - 1]->add(block);
                        if (encoded) fits[block.level - 1]->add(block);
                      });
+
+    if (has_footprint) {
+      std::vector<Image> means(1);
+      for (int level = 1; level + 1 < level_count_; ++level) {
+        means.push_back(systems[level - 1]->means());
+      }
+      for (const auto& system : systems) system->expect_finer_means();
+      sweep_finer_means<C>(
+          means, options_.progress.part(0.35, 0.5),
+          [&](const MomentBlock<C>& block) { systems[block.level - 1]->add_finer_means(block); });
+    }
 
     double from = encoded ? 0.3 : 0.5;
     const Progress linking = options_.progress.part(from, from);
@@ -275,7 +317,8 @@ class Builder {
       // A level has a quarter of the texels of the one before.
       const double to = from + 0.75 * (0.97 - from);
       const Progress part = options_.progress.part(from, to);
-      auto solution = systems[level - 1]->solve(solve, part.part(0.0, encoded ? 0.2 : 0.8));
+      auto solution = systems[level - 1]->solve(target_shares(options_.footprint), solve,
+                                                part.part(0.0, encoded ? 0.2 : 0.8));
       systems[level - 1].reset();
       if (encoded) {
         fit_encoded(fits[level - 1].get(), solution.used, solve, part.part(0.2, 0.8),
@@ -326,6 +369,23 @@ class Builder {
   FilteredImage image_;
 };
 
+std::string fit_names() {
+  std::string names;
+  for (const MipmapFilter& filter : mipmap_filters()) {
+    if (is_fit(filter)) names += (names.empty() ? "" : ", ") + name_of(filter);
+  }
+  return names;
+}
+
+Surface unit_square() {
+  Surface square;
+  square.positions = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.0}};
+  square.triangles = {{0, 1, 2}, {0, 2, 3}};
+  square.uvs = {{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}}}, {{{0.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}}};
+  square.areas = {0.5, 0.5};
+  return square;
+}
+
 void check_options(const TexelSource& image, const std::vector<const Surface*>& surfaces,
                    const MipmapOptions& options) {
   const int full = full_level_count(image.width, image.height);
@@ -346,6 +406,15 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
   if (!(options.seam_weight >= 0.0) || !std::isfinite(options.seam_weight)) {
     throw_invalid("seam_weight: " + to_text(options.seam_weight) +
                   "; a finite number of at least 0 is needed");
+  }
+  if (!(options.footprint >= 0.0 && options.footprint <= kMostFootprint)) {
+    throw_invalid("footprint: " + to_text(options.footprint) + "; 0 to " + to_text(kMostFootprint) +
+                  " texels of a level are allowed");
+  }
+  if (options.footprint != 0.0 && (!is_fit(options.filter) || options.reader != Reader::kLinear)) {
+    throw_invalid("footprint: " + to_text(options.footprint) +
+                  "; others than 0 go with least squares (" + fit_names() +
+                  ") for the linear reader");
   }
   if (options.threads < 0) {
     throw_invalid("threads: " + std::to_string(options.threads) +
@@ -376,7 +445,11 @@ std::vector<Image> coarser_levels(const TexelSource& image,
                                   const MipmapOptions& options) {
   check_channels({nullptr, image.width, image.height, image.channels}, options.image_name);
   check_options(image, surfaces, options);
-  return Builder(image, surfaces, options).run();
+  if (options.filter != MipmapFilter(SurfaceFilter::kUnitSquare)) {
+    return Builder(image, surfaces, options).run();
+  }
+  const Surface square = unit_square();
+  return Builder(image, {&square}, options).run();
 }
 
 std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,

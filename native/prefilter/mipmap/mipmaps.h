@@ -35,6 +35,11 @@ struct MipmapOptions {
   // What the square of the difference across UV seams, over a strip one texel of the level wide,
   // counts against the error over the surface. For the fitted filters.
   double seam_weight = 0.0;
+  // Texels of a level that a pixel of the reader covers, 0 to 2, for the fitted filters and the
+  // linear reader. 0: a level is fitted to the image itself, right where pixels are means of many
+  // lookups. Else to the image averaged over that footprint, which is what a pixel of one lookup
+  // ought to show.
+  double footprint = 0.0;
   int threads = 0;  // 0 = all processors
   Progress progress;
   const char* image_name = "image";  // what errors call it
@@ -46,7 +51,8 @@ struct MipmapOptions {
 /// A level of SurfaceFilter::kBilinear minimises the integral over the surface of the squared
 /// difference between the bilinear lookups of the level and of the image, subject to the bounds;
 /// those of SurfaceFilter::kTrilinear the integral over all mip values too, of trilinear lookups,
-/// with the mean over the surface as the last level. Levels of the other filters are clipped to the
+/// with the mean over the surface as the last level. SurfaceFilter::kUnitSquare takes the unit
+/// square in place of the surfaces. Levels of the other filters are clipped to the
 /// bounds. Texels that the surface does not read have no influence; in the levels they are filled
 /// by push-pull.
 ///

@@ -14,6 +14,10 @@ namespace {
 // The error is then 1e-9 of the first: below rounding.
 constexpr int kMostRounds = 16;
 constexpr int kSweepsPerRound = 4;
+// A level is read at the mip values from the level before it to the one after it. The root of the
+// mean square of a pixel's footprint there, weighted as the level is, against that at its own mip
+// value: the integrals over s from 0 to 1 of s 4^(s - 1) and (1 - s) 4^s add up to the square.
+constexpr double kMeanFootprint = 1.0820;
 // 1/6, as the equations are divided by 2/3.
 constexpr float kBeside = 0.25F;
 
@@ -52,14 +56,30 @@ void TrilinearSystem<C>::add(const MomentBlock<C>& block) {
 }
 
 template <int C>
-auto TrilinearSystem<C>::solve(const SolveOptions& options, const Progress& progress)
+std::vector<Image> TrilinearSystem<C>::means() const {
+  std::vector<Image> means(1);
+  for (int level = 1; level < last_level_; ++level) means.push_back(systems_[level - 1]->means());
+  return means;
+}
+
+template <int C>
+void TrilinearSystem<C>::expect_finer_means() {
+  for (const std::unique_ptr<BilinearSystem<C>>& system : systems_) system->expect_finer_means();
+}
+
+template <int C>
+auto TrilinearSystem<C>::solve(double footprint, const SolveOptions& options,
+                               const Progress& progress)
     -> std::vector<typename BilinearSystem<C>::Solution> {
   std::vector<std::vector<LaneValues>> fixed;  // what the image puts on the right of each level
   for (int level = 1; level <= last_level_; ++level) {
     BilinearSystem<C>& system = *systems_[level - 1];
     // The equations of a level are divided by 2/3. Of level 1, 1/6 A_1,0 times the image is known:
-    // it is 1/6 of its right side.
-    system.prepare(level == 1 ? 1.5F * 5.0F / 6.0F : 1.5F, progress);
+    // it is 1/6 of what the image puts on its right side.
+    TargetShares shares = target_shares(std::min(kMeanFootprint * footprint, kMostFootprint));
+    if (level == 1) shares.image -= 1.0 / 6.0;
+    system.prepare({1.5 * shares.image, 1.5 * shares.finer_means, 1.5 * shares.own_means},
+                   progress);
     system.system().swap_right_side(&fixed.emplace_back());
   }
   NinePointSystem<float>& last = systems_.back()->system();

@@ -28,13 +28,23 @@ class TrilinearSystem {
   /// at the same time.
   void add(const MomentBlock<C>& block);
 
+  /// As for BilinearSystem, for all levels; the means are those of levels 0 (none) to the last but
+  /// one.
+  std::vector<Image> means() const;
+  void expect_finer_means();
+  void add_finer_means(const MomentBlock<C>& block) {
+    systems_[block.level - 1]->add_finer_means(block);
+  }
+
   /// As BilinearSystem::add_links, for a level.
   void add_links(int level, const std::vector<SeamLink>& links, double weight) {
     systems_[level - 1]->add_links(links, weight);
   }
 
-  /// Levels 1 to the last, within the ranges. Can be called once.
-  std::vector<typename BilinearSystem<C>::Solution> solve(const SolveOptions& options,
+  /// Levels 1 to the last, within the ranges. At the mip value m a pixel covers `footprint` times
+  /// 2^m texels of the image. Can be called once.
+  std::vector<typename BilinearSystem<C>::Solution> solve(double footprint,
+                                                          const SolveOptions& options,
                                                           const Progress& progress);
 
  private:

@@ -379,6 +379,34 @@ void NinePointSystem<Entry>::add_links(std::vector<TexelLink> links, const Progr
 }
 
 template <typename Entry>
+std::vector<LaneValues> NinePointSystem<Entry>::product() const {
+  std::vector<LaneValues> products(stencils_.size());
+  const bool repeat = wrap_.u == Wrap::kRepeat && width_ > 1;
+  for (int y = 0; y < height_; ++y) {
+    const std::ptrdiff_t south = at(0, row_beside(y, -1));
+    const std::ptrdiff_t here = at(0, y);
+    const std::ptrdiff_t north = at(0, row_beside(y, 1));
+    for (int x = 0; x < width_; ++x) {
+      if (!is_part(here + x)) continue;
+      // Past the row's end is a texel of zeros.
+      const int west = x > 0 ? x - 1 : repeat ? width_ - 1 : width_;
+      const int east = x + 1 < width_ ? x + 1 : repeat ? 0 : width_;
+      const Stencil& stencil = stencils_[here + x];
+      products[here + x].v = of(stencil.centre) * texels_[here + x].v +
+                             of(stencil.east) * texels_[here + east].v +
+                             of(stencil.north) * texels_[north + x].v +
+                             of(stencil.north_east) * texels_[north + east].v +
+                             of(stencil.north_west) * texels_[north + west].v +
+                             of(stencils_[here + west].east) * texels_[here + west].v +
+                             of(stencils_[south + x].north) * texels_[south + x].v +
+                             of(stencils_[south + west].north_east) * texels_[south + west].v +
+                             of(stencils_[south + east].north_west) * texels_[south + east].v;
+    }
+  }
+  return products;
+}
+
+template <typename Entry>
 void NinePointSystem<Entry>::clear() {
   std::fill(stencils_.begin(), stencils_.end(), Stencil{});
   std::fill(right_side_.begin(), right_side_.end(), LaneValues{});

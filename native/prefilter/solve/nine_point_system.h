@@ -66,6 +66,12 @@ class NinePointSystem {
   /// What add_cell and add_links put together is forgotten; texels stay.
   void clear();
 
+  const LaneValues& right_side(std::ptrdiff_t at) const { return right_side_[at]; }
+
+  /// The system times its texels, in the order of `at`; 0 beside texels with a diagonal of 0. To be
+  /// called before invert_diagonal.
+  std::vector<LaneValues> product() const;
+
   /// Adds the squares of links, less those that read a texel with a diagonal of 0. To be called
   /// once all cells are there.
   void add_links(std::vector<TexelLink> links, const Progress& progress);

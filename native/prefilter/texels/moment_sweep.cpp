@@ -203,29 +203,31 @@ void add_uniform_texel(const Patch<C>& patch, int x, int y, double density,
   }
 }
 
-// Moments of a cell of level 0 that lies at `in_x`, `in_y` among the texels of the image.
+// The values of an image at the four texel centres around a cell, at [2 * y + x].
 template <int C>
-CellMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch, const CellWindow& texels,
-                            const CellPlace& in_x, const CellPlace& in_y) {
+using Corners = std::array<std::array<double, C>, 4>;
+
+// Moments of a cell between four texel centres of an image; `in_x`, `in_y` say where.
+template <int C>
+CellMoments<C> moments_between(const WeightMoments& w, const Corners<C>& corners,
+                               const Placement& in_x, const Placement& in_y) {
   CellMoments<C> moments;
   moments.weight = w;
-  const int column = in_x.texel - texels.x0;
-  const int row = in_y.texel - texels.y0;
-  const double x = in_x.placement.offset;
-  const double y = in_y.placement.offset;
+  const double x = in_x.offset;
+  const double y = in_y.offset;
   for (int c = 0; c < C; ++c) {
-    const double v00 = patch.at(column, row)[c];
-    const double v10 = patch.at(column + 1, row)[c];
-    const double v01 = patch.at(column, row + 1)[c];
-    const double v11 = patch.at(column + 1, row + 1)[c];
+    const double v00 = corners[0][c];
+    const double v10 = corners[1][c];
+    const double v01 = corners[2][c];
+    const double v11 = corners[3][c];
     // Bilinear in the cell's own coordinates: p00 + p10 x + p01 y + p11 x y.
     const double slope_x = v10 - v00;
     const double slope_y = v01 - v00;
     const double twist = v11 - v10 - v01 + v00;
     const double p00 = v00 + slope_x * x + slope_y * y + twist * x * y;
-    const double p10 = in_x.placement.scale * (slope_x + twist * y);
-    const double p01 = in_y.placement.scale * (slope_y + twist * x);
-    const double p11 = in_x.placement.scale * in_y.placement.scale * twist;
+    const double p10 = in_x.scale * (slope_x + twist * y);
+    const double p01 = in_y.scale * (slope_y + twist * x);
+    const double p11 = in_x.scale * in_y.scale * twist;
     for (int b = 0; b < 2; ++b) {
       for (int a = 0; a < 2; ++a) {
         const int i = 3 * b + a;
@@ -234,6 +236,18 @@ CellMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch, const
     }
   }
   return moments;
+}
+
+// Moments of a cell of level 0 that lies at `in_x`, `in_y` among the texels of the image.
+template <int C>
+CellMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch, const CellWindow& texels,
+                            const CellPlace& in_x, const CellPlace& in_y) {
+  const int column = in_x.texel - texels.x0;
+  const int row = in_y.texel - texels.y0;
+  return moments_between<C>(w,
+                            {patch.at(column, row), patch.at(column + 1, row),
+                             patch.at(column, row + 1), patch.at(column + 1, row + 1)},
+                            in_x.placement, in_y.placement);
 }
 
 // The same of an image whose colours are encoded, and decoded after the lookup.
@@ -354,11 +368,29 @@ class Sweep {
     visit_(block);
   }
 
+  // Moments of a cell whose image is that of its level.
+  CellMoments<C> with_level_image(int level, const WeightMoments& weight, const CellPlace& in_x,
+                                  const CellPlace& in_y) const {
+    const Image& image = (*options_.level_images)[level];
+    Corners<C> corners{};
+    for (int k = 0; k < 4; ++k) {
+      const int column = wrap_index(in_x.texel + k % 2, image.width, wrap_.u);
+      const int row = wrap_index(in_y.texel + k / 2, image.height, wrap_.v);
+      if (column < 0 || row < 0) continue;
+      const float* texel = image.view().texel(column, row);
+      for (int c = 0; c < C; ++c) corners[k][c] = texel[c];
+    }
+    return moments_between<C>(weight, corners, in_x.placement, in_y.placement);
+  }
+
   // Adds the cells of a level to those of the next, which are `coarse_cells`.
   void nest(int level, const CellRange& range, const CellMoments<C>* cells,
             const CellRange& coarse_range, CellMoments<C>* coarse_cells) const {
     const CellParent* x_parents = x_cells_.parents(level).data() + range.x0;
     const CellParent* y_parents = y_cells_.parents(level).data() + range.y0;
+    const bool has_image = options_.level_images != nullptr && level > 0;
+    const CellPlace* x_places = x_cells_.places(level, level).data() + range.x0;
+    const CellPlace* y_places = y_cells_.places(level, level).data() + range.y0;
     for (int y = 0; y < range.height; ++y) {
       CellMoments<C>* row =
           coarse_cells +
@@ -366,7 +398,15 @@ class Sweep {
           coarse_range.x0;
       for (int x = 0; x < range.width; ++x, ++cells) {
         if (cells->empty()) continue;
-        add_child(*cells, x_parents[x].placement, y_parents[y].placement, row + x_parents[x].cell);
+        CellMoments<C>* parent = row + x_parents[x].cell;
+        const Placement& in_x = x_parents[x].placement;
+        const Placement& in_y = y_parents[y].placement;
+        if (has_image) {
+          add_child(with_level_image(level, cells->weight, x_places[x], y_places[y]), in_x, in_y,
+                    parent);
+        } else {
+          add_child(*cells, in_x, in_y, parent);
+        }
       }
     }
   }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "prefilter/base/image.h"
 #include "prefilter/base/progress.h"
@@ -79,6 +80,9 @@ struct SweepOptions {
   // With kSrgbAfter the colours of the image are encoded, and its moments are those of the decoded
   // lookup: by FourPointRule in each of the finest cells.
   Reader reader = Reader::kLinear;
+  // [k] is an image of level k's size, which is what all coarser levels see in place of the one
+  // that is swept over. None: every level sees the same. The first is not looked at.
+  const std::vector<Image>* level_images = nullptr;
   int threads = 0;
 };
 

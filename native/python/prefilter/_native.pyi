@@ -347,6 +347,7 @@ def coarser_levels(
     premultiplied: bool,
     reader: str,
     seam_weight: float,
+    footprint: float,
     progress: ProgressCallback | None,
     threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
@@ -362,6 +363,7 @@ def coarser_byte_levels(
     premultiplied: bool,
     reader: str,
     seam_weight: float,
+    footprint: float,
     progress: ProgressCallback | None,
     threads: int,
 ) -> list[npt.NDArray[np.uint8]]: ...

@@ -39,7 +39,7 @@ class MipmapFilter(NamedTuple):
 
 
 MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters())
-"""All filters: each kernel, each with "-covered" behind, and those over the surface."""
+"""All filters: each kernel, each with "-covered" behind, and least squares without a surface, and those over it."""
 
 
 @overload
@@ -55,6 +55,7 @@ def mipmaps(
     reader: str = ...,
     encoding: Literal["linear"] = ...,
     seam_weight: float = ...,
+    footprint: float = ...,
     progress: ProgressCallback | None = ...,
     threads: int = ...,
 ) -> FilteredLevels[np.float32]: ...
@@ -71,6 +72,7 @@ def mipmaps(
     reader: str = ...,
     encoding: str = ...,
     seam_weight: float = ...,
+    footprint: float = ...,
     progress: ProgressCallback | None = ...,
     threads: int = ...,
 ) -> FilteredLevels[np.float32] | FilteredLevels[np.uint8]: ...
@@ -86,6 +88,7 @@ def mipmaps(
     reader: str = "linear",
     encoding: str = "linear",
     seam_weight: float = 0.0,
+    footprint: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> FilteredLevels[np.float32] | FilteredLevels[np.uint8]:
@@ -95,7 +98,8 @@ def mipmaps(
     difference between a bilinear lookup of the level and one of the image (section 7.3), within
     the bounds. "pam-trilinear" does the same for all levels together and trilinear lookups,
     averaged over all mip values; level 0 is the image and the last level, of 1 x 1 texel, its mean
-    over the surface. "pam-box" takes means over the surface (equation 7.1). The other filters work
+    over the surface. "ls-bilinear" is "pam-bilinear" for the unit square: for tiled textures, and
+    those that meshes to come will share. "pam-box" takes means over the surface (equation 7.1). The other filters work
     in texture space: kernels, "box", "tent" or "lanczos3", over all texels, and with "-covered"
     behind their names over texels that some triangle touches. `MIPMAP_FILTERS` has all names.
     Texels that the surface does not read have no influence on the "pam-" and "-covered" filters;
@@ -125,6 +129,11 @@ def mipmaps(
             two sides of a UV seam agree: the mean square of their difference over a strip one texel
             of the level wide, against the error over the surface. Seams along which the image
             itself differs count less. 0 leaves seams alone; 1 halves what shows of them.
+        footprint: Texels of a level that a pixel of the reader covers, 0 to 2, for least squares
+            and the linear reader. 0: levels are fitted to the image itself, which is right where
+            a pixel is the mean of many lookups (film, and all that is supersampled). 1: a pixel is
+            one lookup (games); levels are fitted to the image averaged over what a pixel covers,
+            by kernels of the variance of a box of that width.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
@@ -149,6 +158,7 @@ def mipmaps(
         bool(premultiplied),
         as_name("reader", reader),
         as_number("seam_weight", seam_weight),
+        as_number("footprint", footprint),
         as_progress(progress),
         as_threads(threads),
     )
