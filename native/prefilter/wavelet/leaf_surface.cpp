@@ -11,6 +11,8 @@ namespace {
 
 // The gradient of a half-space is about 1/2; this is no surface.
 constexpr double kLeastGradient = 0.2;
+// What is nearer to full or empty than this is.
+constexpr double kRounding = 1e-5;
 // Rises below this are none: what they change is as small.
 constexpr double kFlat = 1e-6;
 constexpr int kMostSteps = 40;
@@ -191,6 +193,8 @@ void LeafSurface::fit_height(double occupancy, int parts) {
 std::optional<LeafSurface> LeafSurface::find(const CellTree& tree, int depth, const LeafPlace& at,
                                              int parts) {
   Vector3 gradient{};
+  bool touches_full = false;
+  bool touches_empty = false;
   for (int x = -1; x <= 1; ++x) {
     for (int y = -1; y <= 1; ++y) {
       for (int z = -1; z <= 1; ++z) {
@@ -199,6 +203,8 @@ std::optional<LeafSurface> LeafSurface::find(const CellTree& tree, int depth, co
         const auto value =
             static_cast<double>(occupancy_at(tree, depth, {at[0] + x, at[1] + y, at[2] + z}));
         const double weight = std::ldexp(1.0, 1 - steps) / 8.0 * value;
+        touches_full = touches_full || value >= 1.0 - kRounding;
+        touches_empty = touches_empty || value <= kRounding;
         gradient = gradient + Vector3{x * weight, y * weight, z * weight};
       }
     }
@@ -209,6 +215,9 @@ std::optional<LeafSurface> LeafSurface::find(const CellTree& tree, int depth, co
   }
   const double steepest = gradient[surface.axis_];
   if (std::sqrt(dot(gradient, gradient)) < kLeastGradient) return std::nullopt;
+  // A plane through a cell leaves the neighbours on its two sides full and empty. Where none is,
+  // the occupancy fades over many cells, as winding numbers do across the holes of a mesh.
+  if (!touches_full || !touches_empty) return std::nullopt;
   surface.is_up_ = steepest < 0.0;
   if (!surface.has_heights(tree, depth, at)) {
     surface.height_ = 0.0;
