@@ -9,17 +9,20 @@ of the levels: one a pixel, 4 x 4 samples a pixel, and one with 16x anisotropy. 
 RMSE over the pixels that the model covers fully and the channels, in scene-linear values; flicker
 is the root mean square of the difference of consecutive frames less that of the reference.
 
-A filter is NAME, or NAME:KEY=VALUE:..., with arguments of `prefilter.mipmaps`.
+A filter is NAME, or NAME:KEY=VALUE:..., with arguments of `prefilter.mipmaps`; or "exact": the mean
+of the full image over the footprint of each pixel or sample, which no levels can do better than.
 """
 
 import argparse
 import hashlib
 import inspect
+import itertools
 import json
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +42,8 @@ SIZES = (200, 64)
 FRAMES = 12
 STEP = np.radians(0.4)
 REFERENCE = 16  # Samples along each side of a pixel.
+PIECES = 8  # The same, to find pixels with more than one piece of the model.
+EXACT = "exact"
 
 
 @dataclass(frozen=True)
@@ -68,32 +73,38 @@ MODES = {
 
 
 @dataclass(frozen=True)
-class Frames:
-    """Renders: (views, frames, size, size, 4), colours and coverage."""
+class Truth:
+    """What ought to be shown.
 
-    pixels: Texels
+    Attributes:
+        colors: (views, frames, size, size, 3).
+        masks: (views, frames, size, size) pixels that count, by the name of the mask.
+    """
 
-    def error(self, truth: "Frames") -> float:
-        """Returns the RMSE where the truth is covered fully."""
-        covered = truth.covered()
-        difference = (self.pixels - truth.pixels)[..., :3][covered]
-        return float(np.sqrt(np.mean(difference.astype(float) ** 2)))
+    colors: Texels
+    masks: dict[str, NDArray[np.bool_]]
 
-    def flicker(self, truth: "Frames") -> float:
+    def error(self, shown: Texels, mask: str) -> float:
+        """Returns the RMSE."""
+        differences = (shown - self.colors)[self.masks[mask]]
+        return float(np.sqrt(np.mean(differences.astype(float) ** 2)))
+
+    def flicker(self, shown: Texels, mask: str) -> float:
         """Returns the RMS of what changes from frame to frame, but not in the truth."""
-        covered = truth.covered()
-        both = covered[:, 1:] & covered[:, :-1]
-        changes = np.diff((self.pixels - truth.pixels)[..., :3], axis=1)[both]
+        both = self.masks[mask][:, 1:] & self.masks[mask][:, :-1]
+        changes = np.diff(shown - self.colors, axis=1)[both]
         return float(np.sqrt(np.mean(changes.astype(float) ** 2)))
 
-    def covered(self) -> NDArray[np.bool_]:
-        """Returns which pixels the model covers fully."""
-        return self.pixels[..., 3] == 1
+
+MASKS = {
+    "covered": "pixels that the model covers fully",
+    "piece": "pixels that one chart covers fully, without edges of depth",
+}
 
 
 @dataclass(frozen=True)
 class Found:
-    """What was measured, by the key "SIZE MODE"."""
+    """What was measured, by the key "MASK SIZE MODE"."""
 
     error: dict[str, float]
     flicker: dict[str, float]
@@ -125,6 +136,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("models", nargs="*", default=MODELS)
     parser.add_argument("--filters", nargs="+", default=FILTERS, metavar="FILTER")
     parser.add_argument("--modes", nargs="+", default=tuple(MODES), choices=MODES, metavar="MODE")
+    parser.add_argument("--masks", nargs="+", default=tuple(MASKS), choices=MASKS, metavar="MASK")
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, metavar="PIXELS")
     parser.add_argument("--views", type=int, default=2, help="starts of the turn")
     parser.add_argument(
@@ -179,52 +191,66 @@ def angles(views: int) -> list[list[float]]:
     return [[start + frame * STEP for frame in range(FRAMES)] for start in starts]
 
 
-def drawn(views: int, draw: Callable[[float], Texels]) -> Frames:
+def drawn(views: int, draw: Callable[[float], NDArray]) -> NDArray:
     """Draws all frames."""
-    return Frames(np.array([[draw(angle) for angle in view] for view in angles(views)]))
+    return np.array([[draw(angle) for angle in view] for view in angles(views)])
 
 
-def references(renderer: Renderer, model: Model, options: argparse.Namespace) -> dict[int, Frames]:
+def references(renderer: Renderer, model: Model, options: argparse.Namespace) -> dict[int, Truth]:
     """Returns the true frames by size, from files if they were drawn before."""
     found = {}
-    source = inspect.getsource(opengl_renderer) + inspect.getsource(references)
+    source = inspect.getsource(opengl_renderer) + inspect.getsource(true_frame)
+    key = hashlib.sha256((source + repr(angles(options.views))).encode()).hexdigest()[:12]
     for size in options.sizes:
-        key = hashlib.sha256((source + repr(angles(options.views))).encode()).hexdigest()[:12]
         path = options.folder / "references" / f"{model.name}-{size}-{key}.npy"
         if not path.exists():
             textures = renderer.textures([[image] for image in model.images])
-
-            def draw(angle: float, size: int = size, textures: list = textures) -> Texels:
-                samples = renderer.draw(
-                    textures, angle, REFERENCE * size, filters=opengl_renderer.FULL
-                )
-                return averaged(samples, REFERENCE)
-
+            draw = partial(true_frame, renderer, textures, size)
             path.parent.mkdir(parents=True, exist_ok=True)
-            np.save(path, drawn(options.views, draw).pixels)
+            np.save(path, drawn(options.views, draw))
             for texture in textures:
                 texture.release()
-        found[size] = Frames(np.load(path))
+        frames = np.load(path)
+        masks = {"covered": frames[..., 3] == 1, "piece": frames[..., 4] == 1}
+        found[size] = Truth(frames[..., :3], masks)
     return found
+
+
+def true_frame(renderer: Renderer, textures: list, size: int, angle: float) -> Texels:
+    """Returns colours, coverage, and 1 where a pixel has one piece."""
+    filters = opengl_renderer.FULL
+    samples = renderer.draw(textures, angle, REFERENCE * size, filters=filters)
+    places = renderer.draw(textures, angle, PIECES * size, result=opengl_renderer.PLACE)
+    frame = averaged(samples, REFERENCE)
+    alone = opengl_renderer.in_one_piece(places, PIECES) & (frame[..., 3] == 1)
+    return np.concatenate([frame, alone[..., None].astype(np.float32)], axis=2)
 
 
 def measure(
     renderer: Renderer,
     model: Model,
     filter_: str,
-    truth: dict[int, Frames],
+    truth: dict[int, Truth],
     options: argparse.Namespace,
 ) -> Found:
     """Returns what a filter gives."""
     began = time.monotonic()
-    textures = renderer.textures([baked(model, i, filter_) for i in range(len(model.images))])
+    if filter_ == EXACT:
+        textures = renderer.textures([[image] for image in model.images])
+    else:
+        textures = renderer.textures([baked(model, i, filter_) for i in range(len(model.images))])
     baked_in = time.monotonic() - began
     error, flicker = {}, {}
     for size in options.sizes:
         for name in options.modes:
-            frames = rendered(renderer, textures, size, MODES[name], options.views)
-            error[f"{size} {name}"] = frames.error(truth[size])
-            flicker[f"{size} {name}"] = frames.flicker(truth[size])
+            mode = MODES[name]
+            if filter_ == EXACT:
+                result = opengl_renderer.exact(REFERENCE // mode.samples)
+                mode = Mode("", samples=mode.samples, filters=opengl_renderer.FULL, result=result)
+            frames = drawn(options.views, partial(shown, renderer, textures, size, mode))
+            for mask in MASKS:
+                error[f"{mask} {size} {name}"] = truth[size].error(frames, mask)
+                flicker[f"{mask} {size} {name}"] = truth[size].flicker(frames, mask)
     for texture in textures:
         texture.release()
     seconds = time.monotonic() - began - baked_in
@@ -232,21 +258,17 @@ def measure(
     return Found(error, flicker)
 
 
-def rendered(renderer: Renderer, textures: list, size: int, mode: Mode, views: int) -> Frames:
-    """Draws all frames in a mode."""
-
-    def draw(angle: float) -> Texels:
-        samples = renderer.draw(
-            textures,
-            angle,
-            mode.samples * size,
-            filters=mode.filters,
-            anisotropy=mode.anisotropy,
-            result=mode.result,
-        )
-        return averaged(samples, mode.samples)
-
-    return drawn(views, draw)
+def shown(renderer: Renderer, textures: list, size: int, mode: Mode, angle: float) -> Texels:
+    """Returns the colours of a frame."""
+    samples = renderer.draw(
+        textures,
+        angle,
+        mode.samples * size,
+        filters=mode.filters,
+        anisotropy=mode.anisotropy,
+        result=mode.result,
+    )
+    return averaged(samples, mode.samples)[..., :3]
 
 
 def baked(model: Model, image: int, filter_: str) -> list[Texels]:
@@ -282,10 +304,10 @@ def add_tables(
 ) -> None:
     """Adds a table for each mode, as shares of the baseline, with means over models."""
     others = [name for name in options.filters if name != BASELINE]
-    for mode in options.modes:
+    for mask, mode in itertools.product(options.masks, options.modes):
         rows = []
         for size in options.sizes:
-            key = f"{size} {mode}"
+            key = f"{mask} {size} {mode}"
             shares = []
             for model, by_filter in found.items():
                 base = by_filter[BASELINE]
@@ -307,7 +329,8 @@ def add_tables(
         rows.append(["mean", "", "", "", *(f"{share:.3f}" for share in np.mean(shares, axis=0))])
         head = ["model", "pixels", f"{BASELINE}: error", "flicker"]
         head += [cell for name in others for cell in (f"{name}: error", "flicker")]
-        report.table(f"{mode}: {MODES[mode].about}; shares of {BASELINE}", head, rows)
+        title = f"{mode}: {MODES[mode].about}; {MASKS[mask]}; shares of {BASELINE}"
+        report.table(title, head, rows)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Self
 
 import numpy as np
+import scipy.sparse
 from numpy.typing import NDArray
 
 os.environ.setdefault("GALLIVM_PERF", "no_brilinear,no_rho_approx")
@@ -21,25 +22,33 @@ Texels = NDArray[np.float32]
 ELEVATION = np.radians(20)
 HALF_FIELD_OF_VIEW = np.radians(15)
 UNTEXTURED = -1
+SAME = 1e-6  # Vertices nearer than that, of the model's size and the texture's, are one.
+STEEPEST = 1.5  # Steps of depth beyond that share of the slopes beside them are edges.
 
 VERTEX_SHADER = """#version 400 core
 uniform mat4 to_clip;
 in vec3 position;
 in vec2 uv_of_corner;
+in float chart_of_corner;
 out vec2 uv;
+flat out float chart;
 void main() {
   gl_Position = to_clip * vec4(position, 1.0);
   uv = uv_of_corner;
+  chart = chart_of_corner;
 }
 """
 FRAGMENT_SHADER = """#version 400 core
 uniform sampler2D levels;
 in vec2 uv;
+flat in float chart;
 out vec4 result;
 void main() { result = %s; }
 """
 LOOKUP = "vec4(texture(levels, uv).rgb, 1.0)"
 NOTHING = "vec4(0.0)"
+# Depth is linear over a triangle on the screen.
+PLACE = "vec4(gl_FragCoord.z, dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z), chart + 1.0)"
 # The mip value as the driver finds it, without clamping, and the squared axes of the ellipse that
 # a circular pixel covers, in texels of level 0; 1 where the model is.
 FOOTPRINT = """vec4(0.0);
@@ -62,6 +71,24 @@ PROBES = """vec4(0.0);
     sum += textureLod(levels, uv + along * (i / (count + 1.0) - 0.5), mip).rgb;
   }
   result = vec4(sum / count, 1.0)"""
+
+
+def exact(side: int) -> str:
+    """Returns GLSL of the mean over a pixel's footprint, by side x side lookups of level 0.
+
+    It is what the best of all levels could show; but for what the texture has beyond a chart.
+    """
+    return f"""vec4(0.0);
+  vec2 dx = dFdx(uv), dy = dFdy(uv);
+  vec3 sum = vec3(0.0);
+  for (int j = 0; j < {side}; ++j) {{
+    for (int i = 0; i < {side}; ++i) {{
+      vec2 at = (vec2(i, j) + 0.5) / {side}.0 - 0.5;
+      sum += textureLod(levels, uv + at.x * dx + at.y * dy, 0.0).rgb;
+    }}
+  }}
+  result = vec4(sum / {side * side}.0, 1.0)"""
+
 
 FULL = (moderngl.LINEAR, moderngl.LINEAR)
 TRILINEAR = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
@@ -99,6 +126,26 @@ class Model:
             wraps = [str(wrap) for wrap in file["wraps"]]
             return cls(path.stem, names, images, wraps, file["corners"], file["uvs"], file["used"])
 
+    def charts(self) -> NDArray[np.int64]:
+        """Returns the chart (m,) that each triangle belongs to: charts share no vertex."""
+        corners = self.corners.reshape(-1, 3)
+        scale = SAME * np.ptp(corners, axis=0).max()
+        keys = np.concatenate(
+            [
+                np.round(corners / scale),
+                np.round(self.uvs.reshape(-1, 2) / SAME),
+                self.used.repeat(3)[:, None],
+            ],
+            axis=1,
+        )
+        _, vertices = np.unique(keys, axis=0, return_inverse=True)
+        vertices = vertices.reshape(-1, 3)
+        ends = np.concatenate([vertices[:, :2], vertices[:, 1:]])
+        count = vertices.max() + 1
+        graph = scipy.sparse.coo_array((np.ones(len(ends)), tuple(ends.T)), (count, count))
+        _, labels = scipy.sparse.csgraph.connected_components(graph, directed=False)
+        return labels[vertices[:, 0]]
+
 
 class Renderer:
     """Draws a model, centred, by a perspective camera that looks down on it a little."""
@@ -111,9 +158,10 @@ class Renderer:
         self._buffers = {}
         centre = (model.corners.min(axis=(0, 1)) + model.corners.max(axis=(0, 1))) / 2
         self._radius = np.linalg.norm(model.corners - centre, axis=2).max()
+        charts = np.broadcast_to(model.charts()[:, None, None], (len(model.used), 3, 1))
         for image in np.unique(model.used):
             of_image = model.used == image
-            rows = [model.corners[of_image] - centre, model.uvs[of_image]]
+            rows = [model.corners[of_image] - centre, model.uvs[of_image], charts[of_image]]
             vertices = np.concatenate(rows, axis=2).astype(np.float32)
             self._buffers[int(image)] = self.context.buffer(vertices.tobytes())
 
@@ -171,8 +219,12 @@ class Renderer:
                 textures[image].filter = filters
                 textures[image].anisotropy = anisotropy
                 textures[image].use(0)
-            names = ["position", *(["uv_of_corner"] if "uv_of_corner" in program else [])]
-            layout = "3f 2f" if len(names) == 2 else "3f 2x4"
+            # What a shader does not use it does not have.
+            attributes = {"position": 3, "uv_of_corner": 2, "chart_of_corner": 1}
+            names = [name for name in attributes if name in program]
+            layout = " ".join(
+                f"{count}f" if name in names else f"{count}x4" for name, count in attributes.items()
+            )
             triangles = self.context.vertex_array(program, [(buffer, layout, *names)])
             triangles.render(moderngl.TRIANGLES)
             made += [triangles, program]
@@ -195,6 +247,22 @@ class Renderer:
         depth = [(near + far) / (near - far), 2 * near * far / (near - far)]
         project = np.array([[f, 0, 0, 0], [0, f, 0, 0], [0, 0, *depth], [0, 0, -1, 0]])
         return project @ view @ turn
+
+
+def in_one_piece(places: Texels, factor: int) -> NDArray[np.bool_]:
+    """Returns below which squares of samples, of what PLACE draws, one chart lies without edges."""
+    size = len(places) // factor
+    squares = places.reshape(size, factor, size, factor, 4)
+    charts = squares[..., 3]
+    alone = (charts == charts[:, :1, :, :1]).all(axis=(1, 3)) & (charts[:, 0, :, 0] > 0)
+    for axis, slope in ((3, 1), (1, 2)):
+        steps = np.abs(np.diff(squares[..., 0], axis=axis))
+        slopes = np.abs(squares[..., slope])
+        before = np.take(slopes, range(factor - 1), axis)
+        after = np.take(slopes, range(1, factor), axis)
+        steep = steps > STEEPEST * np.maximum(before, after) + 1e-5
+        alone &= ~steep.any(axis=(1, 3))
+    return alone
 
 
 def averaged(pixels: Texels, factor: int) -> Texels:
