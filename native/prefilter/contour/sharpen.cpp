@@ -11,22 +11,17 @@
 #include <utility>
 
 #include "prefilter/base/parallel.h"
+#include "prefilter/contour/feature_places.h"
+#include "prefilter/contour/source_regions.h"
 #include "prefilter/remesh/intersections.h"
 
 namespace prefilter {
 namespace {
 
-constexpr double kSharpCosine = 0.9396926207859084;  // 20 degrees
 // All in cells.
 constexpr double kRidgeReach = 1.5;
-constexpr double kFeatureReach = 5.0;
-constexpr double kRegionReach = 5.0;
-constexpr double kOnSurface = 0.05;
-constexpr double kCornerReach = 1.0;
-constexpr double kSettled = 1e-7;
 constexpr double kTooClose = 0.05;
 constexpr double kPlaceCells = 2.0;
-constexpr int kMostSteps = 12;
 constexpr int kMostAttempts = 2;
 constexpr int kMostHalvings = 3;
 constexpr int kRings = 2;
@@ -35,37 +30,6 @@ constexpr std::int64_t kLoopsPerTask = 64;
 
 using Triangle = std::array<std::int32_t, 3>;
 using Labels = std::vector<std::int32_t>;
-
-// The symmetric matrix with these columns' products, plus a little, times the result is `right`.
-std::vector<double> solve_products(const std::vector<Vector3>& normals, std::vector<double> right) {
-  constexpr double kRidge = 1e-4;
-  const std::size_t n = normals.size();
-  std::vector<double> m(n * n);
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) m[i * n + j] = dot(normals[i], normals[j]);
-    m[i * n + i] += kRidge;
-  }
-  // Cholesky would do; elimination without pivots is as stable for such a matrix.
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = i + 1; k < n; ++k) {
-      const double factor = m[k * n + i] / m[i * n + i];
-      for (std::size_t j = i; j < n; ++j) m[k * n + j] -= factor * m[i * n + j];
-      right[k] -= factor * right[i];
-    }
-  }
-  for (std::size_t i = n; i-- > 0;) {
-    for (std::size_t j = i + 1; j < n; ++j) right[i] -= m[i * n + j] * right[j];
-    right[i] /= m[i * n + i];
-  }
-  return right;
-}
-
-struct Feature {
-  Vector3 position{};
-  Vector3 start{};  // in the loop's middle, from where the position was looked for
-  Labels labels;
-  bool is_corner = false;
-};
 
 std::uint64_t side_key(std::int32_t a, std::int32_t b) {
   const auto [low, high] = std::minmax(a, b);
@@ -81,13 +45,14 @@ class Sharpener {
         surface_(surface),
         samples_(samples),
         threads_(threads),
-        cell_(surface.cell()) {}
+        cell_(surface.cell()),
+        feature_places_(surface) {}
 
   FacetedMesh run(const Progress& progress) {
     find_sides(progress.part(0.0, 0.1));
     find_turned();
     place_features(progress.part(0.1, 0.5));
-    claim_corners();
+    feature_places_.claim_corners(&features_);
     find_joints();
     const Progress checking = progress.part(0.6, 1.0);
     // What is near edges comes last, so that it can be looked at by itself.
@@ -159,129 +124,20 @@ class Sharpener {
   }
 
   Feature feature_of(std::size_t i) const {
-    Feature feature;
     Vector3 start{};
+    Labels labels;
     int divided = 0;
     for (std::size_t k = 0; k < static_cast<std::size_t>(loop(i).count); ++k) {
       const std::int32_t corner = loop(i).corners[k];
-      if (const SourcePoint* sample = samples_.of(corner)) feature.labels.push_back(sample->label);
+      if (const SourcePoint* sample = samples_.of(corner)) labels.push_back(sample->label);
       if (!sides_[i][k].is_divided) continue;
       start = start + 0.5 * (position(corner) + position(loop(i).corners[next(i, k)]));
       ++divided;
     }
     start = (1.0 / divided) * start;
-    Labels& labels = feature.labels;
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
-    feature.start = start;
-    feature.is_corner = labels.size() > 2;
-    feature.position = placed(start, labels).value_or(start);
-    return feature;
-  }
-
-  // The point next to `start` where regions meet; of one, where it has a sharp edge.
-  std::optional<Vector3> placed(const Vector3& start, const Labels& labels) const {
-    std::optional<Vector3> found =
-        labels.size() > 2
-            ? corner_near(start, labels)
-            : surface_.nearest_border(start, kFeatureReach * cell_, labels.front(), labels.back());
-    if (!found && labels.size() > 1) found = meeting_of(start, labels);
-    return found;
-  }
-
-  // The corner of these regions, or more, next to a point.
-  std::optional<Vector3> corner_near(const Vector3& start, const Labels& labels) const {
-    std::optional<Vector3> found;
-    double least = kFeatureReach * cell_;
-    for (std::size_t c = 0; c < surface_.corner_count(); ++c) {
-      const FeatureCorner corner = surface_.corner(c);
-      const Vector3& at = corner.position;
-      const double distance = length(at - start);
-      if (distance >= least) continue;
-      if (!std::includes(corner.labels.begin(), corner.labels.end(), labels.begin(),
-                         labels.end())) {
-        continue;
-      }
-      least = distance;
-      found = at;
-    }
-    return found;
-  }
-
-  // Where the surfaces of regions meet, from a point on: least steps onto all their planes.
-  std::optional<Vector3> meeting_of(const Vector3& start, const Labels& labels) const {
-    Vector3 at = start;
-    for (int step = 0; step < kMostSteps; ++step) {
-      std::vector<Vector3> normals;
-      std::vector<double> heights;
-      for (const std::int32_t label : labels) {
-        const std::optional<SourcePoint> near = surface_.nearest(at, kRegionReach * cell_, label);
-        if (!near) continue;
-        normals.push_back(near->normal);
-        heights.push_back(dot(near->normal, near->position - at));
-      }
-      if (normals.empty()) return std::nullopt;
-      const std::vector<double> factors = solve_products(normals, heights);
-      Vector3 move{};
-      for (std::size_t i = 0; i < normals.size(); ++i) move = move + factors[i] * normals[i];
-      at = at + move;
-      if (length(at - start) > kFeatureReach * cell_) return std::nullopt;
-      if (length(move) < kSettled * cell_) break;
-    }
-    for (const std::int32_t label : labels) {
-      if (!surface_.nearest(at, kOnSurface * cell_, label)) return std::nullopt;
-    }
-    return at;
-  }
-
-  // Corners of the shape that no loop has found get the nearest vertex of an edge that ends there.
-  void claim_corners() {
-    std::vector<std::pair<std::uint64_t, std::size_t>> order;
-    grid_.clear();
-    for (std::size_t i = 0; i < features_.size(); ++i)
-      grid_[place_of(features_[i].position)].push_back(i);
-    std::vector<std::uint8_t> is_taken(features_.size(), 0);
-    for (std::size_t c = 0; c < surface_.corner_count(); ++c) {
-      const FeatureCorner corner = surface_.corner(c);
-      const Vector3& at = corner.position;
-      std::size_t best = features_.size();
-      double least = kCornerReach * cell_;
-      for_around(at, [&](std::size_t i) {
-        const Labels& labels = features_[i].labels;
-        const double distance = length(features_[i].position - at);
-        if (is_taken[i] != 0 || distance > least || (distance == least && i > best)) return;
-        if (!std::includes(corner.labels.begin(), corner.labels.end(), labels.begin(),
-                           labels.end())) {
-          return;
-        }
-        best = i;
-        least = distance;
-      });
-      if (best == features_.size()) continue;
-      is_taken[best] = 1;
-      features_[best].position = at;
-      features_[best].is_corner = true;
-    }
-  }
-
-  std::array<std::int64_t, 3> place_of(const Vector3& p) const {
-    std::array<std::int64_t, 3> place;
-    for (std::size_t a = 0; a < 3; ++a)
-      place[a] = static_cast<std::int64_t>(std::floor(p[a] / cell_));
-    return place;
-  }
-  template <typename Visit>
-  void for_around(const Vector3& p, const Visit& visit) const {
-    const std::array<std::int64_t, 3> place = place_of(p);
-    for (std::int64_t x = -1; x <= 1; ++x) {
-      for (std::int64_t y = -1; y <= 1; ++y) {
-        for (std::int64_t z = -1; z <= 1; ++z) {
-          const auto found = grid_.find({place[0] + x, place[1] + y, place[2] + z});
-          if (found == grid_.end()) continue;
-          for (const std::size_t i : found->second) visit(i);
-        }
-      }
-    }
+    return feature_places_.feature(start, std::move(labels));
   }
 
   // Which loops can be joined across their divided sides.
@@ -694,7 +550,7 @@ class Sharpener {
         const Vector3 middle = 0.5 * (features_[static_cast<std::size_t>(others[0])].position +
                                       features_[static_cast<std::size_t>(others[1])].position);
         const std::optional<Vector3> found =
-            placed(0.5 * (feature.position + middle), feature.labels);
+            feature_places_.place(0.5 * (feature.position + middle), feature.labels);
         if (found) moved[m] = *found;
       }
       for (std::size_t m = 0; m < moving.size(); ++m) features_[moving[m]].position = moved[m];
@@ -808,23 +664,13 @@ class Sharpener {
     return v < crossings_.size() && looped_.positions[v] != crossings_[v];
   }
 
-  struct PlaceHash {
-    std::size_t operator()(const std::array<std::int64_t, 3>& place) const {
-      std::uint64_t hash = 0;
-      for (const std::int64_t p : place) {
-        hash = (hash ^ static_cast<std::uint64_t>(p)) * 0x9E3779B97F4A7C15U;
-        hash ^= hash >> 29U;
-      }
-      return hash;
-    }
-  };
-
   LoopedMesh looped_;
   const std::vector<Vector3>& crossings_;
   const FeatureSurface& surface_;
   const VertexSamples& samples_;
   int threads_;
   double cell_;
+  FeaturePlaces feature_places_;
   std::vector<std::array<Side, 12>> sides_;
   std::vector<Feature> features_;
   std::vector<std::uint8_t> is_sharp_;
@@ -841,7 +687,6 @@ class Sharpener {
   std::unordered_map<std::size_t, std::vector<std::size_t>> members_;  // the other loops
   std::vector<std::size_t> dropped_;
   std::vector<std::array<std::int32_t, 2>> owners_;  // of triangles: loops
-  std::unordered_map<std::array<std::int64_t, 3>, std::vector<std::size_t>, PlaceHash> grid_;
 };
 }  // namespace
 

@@ -19,11 +19,10 @@ namespace {
 constexpr std::int64_t kRowsPerTask = 1 << 14;
 constexpr std::int64_t kSidesPerSweep = 1 << 21;
 constexpr std::int64_t kMostSweeps = 16;
-constexpr double kSharpCosine = 0.9396926207859084;  // 20 degrees
-constexpr double kTurnCosine = 0.8660254037844387;   // 30 degrees: of a border at a corner
-constexpr double kPointedShare = 0.75;               // of a mean normal's length, at a tip
-constexpr double kLeastRegion = 4.0;                 // of a cell's face
-constexpr double kStraight = 0.5176380902050415;     // twice the sine of 15 degrees
+constexpr double kTurnCosine = 0.8660254037844387;  // 30 degrees: of a border at a corner
+constexpr double kPointedShare = 0.75;              // of a mean normal's length, at a tip
+constexpr double kLeastRegion = 4.0;                // of a cell's face
+constexpr double kStraight = 0.5176380902050415;    // twice the sine of 15 degrees
 // A chain of edges is roughness where it turns or parts this often, and they are this blunt.
 constexpr double kRoughCells = 12.0;
 constexpr int kRoughEdges = 4;

@@ -13,6 +13,9 @@
 
 namespace prefilter {
 
+/// Edges that turn by less are smooth: 20 degrees.
+inline constexpr double kSharpCosine = 0.9396926207859084;
+
 /// An edge of a mesh between two regions, or a sharp one within a region.
 struct RegionBorder {
   std::array<std::int32_t, 2> ends;
