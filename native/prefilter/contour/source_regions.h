@@ -110,6 +110,9 @@ struct SourceRegions {
   Vector3 corner(std::size_t triangle, int i) const {
     return positions[static_cast<std::size_t>(triangles[triangle][static_cast<std::size_t>(i)])];
   }
+  std::array<Vector3, 3> corners_of(std::size_t triangle) const {
+    return {corner(triangle, 0), corner(triangle, 1), corner(triangle, 2)};
+  }
 };
 
 /// Vertices at one place count as one. Regions of less than four faces of a cell join the

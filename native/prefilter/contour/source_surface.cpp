@@ -117,6 +117,12 @@ std::optional<double> meeting(const Vector3& a, const Vector3& b,
   if (!(t >= 0.0 && t <= 1.0)) return std::nullopt;
   return t;
 }
+
+// The point of a triangle next to another.
+Vector3 nearest_on(const std::array<Vector3, 3>& corners, const Vector3& point) {
+  const Vector3 weights = nearest_weights(point, corners[0], corners[1], corners[2]);
+  return weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+}
 }  // namespace
 
 SourceSurface::SourceSurface(std::span<const SourceMesh> sources, const RootFrame& frame,
@@ -167,12 +173,11 @@ void SourceSurface::mark_meetings(const Progress& progress) {
     pulse.step();
     if (regions_.labels[t] < 0) continue;
     const std::int32_t part = regions_.parts[t];
-    for_pieces({regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)}, brick_,
-               [&](const Box& box) {
-                 BrickRange(box, kContactCells * cell_, brick_).for_each([&](std::uint64_t key) {
-                   meetings_[key].add(part);
-                 });
-               });
+    for_pieces(regions_.corners_of(t), brick_, [&](const Box& box) {
+      BrickRange(box, kContactCells * cell_, brick_).for_each([&](std::uint64_t key) {
+        meetings_[key].add(part);
+      });
+    });
   }
   for (auto brick = meetings_.begin(); brick != meetings_.end();) {
     if (brick->second.count < 2) {
@@ -217,15 +222,14 @@ std::span<const std::int32_t> SourceSurface::meeting_parts(const Vector3& point)
 }
 
 void SourceSurface::build_trees(const Progress& progress, int threads) {
-  const auto corners_of = [&](std::int32_t triangle) -> std::array<Vector3, 3> {
-    const auto t = static_cast<std::size_t>(triangle);
-    return {regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)};
+  const auto box_of_triangle = [&](std::int32_t triangle) {
+    return box_of(regions_.corners_of(static_cast<std::size_t>(triangle)));
   };
   std::vector<std::int32_t> near;
   for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
     if (regions_.labels[t] < 0) continue;
     const auto triangle = static_cast<std::int32_t>(t);
-    const BrickRange range(box_of(corners_of(triangle)), kSearchCells * cell_, brick_);
+    const BrickRange range(box_of_triangle(triangle), kSearchCells * cell_, brick_);
     bool is_near = range.count > kMostBricks;
     if (!is_near) {
       range.for_each([&](std::uint64_t key) { is_near = is_near || near_bricks_.contains(key); });
@@ -247,9 +251,7 @@ void SourceSurface::build_trees(const Progress& progress, int threads) {
         keys, kLeafItems, [&](std::size_t i) { return box_of_item((*ordered)[i]); },
         part.part(0.6, 1.0));
   };
-  triangle_tree_ = arrange(
-      std::move(near), [&](std::int32_t t) { return box_of(corners_of(t)); },
-      progress.part(0.0, 0.7), &triangles_);
+  triangle_tree_ = arrange(std::move(near), box_of_triangle, progress.part(0.0, 0.7), &triangles_);
   std::vector<std::int32_t> borders(regions_.borders.size());
   for (std::size_t i = 0; i < borders.size(); ++i) borders[i] = static_cast<std::int32_t>(i);
   border_tree_ = arrange(
@@ -260,6 +262,22 @@ void SourceSurface::build_trees(const Progress& progress, int threads) {
                       regions_.positions[static_cast<std::size_t>(ends[1])]);
       },
       progress.part(0.7, 1.0), &borders_);
+}
+
+template <typename Visit>
+void SourceSurface::for_triangles(std::size_t node, const Visit& visit) const {
+  const auto& items = triangle_tree_.nodes()[node];
+  for (std::size_t i = items.begin; i < items.end; ++i) visit(triangles_[i]);
+}
+
+template <typename Visit>
+void SourceSurface::for_met(const Vector3& a, const Vector3& b, const Visit& visit) const {
+  triangle_tree_.for_overlapping(box_of(a, b), [&](std::size_t node) {
+    for_triangles(node, [&](std::int32_t triangle) {
+      const auto share = meeting(a, b, regions_.corners_of(static_cast<std::size_t>(triangle)));
+      if (share) visit(triangle, *share);
+    });
+  });
 }
 
 SourcePoint SourceSurface::point_on(std::int32_t triangle, const Vector3& position) const {
@@ -286,11 +304,7 @@ std::int64_t SourceSurface::nearest_of_all(const Vector3& point) const {
   std::int64_t best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {
-    const std::array<Vector3, 3> corners = {regions_.corner(t, 0), regions_.corner(t, 1),
-                                            regions_.corner(t, 2)};
-    const Vector3 weights = nearest_weights(point, corners[0], corners[1], corners[2]);
-    const Vector3 offset =
-        weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2] - point;
+    const Vector3 offset = nearest_on(regions_.corners_of(t), point) - point;
     if (dot(offset, offset) >= least) continue;
     least = dot(offset, offset);
     best = static_cast<std::int64_t>(t);
@@ -300,15 +314,7 @@ std::int64_t SourceSurface::nearest_of_all(const Vector3& point) const {
 
 std::vector<SourceCrossing> SourceSurface::crossings(const Vector3& a, const Vector3& b) const {
   std::vector<SourceCrossing> found;
-  triangle_tree_.for_overlapping(box_of(a, b), [&](std::size_t node) {
-    for (std::size_t i = triangle_tree_.nodes()[node].begin; i < triangle_tree_.nodes()[node].end;
-         ++i) {
-      const auto t = static_cast<std::size_t>(triangles_[i]);
-      const std::optional<double> at =
-          meeting(a, b, {regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)});
-      if (at) found.push_back({*at, triangles_[i]});
-    }
-  });
+  for_met(a, b, [&](std::int32_t triangle, double share) { found.push_back({share, triangle}); });
   std::sort(found.begin(), found.end(), [](const SourceCrossing& x, const SourceCrossing& y) {
     return x.share != y.share ? x.share < y.share : x.triangle < y.triangle;
   });
@@ -337,19 +343,13 @@ std::optional<SourcePoint> SourceSurface::nearest_plane(const Vector3& point, do
   triangle_tree_.search(
       point, [&](double squared, std::size_t) { return squared <= least * (1.0 + kTie); },
       [&](std::size_t node) {
-        for (std::size_t i = triangle_tree_.nodes()[node].begin;
-             i < triangle_tree_.nodes()[node].end; ++i) {
-          const std::int32_t triangle = triangles_[i];
+        for_triangles(node, [&](std::int32_t triangle) {
           const auto t = static_cast<std::size_t>(triangle);
-          if (regions_.parts[t] != part) continue;
-          const std::array<Vector3, 3> corners = {regions_.corner(t, 0), regions_.corner(t, 1),
-                                                  regions_.corner(t, 2)};
-          const Vector3 weights = nearest_weights(point, corners[0], corners[1], corners[2]);
-          const Vector3 at =
-              weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+          if (regions_.parts[t] != part) return;
+          const Vector3 at = nearest_on(regions_.corners_of(t), point);
           const Vector3 offset = point - at;
           const double squared = dot(offset, offset);
-          if (squared > least * (1.0 + kTie)) continue;
+          if (squared > least * (1.0 + kTie)) return;
           const SourcePoint candidate = point_on(triangle, at);
           const double height = std::abs(dot(candidate.normal, offset));
           const bool is_nearer = squared < least * (1.0 - kTie);
@@ -359,7 +359,7 @@ std::optional<SourcePoint> SourceSurface::nearest_plane(const Vector3& point, do
             facing = height;
           }
           least = is_nearer ? squared : std::min(least, squared);
-        }
+        });
       });
   return found;
 }
@@ -369,21 +369,13 @@ std::optional<SourcePoint> SourceSurface::crossing(const Vector3& a, const Vecto
   std::int32_t best = -1;
   double least = std::numeric_limits<double>::infinity();
   Vector3 found{};
-  triangle_tree_.for_overlapping(box_of(a, b), [&](std::size_t node) {
-    for (std::size_t i = triangle_tree_.nodes()[node].begin; i < triangle_tree_.nodes()[node].end;
-         ++i) {
-      const std::int32_t triangle = triangles_[i];
-      const auto t = static_cast<std::size_t>(triangle);
-      const std::optional<double> at =
-          meeting(a, b, {regions_.corner(t, 0), regions_.corner(t, 1), regions_.corner(t, 2)});
-      if (!at) continue;
-      const Vector3 position = a + *at * (b - a);
-      const double distance = length(position - expected);
-      if (distance < least || (distance == least && triangle < best)) {
-        least = distance;
-        best = triangle;
-        found = position;
-      }
+  for_met(a, b, [&](std::int32_t triangle, double share) {
+    const Vector3 position = a + share * (b - a);
+    const double distance = length(position - expected);
+    if (distance < least || (distance == least && triangle < best)) {
+      least = distance;
+      best = triangle;
+      found = position;
     }
   });
   if (best < 0) return std::nullopt;
@@ -399,16 +391,10 @@ std::optional<SourcePoint> SourceSurface::nearest(const Vector3& point, double r
   triangle_tree_.search(
       point, [&](double squared, std::size_t) { return squared <= least; },
       [&](std::size_t node) {
-        for (std::size_t i = triangle_tree_.nodes()[node].begin;
-             i < triangle_tree_.nodes()[node].end; ++i) {
-          const std::int32_t triangle = triangles_[i];
+        for_triangles(node, [&](std::int32_t triangle) {
           const auto t = static_cast<std::size_t>(triangle);
-          if (label >= 0 && regions_.labels[t] != label) continue;
-          const std::array<Vector3, 3> corners = {regions_.corner(t, 0), regions_.corner(t, 1),
-                                                  regions_.corner(t, 2)};
-          const Vector3 weights = nearest_weights(point, corners[0], corners[1], corners[2]);
-          const Vector3 at =
-              weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2];
+          if (label >= 0 && regions_.labels[t] != label) return;
+          const Vector3 at = nearest_on(regions_.corners_of(t), point);
           const Vector3 offset = at - point;
           const double squared = dot(offset, offset);
           if (squared < least || (squared == least && (best < 0 || triangle < best))) {
@@ -416,7 +402,7 @@ std::optional<SourcePoint> SourceSurface::nearest(const Vector3& point, double r
             best = triangle;
             found = at;
           }
-        }
+        });
       });
   if (best < 0) return std::nullopt;
   return point_on(best, found);

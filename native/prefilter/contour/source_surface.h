@@ -86,6 +86,12 @@ class SourceSurface final : public FeatureSurface {
   void mark_meetings(const Progress& progress);
   void mark_around(const Box& box);
   void build_trees(const Progress& progress, int threads);
+  // Calls visit(triangle) for those of a node of the tree.
+  template <typename Visit>
+  void for_triangles(std::size_t node, const Visit& visit) const;
+  // Calls visit(triangle, share) where a segment meets them.
+  template <typename Visit>
+  void for_met(const Vector3& a, const Vector3& b, const Visit& visit) const;
   static constexpr std::size_t kMostMeeting = 6;
   struct Meeting {
     std::array<std::int32_t, kMostMeeting> parts;
