@@ -204,22 +204,6 @@ bool OccupancySurface::fit(SurfaceCell* cell) const {
   return true;
 }
 
-std::int32_t OccupancySurface::root_of(std::int32_t region) const {
-  while (parents_[static_cast<std::size_t>(region)] != region) {
-    region = parents_[static_cast<std::size_t>(region)];
-  }
-  return region;
-}
-
-void OccupancySurface::unite(std::int32_t a, std::int32_t b) {
-  const std::int32_t x = root_of(a);
-  const std::int32_t y = root_of(b);
-  parents_[static_cast<std::size_t>(std::max(x, y))] = std::min(x, y);
-  // Paths stay short.
-  parents_[static_cast<std::size_t>(a)] = std::min(x, y);
-  parents_[static_cast<std::size_t>(b)] = std::min(x, y);
-}
-
 const OccupancySurface::SurfaceCell* OccupancySurface::find(const CellCoordinates& at) const {
   for (const int x : at) {
     if (x < 0) return nullptr;
@@ -229,8 +213,7 @@ const OccupancySurface::SurfaceCell* OccupancySurface::find(const CellCoordinate
 }
 
 void OccupancySurface::join_regions() {
-  parents_.resize(cells_.size());
-  for (std::size_t i = 0; i < cells_.size(); ++i) parents_[i] = static_cast<std::int32_t>(i);
+  regions_ = DisjointSets<std::int32_t>(cells_.size());
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     const SurfaceCell& cell = cells_[i];
     if (!cell.is_smooth) continue;
@@ -239,17 +222,17 @@ void OccupancySurface::join_regions() {
       if (other == nullptr || !other->is_smooth || other >= &cell) return;
       if (dot(cell.patch.normal(), other->patch.normal()) < kGoesOn) return;
       if (std::abs(cell.patch.above(other->patch.foot(), nullptr)) > kJoins) return;
-      unite(static_cast<std::int32_t>(i), static_cast<std::int32_t>(other - cells_.data()));
+      regions_.join(static_cast<std::int32_t>(i), static_cast<std::int32_t>(other - cells_.data()));
     });
   }
   std::vector<std::int32_t> counts(cells_.size(), 0);
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     if (cells_[i].is_smooth)
-      ++counts[static_cast<std::size_t>(root_of(static_cast<std::int32_t>(i)))];
+      ++counts[static_cast<std::size_t>(regions_.root(static_cast<std::int32_t>(i)))];
   }
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     SurfaceCell& cell = cells_[i];
-    cell.region = root_of(static_cast<std::int32_t>(i));
+    cell.region = regions_.root(static_cast<std::int32_t>(i));
     cell.is_smooth = cell.is_smooth && counts[static_cast<std::size_t>(cell.region)] >= kLeastCells;
   }
   for (SurfaceCell& cell : cells_) {
@@ -272,7 +255,7 @@ std::vector<OccupancySurface::Candidate> OccupancySurface::candidates(
                             static_cast<double>(place[1] - at[1]),
                             static_cast<double>(place[2] - at[2])};
     const double score = length(offset) + (other->is_deep ? 0.0 : kNotDeep);
-    const std::int32_t region = root_of(other->region);
+    const std::int32_t region = regions_.root(other->region);
     const auto cell = static_cast<std::size_t>(other - cells_.data());
     for (Candidate& candidate : found) {
       if (candidate.region != region) continue;
@@ -302,13 +285,14 @@ void OccupancySurface::merge_across_gaps() {
     }
     for (std::size_t i = 0; i < near.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        if (dot(normals[i], normals[j]) >= kNearlyParallel) unite(near[i].region, near[j].region);
+        if (dot(normals[i], normals[j]) >= kNearlyParallel)
+          regions_.join(near[i].region, near[j].region);
       }
     }
   }
-  for (SurfaceCell& cell : cells_) cell.region = root_of(cell.region);
+  for (SurfaceCell& cell : cells_) cell.region = regions_.root(cell.region);
   for (std::vector<Candidate>& near : near_) {
-    for (Candidate& candidate : near) candidate.region = root_of(candidate.region);
+    for (Candidate& candidate : near) candidate.region = regions_.root(candidate.region);
     std::sort(near.begin(), near.end(), [](const Candidate& a, const Candidate& b) {
       return a.score != b.score ? a.score < b.score : a.cell < b.cell;
     });

@@ -11,6 +11,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "prefilter/base/disjoint_sets.h"
 #include "prefilter/contour/contour_tree.h"
 #include "prefilter/contour/feature_surface.h"
 #include "prefilter/contour/root_frame.h"
@@ -80,8 +81,6 @@ class OccupancySurface final : public FeatureSurface {
   void join_regions();
   void merge_across_gaps();
   void mark_edges();
-  std::int32_t root_of(std::int32_t region) const;
-  void unite(std::int32_t a, std::int32_t b);
   const SurfaceCell* find(const CellCoordinates& at) const;
   std::vector<Candidate> candidates(const CellCoordinates& at) const;
   bool explains(const std::vector<Candidate>& all, const CellCoordinates& at) const;
@@ -94,7 +93,7 @@ class OccupancySurface final : public FeatureSurface {
   int depth_;
   std::vector<SurfaceCell> cells_;
   std::unordered_map<std::uint64_t, std::uint32_t> places_;
-  std::vector<std::int32_t> parents_;
+  DisjointSets<std::int32_t> regions_;
   std::vector<std::vector<Candidate>> near_;  // of cells that are not smooth, the nearest first
 };
 

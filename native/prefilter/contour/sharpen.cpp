@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <queue>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
+#include "prefilter/base/disjoint_sets.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/contour/feature_places.h"
 #include "prefilter/contour/source_regions.h"
@@ -200,20 +200,17 @@ class Sharpener {
 
   void find_merged() {
     const std::vector<std::size_t> before = merged_;
-    merged_.resize(features_.size());
-    std::iota(merged_.begin(), merged_.end(), 0);
+    DisjointSets<std::size_t> merged(features_.size());
     for (std::size_t i = 0; i < features_.size(); ++i) {
       if (is_sharp_[i] == 0 || is_single_[i] != 0) continue;
       for (const std::int32_t joint : joined(i)) {
         const auto other = static_cast<std::size_t>(joint);
         if (other < i || is_single_[other] != 0) continue;
         if (length(features_[i].position - features_[other].position) > kTooClose * cell_) continue;
-        const std::size_t p = root_of(i);
-        const std::size_t q = root_of(other);
-        merged_[std::max(p, q)] = std::min(p, q);
+        merged.join(i, other);
       }
     }
-    for (std::size_t i = 0; i < features_.size(); ++i) merged_[i] = root_of(i);
+    merged_ = std::move(merged).roots();
     // What becomes of one loop becomes of all that have its vertex.
     for (std::size_t i = 0; i < features_.size(); ++i) {
       if (!before.empty() && before[i] != merged_[i]) is_changed_loop_[i] = 1;
@@ -222,11 +219,6 @@ class Sharpener {
     for (std::size_t i = 0; i < features_.size(); ++i) {
       if (merged_[i] != i && is_changed_loop_[merged_[i]] != 0) is_changed_loop_[i] = 1;
     }
-  }
-
-  std::size_t root_of(std::size_t i) const {
-    while (merged_[i] != i) i = merged_[i];
-    return i;
   }
 
   // The vertices of loops that have one together, and the first of these.

@@ -4,11 +4,11 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numeric>
 #include <string>
 #include <utility>
 
+#include "prefilter/base/disjoint_sets.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/sort.h"
@@ -31,51 +31,7 @@ constexpr double kLeastRidge = 8.0;                 // cells
 constexpr double kLargest = 1e150;
 
 using Triangle = std::array<std::int32_t, 3>;
-
-// Several threads may join at a time. The lower root stays one, so that the outcome does not depend
-// on the order.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count)
-      : count_(count), above_(std::make_unique<std::atomic<std::int32_t>[]>(count)) {
-    for (std::size_t i = 0; i < count; ++i) above_[i] = static_cast<std::int32_t>(i);
-  }
-  std::int32_t root(std::int32_t i) {
-    for (std::int32_t above = at(i).load(); above != i; above = at(i).load()) {
-      const std::int32_t next = at(above).load();
-      // A root is only ever joined to a lower one, so whatever is above stays so.
-      if (next != above) at(i).store(next);
-      i = next;
-    }
-    return i;
-  }
-  void join(std::int32_t i, std::int32_t j) {
-    while (true) {
-      const std::int32_t a = root(i);
-      const std::int32_t b = root(j);
-      if (a == b) return;
-      std::int32_t high = std::max(a, b);
-      if (at(high).compare_exchange_strong(high, std::min(a, b))) return;
-    }
-  }
-  // Numbers of the sets, in order of their first members.
-  std::vector<std::int32_t> numbers(int* count) {
-    std::vector<std::int32_t> result(count_);
-    std::int32_t next = 0;
-    for (std::size_t i = 0; i < count_; ++i) {
-      const auto at = static_cast<std::size_t>(root(static_cast<std::int32_t>(i)));
-      result[i] = at == i ? next++ : result[at];
-    }
-    *count = next;
-    return result;
-  }
-
- private:
-  std::atomic<std::int32_t>& at(std::int32_t i) { return above_[static_cast<std::size_t>(i)]; }
-
-  std::size_t count_;
-  std::unique_ptr<std::atomic<std::int32_t>[]> above_;
-};
+using Sets = DisjointSets<std::int32_t>;
 
 // A side of a triangle, as its lower vertex keeps it; `half` is three times the triangle plus the
 // corner where it begins.
@@ -187,8 +143,8 @@ class RegionFinder {
 
   // Returns whether no edge has one side alone.
   bool join_smooth_once(const Progress& progress) {
-    DisjointSets regions(count_);
-    DisjointSets parts(count_);
+    Sets regions(count_);
+    Sets parts(count_);
     const auto rows = static_cast<std::int64_t>(3 * count_);
     const std::int64_t sweeps = std::min(range_count(rows, kSidesPerSweep), kMostSweeps);
     std::vector<std::vector<Wall>> walls(static_cast<std::size_t>(sweeps));
@@ -204,9 +160,9 @@ class RegionFinder {
       if (!(sizes > 0.0)) return;
       const std::array<std::int32_t, 2> both = {static_cast<std::int32_t>(t),
                                                 static_cast<std::int32_t>(u)};
-      parts.join(both[0], both[1]);
+      parts.join_from_threads(both[0], both[1]);
       if (dot(of_t, of_u) >= kSharpCosine * sizes && meshes_.group(t) == meshes_.group(u)) {
-        regions.join(both[0], both[1]);
+        regions.join_from_threads(both[0], both[1]);
       } else {
         walls[sweep].push_back({{low, static_cast<std::int32_t>(sides[0].other)}, both});
       }
@@ -285,7 +241,7 @@ class RegionFinder {
       if (a.small != b.small) return a.small < b.small;
       return a.other != b.other ? a.other < b.other : a.length < b.length;
     });
-    DisjointSets joined(static_cast<std::size_t>(region_count_));
+    Sets joined(static_cast<std::size_t>(region_count_));
     for (std::size_t i = 0; i < shared.size();) {
       const std::int32_t small = shared[i].small;
       std::int32_t best = small;
@@ -340,7 +296,7 @@ class RegionFinder {
       if (is_ridge[i] != 0) found_.borders.push_back(within[i]);
     }
     const std::vector<std::uint8_t> is_border = are_smooth(between, 0.0);
-    DisjointSets joined(static_cast<std::size_t>(region_count_));
+    Sets joined(static_cast<std::size_t>(region_count_));
     bool has_joined = false;
     for (std::size_t i = 0; i < between.size(); ++i) {
       if (is_border[i] != 0) {
@@ -372,7 +328,7 @@ class RegionFinder {
                                        double least) const {
     std::vector<std::uint8_t> result(borders.size(), 0);
     if (borders.empty()) return result;
-    DisjointSets chains(found_.positions.size());
+    Sets chains(found_.positions.size());
     struct Meeting {
       Vector3 sum{};  // of the directions of the edges that end there
       int edges = 0;

@@ -5,6 +5,9 @@
 #include <numeric>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
+
+#include "prefilter/base/disjoint_sets.h"
 
 namespace prefilter {
 namespace {
@@ -20,20 +23,6 @@ double rounding(const Box2& box) {
   const double largest = std::max(
       {std::fabs(box.low.x), std::fabs(box.low.y), std::fabs(box.high.x), std::fabs(box.high.y)});
   return std::ldexp(largest, -52);
-}
-
-std::uint32_t root_of(std::vector<std::uint32_t>* parents, std::uint32_t index) {
-  while ((*parents)[index] != index) {
-    (*parents)[index] = (*parents)[(*parents)[index]];
-    index = (*parents)[index];
-  }
-  return index;
-}
-
-void join(std::vector<std::uint32_t>* parents, std::uint32_t a, std::uint32_t b) {
-  const std::uint32_t first = root_of(parents, a);
-  const std::uint32_t second = root_of(parents, b);
-  (*parents)[std::max(first, second)] = std::min(first, second);
 }
 
 }  // namespace
@@ -61,11 +50,11 @@ class Arrangement::SiteList {
   void add_meeting(const Site& a, const Site& b) {
     const std::uint32_t first = index_of(a);
     const std::uint32_t second = index_of(b);
-    join(&parents, first, second);
+    same.join(first, second);
   }
 
   std::vector<Site> sites;
-  std::vector<std::uint32_t> parents;
+  DisjointSets<std::uint32_t> same;
 
  private:
   std::uint32_t index_of(const Site& site) {
@@ -76,8 +65,7 @@ class Arrangement::SiteList {
       known = next;
     }
     sites.push_back(site);
-    parents.push_back(next);
-    return next;
+    return same.add();
   }
 
   std::vector<std::uint32_t> first_joint_;  // a contour's
@@ -144,7 +132,7 @@ bool Arrangement::collect_sites(const Progress& progress, SiteList* list) const 
 // Sites that are near each other become one vertex.
 void Arrangement::merge_sites(SiteList* list) {
   const std::vector<Site>& sites = list->sites;
-  std::vector<std::uint32_t>& parents = list->parents;
+  DisjointSets<std::uint32_t>& same = list->same;
   struct PlaceHash {
     std::size_t operator()(const std::pair<std::int64_t, std::int64_t>& place) const {
       return static_cast<std::size_t>(place.first) * 0x9e3779b97f4a7c15u ^
@@ -162,7 +150,7 @@ void Arrangement::merge_sites(SiteList* list) {
     const auto place = place_of(point);
     const auto [found, is_new] = places.try_emplace(place, i);
     if (!is_new) {
-      join(&parents, found->second, i);
+      same.join(found->second, i);
       continue;
     }
     for (std::int64_t x = -1; x <= 1; ++x) {
@@ -170,23 +158,24 @@ void Arrangement::merge_sites(SiteList* list) {
         const auto near = places.find({place.first + x, place.second + y});
         if (near == places.end()) continue;
         const Point2 off = sites[near->second].point - point;
-        if (std::hypot(off.x, off.y) <= precision_) join(&parents, near->second, i);
+        if (std::hypot(off.x, off.y) <= precision_) same.join(near->second, i);
       }
     }
   }
 
+  const std::vector<std::uint32_t> roots = std::move(same).roots();
   // A vertex is where one of its joints is, if it has any, so that this stays in its place.
   std::vector<std::uint32_t> order(sites.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto key = [&](std::uint32_t i) {
     const Site& site = sites[i];
-    return std::tuple(root_of(&parents, i), !site.is_joint, site.point.x, site.point.y);
+    return std::tuple(roots[i], !site.is_joint, site.point.x, site.point.y);
   };
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t a, std::uint32_t b) { return key(a) < key(b); });
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Site& site = sites[order[i]];
-    if (i == 0 || root_of(&parents, order[i]) != root_of(&parents, order[i - 1])) {
+    if (i == 0 || roots[order[i]] != roots[order[i - 1]]) {
       vertices_.push_back(site.point);
     }
     cuts_.push_back({site.place, site.parameter, static_cast<std::uint32_t>(vertices_.size()) - 1});

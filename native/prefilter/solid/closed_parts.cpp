@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numeric>
 #include <tuple>
 #include <vector>
 
+#include "prefilter/base/disjoint_sets.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/pulse.h"
 #include "prefilter/solid/nesting.h"
@@ -45,47 +45,18 @@ EdgeHash hash_of(std::int64_t from, std::int64_t to) {
   return from < to ? hash : EdgeHash{0 - hash.first, 0 - hash.second};
 }
 
-// What hangs together by vertices.
-class VertexParts {
- public:
-  VertexParts(const InputMesh& mesh, const Progress& progress) : roots_(mesh.positions.size()) {
-    std::iota(roots_.begin(), roots_.end(), 0U);
-    Pulse pulse(progress);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      pulse.step();
-      const auto [a, b, c] = mesh.triangles[t];
-      join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
-      join(static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c));
-    }
-    for (std::size_t v = 0; v < roots_.size(); ++v) roots_[v] = roots_[roots_[v]];
+// What hangs together by vertices: of each, the first one.
+std::vector<std::uint32_t> first_vertices(const InputMesh& mesh, const Progress& progress) {
+  DisjointSets<std::uint32_t> parts(mesh.positions.size());
+  Pulse pulse(progress);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    pulse.step();
+    const auto [a, b, c] = mesh.triangles[t];
+    parts.join(static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b));
+    parts.join(static_cast<std::uint32_t>(b), static_cast<std::uint32_t>(c));
   }
-
-  /// The first vertex of the part.
-  std::uint32_t operator[](std::int64_t vertex) const {
-    return roots_[static_cast<std::size_t>(vertex)];
-  }
-
- private:
-  std::uint32_t root(std::uint32_t v) {
-    while (roots_[v] != v) {
-      roots_[v] = roots_[roots_[v]];
-      v = roots_[v];
-    }
-    return v;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    // Roots are lower than what is below them, so that one pass in order flattens all.
-    if (a < b) {
-      roots_[b] = a;
-    } else {
-      roots_[a] = b;
-    }
-  }
-
-  std::vector<std::uint32_t> roots_;
-};
+  return std::move(parts).roots();
+}
 
 bool may_be_the_same(const ClosedPart& a, const ClosedPart& b) {
   return a.triangles == b.triangles && a.box.low == b.box.low && a.box.high == b.box.high;
@@ -141,7 +112,7 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
   *part_count = 0;
   if (!is_balanced(mesh, progress.part(0.0, 0.3), threads)) return false;
   const Progress counting = progress.part(0.3, 0.6);
-  const VertexParts part_of(mesh, counting);
+  const std::vector<std::uint32_t> part_of = first_vertices(mesh, counting);
   std::vector<ClosedPart> parts;
   std::vector<std::uint32_t> numbers(mesh.positions.size(), 0);  // at the first vertex of each part
   std::vector<bool> is_seen(mesh.positions.size(), false);
@@ -149,7 +120,7 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
   Pulse pulse(summing);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     pulse.step();
-    const std::uint32_t root = part_of[mesh.triangles[t][0]];
+    const std::uint32_t root = part_of[static_cast<std::size_t>(mesh.triangles[t][0])];
     if (!is_seen[root]) {
       numbers[root] = static_cast<std::uint32_t>(parts.size());
       parts.emplace_back();
@@ -180,7 +151,9 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
   if (has_thin_part(parts, thickness) || has_copies(parts)) return false;
   const std::vector<bool> is_turned = parts_to_turn(
       mesh, std::span<const ClosedPart>(parts),
-      [&](std::size_t t) { return numbers[part_of[mesh.triangles[t][0]]]; },
+      [&](std::size_t t) {
+        return numbers[part_of[static_cast<std::size_t>(mesh.triangles[t][0])]];
+      },
       progress.part(0.8, 1.0), threads);
   return std::find(is_turned.begin(), is_turned.end(), true) == is_turned.end();
 }

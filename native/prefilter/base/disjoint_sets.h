@@ -1,0 +1,94 @@
+// Sets of numbers that are joined (Galler and Fischer 1964), with paths halved (van Leeuwen and
+// van der Weide 1977).
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace prefilter {
+
+/// The root of a set is its lowest member, in whatever order sets are joined.
+template <typename Index>
+class DisjointSets {
+ public:
+  /// Of one member each.
+  explicit DisjointSets(std::size_t count = 0) : above_(count) {
+    std::iota(above_.begin(), above_.end(), Index{0});
+  }
+
+  std::size_t size() const { return above_.size(); }
+
+  /// Adds a set of one member, and returns that.
+  Index add() {
+    above_.push_back(static_cast<Index>(above_.size()));
+    return above_.back();
+  }
+
+  Index root(Index i) const {
+    while (above_[at(i)] != i) i = above_[at(i)];
+    return i;
+  }
+
+  void join(Index i, Index j) {
+    const Index a = halve(i);
+    const Index b = halve(j);
+    above_[at(std::max(a, b))] = std::min(a, b);
+  }
+
+  /// As `join`, from several threads at a time.
+  void join_from_threads(Index i, Index j) {
+    while (true) {
+      const Index a = halve_from_threads(i);
+      const Index b = halve_from_threads(j);
+      if (a == b) return;
+      Index high = std::max(a, b);
+      if (link(high).compare_exchange_strong(high, std::min(a, b), std::memory_order_relaxed)) {
+        return;
+      }
+    }
+  }
+
+  /// Of each member, its root.
+  std::vector<Index> roots() && {
+    // What is above is lower, and has its root already.
+    for (Index& above : above_) above = above_[at(above)];
+    return std::move(above_);
+  }
+
+  /// Of each member, its set's number, in order of roots; there are `*count`.
+  std::vector<Index> numbers(Index* count) const {
+    std::vector<Index> result(above_.size());
+    *count = 0;
+    for (std::size_t i = 0; i < above_.size(); ++i) {
+      result[i] = at(above_[i]) == i ? (*count)++ : result[at(above_[i])];
+    }
+    return result;
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  std::atomic_ref<Index> link(Index i) { return std::atomic_ref<Index>(above_[at(i)]); }
+
+  Index halve(Index i) {
+    while (above_[at(i)] != i) i = above_[at(i)] = above_[at(above_[at(i)])];
+    return i;
+  }
+  Index halve_from_threads(Index i) {
+    while (true) {
+      const Index above = link(i).load(std::memory_order_relaxed);
+      if (above == i) return i;
+      // A root is only ever joined to a lower one, so whatever is above stays so.
+      const Index next = link(above).load(std::memory_order_relaxed);
+      if (next != above) link(i).store(next, std::memory_order_relaxed);
+      i = next;
+    }
+  }
+
+  std::vector<Index> above_;
+};
+
+}  // namespace prefilter
