@@ -1,0 +1,29 @@
+"""What tests of bad input have in common."""
+
+import re
+
+import numpy as np
+import pytest
+
+NAN = np.nan
+WRAPS = "is not one of clamp, repeat, border"
+FLOATS = "float32 or float64 is needed"
+THREADS = "a whole number is needed, 0 meaning all processors"
+
+
+def changed(array, index, value):
+    copy = np.array(array)
+    copy[index] = value
+    return copy
+
+
+def check_refusal(function, arguments, words, error=ValueError):
+    """A function comes with good arguments, of which these differ; the message holds the words.
+
+    The argument's name is the first of them.
+    """
+    call, good = function
+    with pytest.raises(error, match=re.escape(words[0])) as caught:
+        call(**{**good, **arguments})
+    for word in words:
+        assert word in str(caught.value)
