@@ -1,9 +1,9 @@
 """Measures how well contours keep the edges of shapes and the rims of booleans.
 
 Usage: scripts/run python3 bench/voxels/edges.py [--shapes NAME...] [--pairs NAME+NAME...]
-    [--sizes N...] [--interpolants NAME[+clean][@ADAPTIVITY]...]
+    [--sizes N...] [--interpolants NAME[-alone][+clean][@ADAPTIVITY]...]
 
-The columns: how far true edges are from the surface and from its sharp edges, mean and 95th
+sharp gets the shapes as its sources, sharp-alone does not. The columns: how far true edges are from the surface and from its sharp edges, mean and 95th
 percentile, and the farthest; the farthest that a corner is from a vertex; the share of the area
 more than 10 degrees off; two cells from edges, the mean error of normals in degrees and the
 vertices' root mean square distance; open and crowded edges; pairs of triangles that cut each other;
@@ -71,26 +71,28 @@ class Contour:
     """How a surface is made."""
 
     interpolant: str
+    alone: bool  # without sources
     cleanup: bool
     adaptivity: float
 
     @classmethod
     def named(cls, text: str) -> "Contour":
-        """Reads NAME[+clean][@ADAPTIVITY].
+        """Reads NAME[-alone][+clean][@ADAPTIVITY].
 
         Raises:
             ValueError: It is not written so.
         """
-        found = re.fullmatch(r"([a-z]+)(\+clean)?(?:@([0-9.]+))?", text)
+        found = re.fullmatch(r"([a-z]+)(-alone)?(\+clean)?(?:@([0-9.]+))?", text)
         if not found:
-            raise ValueError(f"{text!r} is not of the form NAME[+clean][@ADAPTIVITY]")
-        return cls(found[1], bool(found[2]), float(found[3] or 0))
+            raise ValueError(f"{text!r} is not of the form NAME[-alone][+clean][@ADAPTIVITY]")
+        return cls(found[1], bool(found[2]), bool(found[3]), float(found[4] or 0))
 
     @property
     def name(self) -> str:
         """As it is written on the command line."""
         end = f"@{self.adaptivity:g}" if self.adaptivity else ""
-        return f"{self.interpolant}{'+clean' if self.cleanup else ''}{end}"
+        alone = "-alone" if self.alone else ""
+        return f"{self.interpolant}{alone}{'+clean' if self.cleanup else ''}{end}"
 
 
 def single(name: str) -> Subject:
@@ -124,7 +126,7 @@ def contour(subject: Subject, size: int, how: Contour) -> tuple[np.ndarray, np.n
         tree = getattr(tree, subject.operation)(other)
     options: dict[str, Any] = {"interpolant": how.interpolant, "cleanup": how.cleanup}
     known = inspect.signature(tree.contour).parameters
-    if how.interpolant == "sharp" and "sources" in known:
+    if how.interpolant == "sharp" and "sources" in known and not how.alone:
         options["sources"] = [(s.positions, s.triangles) for s in subject.sources]
     if how.adaptivity:
         options["adaptivity"] = how.adaptivity
@@ -229,7 +231,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     add_subjects(parser)
     parser.add_argument(
-        "--interpolants", nargs="+", default=["occupancy", "plane"], metavar="NAME[+clean][@CELLS]"
+        "--interpolants",
+        nargs="+",
+        default=["occupancy", "plane"],
+        metavar="NAME[-alone][+clean][@CELLS]",
     )
     options = parser.parse_args()
     report = Report()
@@ -245,7 +250,7 @@ def main() -> None:
                 found = measured(subject, positions, triangles, cell, seconds)
                 rows.append([subject.name, how.name, *found.row])
                 print(" ".join(rows[-1]), flush=True)
-                if how.interpolant == "sharp":
+                if how.interpolant == "sharp" and not how.alone:
                     judged.append((f"{subject.name}, {how.name}", found))
         report.table(f"{size} cells along an axis", HEAD, rows)
         for name, found in judged:
