@@ -3,7 +3,9 @@
 Usage: scripts/run python3 bench/voxels/edges.py [--shapes NAME...] [--pairs NAME+NAME...]
     [--sizes N...] [--interpolants NAME[-alone][+clean][@ADAPTIVITY]...]
 
-sharp gets the shapes as its sources, sharp-alone does not. The columns: how far true edges are from the surface and from its sharp edges, mean and 95th
+sharp gets the shapes as its sources, sharp-alone does not.
+
+The columns: how far true edges are from the surface and from its sharp edges, mean and 95th
 percentile, and the farthest; the farthest that a corner is from a vertex; the share of the area
 more than 10 degrees off; two cells from edges, the mean error of normals in degrees and the
 vertices' root mean square distance; open and crowded edges; pairs of triangles that cut each other;
