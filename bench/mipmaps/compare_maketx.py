@@ -46,8 +46,16 @@ def main() -> None:
         theirs = Maketx(folder / "picture.png", folder, filter="lanczos3", threads=options.threads)
         others = [
             Maketx(folder / "picture.png", folder, filter="box", threads=options.threads),
+            Maketx(
+                folder / "picture.png",
+                folder,
+                filter="rifman",
+                threads=options.threads,
+                sharpen=0.5,
+            ),
             InMemory("openimageio", folder, filter="lanczos3", threads=options.threads),
             InMemory("prefilter", folder, filter="lanczos3", threads=options.threads),
+            InMemory("prefilter", folder, filter="ls-bilinear", threads=options.threads),
         ]
         results = measure(named(theirs, ours, *others), options.rounds)
     print_table(results, theirs.name)

@@ -19,19 +19,25 @@ def is_available() -> bool:
     return shutil.which("maketx") is not None
 
 
-def levels(image: Texels, *, filter: str, wrap: str) -> list[Texels]:
+def levels(image: Texels, *, filter: str, wrap: str, sharpen: float = 0.0) -> list[Texels]:
     """Returns all levels, level 0 first, row 0 at the bottom, in floats as maketx writes them.
+
+    `sharpen` is what its option of that name takes; 0 for none.
 
     Raises:
         OSError: maketx failed, or wrote something else than the levels of this image.
     """
     with tempfile.TemporaryDirectory() as name:
-        source, target = Path(name) / "image.exr", Path(name) / "image.tx"
+        source, target = Path(name) / "image.tif", Path(name) / "image.tx"
         # Rows of files are from the top.
         picture = oiio.ImageBuf(np.ascontiguousarray(image[::-1]))
+        picture.specmod().attribute("compression", "none")
         if not picture.write(str(source), "float"):
             raise OSError(picture.geterror())
         command = ["maketx", "--filter", filter, "--wrap", WRAP_NAMES[wrap], "-d", "float"]
+        command += ["--compression", "none"]
+        if sharpen:
+            command += ["--sharpen", str(sharpen)]
         subprocess.run([*command, "-o", str(target), str(source)], check=True)
         made = _read(target)
     if not np.array_equal(made[0], image):

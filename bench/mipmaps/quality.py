@@ -7,9 +7,10 @@ Models are imported by Blender's own importers, and read through the add-on's br
 is measured is what a user gets: the extension has to be installed and enabled. Ends with status 1
 if a criterion of docs/benchmarks.md does not hold.
 
-The error is prefilter.mipmap_error, which is exact: the RMSE over the surface and the channels, in
-scene-linear values, between bilinear lookups of a level and of the image. It is checked by a second
-method that shares nothing with it: lookups with numpy at random points of the surface.
+The error is the RMSE over the surface and the channels, in scene-linear values, between bilinear
+lookups of a level and of the image. All filters are compared by lookups with numpy at the same
+random points of the surface. Those that the tables name then get the exact error,
+prefilter.mipmap_error, which shares nothing with the lookups: each method checks the other.
 """
 
 import argparse
@@ -22,27 +23,17 @@ import prefilter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.mipmaps import maketx_levels, sampling, subjects
+from bench.mipmaps.rivals import DILATED, Rivals, is_least_squares
 from bench.mipmaps.sampling import Floats, Texels
 from bench.mipmaps.subjects import Subject
 from bench.report import Report
 
 SUBJECT = "pam-bilinear"
 TRILINEAR = "pam-trilinear"
-MAKETX = ("maketx box", "maketx lanczos3")
-FILTERS = (
-    "box",
-    "tent",
-    "lanczos3",
-    *MAKETX,
-    "box-covered",
-    "tent-covered",
-    "lanczos3-covered",
-    "pam-box",
-    SUBJECT,
-    TRILINEAR,
-)
+REFERENCE = "lanczos3"
+PAM = (SUBJECT, TRILINEAR)  # All others are rivals.
 LEVELS = range(1, 7)
-LEAST_SQUARES = (SUBJECT, TRILINEAR)  # All others are rivals.
+BOUNDS = (0.0, 1.0)
 GAIN = 0.12
 PAINTED_MODEL = "spot"
 PAINTED_GAIN = 0.25
@@ -51,7 +42,7 @@ AGREEMENT = 5.0  # Standard errors by which the two methods may differ.
 
 @dataclass
 class Errors:
-    """What was found of one subject.
+    """What was found of one subject, by one of the methods.
 
     Attributes:
         levels: Of each filter, the errors at the whole levels 1 to 6.
@@ -64,50 +55,57 @@ class Errors:
 
 
 @dataclass
+class Sampled(Errors):
+    """The same by lookups at random points.
+
+    Attributes:
+        deviations: The standard errors of `levels`.
+        all_deviations: Those of `all_values`.
+        lead: By how many standard errors of the difference pam-bilinear is below any other filter
+            at any level, and pam-trilinear over all mip values.
+    """
+
+    deviations: dict[str, Floats] = field(default_factory=dict)
+    all_deviations: dict[str, float] = field(default_factory=dict)
+    lead: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass
 class Summary:
     """Rows of the tables over all subjects.
 
     Attributes:
-        shares: The errors of pam-bilinear as shares of lanczos3, by level.
-        trilinear: The errors over all mip values, by filter.
+        sources: What the gain comes from, by model.
+        gains: The errors of pam-bilinear as shares of the lowest of all rivals, by level.
+        trilinear: The errors over all mip values.
         means: The mean share of lanczos3 of each model, as it was gathered.
+        shares: Of each filter, the same of each of these models, by lookups.
     """
 
-    shares: list[list[str]] = field(default_factory=list)
+    sources: list[list[str]] = field(default_factory=list)
+    gains: list[list[str]] = field(default_factory=list)
     trilinear: list[list[str]] = field(default_factory=list)
     means: list[float] = field(default_factory=list)
+    shares: dict[str, list[float]] = field(default_factory=dict)
 
 
 def main() -> None:
     """Measures the models of the command line."""
     options = parse()
     report, summary = Report(), Summary()
-    filters = FILTERS
     if not maketx_levels.is_available():
         print("maketx: not found, and left out")
-        filters = tuple(name for name in FILTERS if name not in MAKETX)
     for model in options.models:
         for subject in subjects.load(options.data / model, options.wrap):
-            measure(report, summary, subject, filters, GAIN, options)
+            measure(report, summary, subject, GAIN, options)
             if model == PAINTED_MODEL:
-                measure_painted(report, summary, subject, filters, options)
-    head = ["model", *(f"level {level}" for level in LEVELS), "mean", "unbounded", "worst"]
-    report.table(
-        f"Summary: {SUBJECT} / lanczos3; its mean without bounds, which no levels can go below; "
-        "the worst share of the best rival",
-        head,
-        summary.shares,
-    )
-    report.table(
-        "Summary: RMSE over all mip values, trilinear lookups",
-        ["model", "mip values", *filters, "/ best other"],
-        summary.trilinear,
-    )
+                measure_painted(report, summary, subject, options)
+    add_summary(report, summary)
     if summary.means:
         mean = np.mean(summary.means)
         report.verdict(
             mean <= 1 - GAIN,
-            f"{SUBJECT} is at least {GAIN:.0%} below lanczos3 on average over the models "
+            f"{SUBJECT} is at least {GAIN:.0%} below {REFERENCE} on average over the models "
             f"(found {1 - mean:.1%})",
         )
     report.finish(options.markdown)
@@ -119,8 +117,8 @@ def parse() -> argparse.Namespace:
     parser.add_argument(
         "--samples",
         type=int,
-        default=1 << 20,
-        help="points of the second method; 0: leave it out (default: %(default)s)",
+        default=1 << 18,
+        help="points at which filters are looked up (default: %(default)s)",
     )
     parser.add_argument(
         "--bytes",
@@ -131,82 +129,71 @@ def parse() -> argparse.Namespace:
 
 
 def measure(
-    report: Report,
-    summary: Summary,
-    subject: Subject,
-    filters: tuple[str, ...],
-    gain: float,
-    options: argparse.Namespace,
+    report: Report, summary: Summary, subject: Subject, gain: float, options: argparse.Namespace
 ) -> None:
     """Adds the errors of one subject to the report and the summary."""
-    mipmaps = {name: bake(subject, name) for name in filters}
+    rivals = Rivals.of(subject)
+    mipmaps = {name: rivals.levels(name, BOUNDS) for name in rivals.names()}
+    mipmaps |= {name: fitted(subject, name) for name in PAM}
     if options.bytes:
         for made in mipmaps.values():
             made[1:] = [subject.rounded(level) for level in made[1:]]
-    errors = exact_errors(subject, mipmaps)
-    ours, reference = errors.levels[SUBJECT], errors.levels["lanczos3"]
-    best = np.min([errors.levels[name] for name in filters if name not in LEAST_SQUARES], axis=0)
-    share = ours / reference
-    add_tables(report, subject, errors, best, rounded=options.bytes)
-    unbounded = prefilter.mipmap_error(
-        bake(subject, SUBJECT, bounds=None)[: LEVELS[-1] + 1],
-        subject.image,
-        subject.surfaces,
-        LEVELS,
-        wrap=subject.wrap,
-    )
-    summary.shares.append(
-        [
-            subject.name,
-            *(f"{x:.3f}" for x in share),
-            f"{share.mean():.3f}",
-            f"{(unbounded / reference).mean():.3f}",
-            f"{(ours / best).max():.3f}",
-        ]
-    )
+    sampled = sampled_errors(subject, mipmaps, options.samples)
+    others = [name for name in rivals.names() if not is_least_squares(name)]
+    meshless = [name for name in rivals.names() if is_least_squares(name)]
+    best = [min(others, key=lambda name: sampled.levels[name][k]) for k in range(len(LEVELS))]
+    best_of_all = min(others, key=sampled.all_values.__getitem__)
+    shown = dict.fromkeys([REFERENCE, *best, best_of_all, *meshless, *PAM])
+    errors = exact_errors(subject, {name: mipmaps[name] for name in shown})
+    add_shares(summary, subject, errors, best, meshless)
+    add_levels(report, subject, errors, best, meshless, rounded=options.bytes)
+    ours = errors.levels[SUBJECT]
+    rest = [name for name in shown if name not in PAM]
+    closest = np.min([errors.levels[name] for name in rest], axis=0)
+    share = (ours / errors.levels[REFERENCE]).mean()
     if gain == GAIN:
-        summary.means.append(share.mean())
+        summary.means.append(share)
+        for name, found in sampled.levels.items():
+            shares = found / sampled.levels[REFERENCE]
+            summary.shares.setdefault(name, []).append(shares.mean())
     name = subject.name
     report.verdict(
-        all((ours < errors.levels[other]).all() for other in filters if other != SUBJECT),
-        f"{name}: {SUBJECT} has the lowest error at every level 1 to 6 "
-        f"({1 - (ours / best).max():.1%} at least below all but {TRILINEAR})",
+        bool((ours < closest).all()) and sampled.lead[SUBJECT] > 0,
+        f"{name}: {SUBJECT} has the lowest error at every level 1 to 6, exactly "
+        f"({1 - (ours / closest).max():.1%} at least below all but {TRILINEAR}) and by lookups "
+        f"(at least {sampled.lead[SUBJECT]:.1f} standard errors of the difference)",
     )
     report.verdict(
-        share.mean() <= 1 - gain,
-        f"{name}: {SUBJECT} is at least {gain:.0%} below lanczos3 on average over levels 1 to 6 "
-        f"(found {1 - share.mean():.1%})",
+        share <= 1 - gain,
+        f"{name}: {SUBJECT} is at least {gain:.0%} below {REFERENCE} on average over levels 1 to 6 "
+        f"(found {1 - share:.1%})",
     )
-    rest = {name: error for name, error in errors.all_values.items() if name != TRILINEAR}
-    closest = min(rest, key=rest.get)
-    ratio = errors.all_values[TRILINEAR] / rest[closest]
+    rest.append(SUBJECT)
+    closest = min(rest, key=errors.all_values.__getitem__)
+    ratio = errors.all_values[TRILINEAR] / errors.all_values[closest]
+    low = min(meshless, key=errors.all_values.__getitem__)
     summary.trilinear.append(
         [
             name,
             f"0 to {len(mipmaps[SUBJECT]) - 1}",
-            *(f"{errors.all_values[name]:.5f}" for name in filters),
+            f"{errors.all_values[REFERENCE]:.5f}",
+            best_of_all,
+            *(f"{errors.all_values[found]:.5f}" for found in (best_of_all, low, *PAM)),
             f"{ratio:.4f}",
         ]
     )
     report.verdict(
-        ratio < 1,
-        f"{name}: {TRILINEAR} has the lowest error over all mip values "
-        f"({1 - ratio:.2%} below {closest})",
+        ratio < 1 and sampled.lead[TRILINEAR] > 0,
+        f"{name}: {TRILINEAR} has the lowest error over all mip values, exactly ({1 - ratio:.2%} "
+        f"below {closest}) and by lookups (at least {sampled.lead[TRILINEAR]:.1f} standard errors)",
     )
-    if options.samples:
-        check_by_sampling(report, subject, mipmaps, errors, options.samples)
+    check(report, subject, errors, sampled)
 
 
-def bake(
-    subject: Subject, name: str, bounds: tuple[float, float] | None = (0.0, 1.0)
+def fitted(
+    subject: Subject, name: str, bounds: tuple[float, float] | None = BOUNDS
 ) -> list[Texels]:
-    """Returns all levels, down to one texel."""
-    if name in MAKETX:
-        made = maketx_levels.levels(
-            subject.image, filter=name.removeprefix("maketx "), wrap=subject.wrap
-        )
-        # What other filters get too.
-        return [level.clip(*bounds) for level in made]
+    """Returns all levels of a fit over the surface."""
     return prefilter.mipmaps(
         subject.image,
         subject.surfaces,
@@ -233,23 +220,106 @@ def exact_errors(subject: Subject, mipmaps: dict[str, list[Texels]]) -> Errors:
     return found
 
 
-def add_tables(
-    report: Report, subject: Subject, errors: Errors, best: Floats, *, rounded: bool
+def sampled_errors(subject: Subject, mipmaps: dict[str, list[Texels]], samples: int) -> Sampled:
+    """Returns the errors by lookups at random points, the same for all filters."""
+    points = sampling.random_points(subject.corners, subject.uvs, samples)
+    values = sampling.random_mip_values(samples, len(mipmaps[SUBJECT]) - 1)
+    found = Sampled(lead={SUBJECT: np.inf, TRILINEAR: np.inf})
+    by_level: list[dict[str, Floats]] = []
+    for level in (*LEVELS, None):
+        mips = {"mip_values": values} if level is None else {"level": level}
+        squares = sampling.squared_errors(mipmaps, points, subject.wrap, **mips)
+        lowest = TRILINEAR if level is None else SUBJECT
+        for name, square in squares.items():
+            if name != lowest:
+                above = square - squares[lowest]
+                found.lead[lowest] = min(found.lead[lowest], above.mean() / standard_error(above))
+        by_level.append(
+            {
+                name: np.array([np.sqrt(square.mean()), standard_error(square)])
+                for name, square in squares.items()
+            }
+        )
+    for name in mipmaps:
+        rmse, deviations = np.transpose([one[name] for one in by_level])
+        deviations /= 2 * rmse
+        found.levels[name], found.deviations[name] = rmse[:-1], deviations[:-1]
+        found.all_values[name], found.all_deviations[name] = rmse[-1], deviations[-1]
+    return found
+
+
+def check(report: Report, subject: Subject, errors: Errors, sampled: Sampled) -> None:
+    """Adds whether both methods found the same."""
+    worst = 0.0
+    for name, exact in errors.levels.items():
+        apart = np.abs(sampled.levels[name] - exact) / sampled.deviations[name]
+        apart_over_all = abs(sampled.all_values[name] - errors.all_values[name])
+        worst = max(worst, apart.max(), apart_over_all / sampled.all_deviations[name])
+    report.verdict(
+        worst <= AGREEMENT,
+        f"{subject.name}: the exact and the sampled errors agree "
+        f"(at most {worst:.1f} standard errors apart)",
+    )
+
+
+def add_shares(
+    summary: Summary, subject: Subject, errors: Errors, best: list[str], meshless: list[str]
 ) -> None:
-    """Adds the errors at the levels, and over all mip values, to the report."""
-    ours = errors.levels[SUBJECT]
-    ratios = {"/ best rival": ours / best, "/ lanczos3": ours / errors.levels["lanczos3"]}
-    rows = [
+    """Adds to the summary what pam-bilinear gains, and how much of it without the mesh."""
+    reference, ours = errors.levels[REFERENCE], errors.levels[SUBJECT]
+    other = np.array([errors.levels[name][k] for k, name in enumerate(best)])
+    fit = np.min([errors.levels[name] for name in meshless], axis=0)
+    unbounded = prefilter.mipmap_error(
+        fitted(subject, SUBJECT, bounds=None)[: LEVELS[-1] + 1],
+        subject.image,
+        subject.surfaces,
+        LEVELS,
+        wrap=subject.wrap,
+    )
+    means = [(found / reference).mean() for found in (other, fit, ours, unbounded)]
+    summary.sources.append(
         [
-            str(level),
-            *(f"{found[k]:.5f}" for found in errors.levels.values()),
-            *(f"{ratio[k]:.3f}" for ratio in ratios.values()),
+            subject.name,
+            *(f"{mean:.3f}" for mean in means),
+            f"{(ours / other).mean():.3f}",
+            f"{(ours / fit).mean():.3f}",
+            f"{(1 - means[1]) / (1 - means[2]):.0%}",
         ]
-        for k, level in enumerate(LEVELS)
-    ]
-    blanks = [""] * len(errors.levels)
-    rows.append(["mean", *blanks, *(f"{ratio.mean():.3f}" for ratio in ratios.values())])
-    rows.append(["all", *(f"{error:.5f}" for error in errors.all_values.values()), "", ""])
+    )
+    gains = ours / np.minimum(other, fit)
+    summary.gains.append(
+        [subject.name, *(f"{x:.3f}" for x in gains), f"{gains.mean():.3f}", f"{gains.max():.3f}"]
+    )
+
+
+def add_levels(
+    report: Report,
+    subject: Subject,
+    errors: Errors,
+    best: list[str],
+    meshless: list[str],
+    *,
+    rounded: bool,
+) -> None:
+    """Adds the errors at the levels to the report."""
+    rows = []
+    for k, (level, other) in enumerate(zip(LEVELS, best, strict=True)):
+        fit = min(meshless, key=lambda name, k=k: errors.levels[name][k])
+        names = [REFERENCE, other, fit, *PAM]
+        reference, rival, least, ours, trilinear = (errors.levels[name][k] for name in names)
+        rows.append(
+            [
+                str(level),
+                f"{reference:.5f}",
+                f"{rival:.5f}",
+                other,
+                f"{least:.5f}{'*' if fit.endswith(DILATED) else ''}",
+                f"{ours:.5f}",
+                f"{trilinear:.5f}",
+                f"{ours / rival:.3f}",
+                f"{ours / least:.3f}",
+            ]
+        )
     height, width, channels = subject.image.shape
     triangles = sum(surface.triangle_count for surface in subject.surfaces)
     title = (
@@ -257,15 +327,12 @@ def add_tables(
         f"wrap {subject.wrap}: "
         f"RMSE over the surface{', levels in 8 bits' if rounded else ''}"
     )
-    report.table(title, ["level", *errors.levels, *ratios], rows)
+    head = ["level", REFERENCE, "best other", "", "ls-bilinear", *PAM, "/ other", "/ ls"]
+    report.table(title, head, rows)
 
 
 def measure_painted(
-    report: Report,
-    summary: Summary,
-    subject: Subject,
-    filters: tuple[str, ...],
-    options: argparse.Namespace,
+    report: Report, summary: Summary, subject: Subject, options: argparse.Namespace
 ) -> None:
     """Measures a subject with its unused texels magenta, in two meanings of unused."""
     height, width = subject.image.shape[:2]
@@ -276,51 +343,54 @@ def measure_painted(
         print(f"\nmagenta: the {(~used).mean():.1%} of texels that no triangle {which}")
         name = f"{subject.name}, texels that no triangle {which} magenta"
         painted = subject.painted(name, ~used)
-        measure(report, summary, painted, filters, PAINTED_GAIN, options)
+        measure(report, summary, painted, PAINTED_GAIN, options)
 
 
-def check_by_sampling(
-    report: Report,
-    subject: Subject,
-    mipmaps: dict[str, list[Texels]],
-    errors: Errors,
-    samples: int,
-) -> None:
-    """Estimates the errors from random points, and adds both to the report."""
-    points = sampling.random_points(subject.corners, subject.uvs, samples)
-    values = sampling.random_mip_values(samples, len(mipmaps[SUBJECT]) - 1)
-    rows, worst = [], 0.0
-    closest = {SUBJECT: np.inf, TRILINEAR: np.inf}
-    for level in (*LEVELS, None):
-        if level is None:
-            lowest, exact = TRILINEAR, errors.all_values
-            squares = sampling.squared_errors(mipmaps, points, subject.wrap, values)
-        else:
-            lowest = SUBJECT
-            exact = {name: found[level - LEVELS[0]] for name, found in errors.levels.items()}
-            squares = sampling.squared_errors(mipmaps, points, subject.wrap, level=level)
-        cells = ["all" if level is None else str(level)]
-        for name, found in squares.items():
-            estimate = np.sqrt(found.mean())
-            deviation = standard_error(found) / (2 * estimate)
-            worst = max(worst, abs(estimate - exact[name]) / deviation)
-            cells.append(f"{estimate:.5f}")
-            if name != lowest:
-                above = found - squares[lowest]
-                closest[lowest] = min(closest[lowest], above.mean() / standard_error(above))
-        rows.append(cells)
-    title = f"{subject.name}: the same by {samples} random points"
-    report.table(title, ["level", *mipmaps], rows)
-    for name, least in closest.items():
-        report.verdict(
-            least > 0,
-            f"{subject.name}: {name} has the lowest error in these, too "
-            f"(at least {least:.1f} standard errors of the difference below any other)",
-        )
-    report.verdict(
-        worst <= AGREEMENT,
-        f"{subject.name}: the exact and the sampled errors agree "
-        f"(at most {worst:.1f} standard errors apart)",
+def add_summary(report: Report, summary: Summary) -> None:
+    """Adds the tables over all subjects."""
+    report.table(
+        f"Mean shares of {REFERENCE} over levels 1 to 6; {SUBJECT} as shares of others; how much "
+        f"of its gain over {REFERENCE} least squares have without the mesh",
+        [
+            "model",
+            "best other",
+            "ls-bilinear",
+            SUBJECT,
+            "unbounded",
+            "/ other",
+            "/ ls",
+            "without mesh",
+        ],
+        summary.sources,
+    )
+    report.table(
+        f"{SUBJECT} / the lowest of all others",
+        ["model", *(f"level {level}" for level in LEVELS), "mean", "closest"],
+        summary.gains,
+    )
+    report.table(
+        "RMSE over all mip values, trilinear lookups",
+        ["model", "mip values", REFERENCE, "best other", "", "ls-bilinear", *PAM, "/ best"],
+        summary.trilinear,
+    )
+    rows = []
+    for name in summary.shares:
+        if not name.endswith(DILATED):
+            cells = [cell for one in (name, name + DILATED) for cell in spread(summary, one)]
+            rows.append([name, *cells])
+    report.table(
+        f"Mean shares of {REFERENCE} over levels 1 to 6, by lookups: over the models, the least "
+        "and the most of one",
+        ["filter", "mean", "least", "most", "dilated: mean", "least", "most"],
+        rows,
+    )
+
+
+def spread(summary: Summary, name: str) -> list[str]:
+    """Returns the mean, the least and the most share of a filter; blanks where there is none."""
+    found = np.array(summary.shares.get(name, []))
+    return (
+        [f"{x:.3f}" for x in (found.mean(), found.min(), found.max())] if found.size else [""] * 3
     )
 
 

@@ -8,11 +8,14 @@ from . import Measurement, run
 class Maketx:
     """The program as a user runs it, with its defaults but for the filter and the threads."""
 
-    def __init__(self, picture: Path, folder: Path, *, filter: str, threads: int) -> None:
+    def __init__(
+        self, picture: Path, folder: Path, *, filter: str, threads: int, sharpen: float = 0.0
+    ) -> None:
         """Reads `picture` and writes into `folder`, anew each time."""
-        self.name = f"maketx --filter {filter}"
-        self._target = folder / f"{filter}.tx"
-        self._command = ["maketx", "--threads", str(threads), "--filter", filter]
+        options = ["--filter", filter, *(["--sharpen", str(sharpen)] if sharpen else [])]
+        self.name = " ".join(["maketx", *options])
+        self._target = folder / f"{filter}.{sharpen}.tx"
+        self._command = ["maketx", "--threads", str(threads), *options]
         self._command += ["-o", str(self._target), str(picture)]
 
     def measure(self) -> Measurement:
