@@ -20,8 +20,8 @@ from ..bridge.level_images import StagedLevels, level_name, stage_levels
 from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
-from . import contents, frames, seams
-from .choices import CONTENTS, FILTERS, FITTED_FILTERS, Settings
+from . import contents, frames, lookups, seams
+from .choices import CONTENTS, FILTERS, SEAM_FILTERS, Settings
 
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
 _FIRST_FILTERED = 0.6  # The same where they are then compared with others.
@@ -114,6 +114,7 @@ class Bake:
         *,
         levels: int | None = None,
         seam_weight: float | None = None,
+        footprint: float | None = None,
     ) -> list[FloatArray]:
         """Returns scene-linear levels with any filter; raises what `compute` does.
 
@@ -123,9 +124,12 @@ class Bake:
             progress: Called with the fraction done.
             levels: How many, the image itself included; None for all.
             seam_weight: See `prefilter.mipmaps`; None for that of the settings.
+            footprint: See `prefilter.mipmaps`; None for that of the settings.
         """
         if seam_weight is None:
             seam_weight = self._settings.seam_weight
+        if footprint is None:
+            footprint = lookups.footprint(self._settings, filter, self.reader)
         with self.naming_objects():
             return prefilter.mipmaps(
                 linear,
@@ -137,6 +141,7 @@ class Bake:
                 premultiplied=not self._picture.alpha_is_straight,
                 reader=self.reader,
                 seam_weight=seam_weight,
+                footprint=footprint,
                 progress=progress,
                 threads=self._settings.threads,
             )
@@ -200,6 +205,7 @@ class Bake:
         bounds = self._bounds(linear)
         options["reader"] = self.reader
         options["seam_weight"] = settings.seam_weight
+        options["footprint"] = self._footprint
         if self._content == "cutout":
             levels = contents.cutout_levels(
                 self._picture, linear, surfaces, bounds, settings.threshold, progress, **options
@@ -210,10 +216,16 @@ class Bake:
             )
         return levels, []
 
+    @property
+    def _footprint(self) -> float:
+        if self._content == "normal":
+            return 0.0
+        return lookups.footprint(self._settings, self._settings.filter, self.reader)
+
     def _heeds_seams(self) -> bool:
         return (
             self._settings.seam_weight > 0.0
-            and self._settings.filter in FITTED_FILTERS
+            and self._settings.filter in SEAM_FILTERS
             and self._content in {"color", "data"}
         )
 
@@ -346,6 +358,8 @@ class Bake:
             parts.append(f"over {counted(set(self._objects), 'object')}")
             if self._settings.use_frames:
                 parts.append(f"at {counted(frames.chosen(self._settings), 'frame')}")
+        if self._footprint:
+            parts.append("for one lookup a pixel")
         results = []
         if names:
             results.append(counted(names, "level image"))

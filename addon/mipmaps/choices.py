@@ -21,6 +21,13 @@ _PAM = {
     ),
     "pam-box": Choice("PAM Box", "Average of the surface under each texel"),
 }
+_LEAST_SQUARES = {
+    "ls-bilinear": Choice(
+        "Least Squares",
+        "Best fit over the whole image, for tiled textures and those that many meshes share. Needs "
+        "no mesh",
+    ),
+}
 _COVERED = "-covered"
 
 
@@ -33,15 +40,18 @@ def _kernel_choice(name: str) -> Choice:
     return Choice(f"{label}, Covered Texels", f"{label} over the texels that a face touches")
 
 
-FILTERS = _PAM | {
+_FITS = _PAM | _LEAST_SQUARES
+FILTERS = _FITS | {
     one.name: _kernel_choice(one.name)
     for one in sorted(prefilter.MIPMAP_FILTERS, key=lambda one: one.needs_surface)
-    if one.name not in _PAM
+    if one.name not in _FITS
 }
 TEXTURE_SPACE_FILTERS = frozenset(
     one.name for one in prefilter.MIPMAP_FILTERS if not one.needs_surface
 )
 FITTED_FILTERS = frozenset(one.name for one in prefilter.MIPMAP_FILTERS if one.is_fit)
+"""Those that heed how the levels are looked up."""
+SEAM_FILTERS = FITTED_FILTERS - TEXTURE_SPACE_FILTERS
 """Those that heed seams."""
 
 _MODES = {
@@ -74,6 +84,20 @@ READERS = {
         "Encoded",
         "Cycles on 8-bit sRGB images: encoded texels are interpolated, then decoded. Other images "
         "are always read as linear light",
+    ),
+}
+
+LOOKUPS = {
+    "auto": Choice("Automatic", "One Lookup a Pixel for DDS and KTX 2 files, else Supersampled"),
+    "supersampled": Choice(
+        "Supersampled",
+        "Cycles, film: a pixel is the average of many lookups. Levels are fitted to the image "
+        "itself",
+    ),
+    "one-lookup": Choice(
+        "One Lookup a Pixel",
+        "Games: a pixel shows a single lookup. Levels are fitted to the image averaged over a "
+        "pixel",
     ),
 }
 
@@ -134,6 +158,14 @@ class Settings:
         "error plot show the result",
         READERS,
         metavar="READER",
+    )
+    lookups: str = one_of(
+        "auto",
+        "Lookups",
+        "How many lookups renderers average for a pixel. Fitted filters heed it, with the reader "
+        "Linear Light",
+        LOOKUPS,
+        metavar="LOOKUPS",
     )
     wrap: str = one_of(
         "auto", "Wrap U", "What lookups outside the image read along U", WRAPS, metavar="MODE"

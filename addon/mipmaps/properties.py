@@ -7,7 +7,7 @@ from bpy.props import PointerProperty
 
 from ..bridge.files import engines
 from ..core.properties import properties, values
-from .choices import Settings
+from .choices import FITTED_FILTERS, Settings
 
 
 class BakeProperties:
@@ -34,6 +34,11 @@ class BakeProperties:
         layout.prop(self, "reader")
         if self.reader != "linear" and self.filter == "pam-trilinear":
             layout.label(text="PAM Trilinear requires Linear Light", icon="ERROR")
+        row = layout.row()
+        row.active = (
+            self.reader == "linear" and self.filter in FITTED_FILTERS and self.content != "normal"
+        )
+        row.prop(self, "lookups")
         column = layout.column(align=True)
         column.prop(self, "wrap")
         column.prop(self, "wrap_v", text="V")

@@ -133,6 +133,11 @@ def reading(
             job.warnings.extend(textures.left_by_earlier_versions(target))
     if settings.reader != "linear":
         job.warnings.extend(_odd_readers(pictures[0], targets))
+        if settings.lookups == "one-lookup" and reads_encoded(pictures[0]):
+            job.warnings.append(
+                f"lookups: readers of encoded texels are supersampled, so '{pictures[0].name}' is "
+                f"baked for that"
+            )
     if settings.roughness and roughness is None:
         job.warnings.append(
             f"roughness '{settings.roughness}' is left out: '{image.name}' is no normal map"

@@ -6,7 +6,7 @@ import bpy
 
 from ...bridge import derived, image_roles, images, materials
 from ...core.operator import BackgroundOperator
-from .. import users
+from .. import lookups, users
 from ..bake import Bake
 from ..choices import Settings
 from ..reading import read
@@ -87,7 +87,12 @@ def read_source(
         image,
         objects,
         replace(
-            settings, use_images=True, filepath="", levels=0, roughness="", roughness_filepath=""
+            lookups.resolved(settings),
+            use_images=True,
+            filepath="",
+            levels=0,
+            roughness="",
+            roughness_filepath="",
         ),
         context.evaluated_depsgraph_get(),
         needs_surface=needs_surface,

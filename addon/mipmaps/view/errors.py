@@ -73,6 +73,8 @@ def default_filters(reader: str) -> tuple[str, ...]:
 def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCurves:
     """Filters an image with each filter, and measures the levels.
 
+    Errors are those that supersampled readers see, whatever the lookups of the settings.
+
     Args:
         source: What was read from Blender; it needs a surface.
         filters: Keys of `choices.FILTERS`.
@@ -88,7 +90,7 @@ def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCu
     linear = source.linear(progress)
     errors = []
     for name, part in zip(filters, parts(progress, len(filters)), strict=True):
-        levels = source.filtered(linear, name, share(part, 0.0, _FILTERING))
+        levels = source.filtered(linear, name, share(part, 0.0, _FILTERING), footprint=0.0)
         last = len(levels) - 1
         mip_values = np.linspace(0.0, last, STEPS_PER_LEVEL * last + 1)
         with source.naming_objects():

@@ -7,6 +7,7 @@ from ...bridge.images import FloatArray
 from ...bridge.previews import Previews
 from ...core.alpha import associated
 from ...core.jobs import Progress, parts
+from .. import lookups
 from ..bake import Bake
 from ..choices import Settings
 
@@ -61,7 +62,7 @@ register, unregister = _previews.register, _previews.unregister
 
 def settings_for_preview(settings: Settings) -> Settings:
     """Returns settings without what does not change a level."""
-    return replace(settings, levels=0, use_images=True, filepath="")
+    return replace(lookups.resolved(settings), levels=0, use_images=True, filepath="")
 
 
 def compute(source: Bake, image_uid: int, filters: Iterable[str], progress: Progress) -> Preview:
