@@ -16,10 +16,12 @@ void bind_normals(py::module_& m) {
       "normal_mipmaps",
       [](const Array<float>& normals, const std::optional<Array<float>>& roughness,
          const std::vector<const Surface*>& surfaces, const std::string& filter,
-         const WrapNames& wrap, bool encoded, int levels, const py::object& progress, int threads) {
+         const WrapNames& wrap, double footprint, bool encoded, int levels,
+         const py::object& progress, int threads) {
         NormalMipmapOptions options;
         options.filter = mipmap_filter(filter);
         options.wrap = wrap_modes(wrap);
+        options.footprint = footprint;
         options.encoded = encoded;
         options.levels = levels;
         options.threads = threads;
@@ -35,8 +37,8 @@ void bind_normals(py::module_& m) {
         return std::pair(to_arrays(std::move(made.normals)), to_arrays(std::move(made.roughness)));
       },
       py::arg("normals"), py::arg("roughness"), py::arg("surfaces"), py::arg("filter"),
-      py::arg("wrap"), py::arg("encoded"), py::arg("levels"), py::arg("progress"),
-      py::arg("threads"));
+      py::arg("wrap"), py::arg("footprint"), py::arg("encoded"), py::arg("levels"),
+      py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -323,6 +323,27 @@ def test_unused_texels_do_not_count():
             np.testing.assert_array_equal(a, b)
 
 
+def test_normals_are_averaged_over_the_footprint():
+    mesh = scenes.random_soup(3, 20)
+    image = scenes.random_image(5, 32, 32, 3)
+    vectors = 2 * image - 1
+    vectors /= np.linalg.norm(vectors, axis=2, keepdims=True)
+    found = prefilter.normal_mipmaps(vectors, mesh.surface, encoded=False, footprint=1.0)
+    means = prefilter.mipmaps(vectors, mesh.surface, bounds=None, footprint=1.0)
+    for level, mean in zip(found[1:], means[1:], strict=True):
+        length = np.linalg.norm(mean, axis=2, keepdims=True)
+        sure = length[..., 0] > 0.02
+        np.testing.assert_allclose(level[sure], (mean / length)[sure], atol=1e-5)
+
+
+def test_least_squares_without_a_surface_take_a_roughness():
+    image = scenes.random_image(5, 16, 8, 3)
+    _, found = prefilter.normal_mipmaps(image, roughness=0.3, filter="ls-bilinear")
+    _, expected = prefilter.normal_mipmaps(image, roughness=0.3, filter="box")
+    for a, b in zip(found, expected, strict=True):
+        np.testing.assert_array_equal(a, b)
+
+
 def test_results_do_not_depend_on_threads():
     image, rough = encode(bumps(17, 64, 64, 0.4)), scenes.random_image(18, 64, 64, 1)
     surface = scenes.random_soup(19, 30).surface

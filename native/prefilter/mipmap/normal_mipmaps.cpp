@@ -71,8 +71,9 @@ class NormalFilter {
     const double share = roughness_ == nullptr ? 1.0 : 0.5;
     NormalMipmaps levels;
     decode(options_.progress.part(0.0, 0.2 * share));
-    levels.normals = coarser_levels(vectors_.view(), surfaces_,
-                                    mipmap_options(options_.filter, false, 0.2 * share, share));
+    MipmapOptions means = mipmap_options(options_.filter, false, 0.2 * share, share);
+    means.footprint = options_.footprint;
+    levels.normals = coarser_levels(vectors_.view(), surfaces_, means);
     for (Image& level : levels.normals) finish(options_.progress.part(share, share), &level);
     if (roughness_ != nullptr) levels.roughness = rougher_levels();
     options_.progress.report(1.0);
@@ -144,6 +145,8 @@ class NormalFilter {
     MipmapFilter means = SurfaceFilter::kBox;
     if (const auto* in_texture = std::get_if<TextureSpaceFilter>(&options_.filter)) {
       means = TextureSpaceFilter{&box_kernel(), in_texture->weighting};
+    } else if (!needs_surface(options_.filter)) {
+      means = TextureSpaceFilter{&box_kernel(), Weighting::kAll};
     }
     if (needs_surface(means)) fill_unused_texels(&rough);
     check_roughness(rough);

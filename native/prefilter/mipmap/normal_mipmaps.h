@@ -13,9 +13,10 @@ namespace prefilter {
 
 struct NormalMipmapOptions {
   // Of the normals. The means for the roughness are over a texel's surface for filters over the
-  // surface, and else those of the box with the filter's weighting.
+  // surface, and else those of the box, with the filter's weighting where it has one.
   MipmapFilter filter = SurfaceFilter::kBilinear;
   WrapModes wrap;
+  double footprint = 0.0;  // of the normals, as MipmapOptions has it
   bool encoded = true;  // whether a component c is stored as (c + 1) / 2, in the map and the levels
   int levels = 0;       // how many there are, with level 0; 0 = down to 1 x 1
   int threads = 0;      // 0 = all processors

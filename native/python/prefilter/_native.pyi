@@ -410,6 +410,7 @@ def normal_mipmaps(
     surfaces: Sequence[Surface],
     filter: str,
     wrap: tuple[str, str],
+    footprint: float,
     encoded: bool,
     levels: int,
     progress: ProgressCallback | None,

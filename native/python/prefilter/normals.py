@@ -12,6 +12,7 @@ from ._border.arguments import (
     Wrap,
     as_level_count,
     as_name,
+    as_number,
     as_progress,
     as_wrap,
 )
@@ -27,6 +28,7 @@ def normal_mipmaps(
     roughness: None = None,
     filter: str = "pam-bilinear",
     wrap: Wrap = "clamp",
+    footprint: float = 0.0,
     encoded: bool = True,
     levels: int | None = None,
     progress: ProgressCallback | None = None,
@@ -40,6 +42,7 @@ def normal_mipmaps(
     roughness: npt.ArrayLike,
     filter: str = "pam-bilinear",
     wrap: Wrap = "clamp",
+    footprint: float = 0.0,
     encoded: bool = True,
     levels: int | None = None,
     progress: ProgressCallback | None = None,
@@ -52,6 +55,7 @@ def normal_mipmaps(
     roughness: npt.ArrayLike | None = None,
     filter: str = "pam-bilinear",
     wrap: Wrap = "clamp",
+    footprint: float = 0.0,
     encoded: bool = True,
     levels: int | None = None,
     progress: ProgressCallback | None = None,
@@ -80,6 +84,7 @@ def normal_mipmaps(
         filter: As for `mipmaps`, for the normals. The means for the roughness are over a texel's
             surface ("pam-box") for the "pam-" filters, and else those of "box" or "box-covered".
         wrap: As for `mipmaps`.
+        footprint: As for `mipmaps`, for the normals.
         encoded: Whether a component c is stored as (c + 1) / 2, in the map and in the levels.
         levels: As for `mipmaps`.
         progress: As for `mipmaps`.
@@ -102,6 +107,7 @@ def normal_mipmaps(
         as_surfaces(surface),
         as_name("filter", filter),
         as_wrap(wrap),
+        as_number("footprint", footprint),
         bool(encoded),
         as_level_count(levels),
         as_progress(progress),
