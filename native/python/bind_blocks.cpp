@@ -1,9 +1,11 @@
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "convert.h"
 #include "prefilter/blocks/compress_blocks.h"
+#include "prefilter/blocks/supercompress.h"
 
 namespace py = pybind11;
 
@@ -26,16 +28,30 @@ py::bytes compressed(const py::array& rgba, const BlockOptions& options, const P
 void bind_blocks(py::module_& m) {
   m.def(
       "compress_blocks",
-      [](const py::array& rgba, const std::string& format, bool weigh_by_alpha,
+      [](const py::array& rgba, const std::string& format, bool srgb, bool weigh_by_alpha,
          const py::object& callback, int threads) {
         const BlockLayout& layout = layout_named(format);
-        const BlockOptions options{layout.format, weigh_by_alpha, threads};
+        const BlockOptions options{layout.format, weigh_by_alpha, srgb, threads};
         const Progress progress = to_progress(callback);
         return layout.is_float ? compressed<HalfBits>(rgba, options, progress)
                                : compressed<std::uint8_t>(rgba, options, progress);
       },
-      py::arg("rgba"), py::arg("format"), py::arg("weigh_by_alpha"), py::arg("progress"),
-      py::arg("threads"));
+      py::arg("rgba"), py::arg("format"), py::arg("srgb"), py::arg("weigh_by_alpha"),
+      py::arg("progress"), py::arg("threads"));
+  m.def(
+      "supercompress",
+      [](const py::bytes& data, const py::object& callback) {
+        const auto view = static_cast<std::string_view>(data);
+        const Progress progress = to_progress(callback);
+        std::vector<std::uint8_t> frame;
+        {
+          const py::gil_scoped_release unlocked;
+          frame = supercompress(reinterpret_cast<const std::uint8_t*>(view.data()), view.size(),
+                                progress);
+        }
+        return py::bytes(reinterpret_cast<const char*>(frame.data()), frame.size());
+      },
+      py::arg("data"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -25,6 +25,23 @@ FORMATS = {
     "BC3_SRGB": (78, 138, 4, None, 16, True),
     "BC4_UNORM": (80, 139, 1, None, 8, False),
     "BC5_UNORM": (83, 141, 2, None, 16, False),
+    "ETC2_R8G8B8_UNORM": (None, 147, 3, None, 8, False),
+    "ETC2_R8G8B8_SRGB": (None, 148, 3, None, 8, True),
+    "ETC2_R8G8B8A8_UNORM": (None, 151, 4, None, 16, False),
+    "ETC2_R8G8B8A8_SRGB": (None, 152, 4, None, 16, True),
+    "EAC_R11_UNORM": (None, 153, 1, None, 8, False),
+    "EAC_R11G11_UNORM": (None, 155, 2, None, 16, False),
+    "ASTC_4x4_UNORM": (None, 157, 4, None, 16, False),
+    "ASTC_4x4_SRGB": (None, 158, 4, None, 16, True),
+    "ASTC_6x6_UNORM": (None, 165, 4, None, 16, False),
+    "ASTC_6x6_SRGB": (None, 166, 4, None, 16, True),
+    "ASTC_8x8_UNORM": (None, 171, 4, None, 16, False),
+    "ASTC_8x8_SRGB": (None, 172, 4, None, 16, True),
+    "ASTC_4x4_SFLOAT": (None, 1000066000, 4, None, 16, False),
+    "ASTC_6x6_SFLOAT": (None, 1000066004, 4, None, 16, False),
+    # Vulkan has no word for UASTC; its descriptor tells it.
+    "UASTC_UNORM": (None, 0, 4, None, 16, False),
+    "UASTC_SRGB": (None, 0, 4, None, 16, True),
 }
 
 
@@ -64,8 +81,14 @@ def level_bytes(name: str, width: int, height: int, number: int) -> int:
     width, height = max(1, width >> number), max(1, height >> number)
     _, _, _, dtype, unit, _ = FORMATS[name]
     if dtype is None:
-        width, height = (width + 3) // 4, (height + 3) // 4
+        side = block_side(name)
+        width, height = -(-width // side), -(-height // side)
     return width * height * unit
+
+
+def block_side(name: str) -> int:
+    """How many texels the side of a block has, of a format of square blocks."""
+    return int(name[5]) if name.startswith("ASTC") else 4
 
 
 def read_dds(path: Path) -> File:
@@ -110,9 +133,14 @@ def read_ktx2(path: Path) -> File:
     vulkan, type_size, width, height, depth, layers, faces, count, scheme = struct.unpack_from(
         "<9I", data, 12
     )
-    assert (depth, layers, faces, scheme) == (0, 0, 1, 0)
+    assert (depth, layers, faces) == (0, 0, 1)
+    assert scheme in (0, 2)
     assert 1 <= count <= max(width, height).bit_length()
-    name = next(name for name, entry in FORMATS.items() if entry[1] == vulkan)
+    names = [name for name, entry in FORMATS.items() if entry[1] == vulkan]
+    name = names[0]
+    if vulkan == 0:
+        transfer = data[struct.unpack_from("<I", data, 48)[0] + 14]
+        name = next(name for name in names if FORMATS[name][5] == (transfer == 2))
     _, _, _, dtype, unit, _ = FORMATS[name]
     assert type_size == (1 if dtype is None else np.dtype(dtype).itemsize)
 
@@ -121,18 +149,24 @@ def read_ktx2(path: Path) -> File:
     assert dfd_offset == 80 + 24 * count
     assert kvd_offset == dfd_offset + dfd_length
     index = [struct.unpack_from("<3Q", data, 80 + 24 * number) for number in range(count)]
-    # Data goes from the smallest level to the largest, each at the first multiple that is free.
+    # Data goes from the smallest level to the largest, each at the first multiple that is free, or
+    # at the next byte where it is supercompressed.
     free = kvd_offset + kvd_length
     for number in reversed(range(count)):
         offset, length, uncompressed = index[number]
-        while free % unit or free % 4:
+        while scheme == 0 and (free % unit or free % 4):
             assert data[free] == 0
             free += 1
         assert offset == free
-        assert length == uncompressed == level_bytes(name, width, height, number)
+        assert uncompressed == level_bytes(name, width, height, number)
+        assert scheme or length == uncompressed
         free += length
     assert free == len(data)
     levels = [data[offset : offset + length] for offset, length, _ in index]
+    if scheme == 2:
+        levels = [
+            _inflated(level, count) for level, (_, _, count) in zip(levels, index, strict=True)
+        ]
 
     alpha, samples = _read_descriptor(data[dfd_offset : dfd_offset + dfd_length], name)
     metadata, keys = {}, []
@@ -149,6 +183,14 @@ def read_ktx2(path: Path) -> File:
     return File(name, width, height, levels, alpha, samples, metadata)
 
 
+def _inflated(frame: bytes, count: int) -> bytes:
+    """What one frame of zstd holds, which tells that it is `count` bytes."""
+    import zstandard
+
+    assert zstandard.frame_content_size(frame) == count
+    return zstandard.ZstdDecompressor().decompress(frame, read_across_frames=False)
+
+
 def _read_descriptor(data: bytes, name: str) -> tuple[str, list[dict]]:
     total, vendor_and_type, version, size = struct.unpack_from("<2I2H", data)
     assert total == len(data)
@@ -157,7 +199,8 @@ def _read_descriptor(data: bytes, name: str) -> tuple[str, list[dict]]:
     _, _, _, dtype, unit, srgb = FORMATS[name]
     assert primaries == 1
     assert transfer == (2 if srgb else 1)
-    assert list(data[16:20]) == ([3, 3, 0, 0] if dtype is None else [0, 0, 0, 0])
+    last = block_side(name) - 1 if dtype is None else 0
+    assert list(data[16:20]) == [last, last, 0, 0]
     assert list(data[20:28]) == [unit, 0, 0, 0, 0, 0, 0, 0]
     samples = []
     for start in range(28, total, 16):
@@ -177,6 +220,7 @@ def _read_descriptor(data: bytes, name: str) -> tuple[str, list[dict]]:
     ]
     assert sum(sample["bits"][1] for sample in samples) == 8 * unit
     models = {"BC1": 128, "BC3": 130, "BC4": 131, "BC5": 132}
+    models |= {"ETC": 161, "EAC": 161, "AST": 162, "UAS": 166}
     assert model == models.get(name[:3], 1)
     return "premultiplied" if flags & 1 else "straight", samples
 

@@ -13,6 +13,16 @@ constexpr BlockLayout kLayouts[] = {
     {BlockFormat::kBc3, "bc3", 4, 4, 16, false},
     {BlockFormat::kBc4, "bc4", 4, 4, 8, false},
     {BlockFormat::kBc5, "bc5", 4, 4, 16, false},
+    {BlockFormat::kEtc2Rgb, "etc2-rgb", 4, 4, 8, false},
+    {BlockFormat::kEtc2Rgba, "etc2-rgba", 4, 4, 16, false},
+    {BlockFormat::kEacR11, "eac-r11", 4, 4, 8, false},
+    {BlockFormat::kEacRg11, "eac-rg11", 4, 4, 16, false},
+    {BlockFormat::kAstc4x4, "astc-4x4", 4, 4, 16, false},
+    {BlockFormat::kAstc6x6, "astc-6x6", 6, 6, 16, false},
+    {BlockFormat::kAstc8x8, "astc-8x8", 8, 8, 16, false},
+    {BlockFormat::kAstc4x4Hdr, "astc-4x4-hdr", 4, 4, 16, true},
+    {BlockFormat::kAstc6x6Hdr, "astc-6x6-hdr", 6, 6, 16, true},
+    {BlockFormat::kUastc, "uastc", 4, 4, 16, false},
 };
 
 }  // namespace

@@ -6,10 +6,20 @@
 namespace prefilter {
 
 enum class BlockFormat {
-  kBc1,  // red, green, blue, and an alpha that is 0 or 1
-  kBc3,  // red, green, blue and alpha
-  kBc4,  // red
-  kBc5,  // red and green
+  kBc1,       // red, green, blue, and an alpha that is 0 or 1
+  kBc3,       // red, green, blue and alpha
+  kBc4,       // red
+  kBc5,       // red and green
+  kEtc2Rgb,   // red, green and blue
+  kEtc2Rgba,  // red, green, blue and alpha
+  kEacR11,    // red
+  kEacRg11,   // red and green
+  kAstc4x4,   // red, green, blue and alpha, as are the following
+  kAstc6x6,
+  kAstc8x8,
+  kAstc4x4Hdr,  // with an alpha from 0 to 1
+  kAstc6x6Hdr,
+  kUastc,
 };
 
 struct BlockLayout {

@@ -18,23 +18,37 @@ namespace {
 constexpr int kBlocksAtOnce = 64;
 
 template <class Channel>
-std::unique_ptr<BlockEncoder<Channel>> make_encoder(const BlockOptions& options);
+EncoderMaker<Channel> encoder_maker(const BlockOptions& options);
 
 template <>
-std::unique_ptr<ByteEncoder> make_encoder<std::uint8_t>(const BlockOptions& options) {
-  return make_squish_encoder(options);
+EncoderMaker<std::uint8_t> encoder_maker<std::uint8_t>(const BlockOptions& options) {
+  switch (options.format) {
+    case BlockFormat::kEtc2Rgb:
+    case BlockFormat::kEtc2Rgba:
+    case BlockFormat::kEacR11:
+    case BlockFormat::kEacRg11:
+      return [options] { return make_etcpak_encoder(options); };
+    case BlockFormat::kAstc4x4:
+    case BlockFormat::kAstc6x6:
+    case BlockFormat::kAstc8x8:
+      return astc_encoders<std::uint8_t>(options);
+    case BlockFormat::kUastc:
+      return [options] { return make_uastc_encoder(options); };
+    default:
+      return [options] { return make_squish_encoder(options); };
+  }
 }
 
 template <>
-std::unique_ptr<HalfEncoder> make_encoder<HalfBits>(const BlockOptions&) {
-  return nullptr;
+EncoderMaker<HalfBits> encoder_maker<HalfBits>(const BlockOptions& options) {
+  return astc_encoders<HalfBits>(options);
 }
 
 /// Encoders that are not in use. There are no more than threads.
 template <class Channel>
 class EncoderPool {
  public:
-  explicit EncoderPool(const BlockOptions& options) : options_(options) {}
+  explicit EncoderPool(const BlockOptions& options) : make_(encoder_maker<Channel>(options)) {}
 
   std::unique_ptr<BlockEncoder<Channel>> take() {
     {
@@ -45,7 +59,7 @@ class EncoderPool {
         return encoder;
       }
     }
-    return make_encoder<Channel>(options_);
+    return make_();
   }
 
   void put_back(std::unique_ptr<BlockEncoder<Channel>> encoder) {
@@ -54,7 +68,7 @@ class EncoderPool {
   }
 
  private:
-  const BlockOptions options_;
+  const EncoderMaker<Channel> make_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<BlockEncoder<Channel>>> free_;
 };

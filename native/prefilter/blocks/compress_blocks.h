@@ -11,8 +11,10 @@ namespace prefilter {
 
 struct BlockOptions {
   BlockFormat format = BlockFormat::kBc1;
-  /// Whether colours of texels with little alpha count little, for kBc3.
+  /// Whether colours of texels with little alpha count little, for kBc3 and ASTC.
   bool weigh_by_alpha = false;
+  /// Whether red, green and blue are sRGB-encoded, for ASTC, whose decoders then round otherwise.
+  bool is_srgb = false;
   int threads = 0;  // 0 = one per processor
 };
 
@@ -28,7 +30,7 @@ using HalfBits = std::uint16_t;
 std::vector<std::uint8_t> compress_blocks(const std::uint8_t* rgba, int width, int height,
                                           const BlockOptions& options, const Progress& progress);
 
-/// The same for formats of floats, of finite half floats.
+/// The same for formats of floats, of finite half floats. Negative values become 0 in ASTC.
 std::vector<std::uint8_t> compress_blocks(const HalfBits* rgba, int width, int height,
                                           const BlockOptions& options, const Progress& progress);
 

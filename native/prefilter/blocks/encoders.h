@@ -1,6 +1,7 @@
 // The encoders, a library each.
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "prefilter/blocks/block_encoder.h"
@@ -9,5 +10,19 @@ namespace prefilter {
 
 /// libsquish: kBc1, kBc3, kBc4, kBc5.
 std::unique_ptr<ByteEncoder> make_squish_encoder(const BlockOptions& options);
+
+/// etcpak: kEtc2Rgb, kEtc2Rgba, kEacR11, kEacRg11.
+std::unique_ptr<ByteEncoder> make_etcpak_encoder(const BlockOptions& options);
+
+/// Basis Universal: kUastc.
+std::unique_ptr<ByteEncoder> make_uastc_encoder(const BlockOptions& options);
+
+template <class Channel>
+using EncoderMaker = std::function<std::unique_ptr<BlockEncoder<Channel>>()>;
+
+/// astcenc: kAstc4x4, kAstc6x6, kAstc8x8 of bytes; kAstc4x4Hdr, kAstc6x6Hdr of half floats. The
+/// encoders of one maker share its tables, which take 2 to 10 ms to make.
+template <class Channel>
+EncoderMaker<Channel> astc_encoders(const BlockOptions& options);
 
 }  // namespace prefilter

@@ -321,10 +321,12 @@ def resize(
 def compress_blocks(
     rgba: npt.NDArray[np.uint8] | npt.NDArray[np.uint16],
     format: str,
+    srgb: bool,
     weigh_by_alpha: bool,
     progress: ProgressCallback | None,
     threads: int,
 ) -> bytes: ...
+def supercompress(data: bytes, progress: ProgressCallback | None) -> bytes: ...
 def to_bytes(image: npt.NDArray[np.float32], srgb: bool, threads: int) -> npt.NDArray[np.uint8]: ...
 def keep_coverage(
     levels: Sequence[npt.NDArray[np.float32]],

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from ..version import VERSION
-from .texel_formats import Container, TexelFormat, Texture
+from .texel_formats import FORMATS, Container, Texture
 
 _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 _HEADER_BYTES, _LEVEL_INDEX_BYTES = 80, 24
@@ -18,14 +18,23 @@ _TRANSFER_LINEAR, _TRANSFER_SRGB = 1, 2
 _FLAG_PREMULTIPLIED = 1
 _RED, _GREEN, _BLUE, _ALPHA = 0, 1, 2, 15
 _BLOCK_COLOR, _BLOCK_COLOR_AND_CUT_OUT = 0, 1
+_ETC2_COLOR = 2
+_UASTC_RGB, _UASTC_RGBA = 0, 3
 _BLOCKS = {
     "bc1": (128, (_BLOCK_COLOR_AND_CUT_OUT,)),
     "bc3": (130, (_ALPHA, _BLOCK_COLOR)),
     "bc4": (131, (_RED,)),
     "bc5": (132, (_RED, _GREEN)),
+    "etc2-rgb": (161, (_ETC2_COLOR,)),
+    "etc2-rgba": (161, (_ALPHA, _ETC2_COLOR)),
+    "eac-r11": (161, (_RED,)),
+    "eac-rg11": (161, (_RED, _GREEN)),
+    **{name: (162, (_BLOCK_COLOR,)) for name in FORMATS if name.startswith("astc")},
+    "uastc": (166, (_UASTC_RGBA,)),
 }
 """Block formats: their color model and their channels, which have the same number of bits."""
 _LINEAR, _SIGNED, _FLOAT = 0x10, 0x40, 0x80
+_SCHEMES = {"none": 0, "zstd": 2}
 
 
 def _parts(texture: Texture) -> Iterator[bytes]:
@@ -36,20 +45,23 @@ def _parts(texture: Texture) -> Iterator[bytes]:
     metadata_offset = descriptor_offset + len(descriptor)
     end = metadata_offset + len(metadata)
 
-    alignment = math.lcm(texture.texel_format.unit_bytes, 4)
+    scheme = _SCHEMES[texture.supercompression]
+    alignment = 1 if scheme else math.lcm(texture.texel_format.unit_bytes, 4)
     index: list[bytes] = []
     data: list[bytes] = []
-    for level in reversed(texture.levels):
+    for level, level_bytes in zip(
+        reversed(texture.levels), reversed(texture.level_bytes), strict=True
+    ):
         data.append(bytes(-end % alignment))
         end += len(data[-1])
-        index.append(struct.pack("<3Q", end, len(level), len(level)))
+        index.append(struct.pack("<3Q", end, len(level), level_bytes))
         data.append(level)
         end += len(level)
 
     yield _IDENTIFIER
     channel_type = np.uint8 if texture.texel_format.is_block else texture.texel_format.channel_type
     channel_bytes = np.dtype(channel_type).itemsize
-    counts = (0, 0, 1, len(texture.levels), 0)  # depth, layers, faces, levels, supercompression
+    counts = (0, 0, 1, len(texture.levels), scheme)  # the first are depth, layers and faces
     yield struct.pack("<9I", texture.code, channel_bytes, texture.width, texture.height, *counts)
     yield struct.pack(
         "<4I2Q", descriptor_offset, len(descriptor), metadata_offset, len(metadata), 0, 0
@@ -64,7 +76,7 @@ def _descriptor(texture: Texture) -> bytes:
     texel_format = texture.texel_format
     samples = b"".join(_samples(texture))
     size = 24 + len(samples)
-    model, _ = _model_and_channels(texel_format)
+    model, _ = _model_and_channels(texture)
     columns, rows = texel_format.block or (1, 1)
     return (
         struct.pack("<I2I", 4 + size, 0, size << 16 | _BASIC_FORMAT_VERSION)
@@ -81,7 +93,10 @@ def _descriptor(texture: Texture) -> bytes:
     )
 
 
-def _model_and_channels(texel_format: TexelFormat) -> tuple[int, tuple[int, ...]]:
+def _model_and_channels(texture: Texture) -> tuple[int, tuple[int, ...]]:
+    texel_format = texture.texel_format
+    if texel_format.name == "uastc" and texture.alpha is None:
+        return _BLOCKS["uastc"][0], (_UASTC_RGB,)
     if texel_format.is_block:
         return _BLOCKS[texel_format.name]
     return _MODEL_RGBSDA, (_RED, _GREEN, _BLUE, _ALPHA)[: texel_format.channels]
@@ -89,7 +104,7 @@ def _model_and_channels(texel_format: TexelFormat) -> tuple[int, tuple[int, ...]
 
 def _samples(texture: Texture) -> Iterator[bytes]:
     texel_format = texture.texel_format
-    _, channels = _model_and_channels(texel_format)
+    _, channels = _model_and_channels(texture)
     bits = 8 * texel_format.unit_bytes // len(channels)
     for number, channel in enumerate(channels):
         if texel_format.is_float:

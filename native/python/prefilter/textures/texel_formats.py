@@ -59,6 +59,8 @@ class Texture:
         height: Of level 0, in texels.
         levels: Their texels or blocks, level 0 first, the top row first.
         alpha: What the fourth channel is: one of `ALPHAS`; None where there is none.
+        supercompression: How the levels are compressed once more, one of `SUPERCOMPRESSIONS`.
+        level_bytes: How many each level had before that.
     """
 
     texel_format: TexelFormat
@@ -68,6 +70,8 @@ class Texture:
     height: int
     levels: list[bytes]
     alpha: str | None
+    supercompression: str = "none"
+    level_bytes: tuple[int, ...] = ()
 
 
 class Container(NamedTuple):
@@ -103,6 +107,7 @@ def _blocks(
 
 
 ALPHAS = ("straight", "premultiplied", "independent")
+SUPERCOMPRESSIONS = ("none", "zstd")
 
 FORMATS = {
     texel_format.name: texel_format
@@ -116,6 +121,17 @@ FORMATS = {
         _blocks("bc3", 4, 16, (77, 78), (137, 138)),
         _blocks("bc4", 1, 8, (80, None), (139, None)),
         _blocks("bc5", 2, 16, (83, None), (141, None)),
+        _blocks("etc2-rgb", 3, 8, (None, None), (147, 148)),
+        _blocks("etc2-rgba", 4, 16, (None, None), (151, 152)),
+        _blocks("eac-r11", 1, 8, (None, None), (153, None)),
+        _blocks("eac-rg11", 2, 16, (None, None), (155, None)),
+        _blocks("astc-4x4", 4, 16, (None, None), (157, 158)),
+        _blocks("astc-6x6", 4, 16, (None, None), (165, 166), (6, 6)),
+        _blocks("astc-8x8", 4, 16, (None, None), (171, 172), (8, 8)),
+        _blocks("astc-4x4-hdr", 4, 16, (None, None), (1000066000, None), (4, 4), np.float16),
+        _blocks("astc-6x6-hdr", 4, 16, (None, None), (1000066004, None), (6, 6), np.float16),
+        # Of what it becomes where it is used, so Vulkan has no word for it: VK_FORMAT_UNDEFINED.
+        _blocks("uastc", 4, 16, (None, None), (0, 0)),
     )
 }
 
@@ -176,6 +192,14 @@ def as_alpha(alpha: str) -> str:
     return alpha
 
 
+def as_supercompression(supercompression: str) -> str:
+    if supercompression not in SUPERCOMPRESSIONS:
+        raise ValueError(
+            f"supercompression: {supercompression!r} is not one of {', '.join(SUPERCOMPRESSIONS)}"
+        )
+    return supercompression
+
+
 def encoded(
     level: np.ndarray,
     texel_format: TexelFormat,
@@ -197,7 +221,9 @@ def encoded(
         rgba = _with_channels(texels, 4)
         if texel_format.is_float:
             rgba = rgba.view(np.uint16)
-        return _native.compress_blocks(rgba, texel_format.name, weigh_by_alpha, progress, threads)
+        return _native.compress_blocks(
+            rgba, texel_format.name, srgb, weigh_by_alpha, progress, threads
+        )
     return _with_channels(texels, texel_format.channels).tobytes()
 
 

@@ -12,7 +12,15 @@ from .._border.arrays import as_threads
 from .._border.output import as_target, replace_file
 from .dds import DDS
 from .ktx2 import KTX2
-from .texel_formats import Container, Texture, as_alpha, as_format, as_levels, encoded
+from .texel_formats import (
+    Container,
+    Texture,
+    as_alpha,
+    as_format,
+    as_levels,
+    as_supercompression,
+    encoded,
+)
 
 
 def write_dds(
@@ -57,7 +65,7 @@ def write_dds(
         OSError: The file cannot be written.
         Cancelled: The progress callback returned False.
     """
-    _write(path, levels, format, encoding, alpha, progress, threads, DDS)
+    _write(path, levels, format, encoding, alpha, "none", progress, threads, DDS)
 
 
 def write_ktx2(
@@ -67,15 +75,37 @@ def write_ktx2(
     format: str = "auto",
     encoding: str = "linear",
     alpha: str = "straight",
+    supercompression: str = "none",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
-    """Writes levels as a KTX 2.0 file (Khronos texture), without supercompression.
+    """Writes levels as a KTX 2.0 file (Khronos texture).
 
     "r8" and "rg8" have an sRGB form here, which some graphics cards lack; "auto" stores such levels
     as "rgba8". The rest is as for `write_dds`.
+
+    Args:
+        path: As for `write_dds`.
+        levels: As for `write_dds`.
+        format: Also those of mobile devices, compressed from bytes: "etc2-rgb", "etc2-rgba",
+            "eac-r11" (the first channel) and "eac-rg11" (two) in blocks of 4 x 4, by etcpak;
+            "astc-4x4", "astc-6x6", "astc-8x8" in blocks of that size, by astcenc. "astc-4x4-hdr"
+            and "astc-6x6-hdr" are compressed from half floats; negative values become 0, and an
+            alpha beyond 1 becomes 1. "uastc", by Basis Universal, is turned into what a device has
+            when it is loaded.
+        encoding: As for `write_dds`.
+        alpha: As for `write_dds`; it counts in the blocks of ASTC as in those of "bc3".
+        supercompression: "zstd" compresses every level once more, without loss; most loaders know
+            it, and undo it before they upload a level. "none" does not.
+        progress: As for `write_dds`.
+        threads: As for `write_dds`.
+
+    Raises:
+        ValueError: As for `write_dds`.
+        OSError: As for `write_dds`.
+        Cancelled: As for `write_dds`.
     """
-    _write(path, levels, format, encoding, alpha, progress, threads, KTX2)
+    _write(path, levels, format, encoding, alpha, supercompression, progress, threads, KTX2)
 
 
 def _write(
@@ -84,6 +114,7 @@ def _write(
     format: str,
     encoding: str,
     alpha: str,
+    supercompression: str,
     progress: ProgressCallback | None,
     threads: int,
     container: Container,
@@ -107,23 +138,28 @@ def _write(
     height, width, channels = images[0].shape
     has_alpha = channels == 4 and texel_format.channels == 4
     alpha = as_alpha(alpha)
+    scheme = as_supercompression(supercompression)
     texels = sum(image.shape[0] * image.shape[1] for image in images)
-    payloads, done = [], 0
+    payloads: list[bytes] = []
+    sizes: list[int] = []
+    done = 0
     for image in images:
         size = image.shape[0] * image.shape[1]
         part = _part(report, done / texels, size / texels)
         if part is not None and part(0.0) is False:
             raise _native.Cancelled("cancelled")
-        payloads.append(
-            encoded(
-                image,
-                texel_format,
-                encoding == "srgb",
-                weigh_by_alpha=has_alpha and alpha == "straight",
-                progress=part,
-                threads=count,
-            )
+        payload = encoded(
+            image,
+            texel_format,
+            encoding == "srgb",
+            weigh_by_alpha=has_alpha and alpha == "straight",
+            progress=part if scheme == "none" else _part(part, 0.0, 0.5),
+            threads=count,
         )
+        sizes.append(len(payload))
+        if scheme == "zstd":
+            payload = _native.supercompress(payload, _part(part, 0.5, 0.5))
+        payloads.append(payload)
         done += size
     texture = Texture(
         texel_format=texel_format,
@@ -133,6 +169,8 @@ def _write(
         height=height,
         levels=payloads,
         alpha=alpha if has_alpha else None,
+        supercompression=scheme,
+        level_bytes=tuple(sizes),
     )
 
     def write_parts(file: BinaryIO) -> None:

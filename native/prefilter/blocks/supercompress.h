@@ -1,0 +1,18 @@
+// Levels of a texture file compressed once more, without loss, as KTX 2 files may hold them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "prefilter/base/progress.h"
+
+namespace prefilter {
+
+/// The bytes as one frame of zstd (RFC 8878) that tells their number. The same for all processors.
+///
+/// Throws Error where `progress` cancels.
+std::vector<std::uint8_t> supercompress(const std::uint8_t* bytes, std::size_t count,
+                                        const Progress& progress);
+
+}  // namespace prefilter
