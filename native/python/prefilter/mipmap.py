@@ -133,7 +133,8 @@ def mipmaps(
             and the linear reader. 0: levels are fitted to the image itself, which is right where
             a pixel is the mean of many lookups (film, and all that is supersampled). 1: a pixel is
             one lookup (games); levels are fitted to the image averaged over what a pixel covers,
-            by kernels of the variance of a box of that width.
+            by kernels of the variance of a box of that width. 1.5: one lookup with anisotropic
+            filtering, which reads finer levels than the pixel's shorter side asks for.
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
