@@ -244,7 +244,7 @@ def files_of(image: bpy.types.Image) -> dict[int | None, Path]:
     if image.is_dirty:
         raise ValueError(f"image '{image.name}': has changes that are not in its file; save it")
     numbers = tile_numbers(image)
-    paths: dict[int | None, Path] = {number: Path(_tile_path(image, number)) for number in numbers}
+    paths: dict[int | None, Path] = {number: tile_path(image, number) for number in numbers}
     if not numbers:
         paths[None] = Path(bpy.path.abspath(image.filepath, library=image.library))
     for path in paths.values():
@@ -261,10 +261,17 @@ def kind_that_is_no_still(image: bpy.types.Image) -> str | None:
     return kind
 
 
+def kind_that_is_not_read(image: bpy.types.Image) -> str | None:
+    """Returns what an image is whose pixels, or those of its tiles, are not read; else None."""
+    if image.source == "TILED":
+        return None
+    return _KIND_OF_SOURCE.get(image.source) or _KIND_OF_TYPE.get(image.type)
+
+
 @contextmanager
 def _tile_file(image: bpy.types.Image, number: int, who: str) -> Iterator[str]:
     """Yields the path of a tile's file, for the time being where the tile is packed."""
-    path = _tile_path(image, number)
+    path = str(tile_path(image, number))
     packed = next((file for file in image.packed_files if file.tile_number == number), None)
     if packed is not None:
         with tempfile.TemporaryDirectory() as folder:
@@ -278,11 +285,12 @@ def _tile_file(image: bpy.types.Image, number: int, who: str) -> Iterator[str]:
     yield path
 
 
-def _tile_path(image: bpy.types.Image, number: int) -> str:
+def tile_path(image: bpy.types.Image, number: int) -> Path:
+    """Returns the absolute path of the file of a UDIM tile."""
     column, row = (number - 1001) % 10, (number - 1001) // 10
     path = image.filepath.replace("<UDIM>", str(number))
     path = path.replace("<UVTILE>", f"u{column + 1}_v{row + 1}")
-    return bpy.path.abspath(path, library=image.library)
+    return Path(bpy.path.abspath(path, library=image.library))
 
 
 def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:

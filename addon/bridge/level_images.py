@@ -91,6 +91,11 @@ def level_name(image_name: str, number: int) -> str:
     return suffixed(image_name, f"mip{number:02d}")
 
 
+def is_level(image: bpy.types.Image) -> bool:
+    """Tells whether a bake has made an image as a level of another."""
+    return image.get(_SOURCE_KEY) is not None
+
+
 def _earlier_levels(picture: Picture) -> dict[int, list[bpy.types.Image]]:
     """Returns the level images that bakes of a picture have made, in the order of their names.
 

@@ -11,13 +11,30 @@ from .meshes import images_of_objects
 def shown_images(depsgraph: bpy.types.Depsgraph) -> dict[bpy.types.Image, list[bpy.types.Object]]:
     """Returns the images that visible meshes show, each with the objects that show it.
 
+    See `shown_materials`.
+    """
+    found: dict[bpy.types.Image, dict[bpy.types.Object, None]] = {}
+    images: dict[bpy.types.Material, list[bpy.types.Image]] = {}
+    for owner, materials in shown_materials(depsgraph).items():
+        for material in materials:
+            if material not in images:
+                images[material] = images_of(material)
+            for image in images[material]:
+                found.setdefault(image, {})[owner] = None
+    return {image: list(owners) for image, owners in found.items()}
+
+
+def shown_materials(
+    depsgraph: bpy.types.Depsgraph,
+) -> dict[bpy.types.Object, list[bpy.types.Material]]:
+    """Returns the visible objects that show meshes, with the materials of these.
+
     Those of an instance are shown by the object that makes it. No mesh is evaluated.
 
     Args:
         depsgraph: The dependency graph, evaluated before.
     """
-    found: dict[bpy.types.Image, dict[bpy.types.Object, None]] = {}
-    images: dict[bpy.types.Material, list[bpy.types.Image]] = {}
+    found: dict[bpy.types.Object, dict[bpy.types.Material, None]] = {}
     seen = set()
     for instance in depsgraph.object_instances:
         shown = instance.object
@@ -28,12 +45,8 @@ def shown_images(depsgraph: bpy.types.Depsgraph) -> dict[bpy.types.Image, list[b
         if place in seen:
             continue
         seen.add(place)
-        for material in materials_of_evaluated(shown):
-            if material not in images:
-                images[material] = images_of(material)
-            for image in images[material]:
-                found.setdefault(image, {})[owner] = None
-    return {image: list(owners) for image, owners in found.items()}
+        found.setdefault(owner, {}).update(dict.fromkeys(materials_of_evaluated(shown)))
+    return {owner: list(materials) for owner, materials in found.items()}
 
 
 def hidden_users(

@@ -1,6 +1,7 @@
 """Options as properties of Blender: of operators, and of the scene."""
 
 import math
+from collections.abc import Collection
 from typing import Any
 
 import bpy
@@ -20,12 +21,17 @@ _ABOVE = 1e-3
 """How far above a limit that it must not have a property begins."""
 
 
-def properties(settings: type) -> dict[str, Any]:
-    """Returns the annotations of a class that has the options of a dataclass as properties."""
+def properties(settings: type, without: Collection[str] = ()) -> dict[str, Any]:
+    """Returns the annotations of a class that has the options of a dataclass as properties.
+
+    Args:
+        settings: The dataclass.
+        without: Fields to leave out.
+    """
     return {
         name: _property(default, found)
         for name, default, found in declared(settings)
-        if found.label
+        if found.label and name not in without
     }
 
 
@@ -34,13 +40,16 @@ def single_property(settings: type, name: str, **more: Any) -> Any:
     return _property(*option(settings, name), **more)
 
 
-def values(source: Any, settings: type) -> Any:
-    """Returns the settings that properties have; paths are absolute."""
+def values(source: Any, settings: type, without: Collection[str] = ()) -> Any:
+    """Returns the settings that properties have; paths are absolute.
+
+    Fields in `without` keep their defaults.
+    """
     found = {}
     for name, default, declaration in declared(settings):
-        if declaration.label:
+        if declaration.label and name not in without:
             value = getattr(source, name)
-            if declaration.subtype == "FILE_PATH":
+            if declaration.subtype in {"FILE_PATH", "DIR_PATH"}:
                 value = bpy.path.abspath(value)
             elif isinstance(default, tuple) and not declaration.choices:
                 value = tuple(value)
@@ -48,9 +57,9 @@ def values(source: Any, settings: type) -> Any:
     return settings(**found)
 
 
-def copy(source: Any, target: Any, settings: type) -> None:
+def copy(source: Any, target: Any, settings: type, without: Collection[str] = ()) -> None:
     """Copies the options of a dataclass between a property group and an operator's properties."""
-    for name in properties(settings):
+    for name in properties(settings, without):
         setattr(target, name, getattr(source, name))
 
 

@@ -6,10 +6,12 @@ The operator and the command are two ways to call this.
 import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import prefilter
 
 from ..bridge import images, materials, meshes
@@ -44,8 +46,13 @@ class Bake:
         content: str,
         roughness: contents.Roughness | None = None,
         roughness_target: Path | None = None,
+        *,
+        writes_image: bool = True,
     ) -> None:
-        """Keeps copies of what was read; use `reading.read`."""
+        """Keeps copies of what was read; use `reading.read`.
+
+        `writes_image` is whether its levels are written, too, and not only those of its roughness.
+        """
         self.warnings = list(found.problems)
         self._notes: list[str] = []
         self._picture = picture
@@ -57,6 +64,7 @@ class Bake:
         self._content = content
         self._roughness = roughness
         self._roughness_target = roughness_target
+        self._writes_image = writes_image
         self._levels: list[FloatArray] = []
         self._roughness_levels: list[FloatArray] = []
         self._staged: list[StagedFile] = []
@@ -179,7 +187,7 @@ class Bake:
                     self._roughness.linear,
                     rough,
                     self._roughness_target,
-                    roughness_format(self._settings, self._roughness.picture),
+                    self._roughness.texture_format,
                     check,
                 )
             go_on(progress, 1.0)
@@ -291,7 +299,7 @@ class Bake:
         Raises:
             OSError: An image cannot be made.
         """
-        pairs = [(self._picture, self._levels)]
+        pairs = [(self._picture, self._levels)] if self._writes_image else []
         if self._roughness is not None:
             pairs.append((self._roughness.picture, self._roughness_levels))
         try:
@@ -320,6 +328,16 @@ class Bake:
             warnings=self.warnings,
             notes=self._notes,
         )
+
+    def let_pixels_go(self) -> None:
+        """Frees the memory of what is in staged files; of level images nothing is left."""
+        nothing = np.empty((0, 0, 4), np.float32)
+        self._picture = replace(self._picture, stored=nothing)
+        if self._roughness is not None:
+            picture = replace(self._roughness.picture, stored=nothing)
+            self._roughness = replace(self._roughness, picture=picture, linear=nothing)
+        self._surfaces = []
+        self._levels, self._roughness_levels = [], []
 
     def discard(self) -> None:
         """Removes what was staged, if it was not put into place."""
@@ -351,10 +369,13 @@ class Bake:
 
     def _summary(self, names: Sequence[str]) -> str:
         baked = f"Baked '{self.image_name}'"
-        if self._content not in {"color", "data"}:
+        if not self._writes_image:
+            assert self._roughness is not None
+            baked = f"Baked '{self._roughness.picture.name}', the roughness of '{self.image_name}',"
+        elif self._content not in {"color", "data"}:
             baked += f" as {CONTENTS[self._content].label}"
         parts = [f"{baked} with {FILTERS[self._settings.filter].label}"]
-        if self._surfaces:
+        if self._objects:
             parts.append(f"over {counted(set(self._objects), 'object')}")
             if self._settings.use_frames:
                 parts.append(f"at {counted(frames.chosen(self._settings), 'frame')}")

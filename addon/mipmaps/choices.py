@@ -122,8 +122,24 @@ OBJECTS = {
         "Selected", "The objects that use the image and are selected or in Edit Mode"
     ),
 }
+MODEL_OBJECTS = {
+    "scene": Choice("Scene", "All visible meshes of the scene"),
+    "selected": Choice("Selected", "The selected meshes"),
+}
+FILE_FORMATS = {
+    "ktx2": Choice("KTX 2", "For engines and web viewers"),
+    "dds": Choice("DDS", "For engines"),
+    "exr": Choice("OpenEXR", "For renderers: scene-linear half floats, in tiles"),
+    "tx": Choice("TX", "For renderers: TIFF in tiles, with the numbers of the image"),
+    "tif": Choice("TIFF", "Like TX, with the extension .tif"),
+    "png": Choice("PNG", "One file per level"),
+}
 TEXTURE_FORMATS = {
-    "auto": Choice("Automatic", "Bytes for byte images, half floats for float images"),
+    "auto": Choice(
+        "Automatic",
+        "Bytes for byte images, half floats for float images. For all images of a model, blocks "
+        "that suit what each image holds",
+    ),
     "rgba8": Choice("8-Bit", "Four bytes a texel, uncompressed"),
     "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes a texel, for high dynamic range"),
     "rgba32f": Choice("Float", "Scene-linear, 16 bytes a texel"),
@@ -293,6 +309,51 @@ class Settings:
         metavar="FORMAT",
     )
     threads: int = threads()
+
+
+NOT_OF_MODELS = frozenset(
+    {
+        *("content", "threshold", "roughness", "roughness_channel", "roughness_filepath"),
+        *("objects", "levels", "use_images", "filepath"),
+    }
+)
+"""The fields of `Settings` that a bake of a model finds by itself, or has others for."""
+
+
+@dataclass(frozen=True)
+class ModelSettings:
+    """Which images of a model to bake, and where to put them; the rest is as in `Settings`."""
+
+    objects: str = one_of(
+        "scene",
+        "Objects",
+        "Whose images are baked; the surfaces of these objects decide how much each texel counts",
+        MODEL_OBJECTS,
+        flag="",
+    )
+    folder: str = text(
+        "//mipmaps/",
+        "Folder",
+        "Folder for a file of each image, named after it. It is made if it is missing. Leave empty "
+        "for none",
+        subtype="DIR_PATH",
+        flag="",
+    )
+    file_format: str = one_of(
+        "ktx2",
+        "File Format",
+        "The files in the folder",
+        FILE_FORMATS,
+        flag="--format",
+        metavar="FORMAT",
+        flag_description="with --all, the files in the folder of --output",
+    )
+    use_images: bool = switch(
+        False,
+        "Level Images",
+        "Keep each level as a packed image named after the image, with .mip01, .mip02 and so on",
+        flag="",
+    )
 
 
 @dataclass(frozen=True)

@@ -25,11 +25,13 @@ class Roughness:
         picture: The image.
         linear: Its values as a shader reads them, of the size of the normal map.
         channels: A key of `CHANNELS`.
+        texture_format: A key of `choices.TEXTURE_FORMATS`, for its file.
     """
 
     picture: Picture
     linear: FloatArray
     channels: str
+    texture_format: str = "auto"
 
 
 def resolved(content: str, picture: Picture, *, is_normal_map: bool) -> str:

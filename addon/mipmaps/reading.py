@@ -2,6 +2,7 @@
 
 from collections.abc import Generator, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import bpy
@@ -14,6 +15,19 @@ from ..core.wording import listed
 from . import contents, frames, udim
 from .bake import Bake, reads_encoded, roughness_format
 from .choices import TEXTURE_SPACE_FILTERS, Settings
+
+
+class NoSurfaceError(ValueError):
+    """No face shows the image.
+
+    Attributes:
+        problems: Why faces that would do not count; empty if there are none.
+    """
+
+    def __init__(self, message: str, problems: Sequence[str]) -> None:
+        """Takes the message, and the reasons in it."""
+        super().__init__(message)
+        self.problems = list(problems)
 
 
 def read(
@@ -57,11 +71,26 @@ def reading(
     *,
     all_faces: bool = False,
     needs_surface: bool = False,
+    roughness_texture_format: str = "",
+    may_lose_channels: bool = False,
+    writes_image: bool = True,
 ) -> Generator[float, None, Bake | udim.TiledBake]:
     """Does what `read` does, in steps of a frame.
 
     The scene is at other frames in between; closing the generator takes it back, as its end
     does. Nothing else may change meanwhile.
+
+    Args:
+        image: See `read`, also for those that follow.
+        objects: See above.
+        settings: See above.
+        depsgraph: See above.
+        all_faces: See above.
+        needs_surface: See above.
+        roughness_texture_format: That of the file of the roughness; by default `roughness_format`.
+        may_lose_channels: See `engines.checked`.
+        writes_image: Whether the image itself is baked; else only the roughness that it is the
+            normal map of, for the surfaces of that.
 
     Yields:
         The fraction done.
@@ -72,7 +101,7 @@ def reading(
     check(settings)
     numbers = images.tile_numbers(image)
     targets = [textures.check_target(path) for path in udim.paths(settings.filepath, numbers)]
-    if not targets and not settings.use_images:
+    if not targets and not settings.use_images and writes_image:
         raise ValueError("nothing to write: neither level images nor a file are asked for")
     pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
     for picture in pictures:
@@ -93,22 +122,26 @@ def reading(
             f"goes with images of one tile"
         )
     threshold = settings.threshold if content == "cutout" else None
+    checked = partial(engines.checked, may_lose_channels=may_lose_channels)
     told = [
         note
         for picture, target in zip(pictures, targets, strict=False)
-        for note in engines.checked(picture, target, settings.texture_format, threshold)
+        for note in checked(picture, target, settings.texture_format, threshold)
     ]
     roughness, roughness_target = _read_roughness(settings, content, pictures[0])
     if roughness is not None:
-        told += engines.checked(
-            roughness.picture, roughness_target, roughness_format(settings, roughness.picture)
-        )
+        chosen = roughness_texture_format or roughness_format(settings, roughness.picture)
+        roughness = replace(roughness, texture_format=chosen)
+        told += checked(roughness.picture, roughness_target, chosen)
+    weighed = image if writes_image else images.find(settings.roughness)
     found = yield from frames.surfaces_over(
-        image, objects, settings, depsgraph, all_faces=all_faces
+        weighed, objects, settings, depsgraph, all_faces=all_faces
     )
     needs_surface = needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
     if needs_surface and not found.surfaces:
-        raise ValueError(_no_surface(image, objects, settings.objects, found.problems))
+        raise NoSurfaceError(
+            _no_surface(weighed, objects, settings.objects, found.problems), found.problems
+        )
     if settings.importance and found.surfaces and not any(s.area for s in found.surfaces):
         raise ValueError(
             f"importance: '{settings.importance}' is 0 wherever objects "
@@ -121,7 +154,16 @@ def reading(
         job = udim.TiledBake(image.name, bakes, warnings)
     else:
         target = targets[0] if targets else None
-        job = Bake(pictures[0], found, settings, target, content, roughness, roughness_target)
+        job = Bake(
+            pictures[0],
+            found,
+            settings,
+            target,
+            content,
+            roughness,
+            roughness_target,
+            writes_image=writes_image,
+        )
     job.warnings.extend(told)
     if content == "normal" and is_encoded:
         job.warnings.append(

@@ -38,6 +38,21 @@ class TiledBake:
         self.warnings = warnings
         self._bakes = bakes
 
+    @property
+    def picture(self) -> Picture:
+        """The pixels of the first tile that is baked."""
+        return self._bakes[0].picture
+
+    @property
+    def objects(self) -> Sequence[str]:
+        """The name of the object of each surface in any tile."""
+        return [name for one in self._bakes for name in one.objects]
+
+    @property
+    def tile_count(self) -> int:
+        """How many tiles are baked."""
+        return len(self._bakes)
+
     def compute(self, progress: Progress) -> None:
         """Computes tile by tile; see `Bake.compute`."""
         try:
@@ -62,6 +77,11 @@ class TiledBake:
             warnings=list(dict.fromkeys(self.warnings)),
             notes=[note for outcome in outcomes for note in outcome.notes],
         )
+
+    def let_pixels_go(self) -> None:
+        """See `Bake.let_pixels_go`."""
+        for one in self._bakes:
+            one.let_pixels_go()
 
     def discard(self) -> None:
         """Removes what was staged, if it was not put into place."""

@@ -7,6 +7,7 @@ import bpy
 
 from ..bridge import image_roles, meshes
 from ..core.wording import listed
+from . import file_names
 
 
 def images_to_bake(objects: Sequence[bpy.types.Object]) -> tuple[list[bpy.types.Image], str]:
@@ -40,22 +41,8 @@ def images_to_bake(objects: Sequence[bpy.types.Object]) -> tuple[list[bpy.types.
 
 
 def output_paths(path: str, images: Sequence[bpy.types.Image]) -> list[str]:
-    """Returns the file of each image: that of one, or with names of images before the ending.
-
-    What is no letter, digit or dash in a name becomes "_", and an ending such as .png is left out.
-    """
+    """Returns the file of each image: that of one, or with names of images before the ending."""
     if len(images) == 1 or not path:
         return [path] * len(images)
     stem, extension = os.path.splitext(path)
-    paths: list[str] = []
-    for image in images:
-        base, ending = os.path.splitext(image.name)
-        known = ending.lower() in bpy.path.extensions_image
-        name = bpy.path.clean_name(base if known else image.name)
-        found = f"{stem}.{name}{extension}"
-        number = 2
-        while found in paths:
-            found = f"{stem}.{name}_{number}{extension}"
-            number += 1
-        paths.append(found)
-    return paths
+    return file_names.paths(file_names.Pattern(f"{stem}.{file_names.PLACE}{extension}"), images)

@@ -43,7 +43,12 @@ def has_formats(path: str) -> bool:
 
 
 def checked(
-    picture: Picture, target: Path | None, texture_format: str, threshold: float | None = None
+    picture: Picture,
+    target: Path | None,
+    texture_format: str,
+    threshold: float | None = None,
+    *,
+    may_lose_channels: bool = False,
 ) -> list[str]:
     """Returns what the user should know about the format of a picture's file.
 
@@ -52,6 +57,7 @@ def checked(
         target: The file; None for none.
         texture_format: See `stage`.
         threshold: The alpha from which on a cut-out is shown; None for other images.
+        may_lose_channels: Whether nothing reads the channels that the format has not.
 
     Raises:
         ValueError: The picture does not go with the format.
@@ -69,12 +75,13 @@ def checked(
     height, width, channels = picture.stored.shape
     if chosen.startswith("bc") and (width % _BLOCK_SIDE or height % _BLOCK_SIDE):
         told.append(f"{who} of {width} x {height} texels: Direct3D needs sides divisible by 4")
-    if chosen in _FEW_CHANNELS:
+    if chosen in _FEW_CHANNELS and not may_lose_channels:
         kept = {"bc4": "the red channel", "bc5": "the red and green channels"}[chosen]
         told.append(f"{who} keeps {kept} of '{picture.name}' only")
     elif chosen == "bc1" and channels == 4:
         if not picture.alpha_is_coverage:
-            told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
+            if not may_lose_channels:
+                told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
         elif threshold is None:
             told.append(f"{who} knows no alpha of '{picture.name}' between 0 and 1")
         elif threshold != _CUT_OUT_ALPHA:

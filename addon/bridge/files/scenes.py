@@ -10,6 +10,13 @@ import bpy
 from ...core.wording import listed
 from . import staging
 
+
+def _import_usd(path: str) -> None:
+    if not hasattr(bpy.types, "WM_OT_usd_import"):
+        raise OSError(f"FILE: cannot load '{path}': this Blender was built without USD")
+    bpy.ops.wm.usd_import(filepath=path)
+
+
 IMPORTERS: dict[str, Callable[[str], Any]] = {
     ".obj": lambda path: bpy.ops.wm.obj_import(filepath=path),
     ".ply": lambda path: bpy.ops.wm.ply_import(filepath=path),
@@ -17,6 +24,10 @@ IMPORTERS: dict[str, Callable[[str], Any]] = {
     ".glb": lambda path: bpy.ops.import_scene.gltf(filepath=path),
     ".gltf": lambda path: bpy.ops.import_scene.gltf(filepath=path),
     ".fbx": lambda path: bpy.ops.import_scene.fbx(filepath=path),
+    ".usd": _import_usd,
+    ".usda": _import_usd,
+    ".usdc": _import_usd,
+    ".usdz": _import_usd,
 }
 EXPORTERS: dict[str, Callable[[str], Any]] = {
     ".obj": lambda path: bpy.ops.wm.obj_export(filepath=path, export_selected_objects=True),

@@ -25,6 +25,9 @@ _FORMATS = {".exr": "openexr", ".tif": "tiff", ".tiff": "tiff", ".tx": "tiff"}
 # Those that `engines` writes; the last one gets a file a level.
 _OTHER_EXTENSIONS = (".dds", ".ktx2", ".png")
 _MOST_LEVELS = 31
+EXTENSIONS = (*_FORMATS, *_OTHER_EXTENSIONS)
+"""Those that a texture file may have."""
+
 _WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
 
 
@@ -37,18 +40,20 @@ def check_target(path: str) -> Path:
     """
     target = Path(os.path.realpath(path))
     extension = target.suffix.lower()
-    allowed = (*_FORMATS, *_OTHER_EXTENSIONS)
-    if extension not in allowed:
+    if extension not in EXTENSIONS:
         raise ValueError(
-            f"file '{path}': unsupported extension '{target.suffix}'; use {', '.join(allowed)}"
+            f"file '{path}': unsupported extension '{target.suffix}'; use {', '.join(EXTENSIONS)}"
         )
-    if extension == ".png":
-        for number in range(_MOST_LEVELS):
-            level_file = numbered(target, number)
-            check_place(str(level_file), level_file)
-    else:
-        check_place(path, target)
+    for file in written(target):
+        check_place(path if file == target else str(file), file)
     return target
+
+
+def written(target: Path) -> list[Path]:
+    """Returns the files that may be written for a target: one, or one a level."""
+    if target.suffix.lower() != ".png":
+        return [target]
+    return [numbered(target, number) for number in range(_MOST_LEVELS)]
 
 
 def numbered(target: Path, number: int) -> Path:

@@ -16,17 +16,25 @@ from ...core.flags import add_flags, given, tables
 from ...core.outcome import FAILURES
 from ...core.wording import listed
 from .. import reading, udim, unnamed
-from ..choices import Settings
+from ..choices import ModelSettings, Settings
 from . import source
+from .bake_all import bake_all
 
 _HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
 _NOTES = """\
+With --all, what each image holds is found from the nodes of the materials: color, normals,
+roughness and other data, cut-outs. In --output, {name} stands for the name of the image; the
+extension of a file comes before that of --format. .dds and .ktx2 files get block formats by
+content.
+
 Without --image, the images are baked that are base colors of the meshes' materials; or all that
 the materials show where none is. Of several, each gets a file: texture.exr becomes
 texture.NAME.exr. A picture file that no material uses is taken as the texture of all faces, with
 the active UV map.
 
 examples:
+  prefilter bake helmet.gltf --all --list
+  prefilter bake helmet.gltf --all --output textures/
   prefilter bake scene.blend --image Wood --save
   prefilter bake spot.obj --image spot.png --output spot.exr
   prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif
@@ -35,7 +43,9 @@ examples:
 
 def add(commands: Any) -> None:
     """Adds the command."""
-    parser = command.add_command(commands, "bake", _HELP, *tables(Settings), _NOTES)
+    parser = command.add_command(
+        commands, "bake", _HELP, *tables(Settings), *tables(ModelSettings), _NOTES
+    )
     source.add_arguments(parser)
     add_flags(parser, Settings)
     parser.add_argument(
@@ -49,6 +59,18 @@ def add(commands: Any) -> None:
         action="store_true",
         help="keep the levels as packed images in the .blend FILE, and save it",
     )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="bake every image of the model, each as what it is, to files of its own in the folder "
+        "that --output names",
+    )
+    add_flags(parser, ModelSettings)
+    parser.add_argument(
+        "--list",
+        action="store_true",
+        help="with --all, only say what would be done, as a table",
+    )
     parser.set_defaults(execute=_bake, usage_error=parser.error)
 
 
@@ -57,6 +79,18 @@ def _bake(options: argparse.Namespace) -> None:
     settings = _settings(options)
     if options.save and extension != ".blend":
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
+    if options.all:
+        bake_all(options, settings)
+    else:
+        _bake_some(options, settings)
+
+
+def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
+    """Bakes one image, or the base colors."""
+    for name in ("list", "file_format"):
+        if getattr(options, name, None):
+            flag = name.removeprefix("file_")
+            options.usage_error(f"--{flag}: needs --all")
     if not options.save and not settings.filepath:
         options.usage_error("nothing to write: give --output FILE or --save")
     paths = (settings.filepath, settings.roughness_filepath)

@@ -1,0 +1,126 @@
+"""The command `bake --all`: every image of a model."""
+
+import argparse
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+
+from ...bridge import meshes
+from ...bridge.files import engines, scenes, staging
+from ...core import command
+from ...core.flags import given
+from ...core.wording import listed
+from .. import file_names
+from ..choices import NOT_OF_MODELS, ModelSettings, Settings
+from ..model import table
+from ..model.bake import Compute, ModelBake
+from ..model.plan import image_of, plan
+from .source import WANTED
+
+
+def bake_all(options: argparse.Namespace, settings: Settings) -> None:
+    """Bakes all images, or says what that would do."""
+    chosen = ModelSettings(**given(options, ModelSettings))
+    pattern = _pattern(options, chosen)
+    _check(options, settings, pattern)
+    path = os.path.abspath(options.file)
+    (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)
+    if options.save:
+        staging.check_writable(Path(path))
+    named = scenes.chosen(objects, options.object, WANTED) if options.object else None
+    view_layer, depsgraph = bpy.context.view_layer, bpy.context.evaluated_depsgraph_get()
+    planned = plan(view_layer, depsgraph, named)
+    images = [image_of(item.full_name) for item in planned.items]
+    paths = file_names.paths(pattern, images, [Path(path)])
+    files = {image.name_full: file for image, file in zip(images, paths, strict=True)}
+    settings = replace(settings, use_images=options.save, filepath="")
+    if options.list:
+        _list(ModelBake(planned, settings, files, is_rehearsal=True))
+        return
+    if pattern.text and planned.items:
+        Path(os.path.realpath(pattern.text)).parent.mkdir(parents=True, exist_ok=True)
+    model = ModelBake(planned, settings, files)
+    try:
+        _bake(model)
+    finally:
+        model.discard()
+    outcome = model.outcome()
+    if options.save:
+        scenes.save_open(path)
+    for line in model.lines_of_left_out():
+        print(line)
+    print(outcome.summary)
+    if model.failed:
+        raise ValueError(f"not baked: {listed(one.image for one in model.failed)}")
+
+
+def _pattern(options: argparse.Namespace, chosen: ModelSettings) -> file_names.Pattern:
+    """Returns where files go; without --output, what the names of files would be."""
+    output = given(options, Settings).get("filepath", "")
+    if "file_format" in given(options, ModelSettings) and file_names.is_texture(output):
+        options.usage_error(f"--format: not with the extension of --output, '{output}'")
+    if not output and options.list and not options.save:
+        output = "."
+    return file_names.Pattern.of(output, f".{chosen.file_format}")
+
+
+def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.Pattern) -> None:
+    if options.image is not None:
+        options.usage_error("--image: not with --all, which bakes every image")
+    for name in given(options, Settings):
+        if name in NOT_OF_MODELS and name != "filepath":
+            flag = f"--{name.replace('_', '-')}".replace("filepath", "output")
+            options.usage_error(f"{flag}: not with --all, which finds it for each image")
+    if not (options.save or options.list or pattern.text):
+        options.usage_error("nothing to write: give --output FOLDER, --save or --list")
+    if pattern.text and not file_names.is_texture(pattern.text):
+        options.usage_error(f"--output: '{pattern.text}' has no extension of a texture file")
+    if settings.texture_format != "auto" and not engines.has_formats(pattern.text):
+        options.usage_error(
+            f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
+            f"files"
+        )
+
+
+def _list(model: ModelBake) -> None:
+    """Says what a bake would do: reads each image and its surfaces, and computes nothing."""
+    while model.next_name:
+        _read(model)
+    for line in table.lines(model.rows):
+        print(line)
+    for line in model.lines_of_left_out():
+        print(line)
+    command.warn(dict.fromkeys(model.warnings))
+    command.warn(f"image '{one.image}' cannot be baked: {one.reason}" for one in model.failed)
+    if not model.rows:
+        raise ValueError("there is no image to bake")
+    if model.failed:
+        raise ValueError(f"cannot be baked: {listed(one.image for one in model.failed)}")
+
+
+def _bake(model: ModelBake) -> None:
+    """Bakes image after image, and tells of each what was done."""
+    progress = command.ProgressLine()
+    failed = 0
+    try:
+        while model.next_name:
+            _read(model)(progress)
+            for outcome in model.write():
+                command.tell(outcome)
+            command.warn(
+                f"image '{one.image}' is not baked: {one.reason}" for one in model.failed[failed:]
+            )
+            failed = len(model.failed)
+    finally:
+        progress.end()
+
+
+def _read(model: ModelBake) -> Compute:
+    steps = model.reading(bpy.context.evaluated_depsgraph_get())
+    while True:
+        try:
+            next(steps)
+        except StopIteration as done:
+            return done.value

@@ -1,0 +1,125 @@
+"""The files of several images: each has a name of its own, and none is the source of an image."""
+
+import os
+from collections.abc import Hashable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+import bpy
+
+from ..bridge import images
+from ..bridge.files import textures
+from . import udim
+
+PLACE = "{name}"
+"""What stands for the name of an image in a path."""
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Where files go.
+
+    Attributes:
+        text: A path with `PLACE` in it; empty for no files.
+    """
+
+    text: str
+
+    @classmethod
+    def of(cls, output: str, extension: str) -> "Pattern":
+        """Returns the pattern of a path that a user gives.
+
+        Args:
+            output: A path with `PLACE` in it; or a file, whose extension then follows the name of
+                the image; or a folder, which need not be there. Empty for no files.
+            extension: That of files in a folder.
+        """
+        if not output:
+            return cls("")
+        stem, ending = os.path.splitext(output)
+        if PLACE in output:
+            return cls(output if is_texture(output) else f"{output}{extension}")
+        if is_texture(output) and not os.path.isdir(output):
+            return cls(f"{stem}.{PLACE}{ending}")
+        return cls(os.path.join(output, f"{PLACE}{extension}"))
+
+    @property
+    def extension(self) -> str:
+        """The ending of all files, in lower case."""
+        return os.path.splitext(self.text)[1].lower()
+
+
+def is_texture(path: str) -> bool:
+    """Tells whether a path has the extension of a texture file."""
+    return os.path.splitext(path)[1].lower() in textures.EXTENSIONS
+
+
+def name_of(image: bpy.types.Image) -> str:
+    """Returns what files of an image are called.
+
+    What is no letter, digit or dash becomes "_"; an ending such as .png, and the place of the
+    number of a UDIM tile, are left out.
+    """
+    base, ending = os.path.splitext(image.name)
+    name = base if ending.lower() in bpy.path.extensions_image else image.name
+    numbers = [str(number) for number in images.tile_numbers(image)]
+    for place in ("<UDIM>", "<UVTILE>", *numbers) if numbers else ():
+        name = name.removesuffix(place)
+    return bpy.path.clean_name(name.rstrip("._-") or image.name)
+
+
+def paths(
+    pattern: Pattern, chosen: Sequence[bpy.types.Image], sources: Iterable[Path] = ()
+) -> list[str]:
+    """Returns the path for each image; of tiled images, see `udim.paths`.
+
+    A name that is taken, by letters in upper or lower case, or by a file that something is read
+    from, gets a number.
+
+    Args:
+        pattern: Where files go.
+        chosen: The images.
+        sources: More files that must not be written, beside those of all images.
+    """
+    if not pattern.text:
+        return [""] * len(chosen)
+    taken = {one for path in (*sources, *_files_of_images()) for one in _identities(path)}
+    found: list[str] = []
+    for image in chosen:
+        name, number = name_of(image), 1
+        while True:
+            numbered = name if number == 1 else f"{name}_{number}"
+            path = pattern.text.replace(PLACE, numbered)
+            files = _written(path, images.tile_numbers(image))
+            identities = {one for file in files for one in _identities(file)}
+            if taken.isdisjoint(identities):
+                break
+            number += 1
+        taken |= identities
+        found.append(path)
+    return found
+
+
+def _written(path: str, tiles: Sequence[int]) -> Iterator[Path]:
+    """Yields the files that a bake to a path writes, or may write."""
+    for one in udim.paths(path, tiles):
+        yield from textures.written(Path(os.path.realpath(one)))
+
+
+def _files_of_images() -> Iterator[Path]:
+    for image in bpy.data.images:
+        path = bpy.path.abspath(image.filepath, library=image.library)
+        if image.source == "TILED":
+            for number in images.tile_numbers(image):
+                yield images.tile_path(image, number)
+        elif path:
+            yield Path(path)
+
+
+def _identities(path: Path) -> Iterator[Hashable]:
+    """Yields what tells a file from others, whatever its path, also where case does not matter."""
+    yield os.path.realpath(path).casefold()
+    with suppress(OSError):
+        found = path.stat()
+        yield found.st_dev, found.st_ino

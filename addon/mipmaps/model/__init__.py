@@ -1,0 +1,1 @@
+"""Every image of a model at once: what there is to bake, how, into which files, and the bake."""

@@ -1,0 +1,38 @@
+"""What a bake of a model does, as a table of text."""
+
+from collections.abc import Sequence
+
+from .bake import Row, shown_file
+
+_HEAD = ("Image", "Size", "Objects", "Content", "Filter", "Format", "File")
+_MOST_OBJECTS = 3
+
+
+def lines(rows: Sequence[Row]) -> list[str]:
+    """Returns the lines of a table: a row an image, below it why, where there is more to say."""
+    cells = [_HEAD, *(_cells(row) for row in rows)]
+    widths = [max(len(line[column]) for line in cells) for column in range(len(_HEAD))]
+    rule = tuple("-" * width for width in widths)
+    found = [_line(_HEAD, widths), _line(rule, widths)]
+    for row, line in zip(rows, cells[1:], strict=True):
+        found.append(_line(line, widths))
+        found += [f"    {text}" for text in _reasons(row)]
+    return found
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    more = len(row.objects) - _MOST_OBJECTS
+    objects = ", ".join(row.objects[:_MOST_OBJECTS]) + (f" and {more} more" if more > 0 else "")
+    return (
+        *(row.image, row.size, objects, row.content, row.filter),
+        *(row.format or "-", shown_file(row.file) or "-"),
+    )
+
+
+def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
+    return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip()
+
+
+def _reasons(row: Row) -> list[str]:
+    uses = ", ".join(row.uses) if row.uses else "no shader, so its color space decides"
+    return [f"read by {uses}", *row.remarks]
