@@ -16,7 +16,7 @@ from ...bridge.images import Picture
 from ...core.jobs import Progress, go_on, share
 from ...core.outcome import FAILURES, Outcome
 from ...core.wording import counted, listed
-from .. import reading, udim
+from .. import lookups, reading, udim
 from ..bake import Bake
 from ..choices import FILTERS, Settings
 from . import decisions
@@ -195,12 +195,14 @@ class ModelBake:
         decision = decisions.decided(job.item, picture)
         file = self._files[job.item.full_name]
         chosen = self._format(job.item, picture, decision.content, file)
-        settings = replace(
-            self._settings,
-            content=decision.content,
-            threshold=job.item.threshold,
-            texture_format=chosen,
-            filepath=file,
+        settings = lookups.resolved(
+            replace(
+                self._settings,
+                content=decision.content,
+                threshold=job.item.threshold,
+                texture_format=chosen,
+                filepath=file,
+            )
         )
         rough_format = ""
         row = Row(
