@@ -206,6 +206,7 @@ class Bake:
             "wrap": self._wrap,
             "levels": None if to_file else settings.levels or None,
             "threads": settings.threads,
+            "footprint": self._footprint,
         }
         surfaces = self._surfaces or None
         if self._content == "normal":
@@ -213,7 +214,6 @@ class Bake:
         bounds = self._bounds(linear)
         options["reader"] = self.reader
         options["seam_weight"] = settings.seam_weight
-        options["footprint"] = self._footprint
         if self._content == "cutout":
             levels = contents.cutout_levels(
                 self._picture, linear, surfaces, bounds, settings.threshold, progress, **options
@@ -226,8 +226,6 @@ class Bake:
 
     @property
     def _footprint(self) -> float:
-        if self._content == "normal":
-            return 0.0
         return lookups.footprint(self._settings, self._settings.filter, self.reader)
 
     def _heeds_seams(self) -> bool:
@@ -380,7 +378,7 @@ class Bake:
             if self._settings.use_frames:
                 parts.append(f"at {counted(frames.chosen(self._settings), 'frame')}")
         if self._footprint:
-            parts.append("for one lookup a pixel")
+            parts.append(lookups.described(self._footprint))
         results = []
         if names:
             results.append(counted(names, "level image"))

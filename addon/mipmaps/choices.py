@@ -16,8 +16,7 @@ _PAM = {
     ),
     "pam-trilinear": Choice(
         "PAM Trilinear",
-        "Best fit of all levels together, for readers that also interpolate between levels, such "
-        "as GPUs",
+        "Best fit of all levels together: least error for one trilinear lookup a pixel",
     ),
     "pam-box": Choice("PAM Box", "Average of the surface under each texel"),
 }
@@ -96,8 +95,13 @@ LOOKUPS = {
     ),
     "one-lookup": Choice(
         "One Lookup a Pixel",
-        "Games: a pixel shows a single lookup. Levels are fitted to the image averaged over a "
-        "pixel",
+        "Games without anisotropic filtering: a pixel shows a single lookup. Levels are fitted to "
+        "the image averaged over a pixel",
+    ),
+    "anisotropic": Choice(
+        "Anisotropic",
+        "Games with anisotropic filtering, which reads finer levels: levels are fitted to the "
+        "image averaged over a wider area",
     ),
 }
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 from ..bridge.files import engines
 from .choices import FITTED_FILTERS, Settings
 
-_FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0}
+_FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0, "anisotropic": 1.5}
+_WORDS = {0.0: "", 1.0: "for one lookup a pixel", 1.5: "for anisotropic lookups"}
 
 
 def resolved(settings: Settings) -> Settings:
@@ -27,3 +28,8 @@ def footprint(settings: Settings, filter: str, reader: str) -> float:
     if filter not in FITTED_FILTERS or reader != "linear":
         return 0.0
     return _FOOTPRINTS[resolved(settings).lookups]
+
+
+def described(footprint: float) -> str:
+    """Returns what levels of such a footprint are for; empty for supersampled readers."""
+    return _WORDS[footprint]

@@ -35,9 +35,7 @@ class BakeProperties:
         if self.reader != "linear" and self.filter == "pam-trilinear":
             layout.label(text="PAM Trilinear requires Linear Light", icon="ERROR")
         row = layout.row()
-        row.active = (
-            self.reader == "linear" and self.filter in FITTED_FILTERS and self.content != "normal"
-        )
+        row.active = self.reader == "linear" and self.filter in FITTED_FILTERS
         row.prop(self, "lookups")
         column = layout.column(align=True)
         column.prop(self, "wrap")

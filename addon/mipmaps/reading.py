@@ -175,7 +175,7 @@ def reading(
             job.warnings.extend(textures.left_by_earlier_versions(target))
     if settings.reader != "linear":
         job.warnings.extend(_odd_readers(pictures[0], targets))
-        if settings.lookups == "one-lookup" and reads_encoded(pictures[0]):
+        if settings.lookups in {"one-lookup", "anisotropic"} and reads_encoded(pictures[0]):
             job.warnings.append(
                 f"lookups: readers of encoded texels are supersampled, so '{pictures[0].name}' is "
                 f"baked for that"

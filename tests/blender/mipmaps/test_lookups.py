@@ -45,6 +45,8 @@ def baked(number=2):
         ("supersampled", "out.dds", 0.0),
         ("one-lookup", "out.exr", 1.0),
         ("one-lookup", "", 1.0),
+        ("anisotropic", "", 1.5),
+        ("anisotropic", "out.ktx2", 1.5),
     ],
 )
 def test_the_file_decides_unless_the_user_does(bake, paint, tmp_path, lookups, name, footprint):
@@ -54,7 +56,9 @@ def test_the_file_decides_unless_the_user_does(bake, paint, tmp_path, lookups, n
     )
     np.testing.assert_allclose(baked(), level(footprint), atol=0.51 / 255)
     assert np.abs(level(0.0) - level(1.0)).max() > 2 / 255
-    assert ("for one lookup a pixel" in outcome.summary) == (footprint > 0)
+    words = {0.0: "PAM Bilinear over", 1.0: "one lookup a pixel", 1.5: "anisotropic lookups"}
+    assert words[footprint] in outcome.summary
+    assert ("lookup" in outcome.summary) == (footprint > 0)
     assert outcome.warnings == []
 
 
@@ -73,7 +77,7 @@ def test_other_filters_do_not(bake, paint, filter):
     assert "lookup" not in outcome.summary
 
 
-@pytest.mark.parametrize(("lookups", "count"), [("auto", 0), ("one-lookup", 1)])
+@pytest.mark.parametrize(("lookups", "count"), [("auto", 0), ("one-lookup", 1), ("anisotropic", 1)])
 def test_readers_of_encoded_texels_are_supersampled(bake, tmp_path, lookups, count):
     image = scenes.image("Paint", scenes.noise(SIDE, SIDE))
     quad = scenes.textured_quad(image)
@@ -91,12 +95,18 @@ def test_readers_of_encoded_texels_are_supersampled(bake, tmp_path, lookups, cou
     assert sum(warning.startswith("lookups: ") for warning in outcome.warnings) == count
 
 
-def test_normal_maps_stay_as_they_are(bake, paint):
-    found = []
-    for lookups in ("supersampled", "one-lookup"):
-        bake(paint, bpy.context.selected_objects, content="normal", lookups=lookups)
-        found.append(baked())
-    np.testing.assert_array_equal(*found)
+def test_normal_maps_heed_it(bake, paint):
+    normals = scenes.noise(SIDE, SIDE)[..., :3]
+    for lookups, footprint in (("supersampled", 0.0), ("one-lookup", 1.0)):
+        bake(
+            paint,
+            bpy.context.selected_objects,
+            content="normal",
+            lookups=lookups,
+            wrap="clamp",
+        )
+        expected = prefilter.normal_mipmaps(normals, QUAD, footprint=footprint)[2]
+        np.testing.assert_allclose(baked(), expected, atol=0.51 / 255)
 
 
 def test_cut_outs_heed_it(bake):
