@@ -23,9 +23,12 @@ etcpak_dir=$cache_dir/etcpak-0.6.1
 astcenc_dir=$cache_dir/astcenc-0.6.1
 basisu_dir=$cache_dir/basisu-1.16
 zstd_dir=$cache_dir/zstd-1.5.7
+bc7enc_dir=$cache_dir/bc7enc-0.6.1
+cvtt_dir=$cache_dir/cvtt-3.6
 # Libraries that are linked in, and where their sources are.
 linked_sources=("OPENSUBDIV=$opensubdiv_dir" "SQUISH=$squish_dir" "CLIPPER2=$clipper2_dir" "ETCPAK=$etcpak_dir"
-  "ASTCENC=$astcenc_dir" "BASISU=$basisu_dir" "ZSTD=$zstd_dir")
+  "ASTCENC=$astcenc_dir" "BASISU=$basisu_dir" "ZSTD=$zstd_dir" "BC7ENC=$bc7enc_dir"
+  "CVTT=$cvtt_dir")
 source_options=("${linked_sources[@]/#/PREFILTER_}")
 source_options=("${source_options[@]/=/_SOURCE=}")
 # Each list has its own: checkouts may differ.
@@ -324,6 +327,29 @@ ensure_zstd() {
   rm -rf "$source"
 }
 
+# bc7enc is linked in likewise: etcpak brings it along, under a license of its own.
+ensure_bc7enc() {
+  [[ ! -e $bc7enc_dir ]] || return 0
+  local version=${bc7enc_dir##*-} source=$bc7enc_dir.source
+  fetch_crate "$bc7enc_dir" ctt-etcpak "$version" 9d56f34893228fab7feeb599eeff99a4202b5cbfccd8a280c630365a7f49bce0
+  mkdir "$source/kept"
+  mv "$source/ctt-etcpak-$version"/cpp/bc7enc.{cpp,h} "$source/kept/"
+  sed -n '/^ALTERNATIVE A - MIT License/,/^ALTERNATIVE B/{/^ALTERNATIVE B/d;p}' "$source/kept/bc7enc.cpp" >"$source/kept/LICENSE.txt"
+  mv "$source/kept" "$bc7enc_dir"
+  rm -rf "$source"
+}
+
+# Convection Texture Tools are linked in likewise. Debian's source of Godot 3.6 brings them along.
+ensure_cvtt() {
+  [[ ! -e $cvtt_dir ]] || return 0
+  local version=${cvtt_dir##*-} source=$cvtt_dir.source
+  fetch_source "$cvtt_dir" "g/godot/godot_$version+ds.orig.tar.xz" \
+    4d1b91067360e95eb2d3ecdd7835aad9d1bb07682b8bcad32c3b834ff50547b1
+  mv "$source/godot-$version-stable/thirdparty/cvtt" "$source/kept"
+  mv "$source/kept" "$cvtt_dir"
+  rm -rf "$source"
+}
+
 # ensure_wheels: fetches what the package imports and the extension brings along: pure Python, as its authors publish it.
 ensure_wheels() {
   [[ ! -e $wheels_dir ]] || return 0
@@ -419,6 +445,8 @@ setup_host() {
   ensure_astcenc
   ensure_basisu
   ensure_zstd
+  ensure_bc7enc
+  ensure_cvtt
   ensure_wheels
   unlock "$cache_dir/.lock"
 }

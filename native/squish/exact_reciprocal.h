@@ -1,5 +1,5 @@
-// Goes before libsquish's SSE code, which starts from the processor's estimate of a reciprocal:
-// processors differ in it, and blocks are to be the same on all of them.
+// Goes before SSE code of libsquish and of Convection Texture Tools, which uses the processor's
+// estimate of a reciprocal: processors differ in it, and blocks are to be the same on all of them.
 #pragma once
 
 #include <xmmintrin.h>

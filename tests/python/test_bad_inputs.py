@@ -561,7 +561,7 @@ ROWS = [
                 {"format": "bc4", "encoding": "srgb"},
                 ["encoding: 'srgb'", "'bc4'", "'linear' or another format is needed"],
             ),
-            ({"format": "bc7"}, ["format: 'bc7'", "one of auto, ", "bc5"]),
+            ({"format": "bc2"}, ["format: 'bc2'", "one of auto, ", "bc5"]),
             ({"encoding": "gamma"}, ["encoding: 'gamma'", "one of linear, srgb"]),
             ({"alpha": "none"}, ["alpha: 'none'", "one of straight, premultiplied"]),
         )

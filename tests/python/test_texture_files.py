@@ -20,11 +20,14 @@ NAMES = {
     "rgba16f": ("R16G16B16A16_SFLOAT", "R16G16B16A16_SFLOAT"),
     "rgba32f": ("R32G32B32A32_SFLOAT", "R32G32B32A32_SFLOAT"),
     "bc1": ("BC1_UNORM", "BC1_SRGB"),
+    "bc1-rgb": ("BC1_RGB_UNORM", "BC1_RGB_SRGB"),
     "bc3": ("BC3_UNORM", "BC3_SRGB"),
     "bc4": ("BC4_UNORM", None),
     "bc5": ("BC5_UNORM", None),
+    "bc6h": ("BC6H_UFLOAT", "BC6H_UFLOAT"),
+    "bc7": ("BC7_UNORM", "BC7_SRGB"),
 }
-BLOCKS = {"bc1": 3, "bc3": 4, "bc4": 1, "bc5": 2}
+BLOCKS = {"bc1": 3, "bc1-rgb": 3, "bc3": 4, "bc4": 1, "bc5": 2, "bc7": 4}
 
 
 def chain(height: int, width: int, channels: int, *, floats: bool = False, seed: int = 0) -> list:
@@ -137,6 +140,9 @@ SAMPLES = {
     "BC3": [((0, 64), 15), ((64, 64), 0)],
     "BC4": [((0, 64), 0)],
     "BC5": [((0, 64), 0), ((64, 64), 1)],
+    "BC1_RGB": [((0, 64), 0)],
+    "BC6H": [((0, 128), 0)],
+    "BC7": [((0, 128), 0)],
 }
 
 
@@ -152,14 +158,17 @@ def test_ktx2_describes_its_samples(tmp_path, format, srgb):
     assert file.metadata["KTXwriter"] == f"prefilter {prefilter.__version__}"
     channels = FORMATS[file.format][2]
     found = [(sample["bits"], sample["channel"]) for sample in file.samples]
-    if format in BLOCKS:
-        assert found == SAMPLES[file.format[:3]]
+    if format in (*BLOCKS, "bc6h"):
+        assert found == SAMPLES[file.format.rsplit("_", 1)[0]]
     else:
         assert [channel for _, channel in found] == [0, 1, 2, 15][:channels]
     for sample in file.samples:
         if format.endswith("f"):
             assert sample["qualifiers"] == 0xC0
             assert sample["range"] == (0xBF800000, 0x3F800000)  # -1 and 1
+        elif format == "bc6h":
+            assert sample["qualifiers"] == 0x80
+            assert sample["range"] == (0, 0x3F800000)
         else:
             is_linear = srgb and sample["channel"] == 15
             assert sample["qualifiers"] == (0x10 if is_linear else 0)
@@ -167,7 +176,7 @@ def test_ktx2_describes_its_samples(tmp_path, format, srgb):
 
 
 @pytest.mark.parametrize("alpha", ["straight", "premultiplied", "independent"])
-@pytest.mark.parametrize("format", ["rgba8", "bc3"])
+@pytest.mark.parametrize("format", ["rgba8", "bc3", "bc7"])
 def test_alpha_is_described(tmp_path, kind, alpha, format):
     levels = chain(4, 4, 4)
     file = written(tmp_path, kind, levels, alpha=alpha, format=format)
@@ -213,7 +222,7 @@ def simple_error(block: np.ndarray) -> float:
 
 @pytest.mark.parametrize(
     ("format", "size"),
-    [*itertools.product(BLOCKS, [(96, 64)]), ("bc1", (37, 51)), ("bc3", (37, 51))],
+    [*itertools.product(BLOCKS, [(96, 64)]), *itertools.product(["bc1", "bc3", "bc7"], [(37, 51)])],
 )
 @pytest.mark.parametrize("make", [smooth_chain, chain])
 def test_blocks_are_nearer_than_those_of_a_simple_compressor(tmp_path, kind, format, size, make):
@@ -231,7 +240,7 @@ def test_blocks_are_nearer_than_those_of_a_simple_compressor(tmp_path, kind, for
             reference += sum(simple_error(block[..., part]) for part in parts)
         error += ((found[..., :count] - level[..., :count]) ** 2).sum()
         if count > 2:
-            assert np.all(found[..., 3] == 255)
+            assert np.all(found[..., 3:] == 255)
     assert error <= reference
 
 
@@ -266,7 +275,7 @@ def test_blocks_hide_the_error_under_straight_alpha(tmp_path, kind):
     assert errors["straight"] < 0.7 * errors["premultiplied"]
 
 
-@pytest.mark.parametrize("format", ["bc1", "bc3"])
+@pytest.mark.parametrize("format", ["bc1", "bc3", "bc7"])
 def test_floats_are_encoded_before_they_are_compressed(tmp_path, kind, format):
     levels = [level / np.float32(255) for level in smooth_chain(24, 16, 3)]
     coded = [np.rint(255 * prefilter.to_srgb(level)).astype(np.uint8) for level in levels]
@@ -274,6 +283,68 @@ def test_floats_are_encoded_before_they_are_compressed(tmp_path, kind, format):
     of_bytes = written(tmp_path, kind, coded, format=format, encoding="srgb")
     assert of_floats.is_srgb
     assert of_floats.level_data == of_bytes.level_data
+
+
+@pytest.mark.parametrize(("size", "near"), [((1, 1), 0.02), ((5, 7), 1.0), ((75, 103), 0.1)])
+@pytest.mark.parametrize("channels", [1, 3, 4])
+def test_half_floats_keep_their_brightness(tmp_path, kind, size, near, channels):
+    levels = [2.0 ** (level / 16.0 - 8) for level in smooth_chain(*size, channels)]
+    file = written(tmp_path, kind, levels, format="bc6h")
+    assert file.format == "BC6H_UFLOAT"
+    assert file.alpha == ("opaque" if kind == "dds" else "straight")
+    ratio = np.log2(np.maximum(file.levels[0], 1e-9) / levels[0][..., :3])
+    assert np.sqrt(np.mean(ratio**2)) < near
+    assert np.abs(ratio).max() < 5 * near
+    assert len(file.levels) == len(levels)
+    assert all(np.isfinite(found).all() for found in file.levels)
+
+
+def test_negative_values_become_0_in_bc6h(tmp_path, kind):
+    levels = [np.full((8, 12, 1), 5.0, np.float32)]
+    levels[0][:, :4], levels[0][:, 4:8] = -5, 0.25
+    found = written(tmp_path, kind, levels, format="bc6h").levels[0]
+    assert found.min() == 0
+    np.testing.assert_allclose(found, np.repeat(np.maximum(levels[0], 0), 3, axis=2), rtol=0.02)
+
+
+def test_bytes_are_decoded_for_half_floats_in_blocks(tmp_path, kind):
+    levels = smooth_chain(96, 64, 3)
+    file = written(tmp_path, kind, levels, format="bc6h", encoding="srgb")
+    assert not file.is_srgb
+    wanted = prefilter.to_linear(levels[0] / np.float32(255))
+    assert np.sqrt(np.mean((file.levels[0] - wanted) ** 2)) < 0.01
+
+
+def test_bc1_rgb_has_no_alpha(tmp_path, kind):
+    levels = chain(13, 10, 4)
+    file = written(tmp_path, kind, levels, format="bc1-rgb")
+    assert file.alpha == ("opaque" if kind == "dds" else "straight")
+    opaque = [level | np.array([0, 0, 0, 255], np.uint8) for level in levels]
+    assert written(tmp_path, kind, opaque, format="bc1-rgb").level_data == file.level_data
+    for found in file.levels:
+        assert np.all(found[..., 3:] == 255)
+
+
+def photographs() -> list:
+    """Photographs of the textures in shared/, cut to 256 x 256; none where they are missing."""
+    folder = Path(__file__).resolve().parents[3] / "shared/data/textured"
+    names = ("DamagedHelmet/Default_albedo.jpg", "AntiqueCamera/camera_camera_BaseColor.png")
+    oiio = pytest.importorskip("OpenImageIO")
+    found = []
+    for name in names:
+        if (folder / name).exists():
+            pixels = oiio.ImageBuf(str(folder / name)).get_pixels("uint8")
+            found.append(np.ascontiguousarray(pixels[384:640, 384:640, :3]))
+    return found or [pytest.skip("shared/data is missing")]
+
+
+def test_bc7_is_5_db_better_than_bc1_on_photographs(tmp_path):
+    for photograph in photographs():
+        errors = {}
+        for format in ("bc1", "bc7"):
+            found = written(tmp_path, "dds", [photograph], format=format).levels[0]
+            errors[format] = np.mean((found[..., :3] - photograph) ** 2)
+        assert 10 * np.log10(errors["bc1"] / errors["bc7"]) >= 5
 
 
 def test_levels_may_be_left_out(tmp_path, kind):
@@ -292,7 +363,7 @@ def test_views_and_doubles_are_taken(tmp_path, kind):
 
 def test_file_is_the_same_for_any_thread_count(tmp_path):
     levels = chain(40, 50, 4, floats=True)
-    for kind, format in itertools.product(WRITERS, ["rgba8", "bc1", "bc3"]):
+    for kind, format in itertools.product(WRITERS, ["rgba8", "bc1", "bc3", "bc6h", "bc7"]):
         contents = set()
         for threads in (1, 2, 7):
             path = tmp_path / f"{threads}.{kind}"
@@ -323,7 +394,10 @@ HALF = GOOD[1]
         ([np.full((2, 3, 1), np.nan, np.float32)], {}, "level 0: the texel in row 0, .* nan"),
         ([np.full((2, 3, 1), np.inf)], {}, "level 0: the texel in row 0, .* inf"),
         ([np.full((2, 3, 1), -7e4)], {}, "levels: hold -70000.*'rgba32f' is needed"),
-        (GOOD, {"format": "bc7"}, "format: 'bc7' is not one of auto, r8, .*"),
+        ([np.full((2, 3, 1), 7e4)], {"format": "bc6h"}, "levels: hold 70000.* of format 'bc6h' "),
+        ([np.full((2, 3, 1), np.inf)], {"format": "bc6h"}, "level 0: the texel in row 0, .* inf"),
+        ([np.full((4, 4, 3), np.nan)], {"format": "bc7"}, "level 0: the texel in row 0, .* nan"),
+        (GOOD, {"format": "bc2"}, "format: 'bc2' is not one of auto, r8, .*"),
         (GOOD, {"format": 8}, "format: 8 is not one of auto, r8"),
         ([GOOD[0][..., :1]], {"format": "rg8"}, "format: 'rg8' needs 2 channels; .* have 1"),
         ([GOOD[0][..., :1]], {"format": "bc5"}, "format: 'bc5' needs 2 channels; .* have 1"),
@@ -424,11 +498,12 @@ def test_pillow_and_openimageio_agree_on_dds(tmp_path, size, format, encoding):
         prefilter.write_dds(path, levels[number:], format=format, encoding=encoding)
         expected = read_dds(path).level(0)
         # Decoders may round the ends to bytes, which is half a step, and then cut off the mean.
-        near = 0 if format == "rgba8" else 1.5
+        near = 0 if format in {"rgba8", "bc7"} else 1.5
         for pixels in pillow_reading(path) + openimageio_reading(tmp_path / "0.dds", number):
             assert pixels.shape[:2] == expected.shape[:2]
             count = min(pixels.shape[2], expected.shape[2])
-            assert count == (3 if format == "bc1" and pixels.shape[2] == 3 else expected.shape[2])
+            is_rgb = format.startswith("bc1") and pixels.shape[2] == 3
+            assert count == (3 if is_rgb else expected.shape[2])
             assert np.abs(pixels[..., :count] - expected[..., :count]).max() <= near
             compared += 1
     if compared == 0:

@@ -4,10 +4,12 @@ A file is read into a `File`, whose levels are as stored: the top row first.
 """
 
 import struct
+import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 # name: (DXGI_FORMAT, VkFormat, channels, dtype or None for blocks, bytes a texel or block, is sRGB)
 FORMATS = {
@@ -21,10 +23,15 @@ FORMATS = {
     "R32G32B32A32_SFLOAT": (2, 109, 4, np.float32, 16, False),
     "BC1_UNORM": (71, 133, 4, None, 8, False),
     "BC1_SRGB": (72, 134, 4, None, 8, True),
+    "BC1_RGB_UNORM": (None, 131, 3, None, 8, False),
+    "BC1_RGB_SRGB": (None, 132, 3, None, 8, True),
     "BC3_UNORM": (77, 137, 4, None, 16, False),
     "BC3_SRGB": (78, 138, 4, None, 16, True),
     "BC4_UNORM": (80, 139, 1, None, 8, False),
     "BC5_UNORM": (83, 141, 2, None, 16, False),
+    "BC6H_UFLOAT": (95, 143, 3, None, 16, False),
+    "BC7_UNORM": (98, 145, 4, None, 16, False),
+    "BC7_SRGB": (99, 146, 4, None, 16, True),
     "ETC2_R8G8B8_UNORM": (None, 147, 3, None, 8, False),
     "ETC2_R8G8B8_SRGB": (None, 148, 3, None, 8, True),
     "ETC2_R8G8B8A8_UNORM": (None, 151, 4, None, 16, False),
@@ -66,7 +73,7 @@ class File:
         _, _, channels, dtype, _, _ = FORMATS[self.format]
         height, width = max(1, self.height >> number), max(1, self.width >> number)
         if dtype is None:
-            return decoded_blocks(self.level_data[number], self.format[:3], width, height)
+            return decoded_blocks(self.level_data[number], self.format, width, height)
         values = np.frombuffer(self.level_data[number], np.dtype(dtype).newbyteorder("<"))
         return values.reshape(height, width, channels)
 
@@ -219,18 +226,28 @@ def _read_descriptor(data: bytes, name: str) -> tuple[str, list[dict]]:
         sum(sample["bits"][1] for sample in samples[:number]) for number in range(len(samples))
     ]
     assert sum(sample["bits"][1] for sample in samples) == 8 * unit
-    models = {"BC1": 128, "BC3": 130, "BC4": 131, "BC5": 132}
+    models = {"BC1": 128, "BC3": 130, "BC4": 131, "BC5": 132, "BC6": 133, "BC7": 134}
     models |= {"ETC": 161, "EAC": 161, "AST": 162, "UAS": 166}
     assert model == models.get(name[:3], 1)
     return "premultiplied" if flags & 1 else "straight", samples
 
 
 def decoded_blocks(data: bytes, name: str, width: int, height: int) -> np.ndarray:
-    """Blocks of BC1, BC3, BC4 or BC5 as values from 0 to 255, after the formats' definitions."""
+    """Blocks of a format of FORMATS as values from 0 to 255, or as floats.
+
+    BC1, BC3, BC4 and BC5 are decoded after their definitions, BC6H and BC7 by OpenImageIO.
+    """
+    if name.startswith(("BC6H", "BC7")):
+        return _decoded_by_openimageio(data, name, width, height)
+    is_rgb = name.startswith("BC1_RGB")
+    name = name[:3]
     rows, columns = (height + 3) // 4, (width + 3) // 4
     blocks = np.frombuffer(data, np.uint8).reshape(rows * columns, -1)
     if name == "BC1":
         texels = _decoded_colors(blocks, has_cut_out=True)
+        if is_rgb:
+            assert np.all(texels[..., 3] == 255)
+            texels = texels[..., :3]
     elif name == "BC3":
         texels = _decoded_colors(blocks[:, 8:], has_cut_out=False)
         texels[..., 3] = _decoded_channel(blocks[:, :8])
@@ -239,6 +256,26 @@ def decoded_blocks(data: bytes, name: str, width: int, height: int) -> np.ndarra
         texels = np.stack([_decoded_channel(half) for half in halves], axis=2)
     texels = texels.reshape(rows, columns, 4, 4, -1).swapaxes(1, 2)
     return texels.reshape(4 * rows, 4 * columns, -1)[:height, :width]
+
+
+def _decoded_by_openimageio(data: bytes, name: str, width: int, height: int) -> np.ndarray:
+    oiio = pytest.importorskip("OpenImageIO", reason="nothing decodes BC6H and BC7")
+    dxgi, _, channels, _, _, _ = FORMATS[name]
+    file = b"DDS " + struct.pack("<7I44x", 124, 0x81007, height, width, len(data), 0, 1)
+    file += struct.pack("<2I4s20x", 32, 4, b"DX10") + struct.pack("<I16x", 0x1000)
+    file += struct.pack("<5I", dxgi, 3, 0, 1, 0)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "level.dds"
+        path.write_bytes(file + data)
+        config = oiio.ImageSpec()
+        config.attribute("oiio:UnassociatedAlpha", 1)
+        image = oiio.ImageInput.open(str(path), config)
+        if image is None:
+            pytest.skip("OpenImageIO is too old for BC6H and BC7")
+        texels = image.read_image("float" if name.startswith("BC6H") else "uint8")
+    texels = np.asarray(texels).astype(float).reshape(height, width, -1)
+    assert texels.shape[2] == channels
+    return texels
 
 
 def _decoded_colors(blocks: np.ndarray, *, has_cut_out: bool) -> np.ndarray:

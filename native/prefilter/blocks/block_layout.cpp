@@ -10,9 +10,12 @@ namespace {
 
 constexpr BlockLayout kLayouts[] = {
     {BlockFormat::kBc1, "bc1", 4, 4, 8, false},
+    {BlockFormat::kBc1Rgb, "bc1-rgb", 4, 4, 8, false},
     {BlockFormat::kBc3, "bc3", 4, 4, 16, false},
     {BlockFormat::kBc4, "bc4", 4, 4, 8, false},
     {BlockFormat::kBc5, "bc5", 4, 4, 16, false},
+    {BlockFormat::kBc6h, "bc6h", 4, 4, 16, true},
+    {BlockFormat::kBc7, "bc7", 4, 4, 16, false},
     {BlockFormat::kEtc2Rgb, "etc2-rgb", 4, 4, 8, false},
     {BlockFormat::kEtc2Rgba, "etc2-rgba", 4, 4, 16, false},
     {BlockFormat::kEacR11, "eac-r11", 4, 4, 8, false},

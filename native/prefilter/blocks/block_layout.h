@@ -7,9 +7,12 @@ namespace prefilter {
 
 enum class BlockFormat {
   kBc1,       // red, green, blue, and an alpha that is 0 or 1
+  kBc1Rgb,    // the same blocks, opaque
   kBc3,       // red, green, blue and alpha
   kBc4,       // red
   kBc5,       // red and green
+  kBc6h,      // red, green and blue, of floats that are not negative
+  kBc7,       // red, green, blue and alpha
   kEtc2Rgb,   // red, green and blue
   kEtc2Rgba,  // red, green, blue and alpha
   kEacR11,    // red

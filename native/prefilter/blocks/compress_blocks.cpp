@@ -23,6 +23,8 @@ EncoderMaker<Channel> encoder_maker(const BlockOptions& options);
 template <>
 EncoderMaker<std::uint8_t> encoder_maker<std::uint8_t>(const BlockOptions& options) {
   switch (options.format) {
+    case BlockFormat::kBc7:
+      return make_bc7enc_encoder;
     case BlockFormat::kEtc2Rgb:
     case BlockFormat::kEtc2Rgba:
     case BlockFormat::kEacR11:
@@ -41,6 +43,7 @@ EncoderMaker<std::uint8_t> encoder_maker<std::uint8_t>(const BlockOptions& optio
 
 template <>
 EncoderMaker<HalfBits> encoder_maker<HalfBits>(const BlockOptions& options) {
+  if (options.format == BlockFormat::kBc6h) return make_cvtt_encoder;
   return astc_encoders<HalfBits>(options);
 }
 

@@ -23,14 +23,14 @@ using HalfBits = std::uint16_t;
 
 /// The blocks, row by row from the first one, of interleaved RGBA bytes. Blocks that reach over the
 /// edge are fitted to the texels inside. For kBc1 texels with an alpha below 128 become transparent
-/// black, and all others opaque.
+/// black, and all others opaque; kBc1Rgb ignores alpha.
 ///
 /// Throws Error where a side is less than 1, where the format is one of floats, and where
 /// `progress` cancels.
 std::vector<std::uint8_t> compress_blocks(const std::uint8_t* rgba, int width, int height,
                                           const BlockOptions& options, const Progress& progress);
 
-/// The same for formats of floats, of finite half floats. Negative values become 0 in ASTC.
+/// The same for formats of floats, of finite half floats. Negative values become 0.
 std::vector<std::uint8_t> compress_blocks(const HalfBits* rgba, int width, int height,
                                           const BlockOptions& options, const Progress& progress);
 

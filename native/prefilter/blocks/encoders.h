@@ -8,8 +8,14 @@
 
 namespace prefilter {
 
-/// libsquish: kBc1, kBc3, kBc4, kBc5.
+/// libsquish: kBc1, kBc1Rgb, kBc3, kBc4, kBc5.
 std::unique_ptr<ByteEncoder> make_squish_encoder(const BlockOptions& options);
+
+/// bc7enc: kBc7.
+std::unique_ptr<ByteEncoder> make_bc7enc_encoder();
+
+/// Convection Texture Tools: kBc6h.
+std::unique_ptr<HalfEncoder> make_cvtt_encoder();
 
 /// etcpak: kEtc2Rgb, kEtc2Rgba, kEacR11, kEacRg11.
 std::unique_ptr<ByteEncoder> make_etcpak_encoder(const BlockOptions& options);

@@ -64,19 +64,23 @@ Color decoded_color(const std::uint8_t* block, int i) {
   return mixed;
 }
 
+constexpr BlockFormat kByteFormats[] = {BlockFormat::kBc1, BlockFormat::kBc1Rgb, BlockFormat::kBc3,
+                                        BlockFormat::kBc4, BlockFormat::kBc5,    BlockFormat::kBc7};
+
 TEST(CompressBlocks, SizesCountBlocks) {
   const Bytes texels = random_texels(9, 6, 1);
   EXPECT_EQ(compressed(texels, 9, 6, BlockFormat::kBc1).size(), 6U * 8);
   EXPECT_EQ(compressed(texels, 9, 6, BlockFormat::kBc3).size(), 6U * 16);
   EXPECT_EQ(compressed(texels, 9, 6, BlockFormat::kBc4).size(), 6U * 8);
   EXPECT_EQ(compressed(texels, 9, 6, BlockFormat::kBc5).size(), 6U * 16);
+  EXPECT_EQ(compressed(texels, 9, 6, BlockFormat::kBc1Rgb).size(), 6U * 8);
+  EXPECT_EQ(compressed(texels, 9, 6, BlockFormat::kBc7).size(), 6U * 16);
   EXPECT_EQ(compressed(texels, 1, 1, BlockFormat::kBc1).size(), 8U);
 }
 
 TEST(CompressBlocks, AreTheSameForAnyNumberOfThreads) {
   const Bytes texels = random_texels(61, 87, 2);
-  for (const auto format :
-       {BlockFormat::kBc1, BlockFormat::kBc3, BlockFormat::kBc4, BlockFormat::kBc5}) {
+  for (const auto format : kByteFormats) {
     const Bytes once = compressed(texels, 61, 87, format);
     for (const int threads : {0, 2, 5}) {
       EXPECT_EQ(compressed(texels, 61, 87, format, threads), once);
@@ -122,7 +126,7 @@ TEST(CompressBlocks, KeepTwoColorsThatTheFormatHas) {
     const Bytes color = i % 3 == 0 ? Bytes{255, 0, 255, 255} : Bytes{0, 255, 0, 255};
     texels.insert(texels.end(), color.begin(), color.end());
   }
-  for (const auto format : {BlockFormat::kBc1, BlockFormat::kBc3}) {
+  for (const auto format : {BlockFormat::kBc1, BlockFormat::kBc1Rgb, BlockFormat::kBc3}) {
     const Bytes blocks = compressed(texels, 4, 4, format);
     const std::uint8_t* colors = blocks.data() + blocks.size() - 8;
     for (int i = 0; i < 16; ++i) {
@@ -139,6 +143,17 @@ TEST(CompressBlocks, TransparentTexelsOfBc1AreBlackAndOthersOpaque) {
   const Bytes block = compressed(texels, 4, 4, BlockFormat::kBc1);
   for (int i = 0; i < 16; ++i) {
     EXPECT_EQ(decoded_color(block.data(), i)[3], i < 6 ? 0.0 : 255.0);
+  }
+}
+
+TEST(CompressBlocks, TexelsOfBc1RgbAreOpaqueWhateverTheirAlpha) {
+  Bytes texels = random_texels(13, 9, 8);
+  const Bytes blocks = compressed(texels, 13, 9, BlockFormat::kBc1Rgb);
+  for (std::size_t i = 3; i < texels.size(); i += 4) texels[i] = 255;
+  EXPECT_EQ(compressed(texels, 13, 9, BlockFormat::kBc1Rgb), blocks);
+  for (std::size_t block = 0; block < blocks.size(); block += 8) {
+    for (int i = 0; i < 16; ++i)
+      EXPECT_NEAR(decoded_color(blocks.data() + block, i)[3], 255.0, 1e-9);
   }
 }
 
@@ -182,6 +197,14 @@ TEST(CompressBlocks, WeighColorsByAlpha) {
     return sum;
   };
   EXPECT_LT(error_of_opaque(true), 0.1 * error_of_opaque(false));
+}
+
+TEST(CompressBlocks, RefusesTexelsOfAnotherKind) {
+  const Bytes bytes(64);
+  const std::vector<HalfBits> halves(64);
+  EXPECT_THROW(compressed(bytes, 4, 4, BlockFormat::kBc6h), Error);
+  EXPECT_THROW(compress_blocks(halves.data(), 4, 4, options_of(BlockFormat::kBc7), Progress()),
+               Error);
 }
 
 TEST(CompressBlocks, RefusesEmptyImages) {

@@ -22,9 +22,12 @@ _ETC2_COLOR = 2
 _UASTC_RGB, _UASTC_RGBA = 0, 3
 _BLOCKS = {
     "bc1": (128, (_BLOCK_COLOR_AND_CUT_OUT,)),
+    "bc1-rgb": (128, (_BLOCK_COLOR,)),
     "bc3": (130, (_ALPHA, _BLOCK_COLOR)),
     "bc4": (131, (_RED,)),
     "bc5": (132, (_RED, _GREEN)),
+    "bc6h": (133, (_BLOCK_COLOR,)),
+    "bc7": (134, (_BLOCK_COLOR,)),
     "etc2-rgb": (161, (_ETC2_COLOR,)),
     "etc2-rgba": (161, (_ALPHA, _ETC2_COLOR)),
     "eac-r11": (161, (_RED,)),
@@ -108,8 +111,9 @@ def _samples(texture: Texture) -> Iterator[bytes]:
     bits = 8 * texel_format.unit_bytes // len(channels)
     for number, channel in enumerate(channels):
         if texel_format.is_float:
-            channel |= _SIGNED | _FLOAT
-            limits = struct.pack("<2f", -1.0, 1.0)
+            has_sign = texel_format.name != "bc6h"
+            channel |= _FLOAT | (_SIGNED if has_sign else 0)
+            limits = struct.pack("<2f", -1.0 if has_sign else 0.0, 1.0)
         else:
             if channel == _ALPHA and texture.is_srgb:
                 channel |= _LINEAR
