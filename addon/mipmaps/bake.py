@@ -417,7 +417,7 @@ def roughness_format(settings: Settings, picture: Picture) -> str:
         return settings.texture_format
     if settings.roughness_channel == "all":
         return "bc4"
-    return "bc3" if picture.stored.shape[2] == 4 else "bc1"
+    return "bc7"
 
 
 def _naming_objects(message: str, objects: Sequence[str]) -> str:

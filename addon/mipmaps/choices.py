@@ -148,9 +148,16 @@ TEXTURE_FORMATS = {
     "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes a texel, for high dynamic range"),
     "rgba32f": Choice("Float", "Scene-linear, 16 bytes a texel"),
     "bc1": Choice("BC1", "Compressed color, half a byte a texel; alpha is 0 or 1"),
+    "bc1-rgb": Choice("BC1 RGB", "Compressed color without alpha, half a byte a texel"),
     "bc3": Choice("BC3", "Compressed color and alpha, a byte a texel"),
     "bc4": Choice("BC4", "Compressed red channel, half a byte a texel: masks, roughness"),
     "bc5": Choice("BC5", "Compressed red and green channels, a byte a texel: normal maps"),
+    "bc6h": Choice(
+        "BC6H", "Scene-linear, compressed, a byte a texel, for high dynamic range without alpha"
+    ),
+    "bc7": Choice(
+        "BC7", "Compressed color and alpha, a byte a texel; closer to the image than BC1 and BC3"
+    ),
 }
 ROUGHNESS_CHANNELS = {
     "all": Choice("All", "The whole image holds roughness"),

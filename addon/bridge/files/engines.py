@@ -26,7 +26,8 @@ _WRITERS: dict[str, Callable[..., None]] = {
     ".dds": prefilter.write_dds,
     ".ktx2": prefilter.write_ktx2,
 }
-_FLOATS = frozenset({"rgba16f", "rgba32f"})
+_FLOATS = frozenset({"rgba16f", "rgba32f", "bc6h"})
+_THREE_CHANNELS = frozenset({"bc1-rgb", "bc6h"})
 _FEW_CHANNELS = frozenset({"bc4", "bc5"})
 _BLOCK_SIDE = 4
 _CUT_OUT_ALPHA = 0.5
@@ -65,7 +66,7 @@ def checked(
     if target is None or not has_formats(target.name):
         return []
     chosen = _chosen(picture, texture_format)
-    who = f"texture format: {chosen.upper()}"
+    who = f"texture format: {chosen.upper().replace('-', ' ')}"
     if chosen in _FEW_CHANNELS and not picture.is_float and picture.encoding is not Encoding.NONE:
         raise ValueError(
             f"{who} has no sRGB form, and image '{picture.name}' has the color space "
@@ -78,6 +79,8 @@ def checked(
     if chosen in _FEW_CHANNELS and not may_lose_channels:
         kept = {"bc4": "the red channel", "bc5": "the red and green channels"}[chosen]
         told.append(f"{who} keeps {kept} of '{picture.name}' only")
+    elif chosen in _THREE_CHANNELS and channels == 4:
+        told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
     elif chosen == "bc1" and channels == 4:
         if not picture.alpha_is_coverage:
             if not may_lose_channels:
@@ -86,10 +89,14 @@ def checked(
             told.append(f"{who} knows no alpha of '{picture.name}' between 0 and 1")
         elif threshold != _CUT_OUT_ALPHA:
             told.append(f"{who} cuts alpha at {_CUT_OUT_ALPHA}, not at {threshold:g}")
-    if chosen not in _FLOATS and picture.is_float:
+    if chosen == "bc6h" and not picture.is_float:
+        told.append(f"{who} is for float images; BC7 is closer to '{picture.name}'")
+    if picture.is_float:
         finite = picture.stored[np.isfinite(picture.stored)]
-        if finite.size and (finite.min() < 0 or finite.max() > 1):
+        if chosen not in _FLOATS and finite.size and (finite.min() < 0 or finite.max() > 1):
             told.append(f"{who} clips values of '{picture.name}' beyond 0 and 1")
+        elif chosen == "bc6h" and finite.size and finite.min() < 0:
+            told.append(f"{who} clips values of '{picture.name}' below 0")
     return told
 
 

@@ -274,3 +274,50 @@ def test_normal_map_and_its_roughness(bake, tmp_path, kind):
     rough = READERS[kind](tmp_path / f"rough.{kind}")
     assert rough.format == "BC4_UNORM"
     assert rough.levels[-1][0, 0, 0] > rough.levels[0][0, 0, 0] + 1
+
+
+def test_bc7_keeps_soft_alpha(bake, tmp_path, kind):
+    values = np.full((16, 8, 4), (0.2, 0.6, 0.4, 1), np.float32)
+    values[:, 4:] = (0.7, 0.1, 0.3, 0.5)
+    outcome = bake(scenes.image("Paint", values), f"out.{kind}", texture_format="bc7")
+    assert outcome.warnings == []
+    file = READERS[kind](tmp_path / f"out.{kind}")
+    assert (file.format, file.alpha) == ("BC7_SRGB", "straight")
+    assert np.abs(file.levels[0] - 255 * values).max() < 1.5
+
+
+def test_bc1_rgb_leaves_alpha_out(bake, tmp_path, kind):
+    image = scenes.image("Paint", scenes.noise(8, 8, alpha=True))
+    outcome = bake(image, f"out.{kind}", texture_format="bc1-rgb")
+    assert outcome.warnings == ["texture format: BC1 RGB leaves the fourth channel of 'Paint' out"]
+    file = READERS[kind](tmp_path / f"out.{kind}")
+    assert file.format == {"dds": "BC1_SRGB", "ktx2": "BC1_RGB_SRGB"}[kind]
+    assert np.all(file.levels[0][..., 3:] == 255)
+
+
+def test_bc6h_is_scene_linear(bake, tmp_path, kind):
+    values = np.full((8, 8, 4), (20, 0.5, 0.01, 1), np.float32)
+    image = scenes.image("Light", values, is_float=True)
+    outcome = bake(image, f"out.{kind}", texture_format="bc6h")
+    assert outcome.warnings == []
+    file = READERS[kind](tmp_path / f"out.{kind}")
+    assert file.format == "BC6H_UFLOAT"
+    for level in file.levels:
+        np.testing.assert_allclose(level, values[: len(level), : len(level), :3], rtol=0.02)
+
+
+def test_bc6h_tells_what_it_cannot_hold(bake, tmp_path):
+    dark = np.full((4, 4, 4), (-0.5, 1, 1, 0.5), np.float32)
+    outcome = bake(scenes.image("Dark", dark, is_float=True), "a.dds", texture_format="bc6h")
+    assert outcome.warnings == [
+        "texture format: BC6H leaves the fourth channel of 'Dark' out",
+        "texture format: BC6H clips values of 'Dark' below 0",
+    ]
+    outcome = bake(scenes.image("Paint", scenes.noise(4, 4)), "b.dds", texture_format="bc6h")
+    assert outcome.warnings == [
+        "texture format: BC6H is for float images; BC7 is closer to 'Paint'"
+    ]
+    wild = np.full((4, 4, 4), 1e6, np.float32)
+    with pytest.raises(ValueError, match=r"half floats of format 'bc6h'.*'rgba32f' is needed"):
+        bake(scenes.image("Wild", wild, is_float=True), "c.dds", texture_format="bc6h")
+    assert sorted(os.listdir(tmp_path)) == ["a.dds", "b.dds"]
