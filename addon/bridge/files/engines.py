@@ -79,7 +79,7 @@ def checked(
     if chosen in _FEW_CHANNELS and not may_lose_channels:
         kept = {"bc4": "the red channel", "bc5": "the red and green channels"}[chosen]
         told.append(f"{who} keeps {kept} of '{picture.name}' only")
-    elif chosen in _THREE_CHANNELS and channels == 4:
+    elif chosen in _THREE_CHANNELS and channels == 4 and not may_lose_channels:
         told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
     elif chosen == "bc1" and channels == 4:
         if not picture.alpha_is_coverage:

@@ -283,7 +283,7 @@ def test_bc7_keeps_soft_alpha(bake, tmp_path, kind):
     assert outcome.warnings == []
     file = READERS[kind](tmp_path / f"out.{kind}")
     assert (file.format, file.alpha) == ("BC7_SRGB", "straight")
-    assert np.abs(file.levels[0] - 255 * values).max() < 1.5
+    assert np.abs(file.levels[0] - 255 * values).max() < 2
 
 
 def test_bc1_rgb_leaves_alpha_out(bake, tmp_path, kind):
