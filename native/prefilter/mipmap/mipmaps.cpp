@@ -182,7 +182,7 @@ class Builder {
   void sweep_finer_means(const std::vector<Image>& means, const Progress& progress,
                          const Add& add) const {
     const std::vector<unsigned char> read =
-        options_.filter == MipmapFilter(SurfaceFilter::kUnitSquare)
+        !needs_surface(options_.filter)
             ? std::vector<unsigned char>()
             : looked_up_texels(surfaces_, width_, height_, options_.wrap, progress.part(0.0, 0.1),
                                options_.threads);
@@ -445,11 +445,11 @@ std::vector<Image> coarser_levels(const TexelSource& image,
                                   const MipmapOptions& options) {
   check_channels({nullptr, image.width, image.height, image.channels}, options.image_name);
   check_options(image, surfaces, options);
-  if (options.filter != MipmapFilter(SurfaceFilter::kUnitSquare)) {
-    return Builder(image, surfaces, options).run();
+  if (is_fit(options.filter) && !needs_surface(options.filter)) {
+    const Surface square = unit_square();
+    return Builder(image, {&square}, options).run();
   }
-  const Surface square = unit_square();
-  return Builder(image, {&square}, options).run();
+  return Builder(image, surfaces, options).run();
 }
 
 std::vector<Image> mipmaps(const ImageView& image, const std::vector<const Surface*>& surfaces,
