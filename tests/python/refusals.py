@@ -7,7 +7,9 @@ import pytest
 
 NAN = np.nan
 WRAPS = "is not one of clamp, repeat, border"
-FLOATS = "float32 or float64 is needed"
+NUMBERS = "real numbers are needed"
+TEXELS = "floating-point numbers, uint8 (a 255th each), uint16 (a 65535th each) or bool are needed"
+AXES = "(height, width) or (height, width, channels) is needed"
 THREADS = "a whole number is needed, 0 meaning all processors"
 
 

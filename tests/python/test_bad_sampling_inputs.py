@@ -3,7 +3,7 @@
 import numpy as np
 import prefilter
 import pytest
-from refusals import FLOATS, NAN, THREADS, WRAPS, changed, check_refusal
+from refusals import AXES, NAN, NUMBERS, TEXELS, THREADS, WRAPS, changed, check_refusal
 from scenes import random_image
 
 IMAGE = random_image(0, 16, 16, 3)
@@ -70,8 +70,8 @@ ROWS = [
                 {"levels": [IMAGE, np.zeros((8, 8, 3), np.uint8)]},
                 ["levels: level 1 has 3 channels of uint8", "3 of float32"],
             ),
-            ({"levels": [IMAGE[0]]}, ["levels: level 0: shape (16, 3)"]),
-            ({"levels": [IMAGE.astype(int)]}, ["levels: level 0: dtype int64", FLOATS]),
+            ({"levels": [IMAGE[0, 0]]}, ["levels: level 0: shape (3,)", AXES]),
+            ({"levels": [IMAGE.astype(int)]}, ["levels: level 0: dtype int64", TEXELS]),
             ({"table": "bilinear"}, ["table: 'bilinear'", "a SamplingTable is needed"]),
             ({"table": None}, ["table: None", "or 'trilinear'"]),
             (
@@ -84,7 +84,7 @@ ROWS = [
             ),
             ({"coordinates": np.zeros(2)}, ["coordinates: shape (2,)", "(samples, 2) is needed"]),
             ({"coordinates": np.zeros((3, 3))}, ["coordinates: shape (3, 3)"]),
-            ({"coordinates": np.zeros((3, 2), int)}, ["coordinates: dtype int64", FLOATS]),
+            ({"coordinates": np.zeros((3, 2), bool)}, ["coordinates: dtype bool", NUMBERS]),
             (
                 {"coordinates": changed(np.zeros((3, 2)), (2, 1), NAN)},
                 ["coordinates: found nan in row 2", "finite"],
@@ -113,7 +113,7 @@ ROWS = [
         )
         for arguments, words in (
             ({"coordinates": np.zeros(2)}, ["coordinates: shape (2,)", "(samples, 2) is needed"]),
-            ({"coordinates": np.zeros((3, 2), int)}, ["coordinates: dtype int64", FLOATS]),
+            ({"coordinates": np.zeros((3, 2), bool)}, ["coordinates: dtype bool", NUMBERS]),
             (
                 {"coordinates": changed(np.zeros((3, 2)), (1, 0), np.inf)},
                 ["coordinates: found inf in row 1", "finite numbers are needed"],
@@ -149,7 +149,7 @@ ROWS = [
         (function, arguments, words)
         for function in ("sample_exact", "sample_ewa")
         for arguments, words in (
-            ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
+            ({"image": IMAGE[0, 0]}, ["image: shape (3,)", AXES]),
             ({"image": IMAGE[:, :0]}, ["image: shape (16, 0, 3)", "at least one"]),
             (
                 {"image": changed(IMAGE, (2, 3, 1), NAN)},
@@ -194,8 +194,8 @@ ROWS = [
     *(
         ("resample", arguments, words)
         for arguments, words in (
-            ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
-            ({"image": np.zeros((4, 4, 3), int)}, ["image: dtype int64", FLOATS]),
+            ({"image": IMAGE[0, 0]}, ["image: shape (3,)", AXES]),
+            ({"image": np.zeros((4, 4, 3), int)}, ["image: dtype int64", TEXELS]),
             ({"image": changed(IMAGE, (2, 3, 1), NAN)}, ["image: the texel in row 2, column 3"]),
             ({"transform": np.eye(4)}, ["transform: shape (4, 4)", "(3, 3) or (2, 3) is needed"]),
             ({"transform": "turn"}, ["transform: dtype <U4", "numbers are needed"]),
@@ -221,8 +221,8 @@ ROWS = [
     *(
         ("sampling_levels", arguments, words)
         for arguments, words in (
-            ({"image": IMAGE[0]}, ["image: shape (16, 3)", "(height, width, channels) is needed"]),
-            ({"image": np.zeros((4, 4, 3), int)}, ["image: dtype int64", FLOATS]),
+            ({"image": IMAGE[0, 0]}, ["image: shape (3,)", AXES]),
+            ({"image": np.zeros((4, 4, 3), int)}, ["image: dtype int64", TEXELS]),
             ({"image": IMAGE[:0]}, ["image: shape (0, 16, 3)", "at least one"]),
             ({"image": changed(IMAGE, (2, 3, 1), NAN)}, ["image: the texel in row 2, column 3"]),
             (

@@ -229,7 +229,7 @@ def test_floats_do():
         ({"threads": -1}, "threads: -1"),
         ({"points": np.zeros((0, 3))}, "points: none; at least one"),
         ({"points": np.zeros((4, 2))}, r"points: shape \(4, 2\)"),
-        ({"points": np.zeros((4, 3), int)}, "points: dtype int64"),
+        ({"points": np.zeros((4, 3), bool)}, "points: dtype bool"),
     ],
 )
 def test_what_is_wrong_is_named(options, message):

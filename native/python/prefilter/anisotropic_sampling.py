@@ -7,7 +7,7 @@ import numpy.typing as npt
 from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
 from ._border.arrays import FloatArray, as_threads
-from ._border.samples import as_coordinates, as_jacobians, as_probe_count, as_pyramid
+from ._border.samples import as_coordinates, as_jacobians, as_probe_count, as_pyramid, as_samples
 from .sampling import native_table
 from .sampling_tables import SamplingTable
 
@@ -48,7 +48,7 @@ def sample_anisotropic(
         threads: As for `sample`.
 
     Returns:
-        The samples, float32 (n, channels).
+        The samples, float32 (n, channels), or (n,) of levels (height, width).
 
     Raises:
         ValueError: An argument is out of range, or the levels are known to have another filter.
@@ -56,7 +56,7 @@ def sample_anisotropic(
     """
     pyramid = as_pyramid(levels)
     places = as_coordinates(coordinates)
-    return _native.sample_anisotropic(
+    found = _native.sample_anisotropic(
         pyramid,
         native_table(table, levels),
         places,
@@ -66,3 +66,4 @@ def sample_anisotropic(
         as_progress(progress),
         as_threads(threads),
     )
+    return as_samples(levels, found)

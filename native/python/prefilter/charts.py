@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, as_progress
-from ._border.arrays import as_floats, as_mesh, as_threads
+from ._border.arrays import as_corner_uvs, as_mesh, as_threads
 
 
 def uv_charts(
@@ -26,7 +26,7 @@ def uv_charts(
     Args:
         positions: (vertices, 3).
         triangles: (triangles, 3) integer indices of vertices.
-        uvs: For each map, (triangles, 3, 2): the UVs of the triangles' corners.
+        uvs: For each map, (triangles, 3, 2): the UVs of the triangles' corners; or (vertices, 2).
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 
@@ -40,6 +40,7 @@ def uv_charts(
     """
     points, indices = as_mesh(positions, triangles)
     maps = [
-        as_floats(f"uvs[{i}]", one, (len(indices), 3, 2), np.float32) for i, one in enumerate(uvs)
+        as_corner_uvs(f"uvs[{i}]", one, indices, len(points), np.float32)
+        for i, one in enumerate(uvs)
     ]
     return _native.uv_charts(points, indices, maps, as_progress(progress), as_threads(threads))

@@ -3,7 +3,7 @@
 import numpy.typing as npt
 
 from . import _native
-from ._border.arrays import FloatArray, as_image, as_threads
+from ._border.arrays import FloatArray, as_image, as_threads, in_form_of
 
 
 def to_linear(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
@@ -12,7 +12,8 @@ def to_linear(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
     Negative values are decoded by symmetry. A fourth channel is alpha, and stays as it is.
 
     Args:
-        image: (height, width, channels), display values, usually in [0, 1].
+        image: (height, width, channels) or (height, width), display values, usually in [0, 1].
+            Bytes (uint8) stand for a 255th each, uint16 for a 65535th.
         threads: How many to use; 0 = all processors.
 
     Returns:
@@ -21,9 +22,11 @@ def to_linear(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
     Raises:
         ValueError: The image has another shape or type.
     """
-    return _native.decode_srgb(as_image("image", image), as_threads(threads))
+    made = _native.decode_srgb(as_image("image", image), as_threads(threads))
+    return in_form_of(image, made)
 
 
 def to_srgb(image: npt.ArrayLike, *, threads: int = 0) -> FloatArray:
     """Encodes scene-linear values as sRGB: the inverse of `to_linear`."""
-    return _native.encode_srgb(as_image("image", image), as_threads(threads))
+    made = _native.encode_srgb(as_image("image", image), as_threads(threads))
+    return in_form_of(image, made)

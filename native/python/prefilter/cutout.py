@@ -6,7 +6,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_number, as_progress, as_wrap
-from ._border.arrays import FloatArray, as_image, as_threads
+from ._border.arrays import FloatArray, as_image, as_threads, in_form_of
 from .surface import Surface, as_surfaces
 
 
@@ -34,7 +34,8 @@ def keep_coverage(
 
     Args:
         levels: Level 0 first, as `mipmaps` returns them: (height, width, 4) with alpha as the
-            fourth channel, or (height, width, 1), which is alpha.
+            fourth channel, or (height, width, 1) or (height, width), which is alpha. Bytes (uint8)
+            stand for a 255th each, uint16 for a 65535th.
         surface: One surface, or several that share the image.
         threshold: The alpha that is still shown; above 0, at most 1.
         wrap: As for `mipmaps`.
@@ -61,4 +62,5 @@ def keep_coverage(
         as_progress(progress),
         as_threads(threads),
     )
-    return [images[0].copy(), *kept]
+    made = [images[0].copy(), *kept]
+    return [in_form_of(level, image) for level, image in zip(levels, made, strict=True)]

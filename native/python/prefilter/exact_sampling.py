@@ -4,7 +4,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_name, as_progress, as_wrap
-from ._border.arrays import FloatArray, as_float_image, as_threads, check_texels
+from ._border.arrays import FloatArray, as_image, as_threads, check_texels, in_form_of
 from ._border.samples import as_coordinates, as_jacobians, as_scales
 
 
@@ -25,9 +25,9 @@ def sample_exact(
     sample takes as long as the kernel covers texels, and at most as long as the image has texels.
 
     Args:
-        image: (height, width, channels) of any number, row 0 at v = 0. Bytes (uint8) stand for a
-            255th each. Every channel is filtered as it stands: colors have to be multiplied by
-            their alpha.
+        image: (height, width, channels) of any number, or (height, width), row 0 at v = 0. Bytes
+            (uint8) stand for a 255th each, uint16 for a 65535th. Every channel is filtered as it
+            stands: colors have to be multiplied by their alpha.
         coordinates: (n, 2), u and v of each sample; the image spans 0 to 1 along both.
         scales: (n,), or one number for all: the width of the kernel's unit in texels, at least 0. A
             scale below 1 counts as 1.
@@ -38,16 +38,16 @@ def sample_exact(
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The samples, float32 (n, channels).
+        The samples, float32 (n, channels), or (n,) of an image (height, width).
 
     Raises:
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.
         Cancelled: The progress callback returned False.
     """
-    stored = as_float_image("image", image)
+    stored = as_image("image", image)
     check_texels("image", stored)
     places = as_coordinates(coordinates)
-    return _native.sample_exact(
+    found = _native.sample_exact(
         stored,
         places,
         as_scales(scales, len(places)).reshape(-1),
@@ -56,6 +56,7 @@ def sample_exact(
         as_progress(progress),
         as_threads(threads),
     )
+    return in_form_of(image, found)
 
 
 def sample_ewa(
@@ -84,16 +85,16 @@ def sample_ewa(
         threads: As for `sample_exact`.
 
     Returns:
-        The samples, float32 (n, channels).
+        The samples, float32 (n, channels), or (n,) of an image (height, width).
 
     Raises:
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.
         Cancelled: The progress callback returned False.
     """
-    stored = as_float_image("image", image)
+    stored = as_image("image", image)
     check_texels("image", stored)
     places = as_coordinates(coordinates)
-    return _native.sample_ewa(
+    found = _native.sample_ewa(
         stored,
         places,
         as_jacobians(jacobians, len(places)),
@@ -101,3 +102,4 @@ def sample_ewa(
         as_progress(progress),
         as_threads(threads),
     )
+    return in_form_of(image, found)

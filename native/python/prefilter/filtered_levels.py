@@ -14,7 +14,7 @@ from ._border.arguments import (
     as_name,
     as_wrap,
 )
-from ._border.arrays import as_float_image, as_threads
+from ._border.arrays import as_image, as_threads, in_form_of
 from ._border.channels import in_channel_groups
 
 SAMPLING_FILTERS = tuple(_native.sampling_filters())
@@ -24,7 +24,7 @@ Value = TypeVar("Value", bound=np.generic)
 
 
 class FilteredLevels(list[npt.NDArray[Value]], Generic[Value]):
-    """A list of arrays (height, width, channels), level 0 first.
+    """A list of arrays (height, width, channels) or (height, width), level 0 first.
 
     Attributes:
         filter: The name of the filter that made them; None where it is not known.
@@ -53,8 +53,8 @@ def sampling_levels(
     blur it. Nothing is clipped: kernels with negative lobes leave the range of the image.
 
     Args:
-        image: (height, width, channels) of any number, scene-linear, row 0 at v = 0. Bytes (uint8)
-            stand for a 255th each.
+        image: (height, width, channels) of any number, or (height, width), scene-linear, row 0 at
+            v = 0. Bytes (uint8) stand for a 255th each, uint16 for a 65535th.
         filter: A name of `SAMPLING_FILTERS`.
         wrap: What lies outside of the image: "clamp", "repeat" or "border" (zero), or a pair of
             these for u and v.
@@ -68,10 +68,10 @@ def sampling_levels(
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The levels, float32 (height, width, channels), down to 1 x 1. Each has half the sides of
-        the one before, rounded up: texels nest, and where sides are no powers of two the last ones
-        reach beyond the image. (Those of `mipmaps`, as graphics cards have them, are rounded down;
-        they do not nest, and tables lose by that what they gain.)
+        The levels, float32, with as many axes as the image, down to 1 x 1. Each has half the sides
+        of the one before, rounded up: texels nest, and where sides are no powers of two the last
+        ones reach beyond the image. (Those of `mipmaps`, as graphics cards have them, are rounded
+        down; they do not nest, and tables lose by that what they gain.)
 
     Raises:
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.
@@ -79,7 +79,7 @@ def sampling_levels(
         Cancelled: The progress callback returned False.
     """
     found = in_channel_groups(
-        as_float_image("image", image),
+        as_image("image", image),
         bool(premultiplied),
         lambda part, multiplied, reports: _native.sampling_levels(
             part,
@@ -96,4 +96,4 @@ def sampling_levels(
         level[0] if len(level) == 1 else np.concatenate(level, axis=2)
         for level in zip(*found, strict=True)
     ]
-    return FilteredLevels(joined, filter)
+    return FilteredLevels((in_form_of(image, level) for level in joined), filter)

@@ -1,7 +1,7 @@
 """Mipmaps of a texture on a surface (chapter 7)."""
 
 from collections.abc import Sequence
-from typing import Literal, NamedTuple, overload
+from typing import Any, Literal, NamedTuple, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -19,7 +19,8 @@ from ._border.arguments import (
     as_wrap,
     is_srgb,
 )
-from ._border.arrays import as_bytes, as_image, as_threads
+from ._border.arrays import as_image, as_texels, as_threads, in_form_of
+from .color import to_linear, to_srgb
 from .filtered_levels import FilteredLevels
 from .surface import Surface, as_surfaces
 
@@ -75,7 +76,7 @@ def mipmaps(
     footprint: float = ...,
     progress: ProgressCallback | None = ...,
     threads: int = ...,
-) -> FilteredLevels[np.float32] | FilteredLevels[np.uint8]: ...
+) -> FilteredLevels[np.float32] | FilteredLevels[np.uint16] | FilteredLevels[np.uint8]: ...
 def mipmaps(
     image: npt.ArrayLike,
     surface: Surface | Sequence[Surface] | None = None,
@@ -91,7 +92,7 @@ def mipmaps(
     footprint: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
-) -> FilteredLevels[np.float32] | FilteredLevels[np.uint8]:
+) -> FilteredLevels[np.float32] | FilteredLevels[np.uint16] | FilteredLevels[np.uint8]:
     """The levels of an image's mipmap, each fitted to the surface that uses it.
 
     "pam-bilinear" minimises, level by level, the integral over the surface of the squared
@@ -106,8 +107,8 @@ def mipmaps(
     they are filled from what is around them (push-pull).
 
     Args:
-        image: (height, width, 1 to 4 channels), scene-linear, row 0 at v = 0. Any sides. Bytes
-            (uint8) stand for a 255th each; see `encoding`.
+        image: (height, width, 1 to 4 channels) or (height, width), scene-linear, row 0 at v = 0.
+            Any sides. Bytes (uint8) stand for a 255th each, uint16 for a 65535th; see `encoding`.
         surface: One surface, or several that share the image. Not needed for plain kernels.
         filter: A name of `MIPMAP_FILTERS`.
         wrap: What lookups read outside of the image: "clamp", "repeat" or "border" (zero, and
@@ -123,8 +124,9 @@ def mipmaps(
             then decodes (Cycles on 8-bit sRGB images). The image and the levels are scene-linear in
             both cases, and what the image shows is defined by the reader too. The second is a
             bounded Gauss-Newton fit, started from the first.
-        encoding: Of an image of bytes, and of its levels: with "srgb" its colours are decoded to be
-            filtered, and encoded again. The fourth of four channels is alpha, and linear.
+        encoding: Of an image of uint8 or uint16, and of its levels: with "srgb" its colours are
+            decoded to be filtered, and encoded again. The fourth of four channels is alpha, and
+            linear.
         seam_weight: How much it counts, for "pam-bilinear" and "pam-trilinear", that lookups on the
             two sides of a UV seam agree: the mean square of their difference over a strip one texel
             of the level wide, against the error over the surface. Seams along which the image
@@ -139,8 +141,8 @@ def mipmaps(
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The levels, (height, width, channels), level 0 first; it is a copy of the image. They are
-            float32, or for an image of bytes uint8, in a list that knows its filter.
+        The levels, with as many axes as the image, level 0 first; it is a copy of the image. They
+            are uint8 or uint16 where the image is, else float32, in a list that knows its filter.
         Each has half the sides of the one before, rounded down, never less than 1.
 
     Raises:
@@ -163,18 +165,34 @@ def mipmaps(
         as_progress(progress),
         as_threads(threads),
     )
-    if isinstance(image, np.ndarray) and image.dtype == np.uint8:
-        stored = as_bytes("image", image)
-        byte_levels = _native.coarser_byte_levels(stored, srgb, *arguments)
-        return FilteredLevels([stored.copy(), *byte_levels], filter)
-    if srgb:
+    stored = as_texels("image", image)
+    made: list[npt.NDArray[Any]]
+    if stored.dtype == np.uint8:
+        made = _native.coarser_byte_levels(stored, srgb, *arguments)
+    elif stored.dtype == np.uint16:
+        made = _coarser_word_levels(stored, srgb, arguments, as_threads(threads))
+    elif srgb:
         raise ValueError(
-            "encoding: 'srgb' goes with images of bytes (uint8); decode others with to_linear"
+            "encoding: 'srgb' goes with images of uint8 or uint16; decode others with to_linear"
         )
-    stored = as_image("image", image)
-    float_levels = _native.coarser_levels(stored, *arguments)
+    else:
+        made = _native.coarser_levels(stored, *arguments)
     # Copied once the memory for filtering is free again.
-    return FilteredLevels([stored.copy(), *float_levels], filter)
+    return FilteredLevels([in_form_of(image, level) for level in (stored.copy(), *made)], filter)
+
+
+def _coarser_word_levels(
+    image: npt.NDArray[np.uint16], srgb: bool, arguments: tuple[Any, ...], threads: int
+) -> list[npt.NDArray[np.uint16]]:
+    """Levels of texels that stand for a 65535th each, rounded to the nearest."""
+    floats = as_image("image", image)
+    if srgb:
+        floats = to_linear(floats, threads=threads)
+    levels = _native.coarser_levels(floats, *arguments)
+    if srgb:
+        levels = [to_srgb(level, threads=threads) for level in levels]
+    full = np.float32(np.iinfo(np.uint16).max)
+    return [np.rint(np.clip(level, 0, 1) * full).astype(np.uint16) for level in levels]
 
 
 def mipmap_error(
@@ -246,7 +264,7 @@ def seam_contrast(
     the same position are one, and edges of more than two triangles are none.
 
     Args:
-        levels: Arrays (height, width, channels), of any sizes.
+        levels: Arrays (height, width, channels) or (height, width), of any sizes.
         surface: One surface, or several that share the image.
         wrap: As for `mipmaps`.
         progress: As for `mipmaps`.

@@ -16,7 +16,7 @@ from ._border.arguments import (
     as_progress,
     as_wrap,
 )
-from ._border.arrays import FloatArray, as_image, as_threads, check_shape
+from ._border.arrays import FloatArray, as_array, as_image, as_threads, check_shape, in_form_of
 from .surface import Surface, as_surfaces
 
 
@@ -76,11 +76,12 @@ def normal_mipmaps(
     The convention, OpenGL or DirectX, does not matter: levels have that of the map.
 
     Args:
-        normals: (height, width, 3). Tangent or object space. Lengths count for nothing; a vector
-            that is shorter than 0.02 has no direction, and is taken for (0, 0, 1).
+        normals: (height, width, 3). Tangent or object space. Bytes (uint8) stand for a 255th each,
+            uint16 for a 65535th. Lengths count for nothing; a vector that is shorter than 0.02 has
+            no direction, and is taken for (0, 0, 1).
         surface: As for `mipmaps`.
-        roughness: None, a number, or (height, width, 1) of the size of the normals, as the
-            Principled BSDF takes it; clamped to [0, 1].
+        roughness: None, a number, or (height, width, 1) or (height, width) of the size of the
+            normals, as the Principled BSDF takes it; clamped to [0, 1].
         filter: As for `mipmaps`, for the normals. The means for the roughness are over a texel's
             surface ("pam-box") for the "pam-" filters, and else those of "box" or "box-covered".
         wrap: As for `mipmaps`.
@@ -98,8 +99,9 @@ def normal_mipmaps(
         ValueError: An argument is out of range, or a texel that counts is not finite.
         Cancelled: The progress callback returned False.
     """
+    given = as_array("normals", normals)
+    check_shape("normals", given, ("height", "width", 3))
     image = as_image("normals", normals)
-    check_shape("normals", image, ("height", "width", 3))
     rough = None if roughness is None else _as_roughness(roughness, image.shape[:2])
     made, rougher = _native.normal_mipmaps(
         image,
@@ -114,7 +116,9 @@ def normal_mipmaps(
         as_threads(threads),
     )
     directions = [image.copy(), *made]
-    return directions if rough is None else (directions, [rough.copy(), *rougher])
+    if roughness is None or rough is None:
+        return directions
+    return directions, [in_form_of(roughness, level) for level in (rough.copy(), *rougher)]
 
 
 def _as_roughness(roughness: npt.ArrayLike, size: tuple[int, int]) -> FloatArray:
@@ -123,6 +127,6 @@ def _as_roughness(roughness: npt.ArrayLike, size: tuple[int, int]) -> FloatArray
         if number.dtype.kind not in "fiu" or not 0 <= number <= 1:
             raise ValueError(f"roughness: {roughness!r}; a number in [0, 1] or an image is needed")
         return np.full((*size, 1), number, np.float32)
-    image = as_image("roughness", roughness)
-    check_shape("roughness", image, (*size, 1))
-    return image
+    given = as_array("roughness", roughness)
+    check_shape("roughness", given, size if given.ndim == 2 else (*size, 1))
+    return as_image("roughness", roughness)

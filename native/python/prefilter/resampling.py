@@ -5,7 +5,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_name, as_size, as_wrap
-from ._border.arrays import FloatArray, as_array, as_float_image, as_threads
+from ._border.arrays import FloatArray, as_array, as_image, as_threads, in_form_of
 from ._border.channels import in_channel_groups
 from ._border.samples import as_probe_count
 from .sampling import native_table
@@ -41,8 +41,8 @@ def resample(
     `sample_anisotropic`. It is made for "gaussian", which with `exact` is `sample_ewa`.
 
     Args:
-        image: (height, width, channels) of any number, scene-linear, row 0 at the bottom. Bytes
-            (uint8) stand for a 255th each.
+        image: (height, width, channels) of any number, or (height, width), scene-linear, row 0 at
+            the bottom. Bytes (uint8) stand for a 255th each, uint16 for a 65535th.
         transform: (3, 3), carries (x, y, 1) of the result to (x w, y w, w) of the image, both in
             pixels of their own; pixel i spans [i, i + 1). Or (2, 3): an affine map to (x, y).
             Pixels of the result whose w is not above 0 look beyond the horizon: they are 0 in all
@@ -62,14 +62,14 @@ def resample(
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        A new float32 array, (height, width, channels).
+        A new float32 array, (height, width, channels), or (height, width) for such an image.
 
     Raises:
         ValueError: An argument is out of range, or a pixel is not finite or beyond 1e30.
         MemoryError: The result does not fit into memory.
         Cancelled: The progress callback returned False.
     """
-    stored = as_float_image("image", image)
+    stored = as_image("image", image)
     kernel = as_name("filter", filter)
     if exact and table is not None:
         raise ValueError(f"table: {table!r} with exact=True; None is needed, as no table is used")
@@ -98,7 +98,7 @@ def resample(
         ),
         progress,
     )
-    return found[0] if len(found) == 1 else np.concatenate(found, axis=2)
+    return in_form_of(image, found[0] if len(found) == 1 else np.concatenate(found, axis=2))
 
 
 def _as_homography(transform: npt.ArrayLike) -> npt.NDArray[np.float64]:

@@ -4,7 +4,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_name, as_progress, as_size, as_wrap
-from ._border.arrays import FloatArray, as_image, as_threads
+from ._border.arrays import FloatArray, as_image, as_threads, in_form_of
 
 RESIZE_FILTERS = tuple(_native.resize_filters())
 """All filters of `resize`."""
@@ -42,8 +42,9 @@ def resize(
     size, but for "border" next to its edges.
 
     Args:
-        image: (height, width, 1 to 4 channels), scene-linear, row 0 at the bottom; encoded colours
-            are decoded first (`to_linear`).
+        image: (height, width, 1 to 4 channels) or (height, width), scene-linear, row 0 at the
+            bottom; encoded colours are decoded first (`to_linear`). Bytes (uint8) stand for a 255th
+            each, uint16 for a 65535th.
         width: Of the result, in pixels, 1 to 2^20.
         height: Of the result.
         filter: A name of `RESIZE_FILTERS`.
@@ -60,14 +61,14 @@ def resize(
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        A new float32 array, (height, width, channels).
+        A new float32 array, (height, width, channels), or (height, width) for such an image.
 
     Raises:
         ValueError: An argument is out of range, or a pixel is not finite or beyond 1e30.
         MemoryError: The result does not fit into memory.
         Cancelled: The progress callback returned False.
     """
-    return _native.resize(
+    made = _native.resize(
         as_image("image", image),
         as_size("width", width),
         as_size("height", height),
@@ -78,3 +79,4 @@ def resize(
         as_progress(progress),
         as_threads(threads),
     )
+    return in_form_of(image, made)

@@ -7,7 +7,7 @@ import numpy.typing as npt
 from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
 from ._border.arrays import FloatArray, as_threads
-from ._border.samples import as_coordinates, as_pyramid, as_scales
+from ._border.samples import as_coordinates, as_pyramid, as_samples, as_scales
 from .sampling_tables import SamplingTable
 
 
@@ -33,8 +33,9 @@ def sample(
 
     Args:
         levels: Level 0 first, as `sampling_levels` or `mipmaps` returns them: arrays of shape
-            (height, width, channels), float32, or uint8 that stand for a 255th each. Sides are half
-            of those of the level before, rounded either way.
+            (height, width, channels) or (height, width), floats, uint8 that stand for a 255th each
+            or uint16 for a 65535th. Sides are half of those of the level before, rounded either
+            way.
         table: What to sample with. The levels must be filtered by its filter; those that know
             theirs (`FilteredLevels`) are checked. Or "trilinear".
         coordinates: (n, 2), u and v of each sample; the image spans 0 to 1 along both, row 0 at
@@ -48,7 +49,7 @@ def sample(
         threads: How many to use; 0 = all processors. Results do not depend on it.
 
     Returns:
-        The samples, float32 (n, channels).
+        The samples, float32 (n, channels), or (n,) of levels (height, width).
 
     Raises:
         ValueError: An argument is out of range, or the levels are known to have another filter.
@@ -56,7 +57,7 @@ def sample(
     """
     pyramid = as_pyramid(levels)
     places = as_coordinates(coordinates)
-    return _native.sample(
+    found = _native.sample(
         pyramid,
         native_table(table, levels),
         places,
@@ -65,6 +66,7 @@ def sample(
         as_progress(progress),
         as_threads(threads),
     )
+    return as_samples(levels, found)
 
 
 def native_table(

@@ -522,10 +522,7 @@ def _as_point(name: str, point: Sequence[float]) -> tuple[float, float]:
 
 
 def _as_points(name: str, points: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
-    found = as_array(name, points)
-    if found.dtype.kind in "iu":
-        found = found.astype(np.float64)
-    return as_floats(name, found, shape, np.float64)
+    return as_floats(name, points, shape, np.float64)
 
 
 def _check_finite(name: str, points: np.ndarray) -> None:

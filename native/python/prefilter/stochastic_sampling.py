@@ -9,7 +9,7 @@ import numpy.typing as npt
 from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
 from ._border.arrays import FloatArray, as_floats, as_threads
-from ._border.samples import as_coordinates, as_pyramid, as_scales
+from ._border.samples import as_coordinates, as_pyramid, as_samples, as_scales
 from .sampling import native_table
 from .sampling_tables import SamplingTable
 
@@ -58,15 +58,16 @@ def sample_stochastic(
         threads: As for `sample`.
 
     Returns:
-        The samples, float32 (n, channels).
+        The samples, float32 (n, channels), or (n,) of levels (height, width).
 
     Raises:
         ValueError: An argument is out of range, or the levels are known to have another filter.
         Cancelled: The progress callback returned False.
     """
-    return _native.sample_stochastic(
+    found = _native.sample_stochastic(
         *_arguments(levels, table, coordinates, scales, numbers, wrap, progress, threads)
     )
+    return as_samples(levels, found)
 
 
 def pick_texels(

@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_name, as_progress
-from ._border.arrays import as_floats, as_indices, check_shape
+from ._border.arrays import as_array, as_corner_uvs, as_floats, as_indices, check_shape, is_real
 
 Sharp = tuple[npt.ArrayLike, npt.ArrayLike]
 
@@ -22,8 +22,8 @@ class Surface(_native.Surface):
     Args:
         positions: (vertices, 3), in any unit of length.
         triangles: (triangles, 3) integer indices of vertices.
-        uvs: (triangles, 3, 2) texture coordinates of each triangle's corners; the image spans
-            [0, 1], with v = 0 at row 0.
+        uvs: (triangles, 3, 2) texture coordinates of each triangle's corners, or (vertices, 2) of
+            each vertex; the image spans [0, 1], with v = 0 at row 0.
         weights: Importance, 0 and up: a triangle's area counts times its weight. (vertices,), or
             (triangles,) or (triangles, 1), or (triangles, 3) for its corners; where there are as
             many triangles as vertices, one axis means vertices. A triangle's weight is the mean of
@@ -52,8 +52,7 @@ class Surface(_native.Surface):
     ) -> None:
         points = as_floats("positions", positions, ("vertices", 3), np.float64)
         indices = as_indices("triangles", triangles, ("triangles", 3))
-        corners = as_floats("uvs", uvs, ("triangles", 3, 2), np.float64)
-        check_shape("uvs", corners, (len(indices), 3, 2))
+        corners = as_corner_uvs("uvs", uvs, indices, len(points), np.float64)
         importance, kind = _weights(weights, len(points), len(indices), "triangles", corners=3)
         super().__init__(points, indices, corners, importance, kind)
 
@@ -256,8 +255,8 @@ def _weights(
     """Returns weights and what they belong to: vertices, triangles (or faces), or corners."""
     if weights is None:
         return None, ""
-    found = np.asarray(weights)
-    if found.dtype in (np.float32, np.float64):
+    found = as_array("weights", weights)
+    if is_real(found):
         found = np.ascontiguousarray(found, np.float64)
         if found.shape == (vertices,):
             return found, "vertices"
@@ -269,8 +268,8 @@ def _weights(
     if corners is not None:
         allowed.append(f"({parts}, {corners}) for corners")
     raise ValueError(
-        f"weights: shape {found.shape} of {found.dtype}; float32 or float64 of the shape "
-        f"{', '.join(allowed)} is needed"
+        f"weights: shape {found.shape} of {found.dtype}; real numbers of the shape "
+        f"{', '.join(allowed)} are needed"
     )
 
 

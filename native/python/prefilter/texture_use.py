@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from . import _native
 from ._border.arguments import ProgressCallback, Wrap, as_progress, as_size, as_wrap
-from ._border.arrays import as_image, as_threads
+from ._border.arrays import as_image, as_threads, in_form_of
 from .surface import Surface, as_surfaces
 
 
@@ -63,7 +63,8 @@ def fill_unused(
     texture compressors and readers that filter wider no longer see the background.
 
     Args:
-        image: (height, width, 1 to 4 channels).
+        image: (height, width, 1 to 4 channels) or (height, width). Bytes (uint8) stand for a 255th
+            each, uint16 for a 65535th.
         surface: One surface, or several that share the image.
         wrap: As for `mipmaps`.
         progress: As for `mipmaps`.
@@ -76,13 +77,14 @@ def fill_unused(
         ValueError: An argument is out of range.
         Cancelled: The progress callback returned False.
     """
-    return _native.fill_unused(
+    filled = _native.fill_unused(
         as_image("image", image),
         as_surfaces(surface),
         as_wrap(wrap),
         as_progress(progress),
         as_threads(threads),
     )
+    return in_form_of(image, filled)
 
 
 def fill_transparent(
@@ -98,7 +100,8 @@ def fill_transparent(
 
     Args:
         image: (height, width, 2 to 4 channels), the last of which is straight alpha. Colors where
-            it is 0 or less are not read. Those near alpha count by it.
+            it is 0 or less are not read. Those near alpha count by it. Bytes (uint8) stand for a
+            255th each, uint16 for a 65535th.
         wrap: As for `mipmaps`.
         progress: As for `mipmaps`.
         threads: As for `mipmaps`.

@@ -1,7 +1,7 @@
 """Arrays as the native module takes them, checked once, here at the border."""
 
 from collections.abc import Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -14,7 +14,13 @@ _LARGEST_VALUE = np.float32(1e30)
 
 _MESH_NAMES = ("positions", "triangles")
 
+Value = TypeVar("Value", bound=np.generic)
+
 FloatArray: TypeAlias = npt.NDArray[np.float32]
+
+_IMAGE_TYPES = (
+    "floating-point numbers, uint8 (a 255th each), uint16 (a 65535th each) or bool are needed"
+)
 
 
 def as_floats(
@@ -22,12 +28,12 @@ def as_floats(
 ) -> np.ndarray:
     """The array as a C-contiguous one of `dtype`, not copied where it is one.
 
-    `shape` gives the length of each axis, or a name where any length will do.
-    Raises ValueError where the shape differs or the values are not floating-point numbers.
+    `shape` gives the length of each axis, or a name where any length will do. Integers stand for
+    themselves. Raises ValueError where the shape differs or the values are no real numbers.
     """
     found = as_array(name, array)
-    if found.dtype not in (np.float32, np.float64):
-        raise ValueError(f"{name}: dtype {found.dtype}; float32 or float64 is needed")
+    if not is_real(found):
+        raise ValueError(f"{name}: dtype {found.dtype}; real numbers are needed")
     check_shape(name, found, shape)
     with np.errstate(over="ignore"):  # What is too large becomes infinite, and is refused as that.
         return np.ascontiguousarray(found, dtype)
@@ -36,9 +42,11 @@ def as_floats(
 def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> np.ndarray:
     """The array as C-contiguous int64. Raises ValueError where it holds no integers."""
     found = as_array(name, array)
-    if not np.issubdtype(found.dtype, np.integer):
+    if found.size and found.dtype.kind not in "iu":
         raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
     check_shape(name, found, shape)
+    if found.dtype == np.uint64 and found.size and found.max() > np.iinfo(np.int64).max:
+        raise ValueError(f"{name}: found {found.max()}; 63 bits are the most")
     return np.ascontiguousarray(found, np.int64)
 
 
@@ -47,11 +55,12 @@ def as_mesh(
 ) -> tuple[np.ndarray, np.ndarray]:
     """The arrays of a mesh, C-contiguous, and not copied where they are.
 
-    Positions are float32 or float64, (vertices, 3), and triangles int32 or int64, (triangles, 3).
-    Raises ValueError as `as_floats` and `as_indices` do.
+    Positions become float32 or float64, (vertices, 3), and triangles int32 or int64,
+    (triangles, 3). Raises ValueError as `as_floats` and `as_indices` do.
     """
     points = as_array(names[0], positions)
-    points = as_floats(names[0], points, ("vertices", 3), points.dtype)
+    dtype = np.float32 if points.dtype in (np.float16, np.float32) else np.float64
+    points = as_floats(names[0], points, ("vertices", 3), dtype)
     indices = as_array(names[1], triangles)
     if indices.dtype != np.int32:
         return points, as_indices(names[1], indices, ("triangles", 3))
@@ -78,27 +87,75 @@ def as_labels(name: str, array: npt.ArrayLike, count: int, of: str) -> np.ndarra
     return np.ascontiguousarray(found, np.int32)
 
 
-def as_image(name: str, array: npt.ArrayLike) -> np.ndarray:
-    """A float32 image of shape (height, width, channels)."""
-    image = as_floats(name, array, ("height", "width", "channels"), np.float32)
-    if 0 in image.shape:
-        raise ValueError(f"{name}: shape {image.shape} holds no pixels; at least one is needed")
+def as_corner_uvs(
+    name: str, uvs: npt.ArrayLike, triangles: np.ndarray, vertices: int, dtype: npt.DTypeLike
+) -> np.ndarray:
+    """UVs of the triangles' corners, (triangles, 3, 2), from those or from UVs of the vertices.
+
+    Two axes, (vertices, 2), mean vertices. Indices are not checked. Raises ValueError where the
+    shape is neither, or the values are no real numbers.
+    """
+    found = as_array(name, uvs)
+    corners = (len(triangles), 3, 2)
+    if is_real(found) and found.shape not in (corners, (vertices, 2)):
+        raise ValueError(
+            f"{name}: shape {found.shape}; {corners} for the triangles' corners or "
+            f"{(vertices, 2)} for the vertices is needed"
+        )
+    if found.ndim != 2 or not vertices:
+        return as_floats(name, found, corners, dtype)
+    of_vertices = as_floats(name, found, (vertices, 2), dtype)
+    return np.take(of_vertices, triangles, axis=0, mode="clip")
+
+
+def as_image(name: str, array: npt.ArrayLike) -> FloatArray:
+    """A float32 image of shape (height, width, channels).
+
+    Texels of uint8 stand for a 255th each, those of uint16 for a 65535th; False is 0 and True 1. An
+    image of two axes has one channel; see `in_form_of`. Whole numbers in a list may be 0 and 1
+    alone: what others stand for only the type of an array says. Raises ValueError where the shape
+    or the type is another, or there are no texels.
+    """
+    texels = as_texels(name, array)
+    image: FloatArray = texels
+    if texels.dtype != np.float32:
+        image = np.divide(texels, np.iinfo(texels.dtype).max, dtype=np.float32)
     return image
 
 
-def as_float_image(name: str, array: npt.ArrayLike) -> np.ndarray:
-    """A float32 image of shape (height, width, channels); bytes (uint8) stand for a 255th each."""
-    if isinstance(array, np.ndarray) and array.dtype == np.uint8:
-        return as_bytes(name, array) / np.float32(255)
-    return as_image(name, array)
+def as_texels(name: str, array: npt.ArrayLike) -> npt.NDArray[Any]:
+    """An image as for `as_image`, but texels of uint8 and uint16 as they are stored."""
+    found = as_array(name, array)
+    if found.dtype.kind == "i" and isinstance(array, list | tuple):
+        others = found[(found != 0) & (found != 1)]
+        if len(others):
+            raise ValueError(
+                f"{name}: a list of whole numbers, among them {others[0]}; only 0 and 1 are "
+                "allowed in lists, others in arrays of uint8 or uint16, or written as 1.0"
+            )
+        found = found.astype(np.float32)
+    if found.dtype.kind not in "fb" and found.dtype not in (np.uint8, np.uint16):
+        raise ValueError(f"{name}: dtype {found.dtype}; {_IMAGE_TYPES}")
+    if found.ndim not in (2, 3):
+        raise ValueError(
+            f"{name}: shape {found.shape}; (height, width) or (height, width, channels) is needed"
+        )
+    if 0 in found.shape:
+        raise ValueError(f"{name}: shape {found.shape} holds no pixels; at least one is needed")
+    stored = found.dtype if found.dtype.kind == "u" else np.float32
+    with np.errstate(over="ignore"):  # What is too large becomes infinite, and is refused as that.
+        texels = np.ascontiguousarray(found, stored)
+    return texels[:, :, None] if texels.ndim == 2 else texels
 
 
-def as_bytes(name: str, image: np.ndarray) -> np.ndarray:
-    """An uint8 image of shape (height, width, channels)."""
-    check_shape(name, image, ("height", "width", "channels"))
-    if 0 in image.shape:
-        raise ValueError(f"{name}: shape {image.shape} holds no pixels; at least one is needed")
-    return np.ascontiguousarray(image)
+def in_form_of(array: npt.ArrayLike, made: npt.NDArray[Value]) -> npt.NDArray[Value]:
+    """What was made of an image, (..., channels): without that axis where the image had none."""
+    return made[..., 0] if np.ndim(array) == 2 else made
+
+
+def is_real(array: np.ndarray) -> bool:
+    """Whether its values are real numbers; those of bool are not."""
+    return array.dtype.kind in "iuf"
 
 
 def check_texels(name: str, image: np.ndarray) -> None:
@@ -133,8 +190,9 @@ def as_threads(threads: int) -> int:
 
 
 def as_array(name: str, array: npt.ArrayLike) -> np.ndarray:
-    """Any array. Raises ValueError where it is none."""
+    """Any array, in the byte order of the machine. Raises ValueError where it is none."""
     try:
-        return np.asarray(array)
+        found = np.asarray(array)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: found no array: {error}") from error
+    return found if found.dtype.isnative else found.astype(found.dtype.newbyteorder("="))

@@ -6,11 +6,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .arguments import as_int
-from .arrays import as_array, as_bytes, as_floats, as_image, check_shape
+from .arrays import FloatArray, as_array, as_floats, as_image, as_texels, check_shape, in_form_of
 
 
 def as_pyramid(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
-    """Levels, level 0 first: all of float32 or all of uint8, and all of as many channels."""
+    """Levels, level 0 first: all of float32 or all of uint8, and all of as many channels.
+
+    Others than uint8 become float32.
+    """
     if not isinstance(levels, Sequence) or isinstance(levels, str | bytes):
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
     found = [_as_level(f"levels: level {k}", level) for k, level in enumerate(levels)]
@@ -24,9 +27,13 @@ def as_pyramid(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
 
 
 def _as_level(name: str, level: npt.ArrayLike) -> np.ndarray:
-    if isinstance(level, np.ndarray) and level.dtype == np.uint8:
-        return as_bytes(name, level)
-    return as_image(name, level)
+    texels = as_texels(name, level)
+    return texels if texels.dtype == np.uint8 else as_image(name, texels)
+
+
+def as_samples(levels: Sequence[npt.ArrayLike], found: FloatArray) -> FloatArray:
+    """Samples (n, channels) of levels; (n,) where those have no axis of channels."""
+    return in_form_of(levels[0], found)
 
 
 def as_coordinates(coordinates: npt.ArrayLike) -> npt.NDArray[np.float64]:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import ProgressCallback
-from .._border.arrays import as_bytes, as_image
+from .._border.arrays import as_image, as_texels
 from ..color import to_linear
 
 Codes = tuple[int | None, int | None]
@@ -139,18 +139,21 @@ FORMATS = {
 }
 
 
-def as_levels(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
-    """The levels, all uint8 or all float32; raises ValueError unless each halves the one before."""
+def as_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
+    """The levels, all uint8 or all float32; raises ValueError unless each halves the one before.
+
+    Those of uint16 become floats, decoded where they are sRGB.
+    """
     if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
         found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
         raise ValueError(f"levels: {found}; a list of images, level 0 first, is needed")
     images: list[np.ndarray] = []
     for number, level in enumerate(levels):
         who = f"levels: level {number}"
-        if isinstance(level, np.ndarray) and level.dtype == np.uint8:
-            image = as_bytes(who, level)
-        else:
-            image = as_image(who, level)
+        image = as_texels(who, level)
+        if image.dtype == np.uint16:
+            image = to_linear(image) if srgb else as_image(who, image)
+        elif image.dtype != np.uint8:
             _check_finite(who, image)
         height, width, channels = image.shape
         if channels > 4:

@@ -39,21 +39,22 @@ def write_dds(
 
     Args:
         path: The file; its folder must exist.
-        levels: (height, width, 1 to 4 channels) each, level 0 first, row 0 at v = 0, the bottom
-            (the file holds the top row first); each has half the sides of the one before, rounded
-            down. The last ones may be left out. Either uint8, or floats that are scene-linear.
+        levels: (height, width, 1 to 4 channels) or (height, width) each, level 0 first, row 0 at
+            v = 0, the bottom (the file holds the top row first); each has half the sides of the one
+            before, rounded down. The last ones may be left out. Either uint8 or uint16, which stand
+            for a 255th and a 65535th each, or floats that are scene-linear.
         format: How texels are stored: "r8", "rg8", "rgba8" in bytes, "rgba16f", "rgba32f" in
             floats; in blocks of 4 x 4, "bc1", "bc1-rgb", "bc3", "bc4", "bc5" and "bc7" compressed
             from bytes, and "bc6h" from half floats. "auto" keeps bytes and channels of bytes, and
-            stores floats as "rgba16f". "r8" and "bc4" take the first channel, "rg8" and "bc5" two,
+            stores others as "rgba16f". "r8" and "bc4" take the first channel, "rg8" and "bc5" two,
             "bc1-rgb" and "bc6h" three; in the others alpha is 1 where there is none. Where three or
             four are stored, a single channel is grey. "bc1" knows an alpha of 0 or 1 only: below
             one half, texels become black and transparent. "bc6h" has no negative values: they
             become 0.
-        encoding: How bytes stand for colours: "linear" or "srgb". It holds for levels of bytes and
-            for formats in bytes and blocks: levels of floats are encoded (values beyond [0, 1] are
-            clipped), and formats in floats and "bc6h" get decoded, linear values. The fourth
-            channel is linear always.
+        encoding: How bytes stand for colours: "linear" or "srgb". It holds for levels of uint8 and
+            uint16 and for formats in bytes and blocks: levels of floats are encoded (values beyond
+            [0, 1] are clipped), and formats in floats and "bc6h" get decoded, linear values. The
+            fourth channel is linear always.
         alpha: What the fourth channel of four is: "straight", "premultiplied" (colours are
             multiplied by it) or "independent" (no alpha). Values are stored as they are; the file
             says it, but for "independent" in KTX 2, which has no word for that. Colours that
@@ -121,8 +122,8 @@ def _write(
     threads: int,
     container: Container,
 ) -> None:
-    images = as_levels(levels)
     srgb = is_srgb(encoding)
+    images = as_levels(levels, srgb)
     texel_format = as_format(format, images[0], needs_srgb=srgb)
     srgb = srgb and not texel_format.is_float
     codes = container.codes(texel_format)
