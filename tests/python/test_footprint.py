@@ -78,9 +78,10 @@ class Target:
         return ((4 - variance) * fine + (variance - 1) * own) / 3
 
 
-@pytest.mark.parametrize("wrap", WRAPS)
-@pytest.mark.parametrize("footprint", [0.5, 1.0, 1.5, 2.0])
-@pytest.mark.parametrize("size", [(16, 8), (7, 13)])
+@pytest.mark.parametrize("footprint", [0.5, 1.0, 1.5])
+@pytest.mark.parametrize(
+    ("size", "wrap"), [((16, 8), WRAPS[0]), *(((7, 13), w) for w in WRAPS[1:])]
+)
 def test_levels_fit_the_image_averaged_over_the_footprint(wrap, footprint, size):
     # The square makes sure that every texel is read.
     mesh = join(random_soup(3, 12, -0.4, 1.6), square(area=0.05))
@@ -93,8 +94,10 @@ def test_levels_fit_the_image_averaged_over_the_footprint(wrap, footprint, size)
         assert np.abs(oracle.gradient(level)).max() < TOLERANCE, f"level {k}"
 
 
-@pytest.mark.parametrize("footprint", [0.5, 1.0])
-@pytest.mark.parametrize(("size", "wrap"), [((16, 16), REPEAT), ((7, 12), ("clamp", "border"))])
+@pytest.mark.parametrize(
+    ("footprint", "size", "wrap"),
+    [(1.0, (16, 16), REPEAT), (0.5, (7, 12), ("clamp", "border"))],
+)
 def test_trilinear_levels_fit_what_pixels_cover_at_every_mip_value(footprint, size, wrap):
     mesh = join(random_soup(3, 12, -0.2, 1.2), square(area=0.05))
     image = random_image(1, *size, 2)
