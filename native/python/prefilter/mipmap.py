@@ -40,7 +40,8 @@ class MipmapFilter(NamedTuple):
 
 
 MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters())
-"""All filters: each kernel, each with "-covered" behind, and least squares without a surface, and those over it."""
+"""All filters: each kernel, each with "-covered" behind, least squares, and those over the surface.
+"""
 
 
 @overload
@@ -100,9 +101,10 @@ def mipmaps(
     the bounds. "pam-trilinear" does the same for all levels together and trilinear lookups,
     averaged over all mip values; level 0 is the image and the last level, of 1 x 1 texel, its mean
     over the surface. "ls-bilinear" is "pam-bilinear" for the unit square: for tiled textures, and
-    those that meshes to come will share. "pam-box" takes means over the surface (equation 7.1). The other filters work
-    in texture space: kernels, "box", "tent" or "lanczos3", over all texels, and with "-covered"
-    behind their names over texels that some triangle touches. `MIPMAP_FILTERS` has all names.
+    those that meshes to come will share. "pam-box" takes means over the surface (equation 7.1).
+    The other filters work in texture space: kernels, "box", "tent" or "lanczos3", over all texels,
+    and with "-covered" behind their names over texels that some triangle touches. `MIPMAP_FILTERS`
+    has all names.
     Texels that the surface does not read have no influence on the "pam-" and "-covered" filters;
     they are filled from what is around them (push-pull).
 
