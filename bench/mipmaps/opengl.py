@@ -36,6 +36,7 @@ from bench.report import Report
 
 FOLDER = Path(__file__).resolve().parents[2] / "build/opengl"
 MODELS = ("spot", "DamagedHelmet", "AntiqueCamera", "FlightHelmet", "BoomBox")
+APART = ("ship",)  # Not in the means.
 FILTERS = ("box", "lanczos3", "pam-bilinear", "pam-trilinear")
 BASELINE = "lanczos3"
 SIZES = (200, 64)
@@ -199,8 +200,9 @@ def drawn(views: int, draw: Callable[[float], NDArray]) -> NDArray:
 def references(renderer: Renderer, model: Model, options: argparse.Namespace) -> dict[int, Truth]:
     """Returns the true frames by size, from files if they were drawn before."""
     found = {}
-    source = inspect.getsource(opengl_renderer) + inspect.getsource(true_frame)
-    key = hashlib.sha256((source + repr(angles(options.views))).encode()).hexdigest()[:12]
+    drawing = (true_frame, Renderer, opengl_renderer.in_one_piece)
+    source = "".join(map(inspect.getsource, drawing)) + repr(angles(options.views))
+    key = hashlib.sha256(source.encode()).hexdigest()[:12]
     for size in options.sizes:
         path = options.folder / "references" / f"{model.name}-{size}-{key}.npy"
         if not path.exists():
@@ -302,35 +304,64 @@ def argument(text: str) -> tuple[str, object]:
 def add_tables(
     report: Report, found: dict[str, dict[str, Found]], options: argparse.Namespace
 ) -> None:
-    """Adds a table for each mode, as shares of the baseline, with means over models."""
+    """Adds tables of shares of the baseline: means over models, then by model and size."""
+    for mask in options.masks:
+        shares = {
+            (name, mode): np.array(
+                [
+                    [share(of, name, f"{mask} {size} {mode}") for size in options.sizes]
+                    for model, of in found.items()
+                    if model not in APART
+                ]
+            )
+            for name in options.filters
+            for mode in options.modes
+        }
+        if all(len(array) for array in shares.values()):
+            report.table(
+                f"Means over models and sizes, {MASKS[mask]}; error / flicker, of {BASELINE}'s",
+                ["filter", *options.modes],
+                [
+                    [name, *(pair(shares[name, mode].mean(axis=(0, 1))) for mode in options.modes)]
+                    for name in options.filters
+                ],
+            )
+            report.table(
+                f"The worst model of each, {MASKS[mask]}",
+                ["filter", *options.modes],
+                [
+                    [
+                        name,
+                        *(
+                            pair(shares[name, mode].mean(axis=1).max(axis=0))
+                            for mode in options.modes
+                        ),
+                    ]
+                    for name in options.filters
+                ],
+            )
     others = [name for name in options.filters if name != BASELINE]
     for mask, mode in itertools.product(options.masks, options.modes):
         rows = []
-        for size in options.sizes:
+        for size, (model, of) in itertools.product(options.sizes, found.items()):
             key = f"{mask} {size} {mode}"
-            shares = []
-            for model, by_filter in found.items():
-                base = by_filter[BASELINE]
-                shares.append(
-                    [
-                        share
-                        for name in others
-                        for share in (
-                            by_filter[name].error[key] / base.error[key],
-                            by_filter[name].flicker[key] / base.flicker[key],
-                        )
-                    ]
-                )
-                figures = [f"{base.error[key]:.5f}", f"{base.flicker[key]:.5f}"]
-                rows.append([model, str(size), *figures, *(f"{share:.3f}" for share in shares[-1])])
-            means = [f"{share:.3f}" for share in np.mean(shares, axis=0)]
-            rows.append(["mean", str(size), "", "", *means])
-        shares = [[float(cell) for cell in row[4:]] for row in rows if row[0] == "mean"]
-        rows.append(["mean", "", "", "", *(f"{share:.3f}" for share in np.mean(shares, axis=0))])
-        head = ["model", "pixels", f"{BASELINE}: error", "flicker"]
-        head += [cell for name in others for cell in (f"{name}: error", "flicker")]
+            base = f"{of[BASELINE].error[key]:.5f} / {of[BASELINE].flicker[key]:.5f}"
+            rows.append(
+                [model, str(size), base, *(pair(np.array(share(of, name, key))) for name in others)]
+            )
         title = f"{mode}: {MODES[mode].about}; {MASKS[mask]}; shares of {BASELINE}"
-        report.table(title, head, rows)
+        report.table(title, ["model", "pixels", BASELINE, *others], rows)
+
+
+def share(by_filter: dict[str, Found], name: str, key: str) -> tuple[float, float]:
+    """Returns error and flicker of a filter as shares of the baseline's."""
+    base, other = by_filter[BASELINE], by_filter[name]
+    return other.error[key] / base.error[key], other.flicker[key] / base.flicker[key]
+
+
+def pair(shares: NDArray) -> str:
+    """Returns both as text."""
+    return f"{shares[0]:.3f} / {shares[1]:.3f}"
 
 
 if __name__ == "__main__":

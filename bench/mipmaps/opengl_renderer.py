@@ -148,7 +148,7 @@ class Model:
 
 
 class Renderer:
-    """Draws a model, centred, by a perspective camera that looks down on it a little."""
+    """Draws a model, with its textured part centred, in perspective from a little above."""
 
     def __init__(self, model: Model) -> None:
         """Sends the triangles to OpenGL."""
@@ -156,8 +156,10 @@ class Renderer:
         self.context.enable(moderngl.DEPTH_TEST)
         self._model = model
         self._buffers = {}
-        centre = (model.corners.min(axis=(0, 1)) + model.corners.max(axis=(0, 1))) / 2
-        self._radius = np.linalg.norm(model.corners - centre, axis=2).max()
+        textured = model.corners[model.used != UNTEXTURED]
+        centre = (textured.min(axis=(0, 1)) + textured.max(axis=(0, 1))) / 2
+        self._radius = np.linalg.norm(textured - centre, axis=2).max()
+        self._reach = np.linalg.norm(model.corners - centre, axis=2).max()
         charts = np.broadcast_to(model.charts()[:, None, None], (len(model.used), 3, 1))
         for image in np.unique(model.used):
             of_image = model.used == image
@@ -242,7 +244,7 @@ class Renderer:
         view[:3, :3] = [[1, 0, 0], [0, s, c], [0, -c, s]]
         distance = self._radius / np.sin(HALF_FIELD_OF_VIEW)
         view[2, 3] = -distance
-        near, far = distance - self._radius, distance + self._radius
+        near, far = max(distance - self._reach, 0.1 * self._radius), distance + self._reach
         f = 1 / np.tan(HALF_FIELD_OF_VIEW)
         depth = [(near + far) / (near - far), 2 * near * far / (near - far)]
         project = np.array([[f, 0, 0, 0], [0, f, 0, 0], [0, 0, *depth], [0, 0, -1, 0]])
@@ -268,4 +270,5 @@ def in_one_piece(places: Texels, factor: int) -> NDArray[np.bool_]:
 def averaged(pixels: Texels, factor: int) -> Texels:
     """Returns the means of squares of pixels."""
     size = len(pixels) // factor
-    return pixels.reshape(size, factor, size, factor, -1).mean(axis=(1, 3), dtype=np.float32)
+    rows = pixels.reshape(size, factor, -1).sum(axis=1)
+    return rows.reshape(size, size, factor, -1).sum(axis=2) / np.float32(factor**2)
