@@ -244,12 +244,17 @@ def measure(
     baked_in = time.monotonic() - began
     error, flicker = {}, {}
     for size in options.sizes:
+        exact: dict[int, Texels] = {}  # By the samples of the mode.
         for name in options.modes:
             mode = MODES[name]
             if filter_ == EXACT:
                 result = opengl_renderer.exact(REFERENCE // mode.samples)
                 mode = Mode("", samples=mode.samples, filters=opengl_renderer.FULL, result=result)
-            frames = drawn(options.views, partial(shown, renderer, textures, size, mode))
+            frames = exact.get(mode.samples) if filter_ == EXACT else None
+            if frames is None:
+                frames = drawn(options.views, partial(shown, renderer, textures, size, mode))
+            if filter_ == EXACT:
+                exact[mode.samples] = frames
             for mask in MASKS:
                 error[f"{mask} {size} {name}"] = truth[size].error(frames, mask)
                 flicker[f"{mask} {size} {name}"] = truth[size].flicker(frames, mask)
