@@ -272,9 +272,15 @@ class Bake:
         if target is not None:
             levels[0] = linear
             if engines.is_for_engines(target):
-                threads = self._settings.threads
                 self._staged += engines.stage(
-                    target, picture, levels, stored, texture_format, check, threads=threads
+                    target,
+                    picture,
+                    levels,
+                    stored,
+                    texture_format,
+                    check,
+                    supercompression=self._settings.supercompression,
+                    threads=self._settings.threads,
                 )
             else:
                 self._staged.append(
@@ -413,6 +419,10 @@ def reads_encoded(picture: Picture) -> bool:
 
 def roughness_format(settings: Settings, picture: Picture) -> str:
     """Returns the format of the roughness file: that of the normal map, unless channels lack."""
+    if settings.texture_format in {"eac-r11", "eac-rg11"}:
+        if settings.roughness_channel == "all":
+            return "eac-r11"
+        return "etc2-rgba" if picture.stored.shape[2] == 4 else "etc2-rgb"
     if settings.texture_format not in {"bc4", "bc5"}:
         return settings.texture_format
     if settings.roughness_channel == "all":

@@ -158,6 +158,37 @@ TEXTURE_FORMATS = {
     "bc7": Choice(
         "BC7", "Compressed color and alpha, a byte a texel; closer to the image than BC1 and BC3"
     ),
+    # These need KTX 2.
+    "etc2-rgb": Choice(
+        "ETC2 RGB", "Phones, also old ones: color without alpha, half a byte a texel"
+    ),
+    "etc2-rgba": Choice("ETC2 RGBA", "Phones, also old ones: color and alpha, a byte a texel"),
+    "eac-r11": Choice(
+        "EAC R11", "Phones, also old ones: red channel, half a byte a texel: masks, roughness"
+    ),
+    "eac-rg11": Choice(
+        "EAC RG11", "Phones, also old ones: red and green channels, a byte a texel: normal maps"
+    ),
+    "astc-4x4": Choice(
+        "ASTC 4x4", "Phones and tablets: color and alpha, a byte a texel; for normal maps, too"
+    ),
+    "astc-6x6": Choice("ASTC 6x6", "Phones and tablets: color and alpha, 0.44 bytes a texel"),
+    "astc-8x8": Choice(
+        "ASTC 8x8", "Phones and tablets: color and alpha, a quarter of a byte a texel"
+    ),
+    "astc-4x4-hdr": Choice(
+        "ASTC 4x4 HDR", "Scene-linear, a byte a texel, for phones that have ASTC HDR"
+    ),
+    "astc-6x6-hdr": Choice(
+        "ASTC 6x6 HDR", "Scene-linear, 0.44 bytes a texel, for phones that have ASTC HDR"
+    ),
+    "uastc": Choice(
+        "UASTC", "Web: a byte a texel, turned into what the device has when it is loaded"
+    ),
+}
+SUPERCOMPRESSIONS = {
+    "none": Choice("None", "Readers upload the levels as they are"),
+    "zstd": Choice("Zstandard", "Smaller files without loss; readers decompress the levels first"),
 }
 ROUGHNESS_CHANNELS = {
     "all": Choice("All", "The whole image holds roughness"),
@@ -318,6 +349,13 @@ class Settings:
         "Texel format of DDS and KTX 2 files",
         TEXTURE_FORMATS,
         metavar="FORMAT",
+    )
+    supercompression: str = one_of(
+        "none",
+        "Supercompression",
+        "Compression of KTX 2 files on top of the texture format",
+        SUPERCOMPRESSIONS,
+        metavar="SCHEME",
     )
     threads: int = threads()
 

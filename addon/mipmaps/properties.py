@@ -71,6 +71,8 @@ class BakeProperties:
         paths = (self.filepath, self.roughness_filepath if has_roughness else "")
         if any(engines.has_formats(path) for path in paths):
             layout.prop(self, "texture_format")
+        if any(engines.has_supercompression(path) for path in paths):
+            layout.prop(self, "supercompression")
 
 
 class PREFILTER_PG_bake(BakeProperties, bpy.types.PropertyGroup):

@@ -7,6 +7,7 @@
   alpha.
 """
 
+import re
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -26,9 +27,16 @@ _WRITERS: dict[str, Callable[..., None]] = {
     ".dds": prefilter.write_dds,
     ".ktx2": prefilter.write_ktx2,
 }
-_FLOATS = frozenset({"rgba16f", "rgba32f", "bc6h"})
-_THREE_CHANNELS = frozenset({"bc1-rgb", "bc6h"})
-_FEW_CHANNELS = frozenset({"bc4", "bc5"})
+_NO_NEGATIVES = frozenset({"bc6h", "astc-4x4-hdr", "astc-6x6-hdr"})
+_FLOATS = frozenset({"rgba16f", "rgba32f"}) | _NO_NEGATIVES
+_THREE_CHANNELS = frozenset({"bc1-rgb", "bc6h", "etc2-rgb"})
+_FEW_CHANNELS = {
+    "bc4": "the red channel",
+    "bc5": "the red and green channels",
+    "eac-r11": "the red channel",
+    "eac-rg11": "the red and green channels",
+}
+_KTX2_ONLY = ("etc2", "eac", "astc", "uastc")
 _BLOCK_SIDE = 4
 _CUT_OUT_ALPHA = 0.5
 
@@ -41,6 +49,11 @@ def is_for_engines(target: Path) -> bool:
 def has_formats(path: str) -> bool:
     """Tells whether there is a choice of formats for such a file."""
     return path.lower().endswith(tuple(_WRITERS))
+
+
+def has_supercompression(path: str) -> bool:
+    """Tells whether such a file may be supercompressed."""
+    return path.lower().endswith(".ktx2")
 
 
 def checked(
@@ -66,7 +79,9 @@ def checked(
     if target is None or not has_formats(target.name):
         return []
     chosen = _chosen(picture, texture_format)
-    who = f"texture format: {chosen.upper().replace('-', ' ')}"
+    who = f"texture format: {_label(chosen)}"
+    if chosen.startswith(_KTX2_ONLY) and not has_supercompression(target.name):
+        raise ValueError(f"{who} needs a .ktx2 file; found '{target.name}'")
     if chosen in _FEW_CHANNELS and not picture.is_float and picture.encoding is not Encoding.NONE:
         raise ValueError(
             f"{who} has no sRGB form, and image '{picture.name}' has the color space "
@@ -77,10 +92,10 @@ def checked(
     if chosen.startswith("bc") and (width % _BLOCK_SIDE or height % _BLOCK_SIDE):
         told.append(f"{who} of {width} x {height} texels: Direct3D needs sides divisible by 4")
     if chosen in _FEW_CHANNELS and not may_lose_channels:
-        kept = {"bc4": "the red channel", "bc5": "the red and green channels"}[chosen]
-        told.append(f"{who} keeps {kept} of '{picture.name}' only")
-    elif chosen in _THREE_CHANNELS and channels == 4 and not may_lose_channels:
-        told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
+        told.append(f"{who} keeps {_FEW_CHANNELS[chosen]} of '{picture.name}' only")
+    elif chosen in _THREE_CHANNELS and channels == 4:
+        if picture.alpha_is_coverage or not may_lose_channels:
+            told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
     elif chosen == "bc1" and channels == 4:
         if not picture.alpha_is_coverage:
             if not may_lose_channels:
@@ -89,13 +104,14 @@ def checked(
             told.append(f"{who} knows no alpha of '{picture.name}' between 0 and 1")
         elif threshold != _CUT_OUT_ALPHA:
             told.append(f"{who} cuts alpha at {_CUT_OUT_ALPHA}, not at {threshold:g}")
-    if chosen == "bc6h" and not picture.is_float:
-        told.append(f"{who} is for float images; BC7 is closer to '{picture.name}'")
+    if chosen in _NO_NEGATIVES and not picture.is_float:
+        closer = "BC7" if chosen == "bc6h" else "ASTC"
+        told.append(f"{who} is for float images; {closer} is closer to '{picture.name}'")
     if picture.is_float:
         finite = picture.stored[np.isfinite(picture.stored)]
         if chosen not in _FLOATS and finite.size and (finite.min() < 0 or finite.max() > 1):
             told.append(f"{who} clips values of '{picture.name}' beyond 0 and 1")
-        elif chosen == "bc6h" and finite.size and finite.min() < 0:
+        elif chosen in _NO_NEGATIVES and finite.size and finite.min() < 0:
             told.append(f"{who} clips values of '{picture.name}' below 0")
     return told
 
@@ -108,6 +124,7 @@ def stage(
     texture_format: str,
     check: openimageio.Check,
     *,
+    supercompression: str = "none",
     threads: int = 0,
 ) -> list[StagedFile]:
     """Writes a DDS or KTX 2 file, or a PNG for each level, beside the target.
@@ -120,6 +137,7 @@ def stage(
         texture_format: A format of `prefilter.write_dds`; for "auto" floats or bytes, as the
             picture has them. Not for PNG.
         check: Called now and then.
+        supercompression: As of `prefilter.write_ktx2`; other files have none.
         threads: How many threads to use; 0 for all.
 
     Raises:
@@ -150,6 +168,8 @@ def stage(
         progress=go_on,
         threads=threads,
     )
+    if has_supercompression(target.name):
+        write = partial(write, supercompression=supercompression)
     return [staging.stage_with(target, write)]
 
 
@@ -192,6 +212,11 @@ def _png_pixels(picture: Picture, level: FloatArray) -> np.ndarray[Any, Any]:
         level = prefilter.to_srgb(level)
     values = np.clip(np.nan_to_num(level[::-1], nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
     return np.rint(values * 65535).astype(np.uint16)
+
+
+def _label(texture_format: str) -> str:
+    """Returns a format as users see it: "ASTC 6x6 HDR" of "astc-6x6-hdr"."""
+    return re.sub(r"(\d)X(\d)", r"\1x\2", texture_format.upper().replace("-", " "))
 
 
 def _chosen(picture: Picture, texture_format: str) -> str:

@@ -40,6 +40,17 @@ def test_the_texture_format_shows_where_it_matters(filepath, is_shown):
     assert ("texture_format" in layout.shown) == is_shown
 
 
+@pytest.mark.parametrize(
+    ("filepath", "is_shown"), [("", False), ("//a.dds", False), ("b.KTX2", True)]
+)
+def test_supercompression_shows_for_ktx2(filepath, is_shown):
+    settings = bpy.context.scene.prefilter_bake
+    settings.filepath = filepath
+    layout = Layout()
+    settings.draw_in(layout)
+    assert ("supercompression" in layout.shown) == is_shown
+
+
 def test_the_texture_format_of_a_roughness_file():
     settings = bpy.context.scene.prefilter_bake
     settings.content = "normal"
