@@ -18,40 +18,40 @@ namespace {
 constexpr int kBlocksAtOnce = 64;
 
 template <class Channel>
-EncoderMaker<Channel> encoder_maker(const BlockOptions& options);
+std::unique_ptr<BlockEncoder<Channel>> make_encoder(const BlockOptions& options);
 
 template <>
-EncoderMaker<std::uint8_t> encoder_maker<std::uint8_t>(const BlockOptions& options) {
+std::unique_ptr<ByteEncoder> make_encoder<std::uint8_t>(const BlockOptions& options) {
   switch (options.format) {
     case BlockFormat::kBc7:
-      return make_bc7enc_encoder;
+      return make_bc7enc_encoder();
     case BlockFormat::kEtc2Rgb:
     case BlockFormat::kEtc2Rgba:
     case BlockFormat::kEacR11:
     case BlockFormat::kEacRg11:
-      return [options] { return make_etcpak_encoder(options); };
+      return make_etcpak_encoder(options);
     case BlockFormat::kAstc4x4:
     case BlockFormat::kAstc6x6:
     case BlockFormat::kAstc8x8:
-      return astc_encoders<std::uint8_t>(options);
+      return make_astc_encoder(options);
     case BlockFormat::kUastc:
-      return [options] { return make_uastc_encoder(options); };
+      return make_uastc_encoder();
     default:
-      return [options] { return make_squish_encoder(options); };
+      return make_squish_encoder(options);
   }
 }
 
 template <>
-EncoderMaker<HalfBits> encoder_maker<HalfBits>(const BlockOptions& options) {
-  if (options.format == BlockFormat::kBc6h) return make_cvtt_encoder;
-  return astc_encoders<HalfBits>(options);
+std::unique_ptr<HalfEncoder> make_encoder<HalfBits>(const BlockOptions& options) {
+  if (options.format == BlockFormat::kBc6h) return make_cvtt_encoder();
+  return make_astc_hdr_encoder(options);
 }
 
 /// Encoders that are not in use. There are no more than threads.
 template <class Channel>
 class EncoderPool {
  public:
-  explicit EncoderPool(const BlockOptions& options) : make_(encoder_maker<Channel>(options)) {}
+  explicit EncoderPool(const BlockOptions& options) : options_(options) {}
 
   std::unique_ptr<BlockEncoder<Channel>> take() {
     {
@@ -62,7 +62,7 @@ class EncoderPool {
         return encoder;
       }
     }
-    return make_();
+    return make_encoder<Channel>(options_);
   }
 
   void put_back(std::unique_ptr<BlockEncoder<Channel>> encoder) {
@@ -71,7 +71,7 @@ class EncoderPool {
   }
 
  private:
-  const EncoderMaker<Channel> make_;
+  const BlockOptions options_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<BlockEncoder<Channel>>> free_;
 };

@@ -1,7 +1,6 @@
 // The encoders, a library each.
 #pragma once
 
-#include <functional>
 #include <memory>
 
 #include "prefilter/blocks/block_encoder.h"
@@ -21,14 +20,12 @@ std::unique_ptr<HalfEncoder> make_cvtt_encoder();
 std::unique_ptr<ByteEncoder> make_etcpak_encoder(const BlockOptions& options);
 
 /// Basis Universal: kUastc.
-std::unique_ptr<ByteEncoder> make_uastc_encoder(const BlockOptions& options);
+std::unique_ptr<ByteEncoder> make_uastc_encoder();
 
-template <class Channel>
-using EncoderMaker = std::function<std::unique_ptr<BlockEncoder<Channel>>()>;
+/// astcenc: kAstc4x4, kAstc6x6, kAstc8x8. Its tables take 2 to 10 ms to make.
+std::unique_ptr<ByteEncoder> make_astc_encoder(const BlockOptions& options);
 
-/// astcenc: kAstc4x4, kAstc6x6, kAstc8x8 of bytes; kAstc4x4Hdr, kAstc6x6Hdr of half floats. The
-/// encoders of one maker share its tables, which take 2 to 10 ms to make.
-template <class Channel>
-EncoderMaker<Channel> astc_encoders(const BlockOptions& options);
+/// astcenc: kAstc4x4Hdr, kAstc6x6Hdr.
+std::unique_ptr<HalfEncoder> make_astc_hdr_encoder(const BlockOptions& options);
 
 }  // namespace prefilter

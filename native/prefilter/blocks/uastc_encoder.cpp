@@ -40,8 +40,6 @@ class UastcEncoder final : public ByteEncoder {
 
 }  // namespace
 
-std::unique_ptr<ByteEncoder> make_uastc_encoder(const BlockOptions&) {
-  return std::make_unique<UastcEncoder>();
-}
+std::unique_ptr<ByteEncoder> make_uastc_encoder() { return std::make_unique<UastcEncoder>(); }
 
 }  // namespace prefilter
