@@ -2,9 +2,10 @@
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import bpy
 import numpy as np
@@ -104,18 +105,34 @@ def image_surfaces(
     """
     objects = list(objects)
     options = options or SurfaceOptions()
-    found = _search(objects, image, depsgraph, options, all_faces=False)
+    found = _search_one(objects, image, depsgraph, options, all_faces=False)
     if all_faces and not found.surfaces and not found.problems:
-        found = _search(objects, image, depsgraph, options, all_faces=True)
+        found = _search_one(objects, image, depsgraph, options, all_faces=True)
     if options.importance and found.surfaces and not found.weighted:
         names = ", ".join(f"'{name}'" for name in dict.fromkeys(found.objects))
         raise ValueError(
             f"importance: found no vertex group or attribute named '{options.importance}' "
             f"on {names}"
         )
-    found.extensions = [name for name, _ in Counter(found.extensions).most_common()]
-    found.problems = list(dict.fromkeys(found.problems))
     return found
+
+
+def surfaces_of_images(
+    users: Mapping[bpy.types.Image, Iterable[bpy.types.Object]],
+    depsgraph: bpy.types.Depsgraph,
+) -> dict[bpy.types.Image, ImageSurfaces | ValueError]:
+    """Does what `image_surfaces` does for each image, but reads every mesh once for all of them.
+
+    Images that sample the same faces in the same way share their surfaces.
+
+    Args:
+        users: The objects of each image.
+        depsgraph: The evaluated dependency graph.
+
+    Returns:
+        What each image is mapped on, or why that cannot be read.
+    """
+    return _search(users, depsgraph, SurfaceOptions(), all_faces=False)
 
 
 def materials_of_objects(objects: Iterable[bpy.types.Object]) -> list[bpy.types.Material]:
@@ -140,7 +157,7 @@ def may_show_image(obj: bpy.types.Object) -> bool:
     return obj.type == "MESH" or obj.instance_type == "COLLECTION"
 
 
-def _search(
+def _search_one(
     objects: list[bpy.types.Object],
     image: bpy.types.Image,
     depsgraph: bpy.types.Depsgraph,
@@ -148,22 +165,41 @@ def _search(
     *,
     all_faces: bool,
 ) -> ImageSurfaces:
-    reader = _Reader(image, depsgraph, options, all_faces=all_faces)
-    instances = _Instances(objects, depsgraph)
+    found = _search({image: objects}, depsgraph, options, all_faces=all_faces)[image]
+    if isinstance(found, ValueError):
+        raise found
+    return found
+
+
+def _search(
+    users: Mapping[bpy.types.Image, Iterable[bpy.types.Object]],
+    depsgraph: bpy.types.Depsgraph,
+    options: SurfaceOptions,
+    *,
+    all_faces: bool,
+) -> dict[bpy.types.Image, ImageSurfaces | ValueError]:
+    reader = _Reader(users, depsgraph, options, all_faces=all_faces)
+    images: dict[bpy.types.Object, list[bpy.types.Image]] = defaultdict(list)
+    for image, objects in users.items():
+        for obj in objects:
+            images[obj].append(image)
+    instances = _Instances(list(images), depsgraph)
     # Blender makes the objects of instanced geometry up while it walks over them. They go first:
     # reading the others may evaluate the graph anew.
     for pointer, instance in _walk(depsgraph) if instances.of_geometry else ():
-        matrices = instances.of_geometry.pop((instance.parent.original, pointer), None)
+        parent = instance.parent.original
+        matrices = instances.of_geometry.pop((parent, pointer), None)
         if matrices is not None:
             mesh = instance.object.data
-            reader.read_mesh(instance.parent.name, mesh, list(mesh.materials), matrices)
-    for obj in objects:
+            materials = list(mesh.materials)
+            reader.read_mesh(instance.parent.name, mesh, materials, matrices, images[parent])
+    for obj, chosen in images.items():
         if obj.type == "MESH" and (not obj.is_instancer or obj.show_instancer_for_viewport):
             matrix = np.array(obj.evaluated_get(depsgraph).matrix_world)
-            reader.read_object(obj, [matrix], may_be_empty=obj in instances.parents)
-    for obj, matrices in instances.of_objects:
-        reader.read_object(obj, matrices)
-    return reader.found
+            reader.read_object(obj, [matrix], chosen, may_be_empty=obj in instances.parents)
+    for parent, obj, matrices in instances.of_objects:
+        reader.read_object(obj, matrices, images[parent])
+    return reader.result()
 
 
 def _walk(
@@ -184,7 +220,7 @@ class _Instances:
 
     Attributes:
         of_geometry: Matrices by instancer and address of a mesh that no object has.
-        of_objects: Objects, and the matrices that one instancer puts them at.
+        of_objects: Instancers, objects, and the matrices that the one puts the other at.
         parents: The instancers.
     """
 
@@ -203,30 +239,42 @@ class _Instances:
                 self.of_geometry[parent, pointer].append(matrix)
             else:
                 grouped[parent, source].append(matrix)
-        self.of_objects = [(source, matrices) for (_, source), matrices in grouped.items()]
+        self.of_objects = [(*pair, matrices) for pair, matrices in grouped.items()]
         self.parents = {parent for parent, _ in (*self.of_geometry, *grouped)}
 
 
 class _Reader:
-    """Reads meshes into surfaces."""
+    """Reads meshes into surfaces, for several images at once."""
 
     def __init__(
         self,
-        image: bpy.types.Image,
+        images: Iterable[bpy.types.Image],
         depsgraph: bpy.types.Depsgraph,
         options: SurfaceOptions,
         *,
         all_faces: bool,
     ) -> None:
         """Starts with nothing found."""
-        self.found = ImageSurfaces()
-        self._image = image
+        self._found = {image: ImageSurfaces() for image in images}
+        self._failures: dict[bpy.types.Image, ValueError] = {}
         self._depsgraph = depsgraph
         self._options = options
         self._all_faces = all_faces
 
+    def result(self) -> dict[bpy.types.Image, ImageSurfaces | ValueError]:
+        """Returns what was found for each image, or why its surfaces cannot be read."""
+        for found in self._found.values():
+            found.extensions = [name for name, _ in Counter(found.extensions).most_common()]
+            found.problems = list(dict.fromkeys(found.problems))
+        return {**self._found, **self._failures}
+
     def read_object(
-        self, obj: bpy.types.Object, matrices: Matrices, *, may_be_empty: bool = False
+        self,
+        obj: bpy.types.Object,
+        matrices: Matrices,
+        images: list[bpy.types.Image],
+        *,
+        may_be_empty: bool = False,
     ) -> None:
         """Reads an object's evaluated mesh, or the limit surface of the mesh below its modifier."""
         modifier = None
@@ -235,8 +283,10 @@ class _Reader:
         if modifier is not None:
             evaluated = obj.evaluated_get(self._depsgraph)
             materials = _materials(evaluated, evaluated.data)
-            if not self._all_faces and not self._slots_by_use(materials):
-                return
+            if not self._all_faces:
+                images = [image for image in images if self._slots_by_use(image, materials)]
+                if not images:
+                    return
             with (
                 subdivision.without(obj, modifier, self._depsgraph) as is_without,
                 _evaluated(obj, self._depsgraph) as (evaluated, mesh),
@@ -244,12 +294,12 @@ class _Reader:
                 rules = subdivision.Rules.of(modifier, mesh) if is_without else None
                 if rules is not None:
                     materials = _materials(evaluated, mesh)
-                    self.read_mesh(obj.name, mesh, materials, matrices, evaluated, rules)
+                    self.read_mesh(obj.name, mesh, materials, matrices, images, evaluated, rules)
                     return
         with _evaluated(obj, self._depsgraph) as (evaluated, mesh):
             materials = _materials(evaluated, mesh)
             if len(mesh.polygons) > 0 or not may_be_empty:
-                self.read_mesh(obj.name, mesh, materials, matrices, evaluated)
+                self.read_mesh(obj.name, mesh, materials, matrices, images, evaluated)
 
     def read_mesh(
         self,
@@ -257,6 +307,7 @@ class _Reader:
         mesh: bpy.types.Mesh,
         materials: list[bpy.types.Material | None],
         matrices: Matrices,
+        images: list[bpy.types.Image],
         evaluated: bpy.types.Object | None = None,
         rules: subdivision.Rules | None = None,
     ) -> None:
@@ -267,63 +318,124 @@ class _Reader:
             mesh: The mesh.
             materials: The material of each slot.
             matrices: Where it is, once or several times.
+            images: Those that it may use.
             evaluated: Its object, if it has one, for vertex groups.
             rules: How to make a limit surface of it, if at all.
         """
-        slots = self._slots_by_use(materials)
-        if not slots and self._all_faces:
-            slots = {_WHOLE_IMAGE: set(range(max(1, len(materials))))}
-        if not slots:
-            return
-        if len(mesh.polygons) == 0:
-            self.found.problems.append(f"object '{name}' has no faces")
-            return
-        weights = None
-        if self._options.importance:
-            weights = attributes.read_weights(name, mesh, evaluated, self._options.importance)
-            if weights is None:
-                self.found.problems.append(
-                    f"object '{name}' has no vertex group or attribute "
-                    f"'{self._options.importance}'; all of it counts as 1"
-                )
-            else:
-                self.found.weighted = True
-        face_materials = attributes.face_materials(mesh, len(materials))
-        for use, indices in slots.items():
-            layer = _uv_layer(mesh, use.uv_map)
-            if layer is None:
-                wanted = f"named '{use.uv_map}'" if use.uv_map else "at all"
-                self.found.problems.append(f"object '{name}' has no UV map {wanted}")
+        one = _OneMesh(name, mesh, len(materials), matrices, evaluated, rules, self._options)
+        for image in images:
+            if image in self._failures:
                 continue
-            chosen = np.isin(face_materials, list(indices))
-            if not chosen.any():
-                continue
-            uvs = _mapped_uvs(layer, use)
-            try:
-                if rules is None:
-                    surface = _plain_surface(mesh, chosen, uvs, weights)
-                else:
-                    surface = subdivision.limit_surface(mesh, chosen, uvs, weights, rules)
-                self.found.surfaces.append(surface.placed(matrices))
-            except ValueError as error:
-                # What the library calls weights has another name here.
-                message = re.sub("^weights", f"importance '{self._options.importance}'", str(error))
-                raise ValueError(f"object '{name}': {message}") from error
-            self.found.extensions.append(use.extension)
-            self.found.objects.append(name)
-            self.found.uses.append(use)
+            slots = self._slots_by_use(image, materials)
+            if not slots and self._all_faces:
+                slots = {_WHOLE_IMAGE: set(range(max(1, len(materials))))}
+            if slots:
+                try:
+                    one.add(slots, self._found[image])
+                except ValueError as error:
+                    self._failures[image] = error
 
-    def _slots_by_use(self, materials: list[bpy.types.Material | None]) -> dict[ImageUse, set[int]]:
-        """Returns the material slots that sample the image, by the way in which they do."""
+    def _slots_by_use(
+        self, image: bpy.types.Image, materials: list[bpy.types.Material | None]
+    ) -> dict[ImageUse, set[int]]:
+        """Returns the material slots that sample an image, by the way in which they do."""
         slots: dict[ImageUse, set[int]] = {}
         for index, material in enumerate(materials):
             if material is None:
                 continue
-            uses, warnings = image_uses(material.original, self._image)
-            self.found.problems.extend(warnings)
+            uses, warnings = image_uses(material.original, image)
+            self._found[image].problems.extend(warnings)
             for use in uses:
                 slots.setdefault(use, set()).add(index)
         return slots
+
+
+class _OneMesh:
+    """A mesh that is alive now, and the surfaces that were made of it."""
+
+    def __init__(
+        self,
+        name: str,
+        mesh: bpy.types.Mesh,
+        slot_count: int,
+        matrices: Matrices,
+        evaluated: bpy.types.Object | None,
+        rules: subdivision.Rules | None,
+        options: SurfaceOptions,
+    ) -> None:
+        """Keeps what `_Reader.read_mesh` gets."""
+        self._name = name
+        self._mesh = mesh
+        self._slot_count = slot_count
+        self._matrices = matrices
+        self._evaluated = evaluated
+        self._rules = rules
+        self._options = options
+        self._surfaces: dict[object, prefilter.Surface | None] = {}
+
+    def add(self, slots: dict[ImageUse, set[int]], found: ImageSurfaces) -> None:
+        """Adds the surfaces of the faces that sample an image.
+
+        Raises:
+            ValueError: The geometry is bad.
+        """
+        if len(self._mesh.polygons) == 0:
+            found.problems.append(f"object '{self._name}' has no faces")
+            return
+        if self._options.importance:
+            if self._weights is None:
+                found.problems.append(
+                    f"object '{self._name}' has no vertex group or attribute "
+                    f"'{self._options.importance}'; all of it counts as 1"
+                )
+            else:
+                found.weighted = True
+        for use, indices in slots.items():
+            layer = _uv_layer(self._mesh, use.uv_map)
+            if layer is None:
+                wanted = f"named '{use.uv_map}'" if use.uv_map else "at all"
+                found.problems.append(f"object '{self._name}' has no UV map {wanted}")
+                continue
+            key = layer.name, use.transform, frozenset(indices)
+            if key not in self._surfaces:
+                self._surfaces[key] = self._surface(layer, use, indices)
+            surface = self._surfaces[key]
+            if surface is not None:
+                found.surfaces.append(surface)
+                found.extensions.append(use.extension)
+                found.objects.append(self._name)
+                found.uses.append(use)
+
+    @cached_property
+    def _weights(self) -> attributes.Weights | None:
+        importance = self._options.importance
+        if not importance:
+            return None
+        return attributes.read_weights(self._name, self._mesh, self._evaluated, importance)
+
+    @cached_property
+    def _face_materials(self) -> NDArray[np.int32]:
+        return attributes.face_materials(self._mesh, self._slot_count)
+
+    def _surface(
+        self, layer: bpy.types.MeshUVLoopLayer, use: ImageUse, indices: set[int]
+    ) -> prefilter.Surface | None:
+        chosen = np.isin(self._face_materials, list(indices))
+        if not chosen.any():
+            return None
+        uvs = _mapped_uvs(layer, use)
+        try:
+            if self._rules is None:
+                surface = _plain_surface(self._mesh, chosen, uvs, self._weights)
+            else:
+                surface = subdivision.limit_surface(
+                    self._mesh, chosen, uvs, self._weights, self._rules
+                )
+            return surface.placed(self._matrices)
+        except ValueError as error:
+            # What the library calls weights has another name here.
+            message = re.sub("^weights", f"importance '{self._options.importance}'", str(error))
+            raise ValueError(f"object '{self._name}': {message}") from error
 
 
 @contextmanager

@@ -21,7 +21,7 @@ from ..core.alpha import associated, at_most_opaque, unassociated
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
-from . import cache_states
+from . import cache_states, udim
 from .contents import automatic_bounds
 
 NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
@@ -106,17 +106,29 @@ class CacheBake:
         """
         if not tx.is_available():
             raise OSError(NEEDED)
-        worn: list[_Worn] = []
         warnings: list[str] = []
         notes: list[str] = []
-        for image, seen in rendered.viewers(scene, depsgraph).items():
+        viewers = rendered.viewers(scene, depsgraph)
+        files: dict[bpy.types.Image, dict[int | None, tx.Source]] = {}
+        for image in viewers:
             try:
                 if unpack and image.packed_files:
                     names = listed(path.name for path in packed.unpack(image))
                     notes.append(f"image '{image.name}': unpacked into {names}")
-                worn.extend(_read_image(image, seen, depsgraph, warnings))
+                files[image] = cache_states.sources(image)
             except (ValueError, OSError) as error:
                 warnings.append(str(error))
+        users = {image: viewers[image].objects for image in files if not viewers[image].others}
+        found = meshes.surfaces_of_images(users, depsgraph)
+        parts = udim.Parts()
+        worn: list[_Worn] = []
+        for image, sources in files.items():
+            surfaces = found.get(image, meshes.ImageSurfaces())
+            if isinstance(surfaces, ValueError):
+                warnings.append(str(surfaces))
+                continue
+            warnings.extend(f"image '{image.name}': {problem}" for problem in surfaces.problems)
+            worn.extend(_on_surfaces(image.name, sources, viewers[image], surfaces, parts))
         if not worn:
             raise ValueError(_nothing(scene, warnings))
         made = cls(scene.name, worn, list(dict.fromkeys(warnings)), threads)
@@ -214,33 +226,27 @@ class CacheBake:
         return text
 
 
-def _read_image(
-    image: bpy.types.Image,
+def _on_surfaces(
+    name: str,
+    sources: dict[int | None, tx.Source],
     seen: rendered.Viewers,
-    depsgraph: bpy.types.Depsgraph,
-    warnings: list[str],
+    found: meshes.ImageSurfaces,
+    parts: udim.Parts,
 ) -> list[_Worn]:
     """Returns the files of an image with their surfaces; an image with an obstacle has none."""
-    files = cache_states.sources(image)
     obstacle = "; ".join(seen.others)
-    found = meshes.ImageSurfaces()
-    if not obstacle:
-        found = meshes.image_surfaces(seen.objects, image, depsgraph)
-        warnings.extend(f"image '{image.name}': {problem}" for problem in found.problems)
     worn = []
-    for number, source in files.items():
+    for number, source in sources.items():
         one = _Worn(
-            [image.name if number is None else f"{image.name}, tile {number}"],
+            [name if number is None else f"{name}, tile {number}"],
             source,
             extensions=list(found.extensions),
             obstacle=obstacle,
             alpha_covers=seen.alpha_covers,
         )
-        for surface, name in zip(found.surfaces, found.objects, strict=True):
-            part = surface if number is None else surface.udim_tile(number)
-            if part is not None:
-                one.surfaces.append(part)
-                one.objects.append(name)
+        inside = found if number is None else parts.inside(found, number)
+        one.surfaces.extend(inside.surfaces)
+        one.objects.extend(inside.objects)
         if not obstacle and not sum(part.area for part in one.surfaces):
             one.obstacle = "no surface of the scene lies in it"
         worn.append(one)
