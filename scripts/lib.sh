@@ -25,10 +25,11 @@ basisu_dir=$cache_dir/basisu-1.16
 zstd_dir=$cache_dir/zstd-1.5.7
 bc7enc_dir=$cache_dir/bc7enc-0.6.1
 cvtt_dir=$cache_dir/cvtt-3.6
+libdeflate_dir=$cache_dir/libdeflate-1.23
 # Libraries that are linked in, and where their sources are.
 linked_sources=("OPENSUBDIV=$opensubdiv_dir" "SQUISH=$squish_dir" "CLIPPER2=$clipper2_dir" "ETCPAK=$etcpak_dir"
   "ASTCENC=$astcenc_dir" "BASISU=$basisu_dir" "ZSTD=$zstd_dir" "BC7ENC=$bc7enc_dir"
-  "CVTT=$cvtt_dir")
+  "CVTT=$cvtt_dir" "LIBDEFLATE=$libdeflate_dir")
 source_options=("${linked_sources[@]/#/PREFILTER_}")
 source_options=("${source_options[@]/=/_SOURCE=}")
 # Each list has its own: checkouts may differ.
@@ -350,6 +351,19 @@ ensure_cvtt() {
   rm -rf "$source"
 }
 
+# libdeflate is linked in likewise.
+ensure_libdeflate() {
+  [[ ! -e $libdeflate_dir ]] || return 0
+  local version=${libdeflate_dir##*-} source=$libdeflate_dir.source
+  fetch_source "$libdeflate_dir" "libd/libdeflate/libdeflate_$version.orig.tar.gz" \
+    1ab18349b9fb0ce8a0ca4116bded725be7dcbfa709e19f6f983d99df1fb8b25f
+  mkdir "$source/kept"
+  mv "$source/libdeflate-$version/COPYING" "$source/kept/LICENSE.txt"
+  mv "$source/libdeflate-$version"/{lib,common_defs.h,libdeflate.h} "$source/kept/"
+  mv "$source/kept" "$libdeflate_dir"
+  rm -rf "$source"
+}
+
 # ensure_wheels: fetches what the package imports and the extension brings along: pure Python, as its authors publish it.
 ensure_wheels() {
   [[ ! -e $wheels_dir ]] || return 0
@@ -447,6 +461,7 @@ setup_host() {
   ensure_zstd
   ensure_bc7enc
   ensure_cvtt
+  ensure_libdeflate
   ensure_wheels
   unlock "$cache_dir/.lock"
 }

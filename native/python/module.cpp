@@ -12,6 +12,7 @@ namespace py = pybind11;
 namespace prefilter::python {
 
 void bind_blocks(py::module_& m);
+void bind_exr(py::module_& m);
 void bind_color(py::module_& m);
 void bind_contour(py::module_& m);
 void bind_cutout(py::module_& m);
@@ -134,6 +135,7 @@ PYBIND11_MODULE(_native, m) {
     }
   });
   prefilter::python::bind_blocks(m);
+  prefilter::python::bind_exr(m);
   prefilter::python::bind_color(m);
   prefilter::python::bind_cutout(m);
   prefilter::python::bind_normals(m);

@@ -34,6 +34,7 @@ from .stochastic_sampling import PickedTexels, pick_texels, sample_stochastic
 from .surface import Surface
 from .svg import SvgDrawing, read_svg
 from .texture_use import fill_transparent, fill_unused, texel_weights
+from .textures.exr import write_exr
 from .textures.texture_files import write_dds, write_ktx2
 from .version import VERSION
 from .voxel import MAX_DEPTH, Octree, TracedContour, cube_around, voxelize
@@ -104,5 +105,6 @@ __all__ = [
     "uv_charts",
     "voxelize",
     "write_dds",
+    "write_exr",
     "write_ktx2",
 ]

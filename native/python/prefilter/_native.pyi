@@ -327,6 +327,20 @@ def compress_blocks(
     threads: int,
 ) -> bytes: ...
 def supercompress(data: bytes, progress: ProgressCallback | None) -> bytes: ...
+
+EXR_TILE_SIDE: int
+
+def exr_tiles(
+    level: npt.NDArray[np.float32] | npt.NDArray[np.uint8],
+    srgb: bool,
+    number: int,
+    first_row: int,
+    row_count: int,
+    half: bool,
+    has_alpha: bool,
+    multiplies: bool,
+    threads: int,
+) -> tuple[npt.NDArray[np.uint8], list[int]]: ...
 def to_bytes(image: npt.NDArray[np.float32], srgb: bool, threads: int) -> npt.NDArray[np.uint8]: ...
 def keep_coverage(
     levels: Sequence[npt.NDArray[np.float32]],

@@ -1,0 +1,198 @@
+"""Mip-mapped OpenEXR files, for renderers and their texture systems."""
+
+import os
+import struct
+from collections.abc import Mapping, Sequence
+from typing import BinaryIO
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, as_progress, is_srgb
+from .._border.arrays import as_bytes, as_image, as_threads
+from .._border.output import as_target, replace_file
+from .texel_formats import as_alpha
+
+_TILE_SIDE = _native.EXR_TILE_SIDE
+_TILES_A_STEP = 512
+_FORMATS = {"half": 1, "float": 2}
+_CHANNELS = {1: "Y", 2: "AY", 3: "BGR", 4: "ABGR"}
+_MAGIC, _VERSION, _TILED, _LONG_NAMES = 20000630, 2, 0x200, 0x400
+_LONGEST_SHORT_NAME, _LONGEST_NAME = 31, 255
+_ZIP = 3
+_MIPMAP_ROUNDED_DOWN = 1
+
+
+def write_exr(
+    path: str | os.PathLike[str],
+    levels: Sequence[npt.ArrayLike],
+    *,
+    format: str = "half",
+    encoding: str = "linear",
+    alpha: str = "straight",
+    attributes: Mapping[str, str] | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> None:
+    """Writes levels as a tiled, mip-mapped OpenEXR file, as renderers read textures.
+
+    Texels are scene-linear, with associated alpha, in tiles of 64 x 64, compressed without loss
+    (ZIP). The file is written beside `path` and renamed, so a failure leaves what was there. Hardly
+    any memory is needed besides the levels.
+
+    Args:
+        path: The file; its folder must exist.
+        levels: (height, width, 1 to 4 channels) each, level 0 first, down to 1 x 1, row 0 at v = 0,
+            the bottom; each has half the sides of the one before, rounded down. Floats are
+            scene-linear. Some may be uint8, such as an image of bytes whose other levels are
+            floats.
+        format: "half" for 16-bit floats, "float" for 32-bit ones. Values beyond the range of halves
+            are clipped to it.
+        encoding: How bytes stand for colours: "linear" or "srgb". Alpha is linear always.
+        alpha: What the last of two or four channels is: "straight" (colours are multiplied by it),
+            "premultiplied" (they are already) or "independent" (no alpha). In halves alpha is
+            clipped to [0, 1].
+        attributes: Texts for the file's header, such as {"wrapmodes": "periodic,periodic"}.
+        progress: Called with the fraction done, in [0, 1]; may return False to stop.
+        threads: How many to use; 0 = all processors. The file does not depend on it.
+
+    Raises:
+        ValueError: An argument is out of range.
+        OSError: The file cannot be written.
+        Cancelled: The progress callback returned False.
+    """
+    images = _as_all_levels(levels)
+    if format not in _FORMATS:
+        raise ValueError(f"format: {format!r} is not one of {', '.join(_FORMATS)}")
+    srgb = is_srgb(encoding)
+    has_alpha = as_alpha(alpha) != "independent" and images[0].shape[2] in (2, 4)
+    texts = _as_texts(attributes)
+    target = as_target(path)
+    report = as_progress(progress)
+    count = as_threads(threads)
+    columns_and_rows = [
+        tuple(-(-side // _TILE_SIDE) for side in image.shape[1::-1]) for image in images
+    ]
+    tile_count = sum(columns * rows for columns, rows in columns_and_rows)
+
+    def write_parts(file: BinaryIO) -> None:
+        file.write(_header(images[0], format, texts))
+        table = file.tell()
+        file.write(bytes(8 * tile_count))
+        sizes: list[int] = []
+        for number, (image, (columns, rows)) in enumerate(
+            zip(images, columns_and_rows, strict=True)
+        ):
+            step = max(1, _TILES_A_STEP // columns)
+            for first in range(0, rows, step):
+                if report is not None and report(len(sizes) / tile_count) is False:
+                    raise _native.Cancelled("cancelled")
+                chunks, chunk_sizes = _native.exr_tiles(
+                    image,
+                    srgb,
+                    number,
+                    first,
+                    min(step, rows - first),
+                    format == "half",
+                    has_alpha,
+                    has_alpha and alpha == "straight",
+                    count,
+                )
+                file.write(chunks)
+                sizes.extend(chunk_sizes)
+        offsets = table + 8 * tile_count + np.concatenate([[0], np.cumsum(sizes[:-1])])
+        file.seek(table)
+        file.write(offsets.astype("<u8").tobytes())
+
+    replace_file(target, write_parts)
+    if report is not None:
+        report(1.0)
+
+
+def _as_all_levels(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
+    """The levels, each uint8 or float32; raises ValueError unless they go down to 1 x 1."""
+    if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
+        found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
+        raise ValueError(f"levels: {found}; a list of images, level 0 first, is needed")
+    images: list[np.ndarray] = []
+    for number, level in enumerate(levels):
+        who = f"levels: level {number}"
+        is_bytes = isinstance(level, np.ndarray) and level.dtype == np.uint8
+        image = as_bytes(who, level) if is_bytes else as_image(who, level)
+        if image.shape[2] not in _CHANNELS:
+            raise ValueError(f"{who} has {image.shape[2]} channels; 1 to 4 are allowed")
+        if images:
+            height, width, channels = images[-1].shape
+            if (height, width) == (1, 1):
+                raise ValueError(f"{who} is one too many: the one before has 1 x 1 texel")
+            wanted = max(1, height // 2), max(1, width // 2), channels
+            if image.shape != wanted:
+                raise ValueError(
+                    f"{who} has the shape {image.shape}; half of the one before, rounded down, "
+                    f"is {wanted}"
+                )
+        images.append(image)
+    if images[-1].shape[:2] != (1, 1):
+        height, width, _ = images[-1].shape
+        raise ValueError(
+            f"levels: the last of {len(images)} has {width} x {height} texels; all levels down to "
+            f"1 x 1 are needed"
+        )
+    return images
+
+
+def _as_texts(attributes: Mapping[str, str] | None) -> dict[bytes, bytes]:
+    if attributes is None:
+        return {}
+    if not isinstance(attributes, Mapping):
+        raise ValueError(
+            f"attributes: a {type(attributes).__name__}; names and texts are needed, in a dict"
+        )
+    texts = {}
+    for name, text in attributes.items():
+        if not isinstance(name, str) or not isinstance(text, str):
+            raise ValueError(f"attributes: found {name!r}: {text!r}; a name and a text are needed")
+        encoded = name.encode()
+        if not 0 < len(encoded) <= _LONGEST_NAME or b"\0" in encoded:
+            raise ValueError(
+                f"attributes: the name {name!r}; 1 to {_LONGEST_NAME} bytes, none of them zero, "
+                f"are needed"
+            )
+        if encoded in _REQUIRED:
+            raise ValueError(f"attributes: the name {name!r} is one that OpenEXR files have anyway")
+        texts[encoded] = text.encode()
+    return texts
+
+
+_REQUIRED = frozenset(
+    b"channels compression dataWindow displayWindow lineOrder pixelAspectRatio screenWindowCenter "
+    b"screenWindowWidth tiles".split()
+)
+
+
+def _header(image: np.ndarray, format: str, texts: Mapping[bytes, bytes]) -> bytes:
+    height, width, channels = image.shape
+    names = _CHANNELS[channels].encode()
+    listed = b"".join(
+        struct.pack("<2siB3xii", bytes([name, 0]), _FORMATS[format], 0, 1, 1) for name in names
+    )
+    window = struct.pack("<4i", 0, 0, width - 1, height - 1)
+    found = {
+        b"channels": (b"chlist", listed + b"\0"),
+        b"compression": (b"compression", bytes([_ZIP])),
+        b"dataWindow": (b"box2i", window),
+        b"displayWindow": (b"box2i", window),
+        b"lineOrder": (b"lineOrder", b"\0"),
+        b"pixelAspectRatio": (b"float", struct.pack("<f", 1.0)),
+        b"screenWindowCenter": (b"v2f", struct.pack("<2f", 0.0, 0.0)),
+        b"screenWindowWidth": (b"float", struct.pack("<f", 1.0)),
+        b"tiles": (b"tiledesc", struct.pack("<2IB", _TILE_SIDE, _TILE_SIDE, _MIPMAP_ROUNDED_DOWN)),
+        **{name: (b"string", text) for name, text in texts.items()},
+    }
+    is_long = any(len(name) > _LONGEST_SHORT_NAME for name in found)
+    flags = _VERSION | _TILED | (_LONG_NAMES if is_long else 0)
+    parts = [struct.pack("<2i", _MAGIC, flags)]
+    for name, (kind, value) in sorted(found.items()):
+        parts += [name, b"\0", kind, b"\0", struct.pack("<i", len(value)), value]
+    return b"".join([*parts, b"\0"])
