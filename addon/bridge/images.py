@@ -19,6 +19,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
@@ -30,6 +31,8 @@ from . import openimageio
 from .openimageio import Check
 
 FloatArray = NDArray[np.float32]
+Texels = NDArray[Any]
+"""Of floats or of bytes."""
 
 _KIND_OF_SOURCE = {
     "TILED": "a UDIM (tiled) image",
@@ -43,6 +46,7 @@ _KIND_OF_TYPE = {
     "COMPOSITING": "a compositor result",
 }
 _INDEPENDENT = frozenset({"CHANNEL_PACKED", "NONE"})
+_VALUES_A_BAND = 1 << 20
 _LINEAR_REC709_NAMES = frozenset({"Linear", "Linear Rec.709"})
 
 
@@ -61,11 +65,11 @@ class Picture:
     Attributes:
         name: The datablock's name.
         full_name: The name, and the file that the datablock is linked from.
-        stored: (height, width, 3 or 4) values as Blender keeps them, row 0 at the bottom. An alpha
-            that is 1 everywhere is left out.
+        texels: (height, width, 3 or 4) values as Blender keeps them, floats or bytes, row 0 at the
+            bottom. An alpha that is 1 everywhere is left out.
         is_float: Whether the datablock holds floats instead of bytes.
         is_integer: Whether the values come from integers, of bytes or of a file of more bits.
-        encoding: How `stored` relates to scene-linear values.
+        encoding: How `texels` relate to scene-linear values.
         colorspace: The name of the datablock's colour space.
         is_data: Whether the colour space says that the values are no colours.
         alpha_mode: The datablock's alpha mode.
@@ -76,7 +80,7 @@ class Picture:
 
     name: str
     full_name: str
-    stored: FloatArray
+    texels: Texels
     is_float: bool
     is_integer: bool
     encoding: Encoding
@@ -88,10 +92,23 @@ class Picture:
     covers: bool = False
 
     @property
+    def shape(self) -> tuple[int, int, int]:
+        """Height, width and number of channels."""
+        height, width, channels = self.texels.shape
+        return height, width, channels
+
+    @property
+    def stored(self) -> FloatArray:
+        """The texels as floats, as Blender gives them out; made anew of bytes."""
+        if self.texels.dtype == np.uint8:
+            return _looked_up(self.texels, _BYTE_VALUES, _BYTE_VALUES)
+        return self.texels
+
+    @property
     def alpha_is_coverage(self) -> bool:
         """Whether there is an alpha channel that says how much of a texel is covered."""
         known = self.covers or self.alpha_mode not in _INDEPENDENT
-        return self.stored.shape[2] == 4 and known and not self.is_data
+        return self.shape[2] == 4 and known and not self.is_data
 
     @property
     def alpha_is_straight(self) -> bool:
@@ -148,15 +165,17 @@ def read(image: bpy.types.Image) -> Picture:
         raise ValueError(f"image '{image.name}': {_why_empty(image)}")
     pixels = np.empty(count, np.float32)
     image.pixels.foreach_get(pixels)
-    stored = pixels.reshape(height, width, count // (width * height))
-    if stored.shape[2] == 4 and np.all(stored[..., 3] == 1.0):
-        stored = np.ascontiguousarray(stored[..., :3])
+    channels = count // (width * height)
+    texels = pixels if image.is_float else _as_bytes(pixels)
+    if channels == 4 and np.all(texels[3::4] == (1 if image.is_float else 255)):
+        texels = _without_fourth(texels)
+        channels = 3
     space = image.colorspace_settings
     linear_space = scene_linear_name()
     return Picture(
         name=image.name,
         full_name=image.name_full,
-        stored=stored,
+        texels=texels.reshape(height, width, channels),
         is_float=image.is_float,
         is_integer=not image.is_float or _has_integer_file(image),
         encoding=_encoding(image, linear_space),
@@ -166,6 +185,52 @@ def read(image: bpy.types.Image) -> Picture:
         linear_space=linear_space,
         ocio_config=_ocio_config(),
     )
+
+
+# Blender's own way from bytes to floats.
+_BYTE_VALUES = np.arange(256, dtype=np.float32) * np.float32(1 / 255)
+_DECODED_BYTES = prefilter.to_linear(_BYTE_VALUES[:, None, None])[:, 0, 0]
+
+
+# A large image leaves no memory for a second one of floats: in both of these a band is copied, and
+# written to memory that was read before.
+
+
+def _as_bytes(pixels: FloatArray) -> NDArray[np.uint8]:
+    """Returns what bytes were, of one axis, in the memory of the floats, which is cut down."""
+    count = len(pixels)
+    narrow = pixels.view(np.uint8)
+    for start in range(0, count, _VALUES_A_BAND):
+        band = pixels[start : start + _VALUES_A_BAND] * np.float32(255)
+        narrow[start : start + len(band)] = np.rint(band, out=band)
+    del narrow
+    pixels.resize(-(-count // 4), refcheck=False)
+    return pixels.view(np.uint8)[:count]
+
+
+def _without_fourth(texels: Texels) -> Texels:
+    """Returns texels of one axis without the fourth of their channels, in the same memory."""
+    count = len(texels) // 4
+    for start in range(0, count, _VALUES_A_BAND):
+        end = min(start + _VALUES_A_BAND, count)
+        band = texels[4 * start : 4 * end].reshape(-1, 4)[:, :3].ravel()
+        texels[3 * start : 3 * end] = band
+    return texels[: 3 * count]
+
+
+def _looked_up(
+    texels: NDArray[np.uint8], colors: FloatArray, alphas: FloatArray, check: Check = lambda: None
+) -> FloatArray:
+    """Returns the values that bytes stand for, by two tables."""
+    values = np.empty(texels.shape, np.float32)
+    rows = max(1, _VALUES_A_BAND // (texels.shape[1] * texels.shape[2]))
+    for start in range(0, len(texels), rows):
+        check()
+        band = slice(start, start + rows)
+        values[band] = colors[texels[band]]
+        if texels.shape[2] == 4:
+            values[band, :, 3] = alphas[texels[band, :, 3]]
+    return values
 
 
 def _has_integer_file(image: bpy.types.Image) -> bool:
@@ -183,12 +248,13 @@ def _has_integer_file(image: bpy.types.Image) -> bool:
 
 def with_coverage(picture: Picture) -> Picture:
     """Returns the picture with an alpha of 1, unless it has one or its channels are independent."""
-    height, width, channels = picture.stored.shape
+    height, width, channels = picture.shape
     if channels == 4 or picture.is_data or picture.alpha_mode in _INDEPENDENT:
         return picture
-    stored = np.ones((height, width, 4), np.float32)
-    stored[..., :3] = picture.stored
-    return replace(picture, stored=stored)
+    full = 255 if picture.texels.dtype == np.uint8 else 1
+    texels = np.full((height, width, 4), full, picture.texels.dtype)
+    texels[..., :3] = picture.texels
+    return replace(picture, texels=texels)
 
 
 def check_untiled(image: bpy.types.Image) -> None:
@@ -304,7 +370,26 @@ def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:
         ValueError: The colour space cannot be decoded.
         OSError: It needs OpenImageIO's Python module, which is missing.
     """
+    texels = picture.texels
+    if texels.dtype == np.uint8 and picture.encoding is Encoding.SRGB:
+        return _looked_up(texels, _DECODED_BYTES, _BYTE_VALUES, check)
     return _convert(picture, picture.stored, check, decode=True)
+
+
+def light_or_bytes(picture: Picture, check: Check = lambda: None) -> tuple[Texels, str]:
+    """Returns what `prefilter` takes for the picture, and its `encoding`: bytes where it can.
+
+    Args:
+        picture: The picture.
+        check: As for `scene_linear`.
+
+    Raises:
+        ValueError: As `scene_linear`.
+        OSError: As `scene_linear`.
+    """
+    if picture.texels.dtype == np.uint8 and picture.encoding is not Encoding.OCIO:
+        return picture.texels, "srgb" if picture.encoding is Encoding.SRGB else "linear"
+    return scene_linear(picture, check), "linear"
 
 
 def encoded(picture: Picture, linear: FloatArray, check: Check = lambda: None) -> FloatArray:

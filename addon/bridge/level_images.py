@@ -64,7 +64,7 @@ def stage_levels(picture: Picture, levels: Sequence[FloatArray]) -> StagedLevels
 
     Args:
         picture: Level 0.
-        levels: Levels 1, 2, ... in the encoding of `picture.stored`.
+        levels: Levels 1, 2, ... in the encoding of `picture.texels`.
 
     Raises:
         OSError: A level cannot be made; no image is left behind.

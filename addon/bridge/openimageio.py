@@ -120,26 +120,23 @@ def write_picture(
 
 def write_texture(
     path: Path,
-    levels: Sequence[FloatArray],
+    levels: Sequence[NDArray[Any]],
     *,
-    file_format: str,
     pixel_type: str,
     color_space: str,
     wrap_modes: str,
     has_alpha: bool,
     check: Check,
 ) -> None:
-    """Writes levels, rows from the top, as a tiled mip-mapped texture.
+    """Writes levels, rows from the top, as a tiled mip-mapped TIFF file.
 
-    The levels go through OpenImageIO's own texture maker, which takes the images of all levels. Its
-    plain writer never finishes a mip-mapped OpenEXR file from Python: such a file is completed when
-    the writer is destroyed, and the Python object does not own it.
+    The levels go through OpenImageIO's own texture maker, which takes the images of all levels, so
+    that a file is what renderers know.
 
     Args:
         path: The file; replaced where it exists. A failure may leave a part of it.
-        levels: (h, w, c) arrays from the full size down to 1 x 1.
-        file_format: "openexr" or "tiff".
-        pixel_type: "uint8", "half" or "float".
+        levels: (h, w, c) arrays of floats, or bytes, from the full size down to 1 x 1.
+        pixel_type: "uint8" or "float".
         color_space: What to say in `oiio:ColorSpace`.
         wrap_modes: What to say in `wrapmodes`, such as "periodic,clamp".
         has_alpha: Whether a fourth channel is alpha, or one more independent channel.
@@ -165,7 +162,7 @@ def write_texture(
         config.attribute("compression", "zip")
         config.attribute("oiio:ColorSpace", color_space)
         config.attribute("wrapmodes", wrap_modes)
-        config.attribute("maketx:fileformatname", file_format)
+        config.attribute("maketx:fileformatname", "tiff")
         config.attribute("maketx:mipimages", _PATH_SEPARATOR.join(level_files))
 
         full = _buffer(levels[0], has_alpha)
@@ -200,8 +197,8 @@ def _write_level(path: str, buffer: Any, number: int) -> None:
     reader.close()
 
 
-def _buffer(pixels: FloatArray, has_alpha: bool) -> Any:
-    """Returns an ImageBuf; what it says is alpha gets clipped to [0, 1] on the way into halves."""
+def _buffer(pixels: NDArray[Any], has_alpha: bool) -> Any:
+    """Returns an ImageBuf that says what is alpha."""
     buffer = module().ImageBuf(pixels)
     if not has_alpha:
         buffer.specmod().alpha_channel = -1

@@ -170,21 +170,20 @@ class Bake:
             ValueError: The library refuses the image or the surfaces.
             OSError: The file cannot be written.
         """
-        linear = self.linear(progress)
+        go_on(progress, 0.0)
         with self.naming_objects():
             end = _FIRST_FILTERED if self._heeds_seams() else _FILTERED
-            levels, rough = self._filtered(linear, share(progress, 0.0, end))
+            levels, rough = self._filtered(share(progress, 0.0, end))
             if self._heeds_seams():
-                self._compare_seams(linear, levels, share(progress, end, _FILTERED))
+                self._compare_seams(levels, share(progress, end, _FILTERED))
         check = partial(go_on, progress, _FILTERED)
         try:
             self._levels = self._stage(
-                self._picture, linear, levels, self._target, self._settings.texture_format, check
+                self._picture, levels, self._target, self._settings.texture_format, check
             )
             if self._roughness is not None:
                 self._roughness_levels = self._stage(
                     self._roughness.picture,
-                    self._roughness.linear,
                     rough,
                     self._roughness_target,
                     self._roughness.texture_format,
@@ -195,10 +194,8 @@ class Bake:
             self.discard()
             raise
 
-    def _filtered(
-        self, linear: FloatArray, progress: Progress
-    ) -> tuple[list[FloatArray], list[FloatArray]]:
-        """Returns all levels, scene-linear, of the image and of its roughness."""
+    def _filtered(self, progress: Progress) -> tuple[list[FloatArray], list[FloatArray]]:
+        """Returns the levels above 0, scene-linear, of the image and of its roughness."""
         settings = self._settings
         to_file = self._target is not None or self._roughness_target is not None
         options: dict[str, Any] = {
@@ -210,18 +207,34 @@ class Bake:
         }
         surfaces = self._surfaces or None
         if self._content == "normal":
-            return contents.normal_levels(linear, surfaces, self._roughness, progress, **options)
-        bounds = self._bounds(linear)
+            levels, rough = contents.normal_levels(
+                self.linear(progress), surfaces, self._roughness, progress, **options
+            )
+            return levels[1:], rough[1:]
         options["reader"] = self.reader
         options["seam_weight"] = settings.seam_weight
         if self._content == "cutout":
+            linear = self.linear(progress)
             levels = contents.cutout_levels(
-                self._picture, linear, surfaces, bounds, settings.threshold, progress, **options
+                self._picture,
+                linear,
+                surfaces,
+                self._bounds(linear),
+                settings.threshold,
+                progress,
+                **options,
             )
-        else:
-            levels = contents.plain_levels(
-                self._picture, linear, surfaces, bounds, progress, **options
-            )
+            return levels[1:], []
+        texels, encoding = images.light_or_bytes(self._picture, partial(go_on, progress, 0.0))
+        levels = contents.plain_levels(
+            self._picture,
+            texels,
+            surfaces,
+            self._bounds(texels),
+            progress,
+            encoding=encoding,
+            **options,
+        )
         return levels, []
 
     @property
@@ -235,21 +248,19 @@ class Bake:
             and self._content in {"color", "data"}
         )
 
-    def _compare_seams(
-        self, linear: FloatArray, levels: list[FloatArray], progress: Progress
-    ) -> None:
+    def _compare_seams(self, levels: list[FloatArray], progress: Progress) -> None:
         """Notes the contrast across seams of the levels, and of levels that do not heed them."""
         others = self.filtered(
-            linear,
+            self.linear(progress),
             self._settings.filter,
             share(progress, 0.0, 0.8),
-            levels=len(levels),
+            levels=len(levels) + 1,
             seam_weight=0.0,
         )
         without, weighed = (
-            prefilter.seam_contrast(made[1:], self._surfaces, wrap=self._wrap, progress=part)
+            prefilter.seam_contrast(made, self._surfaces, wrap=self._wrap, progress=part)
             for made, part in (
-                (others, share(progress, 0.8, 0.9)),
+                (others[1:], share(progress, 0.8, 0.9)),
                 (levels, share(progress, 0.9, 1.0)),
             )
         )
@@ -260,33 +271,33 @@ class Bake:
     def _stage(
         self,
         picture: Picture,
-        linear: FloatArray,
         levels: list[FloatArray],
         target: Path | None,
         texture_format: str,
         check: Callable[[], None],
     ) -> list[FloatArray]:
-        """Stages a file of the levels; returns those above 0 as level images hold them."""
-        stored = [images.encoded(picture, level, check) for level in levels[1:]]
-        stored.insert(0, picture.stored)
-        if target is not None:
-            levels[0] = linear
-            if engines.is_for_engines(target):
-                self._staged += engines.stage(
-                    target,
-                    picture,
-                    levels,
-                    stored,
-                    texture_format,
-                    check,
-                    supercompression=self._settings.supercompression,
-                    threads=self._settings.threads,
-                )
-            else:
-                self._staged.append(
-                    textures.stage(target, picture, levels, stored, self._wrap, check)
-                )
-        return stored[1 : self._settings.levels or None]
+        """Stages a file of the image and its levels; returns these as level images hold them."""
+        stored: list[FloatArray] = []
+        if self._settings.use_images or (target is not None and textures.is_stored(target)):
+            stored = [images.encoded(picture, level, check) for level in levels]
+        threads = self._settings.threads
+        if target is not None and engines.is_for_engines(target):
+            linear = images.scene_linear(picture, check)
+            self._staged += engines.stage(
+                target,
+                picture,
+                [linear, *levels],
+                [picture.stored, *stored],
+                texture_format,
+                check,
+                supercompression=self._settings.supercompression,
+                threads=threads,
+            )
+        elif target is not None:
+            self._staged.append(
+                textures.stage(target, picture, levels, stored, self._wrap, check, threads=threads)
+            )
+        return stored[: self._settings.levels - 1 if self._settings.levels else None]
 
     def write(self) -> Outcome:
         """Puts the file into place and writes the level images.
@@ -366,10 +377,12 @@ class Bake:
         wrap_v = self._settings.wrap_v
         return wrap, wrap if wrap_v == "same" else wrap_v
 
-    def _bounds(self, linear: FloatArray) -> tuple[float | None, float | None] | None:
+    def _bounds(self, texels: images.Texels) -> tuple[float | None, float | None] | None:
         if self._settings.bounds != "auto":
             return _LIMITS[self._settings.bounds]
-        return contents.automatic_bounds(linear, is_integer=self._picture.is_integer)
+        if texels.dtype == np.uint8:
+            return _LIMITS["unit"]
+        return contents.automatic_bounds(texels, is_integer=self._picture.is_integer)
 
     def _summary(self, names: Sequence[str]) -> str:
         baked = f"Baked '{self.image_name}'"

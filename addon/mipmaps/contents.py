@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import prefilter
 
-from ..bridge.images import Encoding, FloatArray, Picture
+from ..bridge.images import Encoding, FloatArray, Picture, Texels
 from ..core.jobs import Progress, share
 from .choices import TEXTURE_SPACE_FILTERS
 
@@ -55,7 +55,7 @@ def as_content(picture: Picture, content: str) -> Picture:
 
 def check_cutout(picture: Picture) -> None:
     """Raises ValueError unless an alpha test of the picture makes sense."""
-    if picture.stored.shape[2] == 3 and not _is_gray(picture.stored):
+    if picture.shape[2] == 3 and not _is_gray(picture.texels):
         raise ValueError(
             f"image '{picture.name}': has no alpha, and is not a grayscale mask; a cut-out needs "
             f"alpha that is not 1 everywhere, or a grayscale image"
@@ -66,7 +66,7 @@ def check_roughness(picture: Picture, roughness: Picture) -> None:
     """Raises ValueError unless a roughness image fits the normal map."""
     if roughness.full_name == picture.full_name:
         raise ValueError(f"roughness: '{roughness.name}' is the normal map itself")
-    (height, width), (high, wide) = picture.stored.shape[:2], roughness.stored.shape[:2]
+    (height, width), (high, wide) = picture.shape[:2], roughness.shape[:2]
     if (high, wide) != (height, width):
         raise ValueError(
             f"roughness: '{roughness.name}' has {wide} x {high} texels; the {width} x {height} of "
@@ -83,15 +83,15 @@ def automatic_bounds(linear: FloatArray, *, is_integer: bool) -> tuple[float, fl
 
 def plain_levels(
     picture: Picture,
-    linear: FloatArray,
+    texels: Texels,
     surfaces: Sequence[prefilter.Surface] | None,
     bounds: Bounds,
     progress: Progress,
     **options: Any,
 ) -> list[FloatArray]:
-    """Returns the levels of colour or data."""
-    return prefilter.mipmaps(
-        linear,
+    """Returns the levels above 0 of colour or data, of light or of bytes."""
+    return prefilter.coarser_levels(
+        texels,
         surfaces,
         bounds=bounds,
         premultiplied=not picture.alpha_is_straight,
@@ -114,16 +114,10 @@ def cutout_levels(
     Without an alpha channel, the image itself is what is tested.
     """
     is_mask = linear.shape[2] == 3
-    made = plain_levels(
-        picture,
-        np.ascontiguousarray(linear[..., :1]) if is_mask else linear,
-        surfaces,
-        bounds,
-        share(progress, 0.0, 0.6),
-        **options,
-    )
+    tested = np.ascontiguousarray(linear[..., :1]) if is_mask else linear
+    made = plain_levels(picture, tested, surfaces, bounds, share(progress, 0.0, 0.6), **options)
     kept = prefilter.keep_coverage(
-        made,
+        [tested, *made],
         None if options["filter"] in TEXTURE_SPACE_FILTERS else surfaces,
         threshold=threshold,
         wrap=options["wrap"],
@@ -194,5 +188,5 @@ def normal_levels(
     return made, rough
 
 
-def _is_gray(stored: FloatArray) -> bool:
-    return bool((stored[..., :1] == stored[..., 1:3]).all())
+def _is_gray(texels: Texels) -> bool:
+    return bool((texels[..., :1] == texels[..., 1:3]).all())

@@ -199,7 +199,7 @@ def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:
 
 
 def _check_levels(picture: Picture, levels: int) -> None:
-    height, width = picture.stored.shape[:2]
+    height, width = picture.shape[:2]
     full = max(width, height).bit_length()
     if levels > full:
         raise ValueError(f"levels: found {levels}; an image of {width} x {height} has 1 to {full}")

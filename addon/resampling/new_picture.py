@@ -37,7 +37,7 @@ class NewPicture:
             target: A file to write; None for a new image datablock.
             in_place: Whether whatever uses the image then uses the new one.
         """
-        height, width = picture.stored.shape[:2]
+        height, width = picture.shape[:2]
         self.old_size = (width, height)
         self._picture = picture
         self._target = target

@@ -188,7 +188,7 @@ def base_colors(
 def linear(image: bpy.types.Image) -> Texels:
     """Returns an image's opaque scene-linear pixels."""
     read = subjects.images.read(image)
-    pixels = np.ones((*read.stored.shape[:2], 4), np.float32)
+    pixels = np.ones((*read.shape[:2], 4), np.float32)
     pixels[..., :3] = subjects.images.scene_linear(read)[..., :3]
     return pixels
 

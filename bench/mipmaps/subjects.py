@@ -75,7 +75,7 @@ class Subject:
             level = np.concatenate([colors, alpha], axis=2)
         stored = images.encoded(self.picture, level)
         stored = np.round(255 * stored.clip(0, 1)).astype(np.float32) / 255
-        return linear_values(replace(self.picture, stored=stored))
+        return linear_values(replace(self.picture, texels=stored))
 
 
 def argument_parser(program: str, description: str) -> argparse.ArgumentParser:

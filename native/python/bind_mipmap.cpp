@@ -55,20 +55,30 @@ std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
   return to_arrays(std::move(images));
 }
 
+std::vector<Image> coarser_levels_of(const Array<std::uint8_t>& array, bool srgb,
+                                     const std::vector<const Surface*>& surfaces,
+                                     const MipmapOptions& options) {
+  const ByteValues values = byte_values(srgb);
+  const TexelSource image(array.data(), static_cast<int>(array.shape(1)),
+                          static_cast<int>(array.shape(0)), static_cast<int>(array.shape(2)),
+                          &values);
+  const py::gil_scoped_release unlocked;
+  return coarser_levels(image, surfaces, options);
+}
+
+template <typename... Options>
+std::vector<Array<float>> bound_float_levels_of_bytes(const Array<std::uint8_t>& array, bool srgb,
+                                                      const std::vector<const Surface*>& surfaces,
+                                                      Options... given) {
+  return to_arrays(coarser_levels_of(array, srgb, surfaces, to_options(given...)));
+}
+
 template <typename... Options>
 std::vector<Array<std::uint8_t>> bound_byte_mipmaps(const Array<std::uint8_t>& array, bool srgb,
                                                     const std::vector<const Surface*>& surfaces,
                                                     Options... given) {
   const MipmapOptions options = to_options(given...);
-  const ByteValues values = byte_values(srgb);
-  const TexelSource image(array.data(), static_cast<int>(array.shape(1)),
-                          static_cast<int>(array.shape(0)), static_cast<int>(array.shape(2)),
-                          &values);
-  std::vector<Image> images;
-  {
-    const py::gil_scoped_release unlocked;
-    images = coarser_levels(image, surfaces, options);
-  }
+  std::vector<Image> images = coarser_levels_of(array, srgb, surfaces, options);
   std::vector<Array<std::uint8_t>> arrays;
   for (Image& level : images) {
     std::vector<std::uint8_t> bytes;
@@ -159,6 +169,10 @@ void bind_mipmap(py::module_& m) {
       const Array<std::uint8_t>&, bool, const std::vector<const Surface*>&, std::string, WrapNames,
       std::optional<float>, std::optional<float>, int, bool, std::string, double, double,
       py::object, int);
+  using ForFloatsOfBytes = std::vector<Array<float>> (*)(
+      const Array<std::uint8_t>&, bool, const std::vector<const Surface*>&, std::string, WrapNames,
+      std::optional<float>, std::optional<float>, int, bool, std::string, double, double,
+      py::object, int);
   m.def("mipmap_filters", [] {
     std::vector<std::tuple<std::string, bool, bool>> filters;
     for (const MipmapFilter& filter : mipmap_filters()) {
@@ -171,6 +185,11 @@ void bind_mipmap(py::module_& m) {
         py::arg("levels"), py::arg("premultiplied"), py::arg("reader"), py::arg("seam_weight"),
         py::arg("footprint"), py::arg("progress"), py::arg("threads"));
   m.def("coarser_byte_levels", static_cast<ForBytes>(&bound_byte_mipmaps), py::arg("image"),
+        py::arg("srgb"), py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"),
+        py::arg("high"), py::arg("levels"), py::arg("premultiplied"), py::arg("reader"),
+        py::arg("seam_weight"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));
+  m.def("coarser_float_levels_of_bytes",
+        static_cast<ForFloatsOfBytes>(&bound_float_levels_of_bytes), py::arg("image"),
         py::arg("srgb"), py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"),
         py::arg("high"), py::arg("levels"), py::arg("premultiplied"), py::arg("reader"),
         py::arg("seam_weight"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));

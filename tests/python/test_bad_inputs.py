@@ -52,6 +52,7 @@ FUNCTIONS = {
     "udim_tile": (udim_tile, {}),
     "merged": (prefilter.Surface.merged, {}),
     "mipmaps": (prefilter.mipmaps, {"image": IMAGE, "surface": SURFACE}),
+    "coarser_levels": (prefilter.coarser_levels, {"image": IMAGE, "surface": SURFACE}),
     "mipmap_error": (
         prefilter.mipmap_error,
         {"levels": [IMAGE], "image": IMAGE, "surface": SURFACE, "mip_values": [0.0]},
@@ -65,6 +66,7 @@ FUNCTIONS = {
     "texel_weights": (prefilter.texel_weights, {"surface": SURFACE, "width": 4, "height": 4}),
     "fill_unused": (prefilter.fill_unused, {"image": IMAGE, "surface": SURFACE}),
     "fill_transparent": (prefilter.fill_transparent, {"image": RGBA}),
+    "write_exr": (prefilter.write_exr, {"path": "out.exr", "levels": [IMAGE[:1, :1]]}),
     "write_dds": (prefilter.write_dds, {"path": "out.dds", "levels": [RGBA]}),
     "write_ktx2": (prefilter.write_ktx2, {"path": "out.ktx2", "levels": [RGBA]}),
     "reconstruct": (
@@ -574,6 +576,48 @@ ROWS = [
         )
     ),
     ("to_srgb", {"image": BYTES.astype(int)}, ["image: dtype int64", TEXELS]),
+    *(
+        ("coarser_levels", arguments, words)
+        for arguments, words in (
+            ({"image": IMAGE[0]}, ["image: ", "(height, width, channels) is needed"]),
+            ({"encoding": "srgb"}, ["encoding: 'srgb'", "bytes (uint8)"]),
+            ({"levels": 99}, ["levels: 99 asked for"]),
+            ({"filter": "cubic"}, ["filter: 'cubic'"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+        )
+    ),
+    *(
+        ("write_exr", arguments, words)
+        for arguments, words in (
+            ({"path": 3}, ["path: 3", "the path of a file is needed"]),
+            ({"levels": []}, ["levels: an empty list", "level 0 first, is needed"]),
+            ({"levels": IMAGE}, ["levels: a ndarray", "a list of images"]),
+            (
+                {"levels": [RGBA]},
+                ["levels: the last of 1 has 8 x 8 texels", "down to 1 x 1 are needed"],
+            ),
+            (
+                {"levels": [RGBA, RGBA]},
+                ["levels: level 1 has the shape (8, 8, 4)", "rounded down, is (4, 4, 4)"],
+            ),
+            (
+                {"levels": [RGBA[:1, :1], RGBA[:1, :1]]},
+                ["levels: level 1 is one too many", "1 x 1 texel"],
+            ),
+            (
+                {"levels": [np.zeros((1, 1, 5), np.float32)]},
+                ["levels: level 0 has 5 channels", "1 to 4 are allowed"],
+            ),
+            ({"format": "uint8"}, ["format: 'uint8'", "one of half, float"]),
+            ({"encoding": "gamma"}, ["encoding: 'gamma'", "one of linear, srgb"]),
+            ({"alpha": "none"}, ["alpha: 'none'", "one of straight, premultiplied"]),
+            ({"attributes": "wrap"}, ["attributes: a str", "in a dict"]),
+            ({"attributes": {"wrap": 3}}, ["attributes: found 'wrap': 3", "a text is needed"]),
+            ({"attributes": {"": "a"}}, ["attributes: the name ''", "1 to 255 bytes"]),
+            ({"attributes": {"tiles": "a"}}, ["attributes: the name 'tiles'", "have anyway"]),
+            ({"threads": -1}, ["threads: -1", THREADS]),
+        )
+    ),
     *(
         ("write_dds", arguments, words)
         for arguments, words in (

@@ -152,7 +152,8 @@ def test_progress_and_cancelling(tmp_path):
     seen = []
     prefilter.write_exr(path, levels, progress=lambda done: seen.append(done) or True)
     assert seen == sorted(seen)
-    assert seen[0] == 0 and seen[-1] == 1
+    assert seen[0] == 0
+    assert seen[-1] == 1
     path.write_bytes(b"before")
     with pytest.raises(prefilter.Cancelled):
         prefilter.write_exr(path, levels, progress=lambda done: done < 0.3)

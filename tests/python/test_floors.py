@@ -9,7 +9,7 @@ import pytest
 LIBRARY = Path(__file__).resolve().parents[2] / "native/prefilter"
 FLOORS = (
     {"base"},
-    {"blocks", "color", "filters", "moments", "outline", "solve", "spatial", "surface"},
+    {"blocks", "color", "exr", "filters", "moments", "outline", "solve", "spatial", "surface"},
     {"remesh", "scan", "tables", "texels", "wavelet"},
     {"contour", "mipmap", "raster", "resize", "sampling", "voxel"},
     {"reconstruct", "solid"},

@@ -14,6 +14,7 @@ OCTREE = prefilter.voxelize(
 WRITERS = {
     "Octree.save": OCTREE.save,
     "write_dds": lambda path: prefilter.write_dds(path, LEVELS),
+    "write_exr": lambda path: prefilter.write_exr(path, [LEVELS[0][:1, :1]]),
     "write_ktx2": lambda path: prefilter.write_ktx2(path, LEVELS),
 }
 

@@ -88,7 +88,7 @@ def checked(
             f"{picture.colorspace}; Non-Color or another format is needed"
         )
     told = []
-    height, width, channels = picture.stored.shape
+    height, width, channels = picture.shape
     if chosen.startswith("bc") and (width % _BLOCK_SIDE or height % _BLOCK_SIDE):
         told.append(f"{who} of {width} x {height} texels: Direct3D needs sides divisible by 4")
     if chosen in _FEW_CHANNELS and not may_lose_channels:

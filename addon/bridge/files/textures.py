@@ -4,8 +4,8 @@
 * TIFF (.tif, .tiff, .tx): a byte image stays 8-bit and in its colour space, a float image is
   written as scene-linear 32-bit floats; associated alpha, as texture readers expect.
 
-A file always holds every level down to 1 x 1, in tiles of 64 x 64. Those for engines are written
-by `engines`.
+A file always holds every level down to 1 x 1, in tiles of 64 x 64. OpenEXR files are written by
+the library, TIFF files by OpenImageIO, and those for engines by `engines`.
 """
 
 import os
@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import prefilter
 
 from ...core import alpha
 from ...core.wording import listed
@@ -21,11 +22,11 @@ from .. import images, openimageio
 from ..images import FloatArray, Picture
 from .staging import StagedFile, check_place, stage_with
 
-_FORMATS = {".exr": "openexr", ".tif": "tiff", ".tiff": "tiff", ".tx": "tiff"}
+_OF_RENDERERS = (".exr", ".tif", ".tiff", ".tx")
 # Those that `engines` writes; the last one gets a file a level.
 _OTHER_EXTENSIONS = (".dds", ".ktx2", ".png")
 _MOST_LEVELS = 31
-EXTENSIONS = (*_FORMATS, *_OTHER_EXTENSIONS)
+EXTENSIONS = (*_OF_RENDERERS, *_OTHER_EXTENSIONS)
 """Those that a texture file may have."""
 
 _WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
@@ -85,6 +86,11 @@ def left_by_earlier_versions(target: Path) -> list[str]:
     ]
 
 
+def is_stored(target: Path) -> bool:
+    """Tells whether a file may hold the levels in the encoding of the picture."""
+    return target.suffix.lower() != ".exr"
+
+
 def stage(
     target: Path,
     picture: Picture,
@@ -94,39 +100,82 @@ def stage(
     check: openimageio.Check,
     *,
     half: bool = True,
+    threads: int = 0,
 ) -> StagedFile:
     """Writes a mip-mapped file beside its target.
 
     Args:
         target: A path from `check_target`.
-        picture: Where the levels come from.
-        linear_levels: Every level, scene-linear, row 0 at the bottom.
-        stored_levels: The same levels in the encoding of the picture.
+        picture: Level 0.
+        linear_levels: Levels 1, 2, ..., scene-linear, row 0 at the bottom.
+        stored_levels: The same in the encoding of the picture; not needed unless `is_stored`.
         wrap: Wrap modes in u and v.
-        check: Called before each level.
+        check: Called before each level, at least.
         half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
+        threads: How many threads to use for OpenEXR; 0 for all.
 
     Raises:
         OSError: The file cannot be written.
     """
-    file_format = _FORMATS[target.suffix.lower()]
-    keep_bytes = file_format == "tiff" and not picture.is_float
+    wrap_modes = ",".join(_WRAP_MODES[mode] for mode in wrap)
+    if not is_stored(target):
+        return _stage_exr(target, picture, linear_levels, wrap_modes, check, half, threads)
+    keep_bytes = not picture.is_float
     levels = stored_levels if keep_bytes else linear_levels
-    float_type = "half" if file_format == "openexr" and half else "float"
+    if keep_bytes and not picture.alpha_is_straight:
+        full = picture.texels
+    else:
+        full = picture.stored if keep_bytes else images.scene_linear(picture, check)
     write = partial(
         openimageio.write_texture,
-        levels=[_file_pixels(picture, level) for level in levels],
-        file_format=file_format,
-        pixel_type="uint8" if keep_bytes else float_type,
+        levels=[_file_pixels(picture, level) for level in (full, *levels)],
+        pixel_type="uint8" if keep_bytes else "float",
         color_space=_color_space(picture, keep_bytes),
-        wrap_modes=",".join(_WRAP_MODES[mode] for mode in wrap),
+        wrap_modes=wrap_modes,
         has_alpha=picture.alpha_is_coverage,
         check=check,
     )
     return stage_with(target, write)
 
 
-def _file_pixels(picture: Picture, level: FloatArray) -> FloatArray:
+def _stage_exr(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    wrap_modes: str,
+    check: openimageio.Check,
+    half: bool,
+    threads: int,
+) -> StagedFile:
+    def go_on(_: float) -> bool:
+        check()
+        return True
+
+    full, encoding = images.light_or_bytes(picture, check)
+    attributes = {
+        "Software": "Prefilter",
+        "textureformat": "Plain Texture",
+        "wrapmodes": wrap_modes,
+    }
+    if picture.is_data:
+        attributes["oiio:ColorSpace"] = _color_space(picture, keep_bytes=False)
+    kind = "independent"
+    if picture.alpha_is_coverage:
+        kind = "straight" if picture.alpha_is_straight else "premultiplied"
+    write = partial(
+        prefilter.write_exr,
+        levels=[full, *linear_levels],
+        format="half" if half else "float",
+        encoding=encoding,
+        alpha=kind,
+        attributes=attributes,
+        progress=go_on,
+        threads=threads,
+    )
+    return stage_with(target, write)
+
+
+def _file_pixels(picture: Picture, level: images.Texels) -> images.Texels:
     """Returns a level with associated alpha and rows from the top."""
     if picture.alpha_is_straight:
         level = alpha.associated(level)

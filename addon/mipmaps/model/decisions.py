@@ -33,7 +33,7 @@ def decided(item: Item, picture: Picture) -> Decision:
     if item.content != "cutout":
         return Decision(item.content)
     plain = "data" if picture.is_data else "color"
-    has_alpha = picture.stored.shape[2] == 4
+    has_alpha = picture.shape[2] == 4
     if item.tests_alpha:
         if has_alpha:
             return Decision("cutout")
@@ -58,7 +58,7 @@ def texture_format(item: Item, picture: Picture, content: str, target: Path | No
     if target is None or not engines.has_formats(target.name):
         return "auto"
     reads_alpha = picture.alpha_is_coverage or (
-        picture.stored.shape[2] == 4 and "alpha" in item.channels
+        picture.shape[2] == 4 and "alpha" in item.channels
     )
     is_precise = picture.is_float and (not picture.is_integer or _is_height(item))
     if content == "normal":
@@ -93,7 +93,7 @@ def shown_content(content: str) -> str:
 
 def is_gray(picture: Picture) -> bool:
     """Tells whether red, green and blue are the same everywhere."""
-    return bool((picture.stored[..., :1] == picture.stored[..., 1:3]).all())
+    return bool((picture.texels[..., :1] == picture.texels[..., 1:3]).all())
 
 
 def _is_height(item: Item) -> bool:
@@ -101,7 +101,7 @@ def _is_height(item: Item) -> bool:
 
 
 def _is_positive(picture: Picture) -> bool:
-    return bool(np.nanmin(picture.stored[..., :3]) >= 0.0)
+    return bool(np.nanmin(picture.texels[..., :3]) >= 0.0)
 
 
 def _best(*formats: str) -> str:

@@ -67,7 +67,7 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
 
 
 def _weigh(source: Bake, progress: Progress) -> weights.Weights:
-    height, width = source.picture.stored.shape[:2]
+    height, width = source.picture.shape[:2]
     with source.naming_objects():
         found = prefilter.texel_weights(
             source.surfaces, width, height, wrap=source.wrap, progress=progress

@@ -52,7 +52,7 @@ def _resize(options: argparse.Namespace) -> None:
     target = staging.check_output(options.target)
     picture = read(images.load("INPUT", options.source, is_data=options.data))
     if sizes == ["height"]:
-        height, width = picture.stored.shape[:2]
+        height, width = picture.shape[:2]
         found["width"] = max(1, round(width * found["height"] / height))
     settings = ResizeSettings(
         **found,

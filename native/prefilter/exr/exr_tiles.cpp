@@ -74,9 +74,7 @@ class TileWriter {
   }
 
  private:
-  bool is_alpha(int channel) const {
-    return options_.has_alpha && channel + 1 == level_.channels;
-  }
+  bool is_alpha(int channel) const { return options_.has_alpha && channel + 1 == level_.channels; }
 
   std::uint16_t half_of(float value, int channel) const {
     return half_bits(is_alpha(channel) ? std::clamp(value, 0.0F, 1.0F)
@@ -177,9 +175,9 @@ ExrChunks exr_tiles(const TexelSource& level, int number, int first_row, int row
                     ExrChunks& range = ranges[begin / kTilesPerRange];
                     TileWriter writer(level, number, options);
                     for (std::int64_t i = begin; i < end; ++i) {
-                      range.sizes.push_back(
-                          writer.write(static_cast<int>(i % columns),
-                                       first_row + static_cast<int>(i / columns), &range.bytes));
+                      range.sizes.push_back(writer.write(static_cast<int>(i % columns),
+                                                         first_row + static_cast<int>(i / columns),
+                                                         &range.bytes));
                     }
                   });
   ExrChunks all;

@@ -17,7 +17,14 @@ from .cutout import keep_coverage
 from .exact_sampling import sample_ewa, sample_exact
 from .filtered_levels import SAMPLING_FILTERS, FilteredLevels, sampling_levels
 from .measures import MeshMeasures, measure_mesh
-from .mipmap import MIPMAP_FILTERS, MipmapFilter, mipmap_error, mipmaps, seam_contrast
+from .mipmap import (
+    MIPMAP_FILTERS,
+    MipmapFilter,
+    coarser_levels,
+    mipmap_error,
+    mipmaps,
+    seam_contrast,
+)
 from .nearest import CornerPoints, NearestPoints, corner_points, nearest_points
 from .normals import normal_mipmaps
 from .points import estimate_normals, grid_normals, mesh_normals
@@ -69,6 +76,7 @@ __all__ = [
     "TracedContour",
     "as_solid",
     "close_holes",
+    "coarser_levels",
     "contour",
     "corner_points",
     "cube_around",

@@ -383,6 +383,22 @@ def coarser_byte_levels(
     progress: ProgressCallback | None,
     threads: int,
 ) -> list[npt.NDArray[np.uint8]]: ...
+def coarser_float_levels_of_bytes(
+    image: npt.NDArray[np.uint8],
+    srgb: bool,
+    surfaces: Sequence[Surface],
+    filter: str,
+    wrap: tuple[str, str],
+    low: float | None,
+    high: float | None,
+    levels: int,
+    premultiplied: bool,
+    reader: str,
+    seam_weight: float,
+    footprint: float,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> list[npt.NDArray[np.float32]]: ...
 def mipmap_error(
     levels: Sequence[npt.NDArray[np.float32]],
     image: npt.NDArray[np.float32],

@@ -152,7 +152,6 @@ def mipmaps(
         Cancelled: The progress callback returned False.
     """
     low, high = as_bounds(bounds)
-    srgb = is_srgb(encoding)
     arguments = (
         as_surfaces(surface),
         as_name("filter", filter),
@@ -167,34 +166,90 @@ def mipmaps(
         as_progress(progress),
         as_threads(threads),
     )
-    stored = as_texels("image", image)
+    stored, srgb = as_texels("image", image), is_srgb(encoding)
     made: list[npt.NDArray[Any]]
     if stored.dtype == np.uint8:
         made = _native.coarser_byte_levels(stored, srgb, *arguments)
-    elif stored.dtype == np.uint16:
-        made = _coarser_word_levels(stored, srgb, arguments, as_threads(threads))
-    elif srgb:
-        raise ValueError(
-            "encoding: 'srgb' goes with images of uint8 or uint16; decode others with to_linear"
-        )
     else:
-        made = _native.coarser_levels(stored, *arguments)
+        made = _native.coarser_levels(_as_light(stored, srgb, as_threads(threads)), *arguments)
+        if stored.dtype == np.uint16:
+            made = [_as_words(level, srgb, as_threads(threads)) for level in made]
     # Copied once the memory for filtering is free again.
     return FilteredLevels([in_form_of(image, level) for level in (stored.copy(), *made)], filter)
 
 
-def _coarser_word_levels(
-    image: npt.NDArray[np.uint16], srgb: bool, arguments: tuple[Any, ...], threads: int
-) -> list[npt.NDArray[np.uint16]]:
-    """Levels of texels that stand for a 65535th each, rounded to the nearest."""
-    floats = as_image("image", image)
+def coarser_levels(
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = None,
+    *,
+    filter: str = "pam-bilinear",
+    wrap: Wrap = "clamp",
+    bounds: Bounds | None = (0.0, 1.0),
+    levels: int | None = None,
+    premultiplied: bool = False,
+    reader: str = "linear",
+    encoding: str = "linear",
+    seam_weight: float = 0.0,
+    footprint: float = 0.0,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> FilteredLevels[np.float32]:
+    """The levels of `mipmaps` from level 1 on, in floats whatever the image holds.
+
+    It takes less memory: there is no copy of the image, and "pam-bilinear", "pam-trilinear" and
+    "pam-box" read bytes as they are, where alpha plays no part. All arguments are those of
+    `mipmaps`; `levels` counts level 0.
+
+    Returns:
+        Levels 1, 2, ..., float32 and scene-linear; of an image of bytes too.
+
+    Raises:
+        ValueError: As `mipmaps`.
+        Cancelled: The progress callback returned False.
+    """
+    low, high = as_bounds(bounds)
+    arguments = (
+        as_surfaces(surface),
+        as_name("filter", filter),
+        as_wrap(wrap),
+        low,
+        high,
+        as_level_count(levels),
+        bool(premultiplied),
+        as_name("reader", reader),
+        as_number("seam_weight", seam_weight),
+        as_number("footprint", footprint),
+        as_progress(progress),
+        as_threads(threads),
+    )
+    stored, srgb = as_texels("image", image), is_srgb(encoding)
+    if stored.dtype == np.uint8:
+        made = _native.coarser_float_levels_of_bytes(stored, srgb, *arguments)
+    else:
+        made = _native.coarser_levels(_as_light(stored, srgb, as_threads(threads)), *arguments)
+    return FilteredLevels((in_form_of(image, level) for level in made), filter)
+
+
+def _as_light(stored: np.ndarray, srgb: bool, threads: int) -> npt.NDArray[np.float32]:
+    """An image of floats, or of uint16 that stand for a 65535th each."""
+    floats = as_image("image", stored)
+    if not srgb:
+        return floats
+    if stored.dtype != np.uint16:
+        raise ValueError(
+            "encoding: 'srgb' goes with images of uint8 or uint16; decode others with to_linear"
+        )
+    return to_linear(floats, threads=threads)
+
+
+def _as_words(
+    level: npt.NDArray[np.float32], srgb: bool, threads: int
+) -> npt.NDArray[np.uint16]:
+    """A level in steps of a 65535th, rounded to the nearest."""
     if srgb:
-        floats = to_linear(floats, threads=threads)
-    levels = _native.coarser_levels(floats, *arguments)
-    if srgb:
-        levels = [to_srgb(level, threads=threads) for level in levels]
+        level = to_srgb(level, threads=threads)
     full = np.float32(np.iinfo(np.uint16).max)
-    return [np.rint(np.clip(level, 0, 1) * full).astype(np.uint16) for level in levels]
+    return np.rint(np.clip(level, 0, 1) * full).astype(np.uint16)
 
 
 def mipmap_error(

@@ -99,7 +99,7 @@ def write_exr(
                     has_alpha and alpha == "straight",
                     count,
                 )
-                file.write(chunks)
+                file.write(chunks.data)
                 sizes.extend(chunk_sizes)
         offsets = table + 8 * tile_count + np.concatenate([[0], np.cumsum(sizes[:-1])])
         file.seek(table)
@@ -118,8 +118,10 @@ def _as_all_levels(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
     images: list[np.ndarray] = []
     for number, level in enumerate(levels):
         who = f"levels: level {number}"
-        is_bytes = isinstance(level, np.ndarray) and level.dtype == np.uint8
-        image = as_bytes(who, level) if is_bytes else as_image(who, level)
+        if isinstance(level, np.ndarray) and level.dtype == np.uint8:
+            image = as_bytes(who, level)
+        else:
+            image = as_image(who, level)
         if image.shape[2] not in _CHANNELS:
             raise ValueError(f"{who} has {image.shape[2]} channels; 1 to 4 are allowed")
         if images:

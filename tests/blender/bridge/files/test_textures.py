@@ -98,21 +98,21 @@ def use_for_temporary_files(folder, monkeypatch):
 @pytest.mark.parametrize("name", ["a;b", "a%%b"])
 def test_odd_folder_of_temporary_files(bake, tmp_path, monkeypatch, name):
     use_for_temporary_files(tmp_path / name, monkeypatch)
-    levels, _ = read_levels(written(bake, tmp_path, "out;%.exr", scenes.noise(8, 8)))
+    levels, _ = read_levels(written(bake, tmp_path, "out;%.tif", scenes.noise(8, 8)))
     assert len(levels) == 4
-    assert sorted(path.name for path in tmp_path.rglob("*")) == [name, "out;%.exr"]
+    assert sorted(path.name for path in tmp_path.rglob("*")) == [name, "out;%.tif"]
 
 
 @pytest.mark.parametrize("name", ["a;b", "a%%b"])
 def test_odd_folder_of_the_file(bake, tmp_path, monkeypatch, name):
     folder = tmp_path / name
     folder.mkdir()
-    levels, _ = read_levels(written(bake, folder, "out.exr", scenes.noise(8, 8)))
+    levels, _ = read_levels(written(bake, folder, "out.tif", scenes.noise(8, 8)))
     assert len(levels) == 4
     use_for_temporary_files(tmp_path / f"next {name}", monkeypatch)
     with pytest.raises(OSError, match=rf"'.*next {name}' and '.*{name}'.*without ';'"):
-        written(bake, folder, "next.exr", scenes.noise(8, 8))
-    assert [path.name for path in folder.iterdir()] == ["out.exr"]
+        written(bake, folder, "next.tif", scenes.noise(8, 8))
+    assert [path.name for path in folder.iterdir()] == ["out.tif"]
 
 
 def test_level_file_that_cannot_be_read(bake, addon, tmp_path, monkeypatch):
@@ -129,7 +129,7 @@ def test_level_file_that_cannot_be_read(bake, addon, tmp_path, monkeypatch):
         lambda level, alpha: Lost() if level.size == 3 else original(level, alpha),
     )
     with pytest.raises(OSError, match=r"cannot read level 3 back from '.*3\.tif'"):
-        written(bake, tmp_path, "out.exr", scenes.noise(8, 8))
+        written(bake, tmp_path, "out.tif", scenes.noise(8, 8))
     assert list(tmp_path.iterdir()) == []
 
 
@@ -162,7 +162,7 @@ def test_nothing_is_left_beside_the_file(bake, tmp_path):
 def test_missing_module_says_what_to_install(bake, tmp_path, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "OpenImageIO", None)
     with pytest.raises(OSError, match="python3-openimageio"):
-        written(bake, tmp_path, "out.exr", scenes.noise(8, 8))
+        written(bake, tmp_path, "out.tif", scenes.noise(8, 8))
     assert list(tmp_path.iterdir()) == []
 
 
