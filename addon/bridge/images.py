@@ -159,6 +159,7 @@ def read(image: bpy.types.Image) -> Picture:
     kind = _KIND_OF_SOURCE.get(image.source) or _KIND_OF_TYPE.get(image.type)
     if kind is not None:
         raise ValueError(f"image '{image.name}': found {kind}; a single still image is needed")
+    was_loaded = image.has_data
     width, height = image.size
     count = len(image.pixels)
     if width == 0 or height == 0 or count == 0:
@@ -172,7 +173,7 @@ def read(image: bpy.types.Image) -> Picture:
         channels = 3
     space = image.colorspace_settings
     linear_space = scene_linear_name()
-    return Picture(
+    picture = Picture(
         name=image.name,
         full_name=image.name_full,
         texels=texels.reshape(height, width, channels),
@@ -185,6 +186,10 @@ def read(image: bpy.types.Image) -> Picture:
         linear_space=linear_space,
         ocio_config=_ocio_config(),
     )
+    if not was_loaded and image.source == "FILE" and not image.is_dirty:
+        # Blender read the file for this alone, and reads it again where it needs it.
+        image.buffers_free()
+    return picture
 
 
 # Blender's own way from bytes to floats.

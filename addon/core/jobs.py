@@ -1,8 +1,10 @@
 """Long work, mostly off the main thread: progress, cancel, result."""
 
+import os
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Generic, Protocol, TypeVar, cast
 
 import prefilter
@@ -41,6 +43,57 @@ def share(progress: Progress, start: float, end: float) -> Progress:
 def parts(progress: Progress, count: int) -> list[Progress]:
     """Returns what reports the progress of each of several equal parts of the work."""
     return [share(progress, i / count, (i + 1) / count) for i in range(count)]
+
+
+def at_once(works: Sequence[Callable[[Progress], None]], progress: Progress, threads: int) -> None:
+    """Does several pieces of work at the same time, each in one thread.
+
+    Args:
+        works: Each gets what it reports its progress to. The order in which they are begun is kept.
+        progress: Called with the fraction of all that is done, from any thread, one at a time.
+        threads: How many threads; 0 for as many as there are processors.
+
+    Raises:
+        BaseException: What the first of them raises that fails; the others are stopped.
+    """
+    done = [0.0] * len(works)
+    lock = threading.Lock()
+    failed = threading.Event()
+
+    def part(index: int) -> Progress:
+        def report(fraction: float) -> bool:
+            with lock:
+                done[index] = fraction
+                return not failed.is_set() and progress(sum(done) / len(works))
+
+        return report
+
+    def run(index: int) -> None:
+        if failed.is_set():
+            return
+        try:
+            works[index](part(index))
+        except BaseException:
+            failed.set()
+            raise
+
+    count = min(threads or os.cpu_count() or 1, len(works))
+    if count <= 1:
+        for index in range(len(works)):
+            run(index)
+        return
+    with ThreadPoolExecutor(count, "prefilter work") as executor:
+        futures = [executor.submit(run, index) for index in range(len(works))]
+        try:
+            wait(futures)
+        except BaseException:  # An interrupt from the keyboard.
+            failed.set()
+            raise
+    failures = [error for future in futures if (error := future.exception()) is not None]
+    # Those that were stopped say no more than that.
+    failures.sort(key=lambda error: isinstance(error, prefilter.Cancelled))
+    if failures:
+        raise failures[0]
 
 
 class Job(Generic[T]):

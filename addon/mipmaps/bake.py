@@ -347,9 +347,9 @@ class Bake:
     def let_pixels_go(self) -> None:
         """Frees the memory of what is in staged files; of level images nothing is left."""
         nothing = np.empty((0, 0, 4), np.float32)
-        self._picture = replace(self._picture, stored=nothing)
+        self._picture = replace(self._picture, texels=nothing)
         if self._roughness is not None:
-            picture = replace(self._roughness.picture, stored=nothing)
+            picture = replace(self._roughness.picture, texels=nothing)
             self._roughness = replace(self._roughness, picture=picture, linear=nothing)
         self._surfaces = []
         self._levels, self._roughness_levels = [], []

@@ -4,7 +4,7 @@ The operator and the command are two ways to call this. Every image of a scene i
 what cannot be weighed by a surface keeps the levels that Blender made, and a warning says why.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -18,7 +18,7 @@ from ..bridge.files import tx
 from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray
 from ..core.alpha import associated, at_most_opaque, unassociated
-from ..core.jobs import Progress, go_on, parts, share
+from ..core.jobs import Progress, at_once, go_on, share
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
 from . import cache_states, udim
@@ -26,6 +26,9 @@ from .contents import automatic_bounds
 
 NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
 
+# Images of up to so many texels are baked at the same time, each in a thread of its own: within one
+# threads would wait for each other more than they work.
+_MOST_SMALL_TEXELS = 1 << 21
 _MADE = 0.2  # What the progress is once Blender has made its cache files.
 
 
@@ -144,16 +147,8 @@ class CacheBake:
             OSError: A file cannot be written.
         """
         try:
-            shared = self._make(progress)
-            steps = parts(share(progress, _MADE, 1.0), len(shared))
-            for (path, worn), advance in zip(shared.items(), steps, strict=True):
-                go_on(advance, 0.0)
-                try:
-                    if worn.obstacle:
-                        raise ValueError(f"{worn.who}: {worn.obstacle}")
-                    self._stage(tx.read(path), worn, advance)
-                except ValueError as error:
-                    self.warnings.append(f"{error}; its levels are Blender's")
+            shared = self._make(share(progress, 0.0, _MADE))
+            self._bake(shared, share(progress, _MADE, 1.0))
             if not self._staged and not self._constant:
                 reasons = "\n".join(self.warnings)
                 raise ValueError(f"scene '{self._scene}': no image could be baked\n{reasons}")
@@ -187,32 +182,66 @@ class CacheBake:
 
     def _make(self, progress: Progress) -> dict[Path, _Worn]:
         """Makes the cache files; images that share one are joined."""
-        shared: dict[Path, _Worn] = {}
-        steps = parts(share(progress, 0.0, _MADE), len(self._worn))
-        for worn, advance in zip(self._worn, steps, strict=True):
+        made: dict[int, Path | OSError] = {}
+
+        def make(index: int, advance: Progress) -> None:
             go_on(advance, 0.0)
             try:
-                path = tx.make(worn.source)
+                made[index] = tx.make(self._worn[index].source)
             except OSError as error:
-                self.warnings.append(f"{worn.who}: {error}")
+                made[index] = error
+            go_on(advance, 1.0)
+
+        # Blender's maker is not said to bear several calls at once.
+        works = [partial(make, index) for index in range(len(self._worn))]
+        at_once(works, progress, threads=1)
+        shared: dict[Path, _Worn] = {}
+        for index, worn in enumerate(self._worn):
+            path = made[index]
+            if isinstance(path, OSError):
+                self.warnings.append(f"{worn.who}: {path}")
+            elif path in shared:
+                shared[path].share(worn)
             else:
-                if path in shared:
-                    shared[path].share(worn)
-                else:
-                    shared[path] = worn
+                shared[path] = worn
         return shared
 
-    def _stage(self, texture: tx.Texture, worn: _Worn, progress: Progress) -> None:
-        if texture.is_constant:
-            self._constant += 1
-            return
-        wrap = _wrap(worn)
+    def _bake(self, shared: Mapping[Path, _Worn], progress: Progress) -> None:
+        """Stages the files: many small ones at the same time, large ones each with all threads."""
+        problems: dict[int, str] = {}
+        staged: dict[int, StagedFile] = {}
+
+        def bake(index: int, path: Path, worn: _Worn, threads: int, advance: Progress) -> None:
+            go_on(advance, 0.0)
+            try:
+                if worn.obstacle:
+                    raise ValueError(f"{worn.who}: {worn.obstacle}")
+                file = _staged(tx.read(path), worn, advance, threads)
+            except ValueError as error:
+                problems[index] = f"{error}; its levels are Blender's"
+            else:
+                if file is None:
+                    constant.append(index)
+                else:
+                    staged[index] = file
+
+        constant: list[int] = []
+        small: list[Callable[[Progress], None]] = []
+        large: list[Callable[[Progress], None]] = []
+        for index, (path, worn) in enumerate(shared.items()):
+            if not worn.obstacle and tx.texel_count(path) > _MOST_SMALL_TEXELS:
+                large.append(partial(bake, index, path, worn, self._threads))
+            else:
+                small.append(partial(bake, index, path, worn, 1))
+        end = len(small) / max(len(shared), 1)
         try:
-            levels = _levels(texture, worn, wrap, progress, self._threads)
-        except ValueError as error:
-            raise ValueError(f"{worn.who}: {error}") from error
-        check = partial(go_on, progress, 1.0)
-        self._staged.append((worn, tx.stage(texture, levels, check)))
+            at_once(small, share(progress, 0.0, end), self._threads)
+            at_once(large, share(progress, end, 1.0), threads=1)
+        finally:
+            users = list(shared.values())
+            self._staged = [(users[index], staged[index]) for index in sorted(staged)]
+            self._constant = len(constant)
+            self.warnings.extend(problems[index] for index in sorted(problems))
 
     def _summary(self) -> str:
         names = {name for worn, _ in self._staged for name in worn.names}
@@ -253,6 +282,20 @@ def _on_surfaces(
     return worn
 
 
+def _staged(
+    texture: tx.Texture, worn: _Worn, progress: Progress, threads: int
+) -> StagedFile | None:
+    """Stages a file; None where the image has one color only."""
+    if texture.is_constant:
+        return None
+    wrap = _wrap(worn)
+    try:
+        levels = _levels(texture, worn, wrap, progress, threads)
+    except ValueError as error:
+        raise ValueError(f"{worn.who}: {error}") from error
+    return tx.stage(texture, levels, partial(go_on, progress, 1.0))
+
+
 def _levels(
     texture: tx.Texture,
     worn: _Worn,
@@ -268,7 +311,7 @@ def _levels(
     is_associated = stored.shape[2] == 4 and worn.source.alpha_is_associated
     covers = stored.shape[2] == 4 and worn.alpha_covers and not worn.source.is_data
     fit = partial(
-        prefilter.mipmaps,
+        prefilter.coarser_levels,
         surface=worn.surfaces,
         wrap=wrap,
         premultiplied=is_associated or not covers,
@@ -283,21 +326,21 @@ def _levels(
                 prefilter.to_linear(straight, threads=threads),
                 premultiplied=not (is_associated or covers),
                 reader="srgb-after",
-            )[1:]
+            )
         ]
         if is_associated:
             levels = [associated(level) for level in levels]
     elif texture.is_float:
         is_integer = openimageio.holds_integers(str(worn.source.path))
         bounds = automatic_bounds(stored, is_integer=is_integer)
-        levels = fit(stored, bounds=bounds)[1:]
+        levels = fit(stored, bounds=bounds)
         if is_associated:
             levels = [at_most_opaque(level) for level in levels]
         elif covers:
             for level in levels:
                 np.minimum(level[..., 3], 1, out=level[..., 3])
     else:
-        levels = fit(stored)[1:]
+        levels = fit(stored)
     if is_opaque:
         levels = [np.pad(level, ((0, 0), (0, 0), (0, 1)), constant_values=1) for level in levels]
     return levels

@@ -579,8 +579,8 @@ ROWS = [
     *(
         ("coarser_levels", arguments, words)
         for arguments, words in (
-            ({"image": IMAGE[0]}, ["image: ", "(height, width, channels) is needed"]),
-            ({"encoding": "srgb"}, ["encoding: 'srgb'", "bytes (uint8)"]),
+            ({"image": IMAGE[0, 0]}, ["image: ", AXES]),
+            ({"encoding": "srgb"}, ["encoding: 'srgb'", "uint8 or uint16"]),
             ({"levels": 99}, ["levels: 99 asked for"]),
             ({"filter": "cubic"}, ["filter: 'cubic'"]),
             ({"threads": -1}, ["threads: -1", THREADS]),
@@ -612,7 +612,7 @@ ROWS = [
             ({"encoding": "gamma"}, ["encoding: 'gamma'", "one of linear, srgb"]),
             ({"alpha": "none"}, ["alpha: 'none'", "one of straight, premultiplied"]),
             ({"attributes": "wrap"}, ["attributes: a str", "in a dict"]),
-            ({"attributes": {"wrap": 3}}, ["attributes: found 'wrap': 3", "a text is needed"]),
+            ({"attributes": {"wrap": 3}}, ["attributes: found 'wrap': 3", "a text are needed"]),
             ({"attributes": {"": "a"}}, ["attributes: the name ''", "1 to 255 bytes"]),
             ({"attributes": {"tiles": "a"}}, ["attributes: the name 'tiles'", "have anyway"]),
             ({"threads": -1}, ["threads: -1", THREADS]),

@@ -373,3 +373,23 @@ def test_degenerate_triangles_weigh_by_their_area_in_space():
     expected = prefilter.mipmaps(image, square((0.05, 0.05), (0.45, 0.45)).surface)
     for a, b in zip(prefilter.mipmaps(image, mesh.surface), expected, strict=True):
         assert np.array_equal(a, b)
+
+
+@pytest.mark.parametrize("encoding", ["linear", "srgb"])
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16])
+@pytest.mark.parametrize("channels", [3, 4])
+def test_coarser_levels_are_light(encoding, kind, channels):
+    stored = np.random.default_rng(3).integers(0, np.iinfo(kind).max, (24, 40, channels), kind)
+    values = (stored / np.iinfo(kind).max).astype(np.float32)
+    light = prefilter.to_linear(values) if encoding == "srgb" else values
+    expected = prefilter.mipmaps(light, filter="ls-bilinear")[1:]
+    found = prefilter.coarser_levels(stored, filter="ls-bilinear", encoding=encoding)
+    assert found.filter == "ls-bilinear"
+    assert len(found) == len(expected)
+    for level, other in zip(found, expected, strict=True):
+        assert level.dtype == np.float32
+        np.testing.assert_allclose(level, other, atol=1e-6)
+    for level, other in zip(
+        prefilter.coarser_levels(light, filter="ls-bilinear"), expected, strict=True
+    ):
+        np.testing.assert_array_equal(level, other)

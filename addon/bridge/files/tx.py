@@ -155,6 +155,17 @@ def make(source: Source) -> Path:
     return Path(made)
 
 
+def texel_count(path: Path) -> int:
+    """Returns how many texels level 0 of a cache file has.
+
+    Raises:
+        OSError: It cannot be read, or it is no file of Blender's texture cache.
+    """
+    reader, spec = _open(path)
+    reader.close()
+    return int(spec.width * spec.height)
+
+
 def read(path: Path) -> Texture:
     """Reads a cache file.
 

@@ -57,9 +57,7 @@ def texture_format(item: Item, picture: Picture, content: str, target: Path | No
     """
     if target is None or not engines.has_formats(target.name):
         return "auto"
-    reads_alpha = picture.alpha_is_coverage or (
-        picture.shape[2] == 4 and "alpha" in item.channels
-    )
+    reads_alpha = picture.alpha_is_coverage or (picture.shape[2] == 4 and "alpha" in item.channels)
     is_precise = picture.is_float and (not picture.is_integer or _is_height(item))
     if content == "normal":
         return _best("bc7", "bc3") if reads_alpha else "bc5"

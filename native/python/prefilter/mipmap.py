@@ -242,14 +242,13 @@ def _as_light(stored: np.ndarray, srgb: bool, threads: int) -> npt.NDArray[np.fl
     return to_linear(floats, threads=threads)
 
 
-def _as_words(
-    level: npt.NDArray[np.float32], srgb: bool, threads: int
-) -> npt.NDArray[np.uint16]:
+def _as_words(level: npt.NDArray[np.float32], srgb: bool, threads: int) -> npt.NDArray[np.uint16]:
     """A level in steps of a 65535th, rounded to the nearest."""
     if srgb:
         level = to_srgb(level, threads=threads)
     full = np.float32(np.iinfo(np.uint16).max)
-    return np.rint(np.clip(level, 0, 1) * full).astype(np.uint16)
+    words: npt.NDArray[np.uint16] = np.rint(np.clip(level, 0, 1) * full).astype(np.uint16)
+    return words
 
 
 def mipmap_error(

@@ -2,6 +2,7 @@
 
 import threading
 
+import prefilter
 import pytest
 
 
@@ -36,3 +37,45 @@ def test_progress_and_cancel(addon):
     job.cancel()
     may_go_on.set()
     assert job.result() == (True, False)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_several_at_once(addon, threads):
+    begun, told, done = [], [], {}
+
+    def work(index, progress):
+        begun.append(index)
+        assert progress(0.5)
+        done[index] = threading.get_ident()
+        assert progress(1.0)
+
+    works = [lambda progress, index=index: work(index, progress) for index in range(7)]
+    addon("core.jobs").at_once(works, lambda fraction: told.append(fraction) or True, threads)
+    assert sorted(done) == list(range(7))
+    assert told == sorted(told)
+    assert len(told) == 14
+    assert told[-1] == 1.0
+    assert (set(done.values()) == {threading.get_ident()}) == (threads == 1)
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_one_of_several_fails(addon, threads):
+    begun = []
+
+    def work(index, progress):
+        begun.append(index)
+        if index == 1:
+            raise ValueError("no good")
+        addon("core.jobs").go_on(progress, 0.5)
+
+    works = [lambda progress, index=index: work(index, progress) for index in range(50)]
+    with pytest.raises(ValueError, match="no good"):
+        addon("core.jobs").at_once(works, lambda _: True, threads)
+    assert len(begun) < 50
+
+
+def test_several_are_cancelled(addon):
+    jobs = addon("core.jobs")
+    works = [lambda progress: jobs.go_on(progress, 0.5)] * 9
+    with pytest.raises(prefilter.Cancelled):
+        jobs.at_once(works, lambda _: False, 2)

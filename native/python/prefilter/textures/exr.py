@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import ProgressCallback, as_progress, is_srgb
-from .._border.arrays import as_bytes, as_image, as_threads
+from .._border.arrays import as_image, as_texels, as_threads
 from .._border.output import as_target, replace_file
+from ..color import to_linear
 from .texel_formats import as_alpha
 
 _TILE_SIDE = _native.EXR_TILE_SIDE
@@ -45,11 +46,11 @@ def write_exr(
         path: The file; its folder must exist.
         levels: (height, width, 1 to 4 channels) each, level 0 first, down to 1 x 1, row 0 at v = 0,
             the bottom; each has half the sides of the one before, rounded down. Floats are
-            scene-linear. Some may be uint8, such as an image of bytes whose other levels are
-            floats.
+            scene-linear. Some may be uint8 or uint16, such as an image of bytes whose other levels
+            are floats.
         format: "half" for 16-bit floats, "float" for 32-bit ones. Values beyond the range of halves
             are clipped to it.
-        encoding: How bytes stand for colours: "linear" or "srgb". Alpha is linear always.
+        encoding: How integers stand for colours: "linear" or "srgb". Alpha is linear always.
         alpha: What the last of two or four channels is: "straight" (colours are multiplied by it),
             "premultiplied" (they are already) or "independent" (no alpha). In halves alpha is
             clipped to [0, 1].
@@ -62,10 +63,10 @@ def write_exr(
         OSError: The file cannot be written.
         Cancelled: The progress callback returned False.
     """
-    images = _as_all_levels(levels)
+    srgb = is_srgb(encoding)
+    images = _as_all_levels(levels, srgb)
     if format not in _FORMATS:
         raise ValueError(f"format: {format!r} is not one of {', '.join(_FORMATS)}")
-    srgb = is_srgb(encoding)
     has_alpha = as_alpha(alpha) != "independent" and images[0].shape[2] in (2, 4)
     texts = _as_texts(attributes)
     target = as_target(path)
@@ -110,7 +111,7 @@ def write_exr(
         report(1.0)
 
 
-def _as_all_levels(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
+def _as_all_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
     """The levels, each uint8 or float32; raises ValueError unless they go down to 1 x 1."""
     if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
         found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
@@ -118,10 +119,9 @@ def _as_all_levels(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:
     images: list[np.ndarray] = []
     for number, level in enumerate(levels):
         who = f"levels: level {number}"
-        if isinstance(level, np.ndarray) and level.dtype == np.uint8:
-            image = as_bytes(who, level)
-        else:
-            image = as_image(who, level)
+        image = as_texels(who, level)
+        if image.dtype == np.uint16:
+            image = to_linear(image) if srgb else as_image(who, image)
         if image.shape[2] not in _CHANNELS:
             raise ValueError(f"{who} has {image.shape[2]} channels; 1 to 4 are allowed")
         if images:
