@@ -16,9 +16,9 @@ namespace {
 
 float value_of(std::uint16_t half) {
   const int exponent = (half >> 10) & 31;
-  const int fraction = half & 1023;
-  const float magnitude = exponent == 0 ? std::ldexp(static_cast<float>(fraction), -24)
-                                        : std::ldexp(1024.0F + fraction, exponent - 25);
+  const auto fraction = static_cast<float>(half & 1023);
+  const float magnitude =
+      exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024.0F + fraction, exponent - 25);
   return (half & 0x8000) != 0 ? -magnitude : magnitude;
 }
 
