@@ -156,6 +156,7 @@ class Renderer:
         self.context.enable(moderngl.DEPTH_TEST)
         self._model = model
         self._buffers = {}
+        self._programs: dict[str, moderngl.Program] = {}
         textured = model.corners[model.used != UNTEXTURED]
         centre = (textured.min(axis=(0, 1)) + textured.max(axis=(0, 1))) / 2
         self._radius = np.linalg.norm(textured - centre, axis=2).max()
@@ -211,11 +212,11 @@ class Renderer:
         target = self.context.framebuffer([color], depth)
         target.use()
         target.clear()
-        made: list[moderngl.Buffer | moderngl.Texture | moderngl.Program] = [target, color, depth]
+        made = [target, color, depth]
         matrix = self._to_clip(angle).T.astype(np.float32).tobytes()
         for image, buffer in self._buffers.items():
             fragment = FRAGMENT_SHADER % (NOTHING if image == UNTEXTURED else result)
-            program = self.context.program(vertex_shader=VERTEX_SHADER, fragment_shader=fragment)
+            program = self._program(fragment)
             program["to_clip"].write(matrix)
             if image != UNTEXTURED:
                 textures[image].filter = filters
@@ -229,11 +230,19 @@ class Renderer:
             )
             triangles = self.context.vertex_array(program, [(buffer, layout, *names)])
             triangles.render(moderngl.TRIANGLES)
-            made += [triangles, program]
+            made.append(triangles)
         pixels = np.frombuffer(target.read(components=4, dtype="f4"), np.float32)
         for thing in made:
             thing.release()
         return pixels.reshape(size, size, 4)
+
+    def _program(self, fragment: str) -> moderngl.Program:
+        # Compiling takes longer than drawing.
+        if fragment not in self._programs:
+            self._programs[fragment] = self.context.program(
+                vertex_shader=VERTEX_SHADER, fragment_shader=fragment
+            )
+        return self._programs[fragment]
 
     def _to_clip(self, angle: float) -> Floats:
         turn = np.eye(4)
