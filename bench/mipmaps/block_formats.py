@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 Bytes = NDArray[np.uint8]
 
-FORMATS = ("rgba8", "bc3", "bc1")
+FORMATS = ("rgba8", "bc7", "bc3", "bc1")
 LEVELS = range(7)
 
 

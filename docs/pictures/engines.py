@@ -32,7 +32,7 @@ def main(folder: Path) -> None:
     straight = oiio.ImageSpec()
     straight.attribute("oiio:UnassociatedAlpha", 1)
     cells = []
-    for name, title in (("rgba8", "8-bit"), ("bc3", "BC3"), ("bc1", "BC1")):
+    for name, title in (("rgba8", "8-bit"), ("bc7", "BC7"), ("bc1", "BC1")):
         prefilter.write_dds(path, levels, format=name, encoding="srgb")
         file = oiio.ImageInput.open(str(path), straight)
         found = np.asarray(file.read_image("uint8"))[::-1].astype(float)
