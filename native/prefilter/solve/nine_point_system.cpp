@@ -17,7 +17,7 @@ namespace prefilter {
 namespace {
 
 // Levels of fewer texels are not worth a second thread.
-constexpr std::int64_t kTexelsWorthThreads = 64 * 64;
+constexpr std::int64_t kTexelsWorthThreads = 256 * 256;
 constexpr std::int64_t kRowsPerReport = 64;
 constexpr std::size_t kLinksPerReport = 1 << 12;
 
