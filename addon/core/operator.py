@@ -50,6 +50,15 @@ class _Run:
     effort: float
 
 
+def read_at_once(steps: Generator[float, None, Compute]) -> Compute:
+    """Does all steps of a reading, and returns what is then to be computed."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as done:
+            return done.value
+
+
 class BackgroundOperator:
     """A mixin: reads and writes on the main thread, and works in another with progress and Esc.
 
@@ -95,8 +104,14 @@ class BackgroundOperator:
         return self.read(context)
         yield
 
+    def following(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
+        """Returns what reads the next part of the work, as `reading` does the first; None at the
+        end. A part is read once that before it is computed."""
+        del context
+        return None
+
     def finish(self, context: bpy.types.Context, result: Any) -> str:
-        """Writes a result to Blender, and returns what to report."""
+        """Writes the result of the last part to Blender, and returns what to report."""
         raise NotImplementedError
 
     def discard(self) -> None:
@@ -253,6 +268,12 @@ class BackgroundOperator:
             return {"PASS_THROUGH"}
         result = self._job.result()
         self._seconds += self._job.seconds
+        self._steps = self.following(context)
+        if self._steps is not None:
+            self._job = None
+            if self._cancelled_at < math.inf:
+                raise prefilter.Cancelled("cancelled")
+            return {"RUNNING_MODAL"}
         self._leave(context)
         with self._in_place_of_last(context):
             self._finish(context, result)
@@ -264,6 +285,8 @@ class BackgroundOperator:
             with self._discarding():
                 with self._clock():
                     result = self.read(context)(progress)
+                    while (steps := self.following(context)) is not None:
+                        result = read_at_once(steps)(progress)
                 self._finish(context, result)
         except FAILURES as error:
             return self._fail(error)

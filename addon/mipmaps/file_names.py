@@ -42,7 +42,12 @@ class Pattern:
             return cls(output if is_texture(output) else f"{output}{extension}")
         if is_texture(output) and not os.path.isdir(output):
             return cls(f"{stem}.{PLACE}{ending}")
-        return cls(os.path.join(output, f"{PLACE}{extension}"))
+        return cls.in_folder(output, extension)
+
+    @classmethod
+    def in_folder(cls, folder: str, extension: str) -> "Pattern":
+        """Returns the pattern of files in a folder; of none if that is empty."""
+        return cls(os.path.join(folder, f"{PLACE}{extension}") if folder else "")
 
     @property
     def extension(self) -> str:

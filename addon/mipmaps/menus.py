@@ -4,8 +4,9 @@ import bpy
 
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
 from ..core.properties import copy
-from .choices import Settings
+from .choices import NOT_OF_MODELS, ModelSettings, Settings
 from .operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
+from .operators.bake_model import PREFILTER_OT_bake_model
 from .operators.bake_texture_cache import PREFILTER_OT_bake_texture_cache
 from .operators.fill_unused import PREFILTER_OT_fill_unused
 from .operators.plot_error import PREFILTER_OT_plot_error
@@ -31,9 +32,17 @@ def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     copy(context.scene.prefilter_bake, operator, Settings)
 
 
+def draw_bake_model(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draws the button of the bake of all images, with the settings of the scene."""
+    operator = layout.operator(PREFILTER_OT_bake_model.bl_idname, icon="RENDERLAYERS")
+    copy(context.scene.prefilter_model, operator, ModelSettings)
+    copy(context.scene.prefilter_model, operator, Settings, NOT_OF_MODELS)
+
+
 def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     layout, view = menu.layout, context.window_manager.prefilter_view
     draw_bake(layout, context)
+    draw_bake_model(layout, context)
     layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon="TEXTURE")
     layout.separator()
     preview = layout.operator(PREFILTER_OT_preview_levels.bl_idname, icon="FILE_REFRESH")
@@ -49,4 +58,5 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
 def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
     draw_bake(menu.layout, context)
+    draw_bake_model(menu.layout, context)
     menu.layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon="TEXTURE")

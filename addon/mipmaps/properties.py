@@ -7,7 +7,7 @@ from bpy.props import PointerProperty
 
 from ..bridge.files import engines
 from ..core.properties import properties, values
-from .choices import FITTED_FILTERS, Settings
+from .choices import FITTED_FILTERS, NOT_OF_MODELS, ModelSettings, Settings
 
 
 class BakeProperties:
@@ -75,6 +75,44 @@ class BakeProperties:
             layout.prop(self, "supercompression")
 
 
+class ModelProperties:
+    """The properties of a bake of a model; a mixin for an operator and a property group."""
+
+    __annotations__ = properties(ModelSettings) | properties(Settings, NOT_OF_MODELS)
+
+    def to_settings(self) -> tuple[ModelSettings, Settings]:
+        """Returns the values, with the folder's path made absolute."""
+        return values(self, ModelSettings), values(self, Settings, NOT_OF_MODELS)
+
+    def draw_in(self, layout: bpy.types.UILayout) -> None:
+        """Draws what is set for models only."""
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        layout.prop(self, "objects")
+        column = layout.column()
+        column.prop(self, "folder")
+        row = column.column()
+        row.active = bool(self.folder)
+        row.prop(self, "file_format")
+        if engines.has_formats(f".{self.file_format}"):
+            row.prop(self, "texture_format")
+        layout.prop(self, "use_images")
+
+    def draw_others(self, layout: bpy.types.UILayout) -> None:
+        """Draws what all bakes have."""
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        for name in properties(Settings, NOT_OF_MODELS):
+            if name != "texture_format":
+                column = layout.column()
+                column.active = not name.startswith("frame_") or self.use_frames
+                column.prop(self, name)
+
+
+class PREFILTER_PG_model(ModelProperties, bpy.types.PropertyGroup):
+    """The settings that the panel shows; they stay with the scene."""
+
+
 class PREFILTER_PG_bake(BakeProperties, bpy.types.PropertyGroup):
     """The settings that the panel shows; they stay with the scene."""
 
@@ -82,10 +120,14 @@ class PREFILTER_PG_bake(BakeProperties, bpy.types.PropertyGroup):
 def register() -> None:
     """Registers the settings on the scene."""
     bpy.utils.register_class(PREFILTER_PG_bake)
+    bpy.utils.register_class(PREFILTER_PG_model)
     bpy.types.Scene.prefilter_bake = PointerProperty(type=PREFILTER_PG_bake)
+    bpy.types.Scene.prefilter_model = PointerProperty(type=PREFILTER_PG_model)
 
 
 def unregister() -> None:
     """Removes the settings from the scene."""
+    del bpy.types.Scene.prefilter_model
     del bpy.types.Scene.prefilter_bake
+    bpy.utils.unregister_class(PREFILTER_PG_model)
     bpy.utils.unregister_class(PREFILTER_PG_bake)

@@ -11,6 +11,7 @@ from ...bridge import meshes
 from ...bridge.files import engines, scenes, staging
 from ...core import command
 from ...core.flags import given
+from ...core.operator import read_at_once
 from ...core.wording import listed
 from .. import file_names
 from ..choices import NOT_OF_MODELS, ModelSettings, Settings
@@ -39,8 +40,6 @@ def bake_all(options: argparse.Namespace, settings: Settings) -> None:
     if options.list:
         _list(ModelBake(planned, settings, files, is_rehearsal=True))
         return
-    if pattern.text and planned.items:
-        Path(os.path.realpath(pattern.text)).parent.mkdir(parents=True, exist_ok=True)
     model = ModelBake(planned, settings, files)
     try:
         _bake(model)
@@ -118,9 +117,4 @@ def _bake(model: ModelBake) -> None:
 
 
 def _read(model: ModelBake) -> Compute:
-    steps = model.reading(bpy.context.evaluated_depsgraph_get())
-    while True:
-        try:
-            next(steps)
-        except StopIteration as done:
-            return done.value
+    return read_at_once(model.reading(bpy.context.evaluated_depsgraph_get()))

@@ -4,7 +4,9 @@ The operator and the command are two ways to call this. An image that cannot be 
 the others. No more than one image is in memory at a time.
 """
 
+import os
 from collections.abc import Callable, Generator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -82,6 +84,7 @@ class ModelBake:
         self._jobs = plan.jobs()
         self._count = len(plan.items)
         self._done = 0
+        self._made_folders: list[Path] = []
         self._computed: list[tuple[Job, AnyBake]] = []
         self._baked: list[str] = []
         self._outcomes: list[Outcome] = []
@@ -151,6 +154,9 @@ class ModelBake:
         for _, bake in self._computed:
             bake.discard()
         self._computed.clear()
+        while self._made_folders:
+            with suppress(OSError):  # It is not empty.
+                self._made_folders.pop().rmdir()
 
     def outcome(self) -> Outcome:
         """Returns what was done, with all that a user should look at.
@@ -161,7 +167,7 @@ class ModelBake:
         problems = [f"image '{one.image}' is not baked: {one.reason}" for one in self.failed]
         aside = self.lines_of_left_out()
         if not self._outcomes:
-            raise ValueError("\n".join(["no image was baked", *problems, *aside]))
+            raise ValueError("\n".join(self.nothing()))
         files = [path for one in self._outcomes for path in one.files]
         names = [name for one in self._outcomes for name in one.images]
         return Outcome(
@@ -171,6 +177,11 @@ class ModelBake:
             warnings=problems + [text for one in self._outcomes for text in one.warnings],
             notes=aside + [text for one in self._outcomes for text in one.notes],
         )
+
+    def nothing(self) -> list[str]:
+        """Returns lines that say why there is no image that can be baked."""
+        problems = [f"image '{one.image}' is not baked: {one.reason}" for one in self.failed]
+        return ["no image was baked", *problems, *self.lines_of_left_out()]
 
     def lines_of_left_out(self) -> list[str]:
         """Returns a line for each reason why images are left out."""
@@ -253,6 +264,8 @@ class ModelBake:
             settings = replace(
                 settings, filepath="", roughness_filepath="", texture_format="auto", use_images=True
             )
+        else:
+            self._make_folder(file)
         shown = {name: bpy.data.objects.get(name) for name in job.item.objects}
         objects = [obj for obj in shown.values() if obj is not None]
         bake = yield from reading.reading(
@@ -284,6 +297,17 @@ class ModelBake:
         alone = Job(replace(item, notes=(*item.notes, note)))
         self._jobs[:0] = [Job(job.item), alone] if job.roughness is not None else [alone]
         self._done -= len(job.images)
+
+    def _make_folder(self, file: str) -> None:
+        """Makes the folder of a file, if there is to be a file."""
+        missing: list[Path] = []
+        folder = Path(os.path.realpath(file)).parent
+        while file and not folder.exists():
+            missing.append(folder)
+            folder = folder.parent
+        for path in reversed(missing):
+            path.mkdir()
+            self._made_folders.append(path)
 
     def _format(self, item: Item, picture: Picture, content: str, file: str) -> str:
         if self._settings.texture_format != "auto":

@@ -1,6 +1,6 @@
-"""Where a user finds mipmaps: the Image and UV editors, and Cycles' render properties."""
+"""Where a user finds mipmaps: the Image and UV editors, the 3D view, Cycles' properties."""
 
 from ...core.registration import registration
-from . import image_editor, seeing, texture_cache
+from . import image_editor, model, seeing, texture_cache
 
-register, unregister = registration(image_editor, seeing, texture_cache)
+register, unregister = registration(image_editor, model, seeing, texture_cache)

@@ -225,3 +225,73 @@ def test_redo_that_turns_out_slow_is_cut_short_and_waits(addon, probe, context, 
     operator.read = None
     assert operator.execute(context) == {"CANCELLED"}
     assert operator._waits > 0.05
+
+
+@pytest.fixture
+def in_parts(probe):
+    """Returns a class of operators that work in parts, and note what they do."""
+
+    class InParts(probe):
+        parts = 3
+
+        def __init__(self):
+            super().__init__()
+            self.done = []
+            self.gate = threading.Event()
+            self.gate.set()
+
+        def read(self, context):
+            return self._part()
+
+        def following(self, context):
+            if len(self.done) == 2 * self.parts:
+                return None
+            return self._steps_of_a_part()
+
+        def _steps_of_a_part(self):
+            yield 0.5
+            return self._part()
+
+        def _part(self):
+            self.done.append("read")
+
+            def compute(progress):
+                self.gate.wait()
+                if not progress(0.5):
+                    raise prefilter.Cancelled("cancelled")
+                self.done.append("compute")
+
+            return compute
+
+    return InParts
+
+
+@pytest.mark.parametrize("in_background", [False, True])
+def test_a_part_is_read_once_that_before_it_is_computed(in_parts, context, in_background):
+    operator = in_parts()
+    ended = played(operator, context) if in_background else operator.execute(context)
+    assert ended == {"FINISHED"}
+    assert operator.done == 3 * ["read", "compute"]
+    assert (operator.reports, operator.discarded) == (["done"], 0)
+
+
+@pytest.mark.parametrize("is_waiting", [True, False])
+def test_esc_between_parts(in_parts, context, is_waiting):
+    """The part that Esc comes in may end well; that after it is not begun."""
+    operator = in_parts()
+    operator.gate.clear()
+    operator.invoke(context, None)
+    if not is_waiting:
+        operator.gate.set()
+        while not operator._job.is_done:
+            time.sleep(0.001)
+    operator.modal(context, ESC)
+    operator.gate.set()
+    status = {"RUNNING_MODAL"}
+    while status <= {"RUNNING_MODAL", "PASS_THROUGH"}:
+        time.sleep(0.001)
+        status = operator.modal(context, TIMER)
+    assert status == {"CANCELLED"}
+    assert operator.discarded == 1
+    assert operator.done == (["read"] if is_waiting else ["read", "compute"])
+    assert operator.reports == ["Probing canceled"]

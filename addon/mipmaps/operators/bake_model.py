@@ -1,0 +1,106 @@
+"""`prefilter.bake_model`: the levels of every image of a model, each in a file of its own."""
+
+from collections.abc import Callable, Generator
+from dataclasses import replace
+
+import bpy
+
+from ...bridge.files import engines
+from ...core.operator import BackgroundOperator, Compute, read_at_once
+from .. import file_names
+from ..model import known
+from ..model.bake import ModelBake
+from ..model.plan import image_of, plan
+from ..properties import ModelProperties
+
+
+class PREFILTER_OT_bake_model(ModelProperties, BackgroundOperator, bpy.types.Operator):
+    """Bakes image after image: one is read when that before it is computed."""
+
+    bl_idname = "prefilter.bake_model"
+    bl_label = "Bake All Images"
+    bl_description = (
+        "Make the mipmap levels of every image of the scene or of the selected meshes, weighted by "
+        "the surface that shows it. What an image holds is found from the nodes: color, normals, "
+        "roughness and other data, cut-outs"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Baking all images"
+
+    _model: ModelBake | None = None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether an object shows an image."""
+        if cls.may_be_redone(context):
+            return True
+        reason = "" if bpy.data.images else "There is no image in this file"
+        # Scripts may have changed the scene just now, which panels hear of later.
+        if context.area is not None:
+            reason = reason or known.why_none(context, context.scene.prefilter_model.objects)
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+        """Draws the settings."""
+        del context
+        self.draw_in(layout)
+        self.draw_others(layout)
+
+    def read(self, context: bpy.types.Context) -> Compute:
+        """Looks what there is, and copies the first image and its surfaces."""
+        return read_at_once(self.reading(context))
+
+    def reading(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
+        """Does what `read` does, frame after frame."""
+        self._model = self._planned(context)
+        following = self.following(context)
+        assert following is not None
+        return (yield from following)
+
+    def following(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
+        """Returns what copies the next image and its surfaces."""
+        assert self._model is not None
+        if not self._model.next_name:
+            return None
+        self.doing = f"Baking {self._model.next_name}"
+        return self._model.reading(context.evaluated_depsgraph_get())
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Writes what was baked."""
+        del context, result
+        assert self._model is not None
+        self._model.write()
+        return self.tell(self._model.outcome())
+
+    def discard(self) -> None:
+        """Removes what was staged."""
+        self.releaser()()
+
+    def releaser(self) -> Callable[[], None]:
+        """Returns what removes what was staged."""
+        return self._model.discard if self._model is not None else super().releaser()
+
+    def _planned(self, context: bpy.types.Context) -> ModelBake:
+        own, shared = self.to_settings()
+        if not own.folder and not own.use_images:
+            raise ValueError("nothing to write: neither a folder nor level images are asked for")
+        if self.folder.startswith("//") and not bpy.data.is_saved:
+            raise ValueError(
+                f"Folder: '{self.folder}' is beside the .blend file; save that first, or choose "
+                f"another folder"
+            )
+        chosen = None
+        if own.objects == "selected":
+            chosen = [obj for obj in context.view_layer.objects if obj.select_get()]
+        planned = plan(context.view_layer, context.evaluated_depsgraph_get(), chosen)
+        if not planned.items:
+            raise ValueError("\n".join(ModelBake(planned, shared, {}).nothing()))
+        images = [image_of(item.full_name) for item in planned.items]
+        pattern = file_names.Pattern.in_folder(own.folder, f".{own.file_format}")
+        if not engines.has_formats(pattern.text):
+            shared = replace(shared, texture_format="auto")
+        paths = file_names.paths(pattern, images)
+        files = {image.name_full: file for image, file in zip(images, paths, strict=True)}
+        return ModelBake(planned, replace(shared, use_images=own.use_images), files)

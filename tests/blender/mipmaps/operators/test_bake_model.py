@@ -1,0 +1,94 @@
+"""The operator on all images, as scripts call it."""
+
+import bpy
+import pytest
+import scenes
+from texture_readers import read_dds
+
+
+def bake(**options):
+    return bpy.ops.prefilter.bake_model(**options)
+
+
+@pytest.fixture
+def saved(tmp_path):
+    """Saves a file with two squares, of an image each."""
+    for name in ("Left", "Right"):
+        scenes.textured_quad(scenes.image(name, scenes.noise(8, 8)), name, select=name == "Left")
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    return tmp_path
+
+
+def files(folder):
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*.*"))
+
+
+def test_the_scene_into_a_folder_beside_the_file(saved, capfd):
+    assert bake() == {"FINISHED"}
+    assert files(saved) == ["mipmaps/Left.ktx2", "mipmaps/Right.ktx2", "scene.blend"]
+    assert "Baked 2 images into 2 files in" in capfd.readouterr().out
+    assert sorted(image.name for image in bpy.data.images) == ["Left", "Right"]
+
+
+def test_what_is_selected(saved):
+    assert bake(objects="selected", file_format="dds", texture_format="rgba8") == {"FINISHED"}
+    assert files(saved) == ["mipmaps/Left.dds", "scene.blend"]
+    assert read_dds(saved / "mipmaps" / "Left.dds").width == 8
+
+
+def test_level_images_without_files(saved):
+    assert bake(folder="", use_images=True) == {"FINISHED"}
+    assert files(saved) == ["scene.blend"]
+    assert {f"{name}.mip{i:02d}" for name in ("Left", "Right") for i in (1, 2, 3)} < {
+        image.name for image in bpy.data.images
+    }
+
+
+def test_what_fails_stops_nothing_else(saved, capfd):
+    image = bpy.data.images["Left"]
+    image.unpack(method="REMOVE")
+    image.source, image.filepath = "FILE", "//gone.png"
+    image.reload()
+    assert bake() == {"FINISHED"}
+    assert files(saved) == ["mipmaps/Right.ktx2", "scene.blend"]
+    said = capfd.readouterr().out
+    assert "Warning: image 'Left' is not baked: found no pixels" in said
+    assert "Baked 1 of 2 images" in said
+    assert "not baked: 'Left'" in said
+
+
+def test_nothing_is_left_where_all_fails(saved):
+    for obj in bpy.data.objects:
+        obj.data.uv_layers.remove(obj.data.uv_layers[0])
+        obj.data.update()
+    with pytest.raises(RuntimeError, match=r"(?s)no image was baked.*'Left' is not baked"):
+        bake(folder="//deep/folder")
+    assert files(saved) == ["scene.blend"]
+    assert not (saved / "deep").exists()
+
+
+def test_reasons_not_to_start(tmp_path):
+    assert not bpy.ops.prefilter.bake_model.poll()
+    with pytest.raises(RuntimeError, match="There is no image in this file"):
+        bake()
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(8, 8)))
+    assert bpy.ops.prefilter.bake_model.poll()
+    with pytest.raises(RuntimeError, match=r"Folder: '//mipmaps/' is beside the \.blend file"):
+        bake()
+    with pytest.raises(RuntimeError, match="neither a folder nor level images"):
+        bake(folder="")
+    bpy.ops.object.select_all(action="DESELECT")
+    with pytest.raises(RuntimeError, match="as none of these objects shows it: 'Paint'"):
+        bake(folder=str(tmp_path), objects="selected")
+
+
+def test_what_the_panel_lists(addon):
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(image, "Quad", select=False)
+    scenes.depsgraph()
+    known = addon("mipmaps.model.known")
+    found = known.images(bpy.context, "scene")
+    assert [(one.image, one.content, one.partner) for one in found] == [("Paint", "color", "")]
+    assert known.why_none(bpy.context, "scene") == ""
+    assert known.images(bpy.context, "selected") == []
+    assert known.why_none(bpy.context, "selected") == "No selected mesh shows an image"

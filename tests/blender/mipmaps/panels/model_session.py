@@ -1,0 +1,82 @@
+"""Runs in a Blender with a window: bakes all images, once to the end and once until Esc.
+
+Usage: blender --factory-startup --enable-event-simulate --python model_session.py -- RESULT.json
+"""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import addon_utils
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+
+import scenes
+from window import idle, play, refused, until
+
+RESULT = Path(sys.argv[sys.argv.index("--") + 1])
+FOLDER = RESULT.parent / "levels"
+
+
+def session() -> Iterator[None]:
+    """Yields whenever Blender should draw and handle events before going on."""
+    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    for name in ("First", "Second", "Third"):
+        scenes.textured_quad(scenes.image(name, scenes.noise(512, 512)), name)
+    bpy.ops.ed.undo_push(message="Scene")
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    area.type = "VIEW_3D"
+    area.spaces.active.show_region_ui = True
+    yield
+    sidebar = next(region for region in area.regions if region.type == "UI")
+    sidebar.active_panel_category = "Prefilter"
+    yield
+    yield
+    tab = sidebar.active_panel_category
+
+    override = {"window": window, "area": area}
+    options = {"folder": str(FOLDER), "file_format": "tif", "use_images": True}
+    with bpy.context.temp_override(**override):
+        started = bpy.ops.prefilter.bake_model("INVOKE_DEFAULT", **options)
+        refused_while_running = refused(bpy.ops.prefilter.bake_model)
+    yield
+    window.event_simulate(type="ESC", value="PRESS")
+    yield from until(idle)
+    after_cancel = {"images": images(), "files": files()}
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.bake_model("INVOKE_DEFAULT", **options)
+    yield from until(idle)
+    after_bake = {"images": images(), "files": files()}
+    with bpy.context.temp_override(**override):
+        bpy.ops.ed.undo()
+    yield
+    RESULT.write_text(
+        json.dumps(
+            {
+                "tab": tab,
+                "started": list(started),
+                "refused_while_running": refused_while_running,
+                "after_cancel": after_cancel,
+                "after_bake": after_bake,
+                "after_undo": images(),
+            }
+        )
+    )
+
+
+def images() -> list[str]:
+    """Returns the names of the images of the scene."""
+    return sorted(one.name for one in bpy.data.images if one.type == "IMAGE")
+
+
+def files() -> list[str]:
+    """Returns the names of the files, finished or not."""
+    return sorted(path.name for path in FOLDER.iterdir()) if FOLDER.exists() else []
+
+
+play(session())

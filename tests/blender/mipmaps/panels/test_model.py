@@ -1,0 +1,21 @@
+"""The bake of all images in a window that nobody sees: Esc leaves nothing, undo takes it back."""
+
+import json
+from pathlib import Path
+
+SESSION = Path(__file__).with_name("model_session.py")
+NAMES = ["First", "Second", "Third"]
+
+
+def test_modal_bake_of_all_images(in_window, tmp_path):
+    result = tmp_path / "result.json"
+    in_window(SESSION, result)
+    found = json.loads(result.read_text())
+    assert found["tab"] == "Prefilter"
+    assert found["started"] == ["RUNNING_MODAL"]
+    assert "press Esc to cancel" in found["refused_while_running"]
+    assert found["after_cancel"] == {"images": NAMES, "files": []}
+    assert found["after_bake"]["files"] == [f"{name}.tif" for name in NAMES]
+    levels = [f"{name}.mip{i:02d}" for name in NAMES for i in range(1, 10)]
+    assert found["after_bake"]["images"] == sorted([*NAMES, *levels])
+    assert found["after_undo"] == NAMES
