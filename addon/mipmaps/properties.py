@@ -9,6 +9,9 @@ from ..bridge.files import engines
 from ..core.properties import properties, values
 from .choices import FITTED_FILTERS, NOT_OF_MODELS, ModelSettings, Settings
 
+_OF_FILES = ("texture_format",)
+"""What is drawn below the kind of a file."""
+
 
 class BakeProperties:
     """The properties of a bake; a mixin for an operator and a property group."""
@@ -102,11 +105,10 @@ class ModelProperties:
         """Draws what all bakes have."""
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in properties(Settings, NOT_OF_MODELS):
-            if name != "texture_format":
-                column = layout.column()
-                column.active = not name.startswith("frame_") or self.use_frames
-                column.prop(self, name)
+        for name in properties(Settings, {*NOT_OF_MODELS, *_OF_FILES}):
+            column = layout.column()
+            column.active = not name.startswith("frame_") or self.use_frames
+            column.prop(self, name)
 
 
 class PREFILTER_PG_model(ModelProperties, bpy.types.PropertyGroup):

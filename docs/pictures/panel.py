@@ -4,8 +4,8 @@ usage: python3 panel.py TARGET.png        (outside of Blender: starts Xvfb and B
 
 TARGET is named after what it shows: panel.png (the bake), preview.png (a level, with the wipe),
 weights.png (the weights of texels, with their legend), voxelize.png (a mesh with a hole, and
-voxelized, beside the settings), rasterize.png (a text and a curve, and their image) or plane.png
-(the preview plane).
+voxelized, beside the settings), rasterize.png (a text and a curve, and their image), plane.png
+(the preview plane) or model.png (a model, and the images that it shows).
 """
 
 import os
@@ -293,9 +293,68 @@ def show_plane() -> None:
     bpy.app.timers.register(open_tab, first_interval=2.0)
 
 
+def show_model() -> None:
+    """Inside Blender: the demo's monkey with the images of a PBR material, and their list."""
+    import bpy
+    from mathutils import Euler
+
+    sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+    import demo_scene
+
+    bpy.context.preferences.view.show_splash = False
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
+    obj = demo_scene.add_monkey()
+    albedo = demo_scene.new_image(demo_scene.paint(demo_scene.read_model(obj)))
+    demo_scene.add_material(obj, albedo)
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    tree = obj.active_material.node_tree
+    shader = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    texture = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    tree.links.new(texture.outputs["Color"], shader.inputs["Base Color"])
+    apart = tree.nodes.new("ShaderNodeSeparateColor")
+    bumps = tree.nodes.new("ShaderNodeNormalMap")
+    for name, socket in (("Monkey ORM", apart.inputs[0]), ("Monkey Normal", bumps.inputs["Color"])):
+        node = tree.nodes.new("ShaderNodeTexImage")
+        node.image = bpy.data.images.new(name, *albedo.size, is_data=True)
+        tree.links.new(node.outputs["Color"], socket)
+    tree.links.new(apart.outputs["Green"], shader.inputs["Roughness"])
+    tree.links.new(apart.outputs["Blue"], shader.inputs["Metallic"])
+    tree.links.new(bumps.outputs[0], shader.inputs["Normal"])
+    glow = tree.nodes.new("ShaderNodeTexImage")
+    glow.image = bpy.data.images.new("Monkey Emission", *albedo.size)
+    tree.links.new(glow.outputs["Color"], shader.inputs["Emission Color"])
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    bpy.context.preferences.system.use_region_overlap = False
+    space = area.spaces.active
+    space.overlay.show_overlays = space.show_gizmo = False
+    space.show_region_ui = True
+    space.shading.color_type = "TEXTURE"
+    tree.nodes.active = texture
+    view = space.region_3d
+    view.view_rotation = Euler((1.3, 0.0, 0.4)).to_quaternion()
+    view.view_location, view.view_distance = (0.0, 0.0, 0.0), 3.5
+    bpy.context.scene.prefilter_model.folder = "/textures/"
+
+    def open_tab() -> float | None:
+        sidebar = next(region for region in area.regions if region.type == "UI")
+        if sidebar.active_panel_category == "UNSUPPORTED":  # Until it is drawn for the first time.
+            return 0.5
+        sidebar.active_panel_category = "Prefilter"
+        area.tag_redraw()
+        bpy.app.timers.register(lambda: print(READY, flush=True), first_interval=3.0)
+        return None
+
+    bpy.app.timers.register(open_tab, first_interval=2.0)
+
+
 if "bpy" in sys.modules:
     if sys.argv[-1] == "plane":
         show_plane()
+    elif sys.argv[-1] == "model":
+        show_model()
     elif sys.argv[-1] == "voxelize":
         show_voxels()
     elif sys.argv[-1] == "rasterize":

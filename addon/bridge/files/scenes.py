@@ -12,7 +12,7 @@ from . import staging
 
 
 def _import_usd(path: str) -> None:
-    if not hasattr(bpy.types, "WM_OT_usd_import"):
+    if not bpy.app.build_options.usd:
         raise OSError(f"FILE: cannot load '{path}': this Blender was built without USD")
     bpy.ops.wm.usd_import(filepath=path)
 

@@ -18,7 +18,7 @@ from ...bridge.images import Picture
 from ...core.jobs import Progress, go_on, share
 from ...core.outcome import FAILURES, Outcome
 from ...core.wording import counted, listed
-from .. import lookups, reading, udim
+from .. import contents, lookups, reading, udim
 from ..bake import Bake
 from ..choices import FILTERS, Settings
 from . import decisions
@@ -204,6 +204,7 @@ class ModelBake:
         rough = other if job.roughness is not None else image
         picture = _first(image)
         decision = decisions.decided(job.item, picture)
+        picture = contents.as_content(picture, decision.content)
         file = self._files[job.item.full_name]
         chosen = self._format(job.item, picture, decision.content, file)
         settings = lookups.resolved(

@@ -60,14 +60,14 @@ def texture_format(item: Item, picture: Picture, content: str, target: Path | No
     reads_alpha = picture.alpha_is_coverage or (picture.shape[2] == 4 and "alpha" in item.channels)
     is_precise = picture.is_float and (not picture.is_integer or _is_height(item))
     if content == "normal":
-        return _best("bc7", "bc3") if reads_alpha else "bc5"
+        return "bc7" if reads_alpha else "bc5"
     if is_precise:
-        return "rgba16f" if reads_alpha or not _is_positive(picture) else _best("bc6h", "rgba16f")
+        return "rgba16f" if reads_alpha or not _is_positive(picture) else "bc6h"
     has_no_srgb = picture.is_float or picture.encoding is Encoding.NONE
     is_data = has_no_srgb and content != "color" and not reads_alpha
     if is_data and (item.channels == {"red"} or is_gray(picture)):
         return "bc4"
-    return _best("bc7", "bc3" if reads_alpha else "bc1")
+    return "bc7"
 
 
 def shown_format(picture: Picture, target: Path | None, chosen: str) -> str:
@@ -100,8 +100,3 @@ def _is_height(item: Item) -> bool:
 
 def _is_positive(picture: Picture) -> bool:
     return bool(np.nanmin(picture.texels[..., :3]) >= 0.0)
-
-
-def _best(*formats: str) -> str:
-    """Returns the first of some formats that there is."""
-    return next(one for one in formats if one in TEXTURE_FORMATS)

@@ -27,12 +27,14 @@ class PREFILTER_PT_model(SidebarPanel, bpy.types.Panel):
         """Draws the panel."""
         settings = context.scene.prefilter_model
         settings.draw_in(self.layout)
+        if settings.folder.startswith("//") and not bpy.data.is_saved:
+            self.layout.label(text="Save the .blend file first", icon="ERROR")
         found = known.images(context, settings.objects) or []
         column = self.layout.column(align=True)
         for one in found[:_MOST_IMAGES]:
             row = column.row()
             row.label(text=one.image, icon=_ICONS[one.content])
-            row.label(text=f"for {one.partner}" if one.partner else CONTENTS[one.content].label)
+            row.label(text="Roughness" if one.partner else CONTENTS[one.content].label)
         if len(found) > _MOST_IMAGES:
             column.label(text=f"and {len(found) - _MOST_IMAGES} more", icon="BLANK1")
         row = self.layout.row()
