@@ -21,6 +21,7 @@ class PREFILTER_PT_model(SidebarPanel, bpy.types.Panel):
     """What is set most often, what there is to bake, and the button."""
 
     bl_label = "Mipmaps of All Images"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
     fits = staticmethod(may_show_image)
 
     def draw(self, context: bpy.types.Context) -> None:
