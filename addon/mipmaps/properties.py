@@ -9,7 +9,7 @@ from ..bridge.files import engines
 from ..core.properties import properties, values
 from .choices import FITTED_FILTERS, NOT_OF_MODELS, ModelSettings, Settings
 
-_OF_FILES = ("texture_format",)
+_OF_FILES = ("texture_format", "supercompression")
 """What is drawn below the kind of a file."""
 
 
@@ -99,6 +99,8 @@ class ModelProperties:
         row.prop(self, "file_format")
         if engines.has_formats(f".{self.file_format}"):
             row.prop(self, "texture_format")
+        if engines.has_supercompression(f".{self.file_format}"):
+            row.prop(self, "supercompression")
         layout.prop(self, "use_images")
 
     def draw_others(self, layout: bpy.types.UILayout) -> None:

@@ -255,6 +255,7 @@ def test_what_output_means(addon, output, expected):
         (["--all", "--output", "o.exr", "--format", "dds"], ["--format", "'o.exr'"]),
         (["--all", "--output", "o", "--format", "jpg"], ["--format", "ktx2"]),
         (["--all", "--output", "o", "--format", "exr", "--texture-format", "bc1"], ["'bc1'"]),
+        (["--all", "--output", "o", "--format", "dds", "--supercompression", "zstd"], ["'zstd'"]),
         (["--all", "--output", "o", "--save"], ["--save", ".blend"]),
         (["--list", "--output", "o.exr"], ["--list", "--all"]),
         (["--format", "dds", "--output", "o.exr"], ["--format", "--all"]),
