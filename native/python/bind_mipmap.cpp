@@ -25,7 +25,7 @@ Reader reader_of(const std::string& name) {
 
 MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::optional<float> low,
                          std::optional<float> high, int levels, bool premultiplied,
-                         const std::string& reader, double seam_weight, double footprint,
+                         const std::string& reader, double seam_budget, double footprint,
                          const py::object& progress, int threads) {
   MipmapOptions options;
   options.filter = mipmap_filter(filter);
@@ -34,7 +34,7 @@ MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::
   options.levels = levels;
   options.premultiplied = premultiplied;
   options.reader = reader_of(reader);
-  options.seam_weight = seam_weight;
+  options.seam_budget = seam_budget;
   options.footprint = footprint;
   options.threads = threads;
   options.progress = to_progress(progress);
@@ -182,17 +182,17 @@ void bind_mipmap(py::module_& m) {
   });
   m.def("coarser_levels", static_cast<ForFloats>(&bound_mipmaps), py::arg("image"),
         py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"), py::arg("high"),
-        py::arg("levels"), py::arg("premultiplied"), py::arg("reader"), py::arg("seam_weight"),
+        py::arg("levels"), py::arg("premultiplied"), py::arg("reader"), py::arg("seam_budget"),
         py::arg("footprint"), py::arg("progress"), py::arg("threads"));
   m.def("coarser_byte_levels", static_cast<ForBytes>(&bound_byte_mipmaps), py::arg("image"),
         py::arg("srgb"), py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"),
         py::arg("high"), py::arg("levels"), py::arg("premultiplied"), py::arg("reader"),
-        py::arg("seam_weight"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));
+        py::arg("seam_budget"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));
   m.def("coarser_float_levels_of_bytes",
         static_cast<ForFloatsOfBytes>(&bound_float_levels_of_bytes), py::arg("image"),
         py::arg("srgb"), py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"),
         py::arg("high"), py::arg("levels"), py::arg("premultiplied"), py::arg("reader"),
-        py::arg("seam_weight"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));
+        py::arg("seam_budget"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));
   m.def("mipmap_error", &bound_mipmap_error, py::arg("levels"), py::arg("image"),
         py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("reader"),
         py::arg("progress"), py::arg("threads"));

@@ -2,6 +2,7 @@
 #include "prefilter/mipmap/bilinear_system.h"
 
 #include <algorithm>
+#include <tuple>
 
 namespace prefilter {
 namespace {
@@ -108,12 +109,17 @@ Image BilinearSystem<C>::means() const {
 }
 
 template <int C>
-void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double weight) {
-  links_ = texel_links(links, system_, weight);
+void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double texels_by_area,
+                                  const Progress& progress) {
+  const auto is_part = [this](std::ptrdiff_t j) {
+    return system_.diagonal(j) > 0.0F && weights_[j] > 0.0F;
+  };
+  links_ = LinkForm(texel_links(links, system_, texels_by_area), is_part, progress);
 }
 
 template <int C>
-void BilinearSystem<C>::prepare(const TargetShares& target, const Progress& progress) {
+void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares& shares,
+                                const Progress& progress) {
   double sum = 0.0;
   std::int64_t used = 0;
   const auto size = static_cast<std::ptrdiff_t>(system_.size());
@@ -122,7 +128,7 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const Progress& prog
     sum += system_.diagonal(j);
     ++used;
   }
-  const double pull = used > 0 ? kPull * sum / static_cast<double>(used) : 0.0;
+  pull_ = static_cast<float>(used > 0 ? kPull * sum / static_cast<double>(used) : 0.0);
   system_.make_texels();
   for (std::ptrdiff_t j = 0; j < size; ++j) {
     if (j % kTexelsPerReport == 0) progress.report(0.0);
@@ -138,29 +144,86 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const Progress& prog
   const auto image_share = static_cast<float>(target.image);
   const auto finer_share = static_cast<float>(target.finer_means);
   const auto own_share = static_cast<float>(target.own_means);
+  const auto times = static_cast<float>(shares.times);
+  const auto known = static_cast<float>(shares.known);
+  const bool has_squares = has_links() && target.image != 1.0;
   std::vector<LaneValues> own_means;
-  if (own_share != 0.0F) own_means = system_.product();
+  if (own_share != 0.0F || has_squares) own_means = system_.product();
+  if (has_links()) target_.resize(system_.size());
+  ChannelSums own_finer{};
   for (std::ptrdiff_t j = 0; j < size; ++j) {
     if (j % kTexelsPerReport == 0) progress.report(0.0);
     if (!(system_.diagonal(j) > 0.0F)) continue;
-    Lanes right = image_share * system_.right_side(j).v;
+    const Lanes image = system_.right_side(j).v;
+    const Lanes mean = system_.texel(j).v;
+    Lanes right = image_share * image;
     if (finer_share != 0.0F) right += finer_share * finer_means_[j].v;
     if (own_share != 0.0F) right += own_share * own_means[j].v;
-    system_.right_side(j).v = right + static_cast<float>(pull) * system_.texel(j).v;
-    system_.diagonal(j) += static_cast<float>(pull);
+    if (has_links()) target_[j].v = right;
+    for (int c = 0; c < C && has_squares; ++c) {
+      own_squares_.means[c] += static_cast<double>(own_means[j].v[c]) * mean[c];
+      own_squares_.image_means[c] += static_cast<double>(image[c]) * mean[c];
+      own_finer[c] += static_cast<double>(finer_means_[j].v[c]) * mean[c];
+    }
+    system_.right_side(j).v = times * (right - known * image) + pull_ * mean;
+    system_.diagonal(j) += pull_;
   }
+  for (int c = 0; c < C && has_links(); ++c) {
+    const auto& [own, finer, image] =
+        std::tie(target.own_means, target.finer_means, target.image);
+    target_square_[c] = image * image * squares_.image[c] + finer * finer * squares_.means[c] +
+                        own * own * own_squares_.means[c] +
+                        2.0 * (image * finer * squares_.image_means[c] +
+                               image * own * own_squares_.image_means[c] +
+                               own * finer * own_finer[c]);
+  }
+  own_squares_.image = squares_.image;
   std::vector<LaneValues>().swap(finer_means_);
   std::vector<float>().swap(weights_);
-  system_.add_links(std::move(links_), progress);
   progress.report(0.0);
   system_.invert_diagonal();
 }
 
 template <int C>
+int BilinearSystem<C>::linked_sweeps() const {
+  constexpr double kSteps = 1 << 18;
+  constexpr int kLeast = 12;
+  constexpr int kMost = 200;
+  const auto steps = static_cast<double>(system_.size() + links_.entry_count());
+  return static_cast<int>(std::clamp<double>(kSteps / steps, kLeast, kMost));
+}
+
+template <int C>
+double BilinearSystem<C>::target_square(int first_channel) const {
+  double sum = 0.0;
+  for (int c = first_channel; c < C; ++c) sum += target_square_[c];
+  return sum;
+}
+
+template <int C>
+double BilinearSystem<C>::squared_error(int first_channel, int threads) const {
+  const ChannelSums form = system_.form(target_, pull_, threads);
+  double sum = target_square(first_channel);
+  for (int c = first_channel; c < C; ++c) sum += form[c];
+  return sum;
+}
+
+template <int C>
 auto BilinearSystem<C>::solve(const TargetShares& target, const SolveOptions& options,
-                              const Progress& progress) -> Solution {
-  prepare(target, progress);
-  const int sweeps = system_.solve(options, progress);
+                              SeamBudget* budget, const Progress& progress) -> Solution {
+  prepare(target, {}, progress);
+  int sweeps = system_.solve(options, has_links() ? progress.part(0.0, 0.3) : progress);
+  if (has_links()) {
+    const int first = budget->first_channel;
+    SolveOptions linked = options;
+    linked.max_sweeps = linked_sweeps();
+    const LinkedFit fit{[&](double weight, const Progress& part) {
+                          weigh_links(weight);
+                          sweeps += system_.solve(linked, part);
+                        },
+                        [&] { return squared_error(first, options.threads); }};
+    fit_within(target_square(first), fit, progress.part(0.3, 1.0), &system_, budget);
+  }
   Solution solution = take_solution();
   solution.sweeps = sweeps;
   return solution;

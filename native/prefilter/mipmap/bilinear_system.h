@@ -9,6 +9,7 @@
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/mipmap/seam_links.h"
+#include "prefilter/mipmap/seam_search.h"
 #include "prefilter/solve/nine_point_system.h"
 #include "prefilter/texels/moment_sweep.h"
 
@@ -30,6 +31,20 @@ struct TargetShares {
 /// twice as wide. Between them kernels are mixed so that their variances are the box's.
 TargetShares target_shares(double footprint);
 inline constexpr double kMostFootprint = 2.0;
+
+/// Integrals over the surface, by channel, that a squared error needs beside the equations.
+struct TargetSquares {
+  ChannelSums image{};        // of the image's square
+  ChannelSums means{};        // of that of the means p of a level, where they are part of a target
+  ChannelSums image_means{};  // of the image times these means
+};
+
+/// How the equations of a level are part of larger ones: those for the target less `known` times
+/// the image, all times `times`.
+struct EquationShares {
+  double times = 1.0;
+  double known = 0.0;
+};
 
 /// Minimises, over the texels t of a level and for each channel,
 ///   integral over the surface of (sum_j b_j t_j - I)^2  +  kPull * m * sum_j (t_j - p_j)^2
@@ -62,17 +77,38 @@ class BilinearSystem {
     int sweeps = 0;
   };
 
-  /// Adds, to what is minimised, `weight` times the square of each link, which counts its strip's
-  /// share of the surface's area as the integral does. To be called once all blocks are there.
-  void add_links(const std::vector<SeamLink>& links, double weight);
+  /// Adds, to what is minimised, the square of each link, which counts its strip's area in space
+  /// times `texels_by_area`, and a weight that `solve` finds. To be called once all blocks are
+  /// there.
+  void add_links(const std::vector<SeamLink>& links, double texels_by_area,
+                 const Progress& progress);
+  bool has_links() const { return !links_.empty(); }
+  /// From here on links count, with that weight. To be called after `prepare`.
+  void weigh_links(double weight) {
+    system_.weigh_links(&links_, Lanes{} + static_cast<float>(weight));
+  }
+  /// Before links can be solved for: the squares of the image, and of the next finer level's means.
+  void set_squares(const TargetSquares& squares) { squares_ = squares; }
+  /// Those of the image and this level's means, for the next level; after `prepare`, with links.
+  const TargetSquares& own_squares() const { return own_squares_; }
 
-  /// Solves for all channels, within their ranges. Can be called once.
-  Solution solve(const TargetShares& target, const SolveOptions& options, const Progress& progress);
+  /// Solves for all channels, within their ranges. With links the squared error over the surface,
+  /// over the channels from budget.first_channel on, rises by no more than the budget allows. Can
+  /// be called once.
+  Solution solve(const TargetShares& target, const SolveOptions& options, SeamBudget* budget,
+                 const Progress& progress);
 
   /// The steps of `solve`, for those who go on from there. `prepare` makes the system ready, with
   /// texels at their means p_j.
-  void prepare(const TargetShares& target, const Progress& progress);
+  void prepare(const TargetShares& target, const EquationShares& shares, const Progress& progress);
   NinePointSystem<float>& system() { return system_; }
+  /// How many sweeps a fit with another weight of the links is worth.
+  int linked_sweeps() const;
+  /// The squared error of the texels as they are, over the channels from `first_channel` on; only
+  /// where there are links.
+  double squared_error(int first_channel, int threads) const;
+  /// The same of texels that are 0.
+  double target_square(int first_channel) const;
   Solution take_solution();
 
  private:
@@ -84,7 +120,13 @@ class BilinearSystem {
   NinePointSystem<float> system_;
   std::vector<float> weights_;           // integrals of b_j
   std::vector<LaneValues> finer_means_;  // integrals of b_j times the finer level's means
-  std::vector<TexelLink> links_;
+  LinkForm links_;
+  // For the squared error, where there are links.
+  TargetSquares squares_;
+  TargetSquares own_squares_;
+  ChannelSums target_square_{};
+  std::vector<LaneValues> target_;  // integrals of b_j times the target
+  float pull_ = 0.0F;
 };
 
 }  // namespace prefilter

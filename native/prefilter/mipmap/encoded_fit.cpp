@@ -98,8 +98,7 @@ auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> Sums {
 }
 
 template <int C>
-auto EncodedFit<C>::assemble(int threads, const Progress& progress)
-    -> std::array<double, kColours> {
+auto EncodedFit<C>::assemble(int threads, const Progress& progress) -> ColourSums {
   system_.clear();
   std::vector<Sums> sums(cells_.size());
   // Rows of tiles that are not beside each other share no texels.
@@ -126,32 +125,82 @@ auto EncodedFit<C>::assemble(int threads, const Progress& progress)
       total.slopes[c] += sum.slopes[c];
     }
   }
-  // A difference of encoded values counts as the decoded one that the curve's mean slope makes of
-  // it: of the slopes at the start, so that all rounds minimise the same.
-  if (!links_scaled_) {
-    Lanes scale{};
-    for (int c = 0; c < kColours; ++c) scale[c] = static_cast<float>(total.slopes[c] / total.mass);
-    for (TexelLink& link : links_) link.weight.v *= scale;
-    links_scaled_ = true;
-  }
-  for (const TexelLink& link : links_) {
-    Lanes sum{};
-    for (int k = 0; k < link.count; ++k) sum += link.shares[k] * system_.texel(link.texels[k]).v;
-    for (int c = 0; c < kColours; ++c) {
-      total.squares[c] += static_cast<double>(link.weight.v[c]) * sum[c] * sum[c];
-    }
+  if (!has_slopes_) {
+    for (int c = 0; c < kColours; ++c) mean_slopes_[c] = total.slopes[c] / total.mass;
+    has_slopes_ = true;
   }
   return total.squares;
 }
 
 template <int C>
-void EncodedFit<C>::add_links(const std::vector<SeamLink>& links, double weight) {
-  links_ = texel_links(links, system_, weight);
+Lanes EncodedFit<C>::link_weights(double weight) const {
+  Lanes weights{};
+  for (int c = 0; c < kColours; ++c) weights[c] = static_cast<float>(weight * mean_slopes_[c]);
+  return weights;
+}
+
+template <int C>
+auto EncodedFit<C>::link_squares(double weight) const -> ColourSums {
+  const ChannelSums squares =
+      links_.value([this](std::ptrdiff_t at) -> const LaneValues& { return system_.texel(at); });
+  ColourSums weighed{};
+  for (int c = 0; c < kColours; ++c) weighed[c] = weight * mean_slopes_[c] * squares[c];
+  return weighed;
+}
+
+template <int C>
+void EncodedFit<C>::add_links(const std::vector<SeamLink>& links, double texels_by_area,
+                              const ChannelSums& squares) {
+  all_links_ = texel_links(links, system_, texels_by_area);
+  image_squares_ = squares;
 }
 
 template <int C>
 Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>& used,
-                           const SolveOptions& options, const Progress& progress) {
+                           const SolveOptions& options, SeamBudget* budget,
+                           const Progress& progress) {
+  system_.make_texels();
+  for (int y = 0; y < system_.height(); ++y) {
+    for (int x = 0; x < system_.width(); ++x) {
+      if (used[static_cast<std::size_t>(y) * system_.width() + x] == 0) continue;
+      for (int c = 0; c < C; ++c) system_.texel(system_.at(x, y)).v[c] = start.texel(x, y)[c];
+    }
+  }
+  if (!all_links_.empty()) {
+    std::vector<unsigned char> is_used(system_.size());
+    for (int y = 0; y < system_.height(); ++y) {
+      for (int x = 0; x < system_.width(); ++x) {
+        is_used[system_.at(x, y)] = used[static_cast<std::size_t>(y) * system_.width() + x];
+      }
+    }
+    links_ = LinkForm(
+        all_links_, [&](std::ptrdiff_t at) { return is_used[at] != 0; }, progress.part(0.0, 0.0));
+    std::vector<TexelLink>().swap(all_links_);
+  }
+  const bool searches = !links_.empty();
+  improve(start, used, 0.0, options, searches ? progress.part(0.0, 0.3) : progress);
+  if (searches) {
+    const Progress part = progress.part(0.3, 0.3);
+    double square = 0.0;
+    for (int c = 0; c < kColours; ++c) square += image_squares_[c];
+    const LinkedFit fit{[&](double weight, const Progress& fitting) {
+                          improve(start, used, weight, options, fitting);
+                        },
+                        [&] {
+                          double sum = square;
+                          for (const double of_channel : assemble(options.threads, part)) {
+                            sum += of_channel;
+                          }
+                          return sum;
+                        }};
+    fit_within(square, fit, progress.part(0.3, 1.0), &system_, budget);
+  }
+  return system_.take_image(C);
+}
+
+template <int C>
+void EncodedFit<C>::improve(const Image& start, const std::vector<unsigned char>& used,
+                            double weight, const SolveOptions& options, const Progress& progress) {
   const int width = system_.width();
   const int height = system_.height();
   const auto for_each_texel = [&](const auto& use) {
@@ -162,22 +211,25 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
       }
     }
   };
-  system_.make_texels();
-  for_each_texel([&](std::ptrdiff_t at, const float* texel) {
-    for (int c = 0; c < C; ++c) system_.texel(at).v[c] = texel[c];
-  });
+  const auto sums_of_squares = [&](const Progress& part) {
+    ColourSums sums = assemble(options.threads, part);
+    if (weight == 0.0) return sums;
+    const ColourSums of_links = link_squares(weight);
+    for (int c = 0; c < kColours; ++c) sums[c] += of_links[c];
+    return sums;
+  };
 
   SolveOptions round_options = options;
   round_options.max_sweeps = kSweepsPerRound;
   round_options.ranges_times_alpha = false;
   std::vector<LaneValues> before(system_.size());
-  std::array<double, kColours> first{};
-  std::array<double, kColours> least{};
+  ColourSums first{};
+  ColourSums least{};
   for (int round = 0; round < kMostRounds; ++round) {
     const Progress part = progress.part(static_cast<double>(round) / kMostRounds,
                                         static_cast<double>(round + 1) / kMostRounds);
     const Progress assembling = part.part(0.0, 0.4);
-    std::array<double, kColours> sums = assemble(options.threads, assembling);
+    ColourSums sums = sums_of_squares(assembling);
     if (round == 0) {
       first = least = sums;
     } else {
@@ -196,7 +248,7 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
           LaneValues& texel = system_.texel(static_cast<std::ptrdiff_t>(i));
           texel.v += keep * (before[i].v - texel.v);
         }
-        sums = assemble(options.threads, assembling);
+        sums = sums_of_squares(assembling);
       }
       bool settled = true;
       for (int c = 0; c < kColours; ++c) {
@@ -220,15 +272,14 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
       system_.diagonal(at).v += pull;
       system_.right_side(at).v += pull * target;
     });
-    system_.add_links(links_, part.part(0.45, 0.48));
     system_.invert_diagonal();
+    if (weight > 0.0) system_.weigh_links(&links_, link_weights(weight));
     part.report(0.48);
     for (std::size_t i = 0; i < before.size(); ++i) {
       before[i] = system_.texel(static_cast<std::ptrdiff_t>(i));
     }
     system_.solve(round_options, part.part(0.5, 1.0));
   }
-  return system_.take_image(C);
 }
 
 template class EncodedFit<1>;

@@ -7,6 +7,7 @@
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 #include "prefilter/mipmap/seam_links.h"
+#include "prefilter/mipmap/seam_search.h"
 #include "prefilter/solve/nine_point_system.h"
 #include "prefilter/texels/moment_sweep.h"
 
@@ -29,13 +30,16 @@ class EncodedFit {
   /// Adds the cells of one block of this level. Blocks may be added at the same time.
   void add(const MomentBlock<C>& block);
 
-  /// As BilinearSystem::add_links, of encoded texels.
-  void add_links(const std::vector<SeamLink>& links, double weight);
+  /// As BilinearSystem::add_links, of encoded texels; `squares` are the integrals of what the
+  /// reader shows of the image, squared.
+  void add_links(const std::vector<SeamLink>& links, double texels_by_area,
+                 const ChannelSums& squares);
 
   /// Improves on `start`, encoded texels within the ranges, which are encoded too. A fourth channel
-  /// stays as it is. `used` has 1 for each texel that the surface reads. Can be called once.
+  /// stays as it is. `used` has 1 for each texel that the surface reads. With links the error of
+  /// the colours rises by no more than the budget allows. Can be called once.
   Image solve(const Image& start, const std::vector<unsigned char>& used,
-              const SolveOptions& options, const Progress& progress);
+              const SolveOptions& options, SeamBudget* budget, const Progress& progress);
 
  private:
   static constexpr int kColours = C < 3 ? C : 3;
@@ -47,13 +51,23 @@ class EncodedFit {
     std::array<std::array<float, kColours>, 4> image;  // integrals at the points
   };
 
+  using ColourSums = std::array<double, kColours>;
+
   // Puts the Gauss-Newton system at the texels together; returns the sum of squares of each
-  // channel, less what does not depend on the texels.
-  std::array<double, kColours> assemble(int threads, const Progress& progress);
+  // channel, less what does not depend on the texels, and without links.
+  ColourSums assemble(int threads, const Progress& progress);
+  // What links of this weight add to it.
+  ColourSums link_squares(double weight) const;
+  // A difference of encoded values counts as the decoded one that the curve's mean slope makes of
+  // it: of the slopes at the start, so that all rounds minimise the same.
+  Lanes link_weights(double weight) const;
+  // Rounds from where the texels are, to the fit with links of this weight.
+  void improve(const Image& start, const std::vector<unsigned char>& used, double weight,
+               const SolveOptions& options, const Progress& progress);
 
   struct Sums {
-    std::array<double, kColours> squares{};
-    std::array<double, kColours> slopes{};  // squares of the curve's slope, times mass
+    ColourSums squares{};
+    ColourSums slopes{};  // squares of the curve's slope, times mass
     double mass = 0.0;
   };
   Sums assemble(const std::vector<Cell>& cells);
@@ -64,8 +78,11 @@ class EncodedFit {
   int tile_rows_;
   NinePointSystem<LaneValues> system_;
   std::vector<std::vector<Cell>> cells_;  // by block
-  std::vector<TexelLink> links_;
-  bool links_scaled_ = false;
+  std::vector<TexelLink> all_links_;
+  LinkForm links_;
+  bool has_slopes_ = false;
+  ColourSums mean_slopes_{};  // squares of the curve's slope, over the surface
+  ChannelSums image_squares_{};
 };
 
 }  // namespace prefilter

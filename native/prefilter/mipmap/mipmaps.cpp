@@ -20,6 +20,7 @@
 #include "prefilter/mipmap/argument_checks.h"
 #include "prefilter/mipmap/bilinear_system.h"
 #include "prefilter/mipmap/encoded_fit.h"
+#include "prefilter/mipmap/image_squares.h"
 #include "prefilter/mipmap/pam_box.h"
 #include "prefilter/mipmap/seam_links.h"
 #include "prefilter/mipmap/texture_space.h"
@@ -98,7 +99,7 @@ class Builder {
       case Reads::kLookedUp:
         break;
     }
-    return options_.reader != Reader::kLinear || options_.seam_weight != 0.0 ||
+    return options_.reader != Reader::kLinear || options_.seam_budget != 0.0 ||
            options_.footprint != 0.0;
   }
 
@@ -180,7 +181,7 @@ class Builder {
   // is its own means.
   template <int C, typename Add>
   void sweep_finer_means(const std::vector<Image>& means, const Progress& progress,
-                         const Add& add) const {
+                         TargetSquares* squares, const Add& add) const {
     const std::vector<unsigned char> read =
         !needs_surface(options_.filter)
             ? std::vector<unsigned char>()
@@ -188,37 +189,59 @@ class Builder {
                                options_.threads);
     const Image image = tent_means(image_.floats(), read, options_.wrap, options_.threads);
     const TexelSource source(image.view());
-    sweep_moments<C>(mapped(progress.part(0.1, 0.2)), source, options_.wrap,
-                     {.first_level = 1,
-                      .last_level = static_cast<int>(means.size()),
-                      .level_images = &means,
-                      .threads = options_.threads},
-                     progress.part(0.2, 1.0), add);
+    BlockSums of_means(width_, height_);
+    BlockSums of_both(width_, height_);
+    sweep_moments<C>(
+        mapped(progress.part(0.1, 0.2)), source, options_.wrap,
+        {.first_level = first_swept_level(),
+         .last_level = static_cast<int>(means.size()),
+         .level_images = &means,
+         .threads = options_.threads},
+        progress.part(0.2, 1.0), [&](const MomentBlock<C>& block) {
+          if (block.level > 0) return add(block);
+          of_means.add(block.index, integral_with(block, image.view(), options_.wrap));
+          of_both.add(block.index, integral_with(block, image_.floats(), options_.wrap));
+        });
+    squares->means = of_means.total();
+    squares->image_means = of_both.total();
   }
+
+  // Level 0 tells the integral of the image's square.
+  int first_swept_level() const { return options_.seam_budget > 0.0 ? 0 : 1; }
 
   // All levels there are are solved for, also where fewer are asked for.
   template <int C>
   std::vector<Image> solve_together() const {
     if (level_count_ == 1) return {};
     TrilinearSystem<C> system(width_, height_, options_.wrap);
+    TargetSquares squares;
+    BlockSums image_squares(width_, height_);
     sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)), image_.texels(), options_.wrap,
-                     {.first_level = 1,
+                     {.first_level = first_swept_level(),
                       .last_level = full_level_count(width_, height_) - 1,
                       .threads = options_.threads},
                      options_.progress.part(0.2, options_.footprint != 0.0 ? 0.35 : 0.5),
-                     [&](const MomentBlock<C>& block) { system.add(block); });
+                     [&](const MomentBlock<C>& block) {
+                       if (block.level > 0) return system.add(block);
+                       image_squares.add(block.index,
+                                         integral_with(block, image_.floats(), options_.wrap));
+                     });
+    squares.image = image_squares.total();
     if (options_.footprint != 0.0) {
       system.expect_finer_means();
-      sweep_finer_means<C>(system.means(), options_.progress.part(0.35, 0.5),
+      sweep_finer_means<C>(system.means(), options_.progress.part(0.35, 0.5), &squares,
                            [&](const MomentBlock<C>& block) { system.add_finer_means(block); });
     }
+    system.set_squares(squares);
     for_each_level_of_seams(image_.floats(), full_level_count(width_, height_) - 2,
                             options_.progress.part(0.5, 0.5),
-                            [&](int level, const std::vector<SeamLink>& links, double weight) {
-                              system.add_links(level, links, weight);
+                            [&](int level, const std::vector<SeamLink>& links, double by_area) {
+                              system.add_links(level, links, by_area,
+                                               options_.progress.part(0.5, 0.5));
                             });
-    auto solutions =
-        system.solve(options_.footprint, solve_options(), options_.progress.part(0.5, 0.95));
+    auto solutions = system.solve(options_.footprint, solve_options(),
+                                  {.share = options_.seam_budget},
+                                  options_.progress.part(0.5, 0.95));
     std::vector<Image> levels;
     for (int level = 1; level < level_count_; ++level) {
       levels.push_back(filled(std::move(solutions[level - 1].image), solutions[level - 1].used,
@@ -227,11 +250,11 @@ class Builder {
     return levels;
   }
 
-  // Calls use(level, links, weight) for every level; nothing where seams do not count.
+  // Calls use(level, links, texels_by_area) for every level; nothing where seams do not count.
   template <typename Use>
   void for_each_level_of_seams(const ImageView& image, int last_level, const Progress& progress,
                                const Use& use) const {
-    if (options_.seam_weight == 0.0) return;
+    if (options_.seam_budget == 0.0) return;
     std::vector<SeamEdge> seams = find_seams(surfaces_, progress);
     weigh_seams(image, surfaces_, options_.wrap, progress, &seams);
     double area = 0.0;
@@ -240,7 +263,7 @@ class Builder {
     const double texels_by_area = static_cast<double>(width_) * height_ / area;
     for (int level = 1; level <= last_level; ++level) {
       use(level, link_seams(seams, width(level), height(level), options_.wrap, progress),
-          options_.seam_weight * texels_by_area);
+          texels_by_area);
     }
   }
 
@@ -273,10 +296,11 @@ class Builder {
                                                      options_.wrap));
     }
     if (systems.empty()) return {};
+    BlockSums image_squares(width_, height_);
     const Image encoded_image = encoded ? encode_srgb(image_.floats(), options_.threads) : Image();
     sweep_moments<C>(mapped(options_.progress.part(0.16, 0.2)),
                      encoded ? TexelSource(encoded_image.view()) : image_.texels(), options_.wrap,
-                     {.first_level = 1,
+                     {.first_level = first_swept_level(),
                       .last_level = level_count_ - 1,
                       .reader = options_.reader,
                       .threads = options_.threads},
@@ -284,9 +308,17 @@ class Builder {
                                                  : has_footprint ? 0.35
                                                                  : 0.5),
                      [&](const MomentBlock<C>& block) {
+                       if (block.level == 0) {
+                         image_squares.add(
+                             block.index,
+                             encoded ? integral_of_decoded_square(block)
+                                     : integral_with(block, image_.floats(), options_.wrap));
+                         return;
+                       }
                        systems[block.level - 1]->add(block);
                        if (encoded) fits[block.level - 1]->add(block);
                      });
+    TargetSquares squares{.image = image_squares.total()};
 
     if (has_footprint) {
       std::vector<Image> means(1);
@@ -295,34 +327,42 @@ class Builder {
       }
       for (const auto& system : systems) system->expect_finer_means();
       sweep_finer_means<C>(
-          means, options_.progress.part(0.35, 0.5),
+          means, options_.progress.part(0.35, 0.5), &squares,
           [&](const MomentBlock<C>& block) { systems[block.level - 1]->add_finer_means(block); });
     }
 
     double from = encoded ? 0.3 : 0.5;
     const Progress linking = options_.progress.part(from, from);
-    for_each_level_of_seams(image_.floats(), level_count_ - 1, linking,
-                            [&](int level, const std::vector<SeamLink>& links, double weight) {
-                              systems[level - 1]->add_links(links, weight);
-                            });
-    if (encoded) {
-      for_each_level_of_seams(encoded_image.view(), level_count_ - 1, linking,
-                              [&](int level, const std::vector<SeamLink>& links, double weight) {
-                                fits[level - 1]->add_links(links, weight);
+    // Of encoded levels only alpha is solved for here, the fourth channel.
+    if (!encoded || C > encoded_channels(C)) {
+      for_each_level_of_seams(image_.floats(), level_count_ - 1, linking,
+                              [&](int level, const std::vector<SeamLink>& links, double by_area) {
+                                systems[level - 1]->add_links(links, by_area, linking);
                               });
     }
+    if (encoded) {
+      for_each_level_of_seams(encoded_image.view(), level_count_ - 1, linking,
+                              [&](int level, const std::vector<SeamLink>& links, double by_area) {
+                                fits[level - 1]->add_links(links, by_area, squares.image);
+                              });
+    }
+    SeamBudget budget{.share = options_.seam_budget,
+                      .first_channel = encoded ? encoded_channels(C) : 0};
+    SeamBudget encoded_budget{.share = options_.seam_budget};
     const SolveOptions solve = solve_options();
     std::vector<Image> levels;
     for (int level = 1; level < level_count_; ++level) {
       // A level has a quarter of the texels of the one before.
       const double to = from + 0.75 * (0.97 - from);
       const Progress part = options_.progress.part(from, to);
-      auto solution = systems[level - 1]->solve(target_shares(options_.footprint), solve,
+      systems[level - 1]->set_squares(squares);
+      auto solution = systems[level - 1]->solve(target_shares(options_.footprint), solve, &budget,
                                                 part.part(0.0, encoded ? 0.2 : 0.8));
+      squares = systems[level - 1]->own_squares();
       systems[level - 1].reset();
       if (encoded) {
-        fit_encoded(fits[level - 1].get(), solution.used, solve, part.part(0.2, 0.8),
-                    &solution.image);
+        fit_encoded(fits[level - 1].get(), solution.used, solve, &encoded_budget,
+                    part.part(0.2, 0.8), &solution.image);
         fits[level - 1].reset();
       }
       from = to;
@@ -333,12 +373,12 @@ class Builder {
 
   template <int C>
   void fit_encoded(EncodedFit<C>* fit, const std::vector<unsigned char>& used, SolveOptions solve,
-                   const Progress& progress, Image* level) const {
+                   SeamBudget* budget, const Progress& progress, Image* level) const {
     for (int c = 0; c < encoded_channels(C); ++c) {
       solve.ranges[c] = {linear_to_srgb(solve.ranges[c].low), linear_to_srgb(solve.ranges[c].high)};
     }
     const Image start = encode_srgb(level->view(), options_.threads);
-    *level = decode_srgb(fit->solve(start, used, solve, progress).view(), options_.threads);
+    *level = decode_srgb(fit->solve(start, used, solve, budget, progress).view(), options_.threads);
   }
 
   ValueRange bounds() const {
@@ -403,8 +443,8 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
                   " and the high bound is " + (bounds.high ? to_text(*bounds.high) : "open") +
                   "; numbers are needed, and low must not be above high");
   }
-  if (!(options.seam_weight >= 0.0) || !std::isfinite(options.seam_weight)) {
-    throw_invalid("seam_weight: " + to_text(options.seam_weight) +
+  if (!(options.seam_budget >= 0.0) || !std::isfinite(options.seam_budget)) {
+    throw_invalid("seam_budget: " + to_text(options.seam_budget) +
                   "; a finite number of at least 0 is needed");
   }
   if (!(options.footprint >= 0.0 && options.footprint <= kMostFootprint)) {

@@ -32,9 +32,9 @@ struct MipmapOptions {
   // Fitted to by SurfaceFilter::kBilinear; the levels of the other filters are the same for all
   // readers.
   Reader reader = Reader::kLinear;
-  // What the square of the difference across UV seams, over a strip one texel of the level wide,
-  // counts against the error over the surface. For the fitted filters.
-  double seam_weight = 0.0;
+  // By how much, as a share, the error over the surface of each level may rise for a lower contrast
+  // across UV seams; 0 leaves seams alone. For the fitted filters.
+  double seam_budget = 0.0;
   // Texels of a level that a pixel of the reader covers, 0 to 2, for the fitted filters and the
   // linear reader. 0: a level is fitted to the image itself, right where pixels are means of many
   // lookups. Else to the image averaged over that footprint, which is what a pixel of one lookup

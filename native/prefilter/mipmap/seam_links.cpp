@@ -187,9 +187,10 @@ std::vector<double> stops_of(const SeamEdge& seam, int width, int height) {
   return stops;
 }
 
-// The share of the variance from which on a difference between the sides is what the image is meant
-// to show.
-constexpr double kSharpSeam = 0.05;
+// The root mean square of the difference between the sides of a seam, in standard deviations of the
+// image: up to the one it is hidden, from the other on it is what the image is meant to show.
+constexpr double kHiddenStep = 0.1;
+constexpr double kShownStep = 0.12;
 
 constexpr double kLeastPart = 1e-9;
 
@@ -280,8 +281,9 @@ void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surf
     pulse.step();
     const double difference = mean_square_across(seam, image, wrap);
     if (!(difference > 0.0)) continue;
-    const double off = variance > 0.0 ? difference / (kSharpSeam * variance) : HUGE_VAL;
-    seam.area_scale /= (1.0 + off) * (1.0 + off);
+    const double step = variance > 0.0 ? std::sqrt(difference / variance) : HUGE_VAL;
+    const double shown = std::clamp((step - kHiddenStep) / (kShownStep - kHiddenStep), 0.0, 1.0);
+    seam.area_scale *= 1.0 - shown * shown * (3.0 - 2.0 * shown);
   }
 }
 
@@ -298,6 +300,7 @@ std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, 
     if (!(left + right > 0.0) || left + right > kLongestSeam) continue;
     length += seam.length;
     texels += 0.5 * (left + right);
+    if (!(seam.area_scale > 0.0)) continue;
     const std::vector<double> stops = stops_of(seam, width, height);
     for (std::size_t i = 1; i < stops.size(); ++i) {
       if (stops[i] - stops[i - 1] < kLeastPart) continue;

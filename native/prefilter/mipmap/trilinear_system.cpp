@@ -68,29 +68,47 @@ void TrilinearSystem<C>::expect_finer_means() {
 }
 
 template <int C>
-auto TrilinearSystem<C>::solve(double footprint, const SolveOptions& options,
-                               const Progress& progress)
-    -> std::vector<typename BilinearSystem<C>::Solution> {
-  std::vector<std::vector<LaneValues>> fixed;  // what the image puts on the right of each level
+void TrilinearSystem<C>::prepare(double footprint, const SolveOptions& options,
+                                 const Progress& progress) {
+  TargetSquares squares = squares_;
   for (int level = 1; level <= last_level_; ++level) {
     BilinearSystem<C>& system = *systems_[level - 1];
+    system.set_squares(squares);
     // The equations of a level are divided by 2/3. Of level 1, 1/6 A_1,0 times the image is known:
     // it is 1/6 of what the image puts on its right side.
-    TargetShares shares = target_shares(std::min(kMeanFootprint * footprint, kMostFootprint));
-    if (level == 1) shares.image -= 1.0 / 6.0;
-    system.prepare({1.5 * shares.image, 1.5 * shares.finer_means, 1.5 * shares.own_means},
-                   progress);
-    system.system().swap_right_side(&fixed.emplace_back());
+    system.prepare(target_shares(std::min(kMeanFootprint * footprint, kMostFootprint)),
+                   {.times = 1.5, .known = level == 1 ? 1.0 / 6.0 : 0.0}, progress);
+    system.system().swap_right_side(&fixed_.emplace_back());
+    squares = system.own_squares();
   }
   NinePointSystem<float>& last = systems_.back()->system();
   for (int c = 0; c < C; ++c) {
     last.texel(0).v[c] =
         std::clamp(static_cast<float>(mean_[c]), options.ranges[c].low, options.ranges[c].high);
   }
+}
 
+template <int C>
+int TrilinearSystem<C>::solve_level(int level, const SolveOptions& options,
+                                    const Progress& progress) {
+  NinePointSystem<float>& system = systems_[level - 1]->system();
+  right_ = fixed_[level - 1];
+  couplings_[level - 1].subtract_coarse(system, systems_[level]->system(), kBeside,
+                                        options.threads, &right_);
+  if (level > 1) {
+    couplings_[level - 2].subtract_fine(systems_[level - 2]->system(), system, kBeside,
+                                        options.threads, &right_);
+  }
+  system.swap_right_side(&right_);
+  const int sweeps = system.solve(options, progress);
+  system.swap_right_side(&right_);
+  return sweeps;
+}
+
+template <int C>
+void TrilinearSystem<C>::settle(const SolveOptions& options, const Progress& progress) {
   SolveOptions few = options;
   few.max_sweeps = kSweepsPerRound;
-  std::vector<LaneValues> right;
   // Whether a level moved when it was last solved for; it need not be again before one beside it
   // does. The last level stays as it is.
   std::vector<bool> moves(last_level_ + 1, true);
@@ -104,20 +122,63 @@ auto TrilinearSystem<C>::solve(double footprint, const SolveOptions& options,
                                           (round + 1.0 - std::ldexp(1.0, -level)) / kMostRounds);
       part.report(0.0);
       if (!moves[level - 1] && !moves[level] && !moves[level + 1]) continue;
-      NinePointSystem<float>& system = systems_[level - 1]->system();
-      right = fixed[level - 1];
-      couplings_[level - 1].subtract_coarse(system, systems_[level]->system(), kBeside,
-                                            options.threads, &right);
-      if (level > 1) {
-        couplings_[level - 2].subtract_fine(systems_[level - 2]->system(), system, kBeside,
-                                            options.threads, &right);
-      }
-      system.swap_right_side(&right);
-      moves[level] = system.solve(few, part) > 1;
-      system.swap_right_side(&right);
+      moves[level] = solve_level(level, few, part) > 1;
     }
   }
+}
 
+template <int C>
+void TrilinearSystem<C>::heed_links(const SolveOptions& options, const SeamBudget& budget,
+                                    const Progress& progress) {
+  const auto error = [&](int level) {
+    return systems_[level - 1]->squared_error(budget.first_channel, options.threads);
+  };
+  std::vector<std::vector<LaneValues>> alone(last_level_);
+  std::vector<double> least(last_level_);
+  SeamBudget found = budget;
+  for (int level = 1; level < last_level_; ++level) {
+    NinePointSystem<float>& system = systems_[level - 1]->system();
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      alone[level - 1].push_back(system.texel(static_cast<std::ptrdiff_t>(i)));
+    }
+    least[level - 1] = error(level);
+    if (!systems_[level - 1]->has_links()) continue;
+    const Progress part = progress.part(0.7 * (1.0 - std::ldexp(1.0, 1 - level)),
+                                        0.7 * (1.0 - std::ldexp(1.0, -level)));
+    SolveOptions linked = options;
+    linked.max_sweeps = systems_[level - 1]->linked_sweeps();
+    const LinkedFit fit{[&](double weight, const Progress& fitting) {
+                          systems_[level - 1]->weigh_links(weight);
+                          solve_level(level, linked, fitting);
+                        },
+                        [&] { return error(level); }};
+    fit_within(systems_[level - 1]->target_square(budget.first_channel), fit, part, &system,
+               &found);
+    systems_[level - 1]->weigh_links(found.weight);
+  }
+  // Levels that moved pull those beside them.
+  settle(options, progress.part(0.7, 1.0));
+  for (int level = 1; level < last_level_; ++level) {
+    const double square = systems_[level - 1]->target_square(budget.first_channel);
+    const double rise = allowed_rise(budget, least[level - 1], square);
+    const auto spent = [&] {
+      const double more = error(level) - least[level - 1];
+      return rise > 0.0 ? more / rise : (more > 0.0 ? HUGE_VAL : 0.0);
+    };
+    if (spent() > 1.0) draw_back(alone[level - 1], spent, &systems_[level - 1]->system());
+  }
+}
+
+template <int C>
+auto TrilinearSystem<C>::solve(double footprint, const SolveOptions& options, SeamBudget budget,
+                               const Progress& progress)
+    -> std::vector<typename BilinearSystem<C>::Solution> {
+  prepare(footprint, options, progress);
+  const bool has_links = std::any_of(systems_.begin(), systems_.end(), [](const auto& system) {
+    return system->has_links();
+  });
+  settle(options, has_links ? progress.part(0.0, 0.3) : progress);
+  if (has_links) heed_links(options, budget, progress.part(0.3, 1.0));
   std::vector<typename BilinearSystem<C>::Solution> levels;
   for (const std::unique_ptr<BilinearSystem<C>>& system : systems_) {
     levels.push_back(system->take_solution());

@@ -37,21 +37,39 @@ class TrilinearSystem {
   }
 
   /// As BilinearSystem::add_links, for a level.
-  void add_links(int level, const std::vector<SeamLink>& links, double weight) {
-    systems_[level - 1]->add_links(links, weight);
+  void add_links(int level, const std::vector<SeamLink>& links, double texels_by_area,
+                 const Progress& progress) {
+    systems_[level - 1]->add_links(links, texels_by_area, progress);
   }
+  /// As BilinearSystem::set_squares, for level 1.
+  void set_squares(const TargetSquares& squares) { squares_ = squares; }
 
   /// Levels 1 to the last, within the ranges. At the mip value m a pixel covers `footprint` times
-  /// 2^m texels of the image. Can be called once.
+  /// 2^m texels of the image. With links the squared error of bilinear lookups of each level, at its
+  /// own mip value, rises by no more than the budget allows. Can be called once.
   std::vector<typename BilinearSystem<C>::Solution> solve(double footprint,
                                                           const SolveOptions& options,
+                                                          SeamBudget budget,
                                                           const Progress& progress);
 
  private:
+  using RightSide = std::vector<LaneValues>;
+
+  void prepare(double footprint, const SolveOptions& options, const Progress& progress);
+  // Solves for one level, the others as they are; returns the number of sweeps.
+  int solve_level(int level, const SolveOptions& options, const Progress& progress);
+  // Rounds over the levels until none moves.
+  void settle(const SolveOptions& options, const Progress& progress);
+  // Finds the weights of the links of all levels, and goes there.
+  void heed_links(const SolveOptions& options, const SeamBudget& budget, const Progress& progress);
+
   int last_level_;
   std::vector<std::unique_ptr<BilinearSystem<C>>> systems_;  // of level l at [l - 1]
   std::vector<LevelCoupling> couplings_;                     // of levels l and l + 1 at [l - 1]
   std::array<double, C> mean_{};
+  std::vector<RightSide> fixed_;  // what the target puts on the right of each level
+  RightSide right_;
+  TargetSquares squares_;
 };
 
 }  // namespace prefilter

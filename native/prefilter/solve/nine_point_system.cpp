@@ -19,19 +19,16 @@ namespace {
 // Levels of fewer texels are not worth a second thread.
 constexpr std::int64_t kTexelsWorthThreads = 256 * 256;
 constexpr std::int64_t kRowsPerReport = 64;
-constexpr std::size_t kLinksPerReport = 1 << 12;
 
 float of(float entry) { return entry; }
 Lanes of(const LaneValues& entry) { return entry.v; }
 void add_to(float* entry, float value) { *entry += value; }
 void add_to(LaneValues* entry, const LaneValues& value) { entry->v += value.v; }
+void add_to(float* entry, Lanes value) { *entry += value[0]; }
+void add_to(LaneValues* entry, Lanes value) { entry->v += value; }
 
-void add_square(float* entry, const LaneValues& weight, float share) {
-  *entry += weight.v[0] * share * share;
-}
-void add_square(LaneValues* entry, const LaneValues& weight, float share) {
-  entry->v += share * share * weight.v;
-}
+float channel(float entry, int) { return entry; }
+float channel(const LaneValues& entry, int c) { return entry.v[c]; }
 
 float inverse_of(float entry) { return entry > 0.0F ? 1.0F / entry : 0.0F; }
 LaneValues inverse_of(const LaneValues& entry) {
@@ -132,7 +129,7 @@ class NinePointSystem<Entry>::Row {
   // Steps of the texels [begin, end).
   void relax(int begin, int end) {
     const auto at_end = [&](int x) {
-      return relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
+      relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
                        Lanes{});
     };
     if (begin < end && begin == 0) at_end(begin++);
@@ -141,9 +138,9 @@ class NinePointSystem<Entry>::Row {
     if (std::max(begin, middle_end) < end) at_end(end - 1);
   }
 
-  // A step of one texel, with `pull` added to its right side; returns by how much it moved.
-  Lanes relax_linked(int x, Lanes pull) {
-    return relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
+  // A step of one texel, with `pull` added to its right side.
+  void relax_linked(int x, Lanes pull) {
+    relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
                      pull);
   }
 
@@ -159,7 +156,7 @@ class NinePointSystem<Entry>::Row {
   int before_first() const { return repeat_ && width_ > 1 ? width_ - 1 : width_; }
   int after_last() const { return repeat_ && width_ > 1 ? 0 : width_; }
 
-  Lanes relax_one(int x, int west, int east, Lanes pull) {
+  void relax_one(int x, int west, int east, Lanes pull) {
     // A little over-relaxation saves sweeps; from about 1.3 on it costs some.
     constexpr float kRelaxation = 1.15F;
     const Lanes old = values_[x].v;
@@ -183,7 +180,6 @@ class NinePointSystem<Entry>::Row {
     values_[x].v = next;
     const Lanes step = lane_max(next - old, old - next);
     excess_ = lane_max(excess_, step - tolerance_ * lane_max(typical_, lane_max(next, -next)));
-    return next - old;
   }
 
   int width_;
@@ -205,15 +201,12 @@ class NinePointSystem<Entry>::Row {
 template <typename Entry>
 bool NinePointSystem<Entry>::relax_row(int y, const SolveOptions& options, Lanes typical) {
   Row row(this, y, options, typical);
-  if (linked_.empty()) {
+  if (links_ == nullptr) {
     row.relax(0, width_);
     return row.moved();
   }
   int begin = 0;
-  auto linked = std::lower_bound(
-      linked_.begin(), linked_.end(), at(0, y),
-      [](const LinkedTexel& texel, std::ptrdiff_t first) { return texel.at < first; });
-  for (; linked->at < at(width_, y); ++linked) {
+  for (auto linked = first_linked(y); linked->at < at(width_, y); ++linked) {
     const int x = static_cast<int>(linked->at - at(0, y));
     row.relax(begin, x);
     begin = x + 1;
@@ -223,33 +216,28 @@ bool NinePointSystem<Entry>::relax_row(int y, const SolveOptions& options, Lanes
 }
 
 template <typename Entry>
+std::vector<LinkForm::Texel>::const_iterator NinePointSystem<Entry>::first_linked(int y) const {
+  return std::lower_bound(
+      links_->texels().begin(), links_->texels().end(), at(0, y),
+      [](const LinkForm::Texel& texel, std::ptrdiff_t first) { return texel.at < first; });
+}
+
+template <typename Entry>
 void NinePointSystem<Entry>::relax_linked(const SolveOptions& options, Lanes typical,
                                           std::vector<unsigned char>* moves,
                                           const std::function<bool()>& goes_on) {
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (i % kLinksPerReport == 0 && !goes_on()) return;
-    Lanes sum{};
-    for (int k = 0; k < links_[i].count; ++k) {
-      sum += links_[i].shares[k] * texels_[links_[i].texels[k]].v;
-    }
-    link_sums_[i].v = sum;
-  }
-  for (std::size_t k = 0; k + 1 < linked_.size();) {
+  if (links_ == nullptr) return;
+  const std::vector<LinkForm::Texel>& linked = links_->texels();
+  for (std::size_t k = 0; k + 1 < linked.size();) {
     if (!goes_on()) return;
-    const int y = static_cast<int>(linked_[k].at / stride_);
+    const int y = static_cast<int>(linked[k].at / stride_);
     Row row(this, y, options, typical);
-    for (; linked_[k].at < at(width_, y); ++k) {
-      const std::ptrdiff_t texel = linked_[k].at;
-      const Lanes value = texels_[texel].v;
-      Lanes pull{};
-      for (std::size_t use = linked_[k].first_use; use < linked_[k + 1].first_use; ++use) {
-        const auto [link, share] = uses_[use];
-        pull -= share * links_[link].weight.v * (link_sums_[link].v - share * value);
+    for (; linked[k].at < at(width_, y); ++k) {
+      Lanes sum{};
+      for (const LinkForm::Entry* entry = links_->begin(k); entry != links_->end(k); ++entry) {
+        sum += entry->value * texels_[entry->at].v;
       }
-      const Lanes step = row.relax_linked(static_cast<int>(texel - at(0, y)), pull);
-      for (std::size_t use = linked_[k].first_use; use < linked_[k + 1].first_use; ++use) {
-        link_sums_[uses_[use].link].v += uses_[use].share * step;
-      }
+      row.relax_linked(static_cast<int>(linked[k].at - at(0, y)), -link_weights_ * sum);
     }
     if (row.moved()) (*moves)[y] = 1;
   }
@@ -341,44 +329,6 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
 }
 
 template <typename Entry>
-void NinePointSystem<Entry>::add_links(std::vector<TexelLink> links, const Progress& progress) {
-  Pulse pulse(progress);
-  const auto outside = [this](const TexelLink& link) {
-    return std::any_of(link.texels.begin(), link.texels.begin() + link.count,
-                       [this](std::ptrdiff_t at) { return !is_part(at); });
-  };
-  std::erase_if(links, outside);
-  links_ = std::move(links);
-  link_sums_.assign(links_.size(), LaneValues{});
-  struct Use {
-    std::ptrdiff_t at;
-    LinkUse use;
-  };
-  std::vector<Use> uses;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    pulse.step();
-    for (int k = 0; k < links_[i].count; ++k) {
-      const float share = links_[i].shares[k];
-      uses.push_back({links_[i].texels[k], {static_cast<std::uint32_t>(i), share}});
-      add_square(&stencils_[links_[i].texels[k]].centre, links_[i].weight, share);
-    }
-  }
-  std::stable_sort(uses.begin(), uses.end(), [&pulse](const Use& a, const Use& b) {
-    pulse.step();
-    return a.at < b.at;
-  });
-  linked_.clear();
-  uses_.clear();
-  for (const Use& use : uses) {
-    if (linked_.empty() || linked_.back().at != use.at) linked_.push_back({use.at, uses_.size()});
-    uses_.push_back(use.use);
-  }
-  if (!linked_.empty()) {
-    linked_.push_back({static_cast<std::ptrdiff_t>(stencils_.size()), uses_.size()});
-  }
-}
-
-template <typename Entry>
 std::vector<LaneValues> NinePointSystem<Entry>::product() const {
   std::vector<LaneValues> products(stencils_.size());
   const bool repeat = wrap_.u == Wrap::kRepeat && width_ > 1;
@@ -407,11 +357,33 @@ std::vector<LaneValues> NinePointSystem<Entry>::product() const {
 }
 
 template <typename Entry>
+void NinePointSystem<Entry>::weigh_links(const LinkForm* links, Lanes weights) {
+  if (links_ != nullptr) {
+    for (std::size_t k = 0; k < alone_.size(); ++k) {
+      stencils_[links_->texels()[k].at].centre = inverse_of(alone_[k]);
+    }
+  }
+  alone_.clear();
+  bool counts = false;
+  for (int c = 0; c < kMaxChannels; ++c) counts = counts || weights[c] > 0.0F;
+  links_ = links == nullptr || links->empty() || !counts ? nullptr : links;
+  link_weights_ = weights;
+  if (links_ == nullptr) return;
+  for (std::size_t k = 0; k + 1 < links_->texels().size(); ++k) {
+    const LinkForm::Texel& texel = links_->texels()[k];
+    Entry diagonal = inverse_of(stencils_[texel.at].centre);
+    alone_.push_back(diagonal);
+    add_to(&diagonal, texel.own * link_weights_);
+    stencils_[texel.at].centre = inverse_of(diagonal);
+  }
+}
+
+template <typename Entry>
 void NinePointSystem<Entry>::clear() {
   std::fill(stencils_.begin(), stencils_.end(), Stencil{});
   std::fill(right_side_.begin(), right_side_.end(), LaneValues{});
-  links_.clear();
-  linked_.clear();
+  links_ = nullptr;
+  alone_.clear();
 }
 
 template <typename Entry>
@@ -423,6 +395,51 @@ template <typename Entry>
 bool NinePointSystem<Entry>::is_part(std::ptrdiff_t at) const {
   const Lanes inverse = Lanes{} + of(stencils_[at].centre);
   return inverse[0] > 0.0F || inverse[1] > 0.0F || inverse[2] > 0.0F || inverse[3] > 0.0F;
+}
+
+template <typename Entry>
+std::array<double, kMaxChannels> NinePointSystem<Entry>::form(const std::vector<LaneValues>& b,
+                                                              float less, int threads) const {
+  using Sums = std::array<double, kMaxChannels>;
+  std::vector<Sums> rows(static_cast<std::size_t>(height_));
+  const bool repeat = wrap_.u == Wrap::kRepeat && width_ > 1;
+  const bool small = static_cast<std::int64_t>(width_) * height_ < kTexelsWorthThreads;
+  parallel_for(height_, small ? 1 : threads, Progress(), [&](std::int64_t row) {
+    const int y = static_cast<int>(row);
+    const Stencil* here = stencils_.data() + at(0, y);
+    const LaneValues* values = texels_.data() + at(0, y);
+    const LaneValues* north = texels_.data() + at(0, row_beside(y, 1));
+    const LaneValues* right = b.data() + at(0, y);
+    std::size_t linked = 0;
+    if (links_ != nullptr) linked = static_cast<std::size_t>(first_linked(y) - links_->texels().begin());
+    Sums sums{};
+    for (int x = 0; x < width_; ++x) {
+      const bool is_linked = links_ != nullptr && links_->texels()[linked].at == at(x, y);
+      const Entry centre = is_linked ? alone_[linked++] : inverse_of(here[x].centre);
+      if (!is_part(at(x, y))) continue;
+      const int past_west = repeat ? width_ - 1 : width_;
+      const int west = x > 0 ? x - 1 : past_west;
+      const int east = x + 1 < width_ || !repeat ? x + 1 : 0;
+      for (int c = 0; c < kMaxChannels; ++c) {
+        const auto product = [c](const Entry& entry, const LaneValues& value) {
+          return static_cast<double>(channel(entry, c)) * value.v[c];
+        };
+        const double beside = product(here[x].east, values[east]) +
+                              product(here[x].north, north[x]) +
+                              product(here[x].north_east, north[east]) +
+                              product(here[x].north_west, north[west]);
+        const double value = values[x].v[c];
+        const double diagonal = static_cast<double>(channel(centre, c)) - less;
+        sums[c] += value * (diagonal * value + 2.0 * (beside - right[x].v[c]));
+      }
+    }
+    rows[row] = sums;
+  });
+  Sums total{};
+  for (const Sums& row : rows) {
+    for (int c = 0; c < kMaxChannels; ++c) total[c] += row[c];
+  }
+  return total;
 }
 
 template <typename Entry>

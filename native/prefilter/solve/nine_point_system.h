@@ -13,6 +13,7 @@
 #include "prefilter/base/progress.h"
 #include "prefilter/base/value_range.h"
 #include "prefilter/base/wrap.h"
+#include "prefilter/solve/link_form.h"
 
 namespace prefilter {
 
@@ -25,16 +26,6 @@ struct SolveOptions {
   double tolerance = 1e-5;
   int max_sweeps = 300;
   int threads = 0;
-};
-
-/// A sum of shares of a few texels, wherever they are, whose square is added to what a system
-/// minimises.
-struct TexelLink {
-  static constexpr int kMostTexels = 8;
-  std::array<std::ptrdiff_t, kMostTexels> texels;  // as NinePointSystem::at has them
-  std::array<float, kMostTexels> shares;
-  int count = 0;
-  LaneValues weight;  // of the square, by channel
 };
 
 /// A symmetric system for up to four channels at once. Its entries are float where the channels
@@ -72,14 +63,16 @@ class NinePointSystem {
   /// called before invert_diagonal.
   std::vector<LaneValues> product() const;
 
-  /// Adds the squares of links, less those that read a texel with a diagonal of 0. To be called
-  /// once all cells are there.
-  void add_links(std::vector<TexelLink> links, const Progress& progress);
-
   /// Makes the system ready for `solve`: from here on `diagonal` holds the inverse, or 0 for texels
   /// that are not part of it (a diagonal of 0), which stay as they are.
   void invert_diagonal();
   bool is_part(std::ptrdiff_t at) const;
+
+  /// Has links count, which are those of texels that are part of the system: the squares of each
+  /// channel times its weight; where channels share entries the weight of the first is for all.
+  /// None for a null pointer or weights of 0. To be called after invert_diagonal; links must
+  /// outlive what is done with the system then.
+  void weigh_links(const LinkForm* links, Lanes weights);
 
   void swap_right_side(std::vector<LaneValues>* right) { right_side_.swap(*right); }
 
@@ -92,6 +85,11 @@ class NinePointSystem {
   /// may stop some way from it: moving them on would change the minimised form by next to nothing.
   /// Returns the number of sweeps.
   int solve(const SolveOptions& options, const Progress& progress);
+
+  /// t' A t - 2 b' t of each channel, for the texels t and the matrix A without links, from whose
+  /// diagonal `less` is taken. To be called after invert_diagonal.
+  std::array<double, kMaxChannels> form(const std::vector<LaneValues>& b, float less,
+                                        int threads) const;
 
   /// The texels as an image; the system is gone then.
   Image take_image(int channels);
@@ -113,6 +111,8 @@ class NinePointSystem {
   int row_beside(int y, int step) const;
   // One step of every texel of a row; true where a channel moved by more than the tolerance.
   bool relax_row(int y, const SolveOptions& options, Lanes typical);
+  // The first of the texels that links meet in a row, or after it.
+  std::vector<LinkForm::Texel>::const_iterator first_linked(int y) const;
   // One step of every texel that links meet, in order: they can be anywhere, so they move by
   // themselves. Marks the rows of those that moved.
   void relax_linked(const SolveOptions& options, Lanes typical, std::vector<unsigned char>* moves,
@@ -131,18 +131,9 @@ class NinePointSystem {
   std::vector<LaneValues> right_side_;
   std::vector<LaneValues> texels_;
 
-  struct LinkedTexel {
-    std::ptrdiff_t at;
-    std::size_t first_use;  // in uses_, up to that of the next
-  };
-  struct LinkUse {
-    std::uint32_t link;
-    float share;
-  };
-  std::vector<TexelLink> links_;
-  std::vector<LaneValues> link_sums_;  // of the texels as they are
-  std::vector<LinkedTexel> linked_;    // in order, with one more behind the last
-  std::vector<LinkUse> uses_;
+  const LinkForm* links_ = nullptr;  // of those that count
+  Lanes link_weights_{};
+  std::vector<Entry> alone_;  // the diagonals without links of the texels that they meet
 };
 
 }  // namespace prefilter

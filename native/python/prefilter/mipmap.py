@@ -31,7 +31,7 @@ class MipmapFilter(NamedTuple):
     Attributes:
         name: What it is called: "tent", "tent-covered" or "pam-bilinear".
         needs_surface: Whether it is made over the surface, or the texels that the surface touches.
-        is_fit: Whether it is a least-squares fit: the only ones that `seam_weight` changes.
+        is_fit: Whether it is a least-squares fit: the only ones that `seam_budget` changes.
     """
 
     name: str
@@ -56,7 +56,7 @@ def mipmaps(
     premultiplied: bool = ...,
     reader: str = ...,
     encoding: Literal["linear"] = ...,
-    seam_weight: float = ...,
+    seam_budget: float = ...,
     footprint: float = ...,
     progress: ProgressCallback | None = ...,
     threads: int = ...,
@@ -73,7 +73,7 @@ def mipmaps(
     premultiplied: bool = ...,
     reader: str = ...,
     encoding: str = ...,
-    seam_weight: float = ...,
+    seam_budget: float = ...,
     footprint: float = ...,
     progress: ProgressCallback | None = ...,
     threads: int = ...,
@@ -89,7 +89,7 @@ def mipmaps(
     premultiplied: bool = False,
     reader: str = "linear",
     encoding: str = "linear",
-    seam_weight: float = 0.0,
+    seam_budget: float = 0.0,
     footprint: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
@@ -129,10 +129,12 @@ def mipmaps(
         encoding: Of an image of uint8 or uint16, and of its levels: with "srgb" its colours are
             decoded to be filtered, and encoded again. The fourth of four channels is alpha, and
             linear.
-        seam_weight: How much it counts, for "pam-bilinear" and "pam-trilinear", that lookups on the
-            two sides of a UV seam agree: the mean square of their difference over a strip one texel
-            of the level wide, against the error over the surface. Seams along which the image
-            itself differs count less. 0 leaves seams alone; 1 halves what shows of them.
+        seam_budget: By how much, as a share, the error of each level may rise to hide UV seams, for
+            least-squares filters: 0.01 is 1 %. The two sides of the seams then agree as well as
+            that allows. The error is the root mean square over the surface, as `mipmap_error` has
+            it for the level and its reader; with a footprint, against the image averaged over it.
+            Seams along which the image itself differs, by more than a tenth of its standard
+            deviation, are left alone; 0 leaves all alone.
         footprint: Texels of a level that a pixel of the reader covers, 0 to 2, for least squares
             and the linear reader. 0: levels are fitted to the image itself, which is right where
             a pixel is the mean of many lookups (film, and all that is supersampled). 1: a pixel is
@@ -161,7 +163,7 @@ def mipmaps(
         as_level_count(levels),
         bool(premultiplied),
         as_name("reader", reader),
-        as_number("seam_weight", seam_weight),
+        as_number("seam_budget", seam_budget),
         as_number("footprint", footprint),
         as_progress(progress),
         as_threads(threads),
@@ -189,7 +191,7 @@ def coarser_levels(
     premultiplied: bool = False,
     reader: str = "linear",
     encoding: str = "linear",
-    seam_weight: float = 0.0,
+    seam_budget: float = 0.0,
     footprint: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
@@ -217,7 +219,7 @@ def coarser_levels(
         as_level_count(levels),
         bool(premultiplied),
         as_name("reader", reader),
-        as_number("seam_weight", seam_weight),
+        as_number("seam_budget", seam_budget),
         as_number("footprint", footprint),
         as_progress(progress),
         as_threads(threads),
@@ -314,7 +316,7 @@ def seam_contrast(
     wrap: Wrap = "clamp",
     progress: ProgressCallback | None = None,
 ) -> npt.NDArray[np.float64]:
-    """How far the two sides of UV seams differ in each level: what `seam_weight` brings down.
+    """How far the two sides of UV seams differ in each level: what `seam_budget` brings down.
 
     A seam is an edge whose two triangles have it at different places of the texture; vertices at
     the same position are one, and edges of more than two triangles are none.
