@@ -121,7 +121,7 @@ class Bake:
         progress: Progress,
         *,
         levels: int | None = None,
-        seam_weight: float | None = None,
+        seam_budget: float | None = None,
         footprint: float | None = None,
     ) -> list[FloatArray]:
         """Returns scene-linear levels with any filter; raises what `compute` does.
@@ -131,11 +131,11 @@ class Bake:
             filter: A key of `FILTERS`.
             progress: Called with the fraction done.
             levels: How many, the image itself included; None for all.
-            seam_weight: See `prefilter.mipmaps`; None for that of the settings.
+            seam_budget: See `prefilter.mipmaps`; None for that of the settings.
             footprint: See `prefilter.mipmaps`; None for that of the settings.
         """
-        if seam_weight is None:
-            seam_weight = self._settings.seam_weight
+        if seam_budget is None:
+            seam_budget = self._settings.seam_budget / 100.0
         if footprint is None:
             footprint = lookups.footprint(self._settings, filter, self.reader)
         with self.naming_objects():
@@ -148,7 +148,7 @@ class Bake:
                 levels=levels,
                 premultiplied=not self._picture.alpha_is_straight,
                 reader=self.reader,
-                seam_weight=seam_weight,
+                seam_budget=seam_budget,
                 footprint=footprint,
                 progress=progress,
                 threads=self._settings.threads,
@@ -212,7 +212,7 @@ class Bake:
             )
             return levels[1:], rough[1:]
         options["reader"] = self.reader
-        options["seam_weight"] = settings.seam_weight
+        options["seam_budget"] = settings.seam_budget / 100.0
         if self._content == "cutout":
             linear = self.linear(progress)
             levels = contents.cutout_levels(
@@ -243,7 +243,7 @@ class Bake:
 
     def _heeds_seams(self) -> bool:
         return (
-            self._settings.seam_weight > 0.0
+            self._settings.seam_budget > 0.0
             and self._settings.filter in SEAM_FILTERS
             and self._content in {"color", "data"}
         )
@@ -255,7 +255,7 @@ class Bake:
             self._settings.filter,
             share(progress, 0.0, 0.8),
             levels=len(levels) + 1,
-            seam_weight=0.0,
+            seam_budget=0.0,
         )
         without, weighed = (
             prefilter.seam_contrast(made, self._surfaces, wrap=self._wrap, progress=part)

@@ -289,15 +289,17 @@ class Settings:
         "Leave empty for none",
         metavar="NAME",
     )
-    seam_weight: float = number(
+    seam_budget: float = number(
         0.0,
         "Seams",
-        "How strongly to match the two sides of UV seams in every level: 0 ignores seams, 1 halves "
-        "the visible step. For PAM Bilinear and PAM Trilinear",
+        "How much the error of a level may rise to hide UV seams: 0 ignores seams, 1 hides most of "
+        "them in fine levels. For PAM Bilinear and PAM Trilinear",
         low=0.0,
-        display={"soft_max": 2.0, "step": 10},
+        high=100.0,
+        subtype="PERCENTAGE",
+        display={"soft_max": 5.0, "precision": 1},
         flag="--seams",
-        metavar="WEIGHT",
+        metavar="PERCENT",
     )
     use_subdivision_limit: bool = switch(
         True,

@@ -58,7 +58,7 @@ class BakeProperties:
         layout.separator()
         layout.prop(self, "objects")
         layout.prop(self, "importance")
-        layout.prop(self, "seam_weight")
+        layout.prop(self, "seam_budget")
         layout.prop(self, "use_subdivision_limit")
         layout.prop(self, "use_frames")
         column = layout.column(align=True)

@@ -18,7 +18,7 @@ import demo_scene as demo
 from bench.mipmaps import sampling
 
 LEVEL = 5
-WEIGHTS = (0.0, 1.0)
+BUDGETS = (0.0, 0.01)
 LINE = 0.008  # Half the width of a line on the model.
 VIEW = 1.1  # Of the forehead.
 SHIFT = (-0.32, 0.45)  # To it, in views.
@@ -42,13 +42,13 @@ def main(target: Path) -> None:
         side = demo.TEXTURE_SIZE
         panels = [("Its seams", f"full texture, {side} x {side}", demo.render(folder))]
         bpy.data.objects.remove(lines)
-        for weight in WEIGHTS:
-            levels = prefilter.mipmaps(image, model.surface, levels=LEVEL + 1, seam_weight=weight)
+        for budget in BUDGETS:
+            levels = prefilter.mipmaps(image, model.surface, levels=LEVEL + 1, seam_budget=budget)
             contrast = seams.contrast(levels[LEVEL], "clamp")
             (error,) = prefilter.mipmap_error(levels, image, model.surface, [LEVEL])
-            node.image = float_image(f"Weight {weight:g}", levels[LEVEL])
+            node.image = float_image(f"Budget {budget:g}", levels[LEVEL])
             note = f"contrast {contrast:.3f}, error {error:.3f}"
-            panels.append((f"Level {LEVEL}, seams {weight:g}", note, demo.render(folder)))
+            panels.append((f"Level {LEVEL}, seams {100 * budget:g} %", note, demo.render(folder)))
     demo.save(demo.comparison(panels), target)
 
 

@@ -395,12 +395,12 @@ ROWS = [
     ("mipmaps", {"levels": 6}, ["levels: 6 asked for", "16 x 16 texels has 1 to 5"]),
     ("mipmaps", {"levels": 10**30}, ["levels: ", "16 x 16 texels has 1 to 5"]),
     *(
-        ("mipmaps", {"seam_weight": weight}, [f"seam_weight: {weight}", "of at least 0 is needed"])
-        for weight in (-1, NAN, np.inf)
+        ("mipmaps", {"seam_budget": budget}, [f"seam_budget: {budget}", "of at least 0 is needed"])
+        for budget in (-1, NAN, np.inf)
     ),
     *(
-        ("mipmaps", {"seam_weight": weight}, [f"seam_weight: {weight!r}", "a number is needed"])
-        for weight in ("1", True, None)
+        ("mipmaps", {"seam_budget": budget}, [f"seam_budget: {budget!r}", "a number is needed"])
+        for budget in ("1", True, None)
     ),
     ("mipmaps", {"reader": "gamma"}, ["reader: 'gamma'", "one of linear, srgb-after"]),
     (

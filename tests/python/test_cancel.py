@@ -106,7 +106,7 @@ WORK = {
         IMAGE, SURFACE, reader="srgb-after", threads=1, **options
     ),
     "mipmaps, seams": lambda **options: prefilter.mipmaps(
-        IMAGE, SURFACE, seam_weight=1.0, threads=1, **options
+        IMAGE, SURFACE, seam_budget=0.01, threads=1, **options
     ),
     "seam_contrast": lambda **options: prefilter.seam_contrast([IMAGE], SURFACE, **options),
     "normal_mipmaps": lambda **options: prefilter.normal_mipmaps(

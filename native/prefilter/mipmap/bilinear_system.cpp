@@ -169,13 +169,12 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares
     system_.diagonal(j) += pull_;
   }
   for (int c = 0; c < C && has_links(); ++c) {
-    const auto& [own, finer, image] =
-        std::tie(target.own_means, target.finer_means, target.image);
-    target_square_[c] = image * image * squares_.image[c] + finer * finer * squares_.means[c] +
-                        own * own * own_squares_.means[c] +
-                        2.0 * (image * finer * squares_.image_means[c] +
-                               image * own * own_squares_.image_means[c] +
-                               own * finer * own_finer[c]);
+    const auto& [own, finer, image] = std::tie(target.own_means, target.finer_means, target.image);
+    target_square_[c] =
+        image * image * squares_.image[c] + finer * finer * squares_.means[c] +
+        own * own * own_squares_.means[c] +
+        2.0 * (image * finer * squares_.image_means[c] + image * own * own_squares_.image_means[c] +
+               own * finer * own_finer[c]);
   }
   own_squares_.image = squares_.image;
   std::vector<LaneValues>().swap(finer_means_);

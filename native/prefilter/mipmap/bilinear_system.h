@@ -93,8 +93,8 @@ class BilinearSystem {
   const TargetSquares& own_squares() const { return own_squares_; }
 
   /// Solves for all channels, within their ranges. With links the squared error over the surface,
-  /// over the channels from budget.first_channel on, rises by no more than the budget allows. Can
-  /// be called once.
+  /// over the channels from budget.first_channel on, rises by no more than the budget allows;
+  /// without, `budget` may be null. Can be called once.
   Solution solve(const TargetShares& target, const SolveOptions& options, SeamBudget* budget,
                  const Progress& progress);
 

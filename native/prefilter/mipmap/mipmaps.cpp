@@ -191,17 +191,17 @@ class Builder {
     const TexelSource source(image.view());
     BlockSums of_means(width_, height_);
     BlockSums of_both(width_, height_);
-    sweep_moments<C>(
-        mapped(progress.part(0.1, 0.2)), source, options_.wrap,
-        {.first_level = first_swept_level(),
-         .last_level = static_cast<int>(means.size()),
-         .level_images = &means,
-         .threads = options_.threads},
-        progress.part(0.2, 1.0), [&](const MomentBlock<C>& block) {
-          if (block.level > 0) return add(block);
-          of_means.add(block.index, integral_with(block, image.view(), options_.wrap));
-          of_both.add(block.index, integral_with(block, image_.floats(), options_.wrap));
-        });
+    sweep_moments<C>(mapped(progress.part(0.1, 0.2)), source, options_.wrap,
+                     {.first_level = first_swept_level(),
+                      .last_level = static_cast<int>(means.size()),
+                      .level_images = &means,
+                      .threads = options_.threads},
+                     progress.part(0.2, 1.0), [&](const MomentBlock<C>& block) {
+                       if (block.level > 0) return add(block);
+                       of_means.add(block.index, integral_with(block, image.view(), options_.wrap));
+                       of_both.add(block.index,
+                                   integral_with(block, image_.floats(), options_.wrap));
+                     });
     squares->means = of_means.total();
     squares->image_means = of_both.total();
   }
@@ -233,15 +233,14 @@ class Builder {
                            [&](const MomentBlock<C>& block) { system.add_finer_means(block); });
     }
     system.set_squares(squares);
-    for_each_level_of_seams(image_.floats(), full_level_count(width_, height_) - 2,
-                            options_.progress.part(0.5, 0.5),
-                            [&](int level, const std::vector<SeamLink>& links, double by_area) {
-                              system.add_links(level, links, by_area,
-                                               options_.progress.part(0.5, 0.5));
-                            });
-    auto solutions = system.solve(options_.footprint, solve_options(),
-                                  {.share = options_.seam_budget},
-                                  options_.progress.part(0.5, 0.95));
+    for_each_level_of_seams(
+        image_.floats(), full_level_count(width_, height_) - 2, options_.progress.part(0.5, 0.5),
+        [&](int level, const std::vector<SeamLink>& links, double by_area) {
+          system.add_links(level, links, by_area, options_.progress.part(0.5, 0.5));
+        });
+    auto solutions =
+        system.solve(options_.footprint, solve_options(), {.share = options_.seam_budget},
+                     options_.progress.part(0.5, 0.95));
     std::vector<Image> levels;
     for (int level = 1; level < level_count_; ++level) {
       levels.push_back(filled(std::move(solutions[level - 1].image), solutions[level - 1].used,

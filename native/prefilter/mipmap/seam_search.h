@@ -47,8 +47,8 @@ class WeightSearch {
 
 /// What seams may cost in a level.
 struct SeamBudget {
-  double share = 0.0;     // by which the root of its squared error may rise
-  int first_channel = 0;  // whose error counts; those before it do not
+  double share = 0.0;                         // by which the root of its squared error may rise
+  int first_channel = 0;                      // whose error counts; those before it do not
   double weight = WeightSearch::kMostWeight;  // where a search begins; becomes what it found
 };
 

@@ -93,8 +93,8 @@ int TrilinearSystem<C>::solve_level(int level, const SolveOptions& options,
                                     const Progress& progress) {
   NinePointSystem<float>& system = systems_[level - 1]->system();
   right_ = fixed_[level - 1];
-  couplings_[level - 1].subtract_coarse(system, systems_[level]->system(), kBeside,
-                                        options.threads, &right_);
+  couplings_[level - 1].subtract_coarse(system, systems_[level]->system(), kBeside, options.threads,
+                                        &right_);
   if (level > 1) {
     couplings_[level - 2].subtract_fine(systems_[level - 2]->system(), system, kBeside,
                                         options.threads, &right_);
@@ -174,9 +174,8 @@ auto TrilinearSystem<C>::solve(double footprint, const SolveOptions& options, Se
                                const Progress& progress)
     -> std::vector<typename BilinearSystem<C>::Solution> {
   prepare(footprint, options, progress);
-  const bool has_links = std::any_of(systems_.begin(), systems_.end(), [](const auto& system) {
-    return system->has_links();
-  });
+  const bool has_links = std::any_of(systems_.begin(), systems_.end(),
+                                     [](const auto& system) { return system->has_links(); });
   settle(options, has_links ? progress.part(0.0, 0.3) : progress);
   if (has_links) heed_links(options, budget, progress.part(0.3, 1.0));
   std::vector<typename BilinearSystem<C>::Solution> levels;

@@ -45,8 +45,8 @@ class TrilinearSystem {
   void set_squares(const TargetSquares& squares) { squares_ = squares; }
 
   /// Levels 1 to the last, within the ranges. At the mip value m a pixel covers `footprint` times
-  /// 2^m texels of the image. With links the squared error of bilinear lookups of each level, at its
-  /// own mip value, rises by no more than the budget allows. Can be called once.
+  /// 2^m texels of the image. With links the squared error of bilinear lookups of each level, at
+  /// its own mip value, rises by no more than the budget allows. Can be called once.
   std::vector<typename BilinearSystem<C>::Solution> solve(double footprint,
                                                           const SolveOptions& options,
                                                           SeamBudget budget,

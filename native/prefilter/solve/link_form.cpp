@@ -75,7 +75,8 @@ std::array<double, kMaxChannels> LinkForm::value(
   for (std::size_t k = 0; k + 1 < texels_.size(); ++k) {
     const Lanes own = texel(texels_[k].at).v;
     std::array<double, kMaxChannels> products;
-    for (int c = 0; c < kMaxChannels; ++c) products[c] = static_cast<double>(texels_[k].own) * own[c];
+    for (int c = 0; c < kMaxChannels; ++c)
+      products[c] = static_cast<double>(texels_[k].own) * own[c];
     for (const Entry* entry = begin(k); entry != end(k); ++entry) {
       const Lanes other = texel(entry->at).v;
       for (int c = 0; c < kMaxChannels; ++c) {

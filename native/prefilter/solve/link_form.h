@@ -25,8 +25,8 @@ class LinkForm {
  public:
   LinkForm() = default;
   /// Leaves out links that read a texel that is not part of the system.
-  LinkForm(const std::vector<TexelLink>& links,
-           const std::function<bool(std::ptrdiff_t)>& is_part, const Progress& progress);
+  LinkForm(const std::vector<TexelLink>& links, const std::function<bool(std::ptrdiff_t)>& is_part,
+           const Progress& progress);
 
   bool empty() const { return texels_.empty(); }
 

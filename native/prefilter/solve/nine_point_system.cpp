@@ -130,7 +130,7 @@ class NinePointSystem<Entry>::Row {
   void relax(int begin, int end) {
     const auto at_end = [&](int x) {
       relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
-                       Lanes{});
+                Lanes{});
     };
     if (begin < end && begin == 0) at_end(begin++);
     const int middle_end = std::min(end, width_ - 1);
@@ -140,8 +140,7 @@ class NinePointSystem<Entry>::Row {
 
   // A step of one texel, with `pull` added to its right side.
   void relax_linked(int x, Lanes pull) {
-    relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1,
-                     pull);
+    relax_one(x, x == 0 ? before_first() : x - 1, x + 1 == width_ ? after_last() : x + 1, pull);
   }
 
   // Whether a channel of a texel moved by more than the tolerance.
@@ -411,7 +410,8 @@ std::array<double, kMaxChannels> NinePointSystem<Entry>::form(const std::vector<
     const LaneValues* north = texels_.data() + at(0, row_beside(y, 1));
     const LaneValues* right = b.data() + at(0, y);
     std::size_t linked = 0;
-    if (links_ != nullptr) linked = static_cast<std::size_t>(first_linked(y) - links_->texels().begin());
+    if (links_ != nullptr)
+      linked = static_cast<std::size_t>(first_linked(y) - links_->texels().begin());
     Sums sums{};
     for (int x = 0; x < width_; ++x) {
       const bool is_linked = links_ != nullptr && links_->texels()[linked].at == at(x, y);
@@ -424,10 +424,9 @@ std::array<double, kMaxChannels> NinePointSystem<Entry>::form(const std::vector<
         const auto product = [c](const Entry& entry, const LaneValues& value) {
           return static_cast<double>(channel(entry, c)) * value.v[c];
         };
-        const double beside = product(here[x].east, values[east]) +
-                              product(here[x].north, north[x]) +
-                              product(here[x].north_east, north[east]) +
-                              product(here[x].north_west, north[west]);
+        const double beside =
+            product(here[x].east, values[east]) + product(here[x].north, north[x]) +
+            product(here[x].north_east, north[east]) + product(here[x].north_west, north[west]);
         const double value = values[x].v[c];
         const double diagonal = static_cast<double>(channel(centre, c)) - less;
         sums[c] += value * (diagonal * value + 2.0 * (beside - right[x].v[c]));

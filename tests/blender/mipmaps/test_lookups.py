@@ -146,7 +146,7 @@ def test_the_plot_is_of_supersampled_readers(paint):
 def test_least_squares_need_no_object(bake, tmp_path):
     image = scenes.image("Paint", scenes.noise(SIDE, SIDE), colorspace="Non-Color")
     path = tmp_path / "out.ktx2"
-    outcome = bake(image, filter="ls-bilinear", wrap="repeat", seam_weight=1.0, filepath=str(path))
+    outcome = bake(image, filter="ls-bilinear", wrap="repeat", seam_budget=1.0, filepath=str(path))
     expected = level(1.0, filter="ls-bilinear", wrap="repeat")
     np.testing.assert_allclose(baked(), expected, atol=0.51 / 255)
     assert "with Least Squares for one lookup a pixel into" in outcome.summary

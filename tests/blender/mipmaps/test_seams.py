@@ -54,7 +54,7 @@ def paint():
 @pytest.mark.parametrize("filter", ["pam-bilinear", "pam-trilinear"])
 def test_seams_are_compared(bake, addon, paint, filter):
     image, sheet = paint
-    outcome = bake(image, [sheet], filter=filter, seam_weight=1.0)
+    outcome = bake(image, [sheet], filter=filter, seam_budget=1.0)
     (note,) = outcome.notes
     assert "'Paint'" in note
     without, weighed = contrasts(note)
@@ -63,7 +63,7 @@ def test_seams_are_compared(bake, addon, paint, filter):
     assert weighed[2] < 0.7 * without[2]
 
     surface = addon("bridge.meshes").image_surfaces([sheet], image, scenes.depsgraph()).surfaces
-    for weight, found in ((0.0, without), (1.0, weighed)):
+    for budget, found in ((0.0, without), (0.01, weighed)):
         levels = prefilter.mipmaps(
             scenes.pixels("Paint")[..., :3].copy(),
             surface,
@@ -71,7 +71,7 @@ def test_seams_are_compared(bake, addon, paint, filter):
             wrap="repeat",
             bounds=(0, None),
             premultiplied=True,
-            seam_weight=weight,
+            seam_budget=budget,
         )
         expected = prefilter.seam_contrast(levels[1:], surface, wrap="repeat")
         np.testing.assert_allclose(found, expected, rtol=6e-3, atol=1e-6)
@@ -80,9 +80,9 @@ def test_seams_are_compared(bake, addon, paint, filter):
 def test_nothing_is_said_without_the_setting_or_a_seam(bake, paint):
     image, sheet = paint
     assert bake(image, [sheet]).notes == []
-    assert bake(image, [sheet], filter="pam-box", seam_weight=1.0).notes == []
+    assert bake(image, [sheet], filter="pam-box", seam_budget=1.0).notes == []
     quad = scenes.textured_quad(image)
-    assert bake(image, [quad], seam_weight=1.0).notes == []
+    assert bake(image, [quad], seam_budget=1.0).notes == []
 
 
 def test_the_comparison_can_be_cancelled(bake, paint):
@@ -94,6 +94,6 @@ def test_the_comparison_can_be_cancelled(bake, paint):
         return done < 0.7
 
     with pytest.raises(prefilter.Cancelled):
-        bake(image, [sheet], seam_weight=1.0, progress=progress)
+        bake(image, [sheet], seam_budget=1.0, progress=progress)
     assert told == sorted(told)
     assert "Paint.mip01" not in bpy.data.images

@@ -89,7 +89,7 @@ TEST_P(LevelTest, MeetsTheOptimalityConditions) {
                        if (block.level == level) system.add(block);
                      });
     const auto solution = system.solve(
-        TargetShares(), {.ranges = {range}, .tolerance = 1e-7, .threads = 1}, Progress());
+        TargetShares(), {.ranges = {range}, .tolerance = 1e-7, .threads = 1}, nullptr, Progress());
     const Dense dense = dense_system(image, width, height, wrap, 800);
     const int count = width * height;
     double mean_diagonal = 0.0;
@@ -134,7 +134,7 @@ TEST(BilinearSystemTest, UnreadTexelsAreMarked) {
   sweep_moments<1>(triangles, image.view(), {}, {.first_level = 1, .last_level = 1}, Progress(),
                    [&](const MomentBlock<1>& block) { system.add(block); });
   const auto solution =
-      system.solve(TargetShares(), {.ranges = {ValueRange{0.0F, 1.0F}}}, Progress());
+      system.solve(TargetShares(), {.ranges = {ValueRange{0.0F, 1.0F}}}, nullptr, Progress());
   // The triangle ends at 0.8 texels, so it reads the first two columns and rows.
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 8; ++x) {
