@@ -218,7 +218,6 @@ def test_more_budget_hides_more(filter):
     for less, more in pairwise(contrasts):
         assert (more <= 1.02 * less + 0.03 * contrasts[0]).all()
     assert (contrasts[-1] < 0.2 * contrasts[0]).all()
-    np.testing.assert_allclose(contrasts[1], contrasts[0], rtol=1e-4)
 
 
 def test_an_image_of_one_colour_stays():
