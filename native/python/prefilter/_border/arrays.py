@@ -45,7 +45,7 @@ def as_indices(name: str, array: npt.ArrayLike, shape: Sequence[int | str]) -> n
     if found.size and found.dtype.kind not in "iu":
         raise ValueError(f"{name}: dtype {found.dtype}; integers are needed")
     check_shape(name, found, shape)
-    if found.dtype == np.uint64 and found.size and found.max() > np.iinfo(np.int64).max:
+    if found.dtype == np.uint64 and found.size and int(found.max()) > np.iinfo(np.int64).max:
         raise ValueError(f"{name}: found {found.max()}; 63 bits are the most")
     return np.ascontiguousarray(found, np.int64)
 
