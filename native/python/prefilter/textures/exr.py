@@ -10,10 +10,9 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import ProgressCallback, as_progress, is_srgb
-from .._border.arrays import as_image, as_texels, as_threads
+from .._border.arrays import as_threads
 from .._border.output import as_target, replace_file
-from ..color import to_linear
-from .texel_formats import as_alpha
+from .texel_formats import as_alpha, halving_levels
 
 _TILE_SIDE = _native.EXR_TILE_SIDE
 _TILES_A_STEP = 512
@@ -113,30 +112,9 @@ def write_exr(
 
 def _as_all_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
     """The levels, each uint8 or float32; raises ValueError unless they go down to 1 x 1."""
-    if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
-        found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
-        raise ValueError(f"levels: {found}; a list of images, level 0 first, is needed")
-    images: list[np.ndarray] = []
-    for number, level in enumerate(levels):
-        who = f"levels: level {number}"
-        image = as_texels(who, level)
-        if image.dtype == np.uint16:
-            image = to_linear(image) if srgb else as_image(who, image)
-        if image.shape[2] not in _CHANNELS:
-            raise ValueError(f"{who} has {image.shape[2]} channels; 1 to 4 are allowed")
-        if images:
-            height, width, channels = images[-1].shape
-            if (height, width) == (1, 1):
-                raise ValueError(f"{who} is one too many: the one before has 1 x 1 texel")
-            wanted = max(1, height // 2), max(1, width // 2), channels
-            if image.shape != wanted:
-                raise ValueError(
-                    f"{who} has the shape {image.shape}; half of the one before, rounded down, "
-                    f"is {wanted}"
-                )
-        images.append(image)
-    if images[-1].shape[:2] != (1, 1):
-        height, width, _ = images[-1].shape
+    images = halving_levels(levels, srgb)
+    height, width, _ = images[-1].shape
+    if (height, width) != (1, 1):
         raise ValueError(
             f"levels: the last of {len(images)} has {width} x {height} texels; all levels down to "
             f"1 x 1 are needed"

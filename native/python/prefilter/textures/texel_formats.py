@@ -139,8 +139,8 @@ FORMATS = {
 }
 
 
-def as_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
-    """The levels, all uint8 or all float32; raises ValueError unless each halves the one before.
+def halving_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
+    """The levels, each uint8 or float32; raises ValueError unless each halves the one before.
 
     Those of uint16 become floats, decoded where they are sRGB.
     """
@@ -153,27 +153,39 @@ def as_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
         image = as_texels(who, level)
         if image.dtype == np.uint16:
             image = to_linear(image) if srgb else as_image(who, image)
-        elif image.dtype != np.uint8:
-            _check_finite(who, image)
         height, width, channels = image.shape
         if channels > 4:
             raise ValueError(f"{who} has {channels} channels; 1 to 4 are allowed")
         if images:
-            before = images[-1]
-            if before.shape[:2] == (1, 1):
+            before = images[-1].shape
+            if before[:2] == (1, 1):
                 raise ValueError(f"{who} is one too many: the one before has 1 x 1 texel")
-            wanted = max(1, before.shape[0] // 2), max(1, before.shape[1] // 2)
+            wanted = max(1, before[0] // 2), max(1, before[1] // 2)
             if (height, width) != wanted:
                 raise ValueError(
                     f"{who} has {width} x {height} texels; half of the one before, rounded down, "
                     f"is {wanted[1]} x {wanted[0]}"
                 )
-            if channels != before.shape[2] or image.dtype != before.dtype:
+            if channels != before[2]:
                 raise ValueError(
-                    f"{who} has {channels} channels of {image.dtype}, the one before "
-                    f"{before.shape[2]} of {before.dtype}; they must be alike"
+                    f"{who} has {channels} channels, the one before {before[2]}; they must be alike"
                 )
         images.append(image)
+    return images
+
+
+def as_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
+    """The same, all uint8 or all float32 and finite."""
+    images = halving_levels(levels, srgb)
+    for number, image in enumerate(images):
+        who = f"levels: level {number}"
+        if image.dtype != images[0].dtype:
+            raise ValueError(
+                f"{who} has texels of {image.dtype}, level 0 of {images[0].dtype}; they must be "
+                "alike"
+            )
+        if image.dtype != np.uint8:
+            _check_finite(who, image)
     return images
 
 
