@@ -153,20 +153,9 @@ def mipmaps(
         ValueError: An argument is out of range, or a texel that counts is not finite.
         Cancelled: The progress callback returned False.
     """
-    low, high = as_bounds(bounds)
-    arguments = (
-        as_surfaces(surface),
-        as_name("filter", filter),
-        as_wrap(wrap),
-        low,
-        high,
-        as_level_count(levels),
-        bool(premultiplied),
-        as_name("reader", reader),
-        as_number("seam_budget", seam_budget),
-        as_number("footprint", footprint),
-        as_progress(progress),
-        as_threads(threads),
+    arguments = _native_arguments(
+        *(surface, filter, wrap, bounds, levels, premultiplied),
+        *(reader, seam_budget, footprint, progress, threads),
     )
     stored, srgb = as_texels("image", image), is_srgb(encoding)
     made: list[npt.NDArray[Any]]
@@ -209,8 +198,34 @@ def coarser_levels(
         ValueError: As `mipmaps`.
         Cancelled: The progress callback returned False.
     """
+    arguments = _native_arguments(
+        *(surface, filter, wrap, bounds, levels, premultiplied),
+        *(reader, seam_budget, footprint, progress, threads),
+    )
+    stored, srgb = as_texels("image", image), is_srgb(encoding)
+    if stored.dtype == np.uint8:
+        made = _native.coarser_float_levels_of_bytes(stored, srgb, *arguments)
+    else:
+        made = _native.coarser_levels(_as_light(stored, srgb, as_threads(threads)), *arguments)
+    return FilteredLevels((in_form_of(image, level) for level in made), filter)
+
+
+def _native_arguments(
+    surface: Surface | Sequence[Surface] | None,
+    filter: str,
+    wrap: Wrap,
+    bounds: Bounds | None,
+    levels: int | None,
+    premultiplied: bool,
+    reader: str,
+    seam_budget: float,
+    footprint: float,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[Any, ...]:
+    """What the library's functions take beside the image, checked, in their order."""
     low, high = as_bounds(bounds)
-    arguments = (
+    return (
         as_surfaces(surface),
         as_name("filter", filter),
         as_wrap(wrap),
@@ -224,12 +239,6 @@ def coarser_levels(
         as_progress(progress),
         as_threads(threads),
     )
-    stored, srgb = as_texels("image", image), is_srgb(encoding)
-    if stored.dtype == np.uint8:
-        made = _native.coarser_float_levels_of_bytes(stored, srgb, *arguments)
-    else:
-        made = _native.coarser_levels(_as_light(stored, srgb, as_threads(threads)), *arguments)
-    return FilteredLevels((in_form_of(image, level) for level in made), filter)
 
 
 def _as_light(stored: np.ndarray, srgb: bool, threads: int) -> npt.NDArray[np.float32]:
