@@ -58,6 +58,7 @@ class Builder {
         channels_(source.channels),
         level_count_(options.levels > 0 ? options.levels
                                         : full_level_count(source.width, source.height)),
+        seams_(find_counted_seams()),
         covered_(find_covered()),
         image_(source, [this] { return read_texels(); },
                {.alpha = alpha_channel(source.channels, options.premultiplied),
@@ -101,6 +102,11 @@ class Builder {
     }
     return options_.reader != Reader::kLinear || options_.seam_budget != 0.0 ||
            options_.footprint != 0.0;
+  }
+
+  std::vector<SeamEdge> find_counted_seams() const {
+    if (options_.seam_budget == 0.0 || !is_fit(options_.filter)) return {};
+    return find_seams(surfaces_, options_.progress.part(0.0, 0.0));
   }
 
   std::vector<unsigned char> find_covered() const {
@@ -206,8 +212,8 @@ class Builder {
     squares->image_means = of_both.total();
   }
 
-  // Level 0 tells the integral of the image's square.
-  int first_swept_level() const { return options_.seam_budget > 0.0 ? 0 : 1; }
+  // Level 0 tells the integral of the image's square, which budgets of seams are shares of.
+  int first_swept_level() const { return seams_.empty() ? 1 : 0; }
 
   // All levels there are are solved for, also where fewer are asked for.
   template <int C>
@@ -253,8 +259,8 @@ class Builder {
   template <typename Use>
   void for_each_level_of_seams(const ImageView& image, int last_level, const Progress& progress,
                                const Use& use) const {
-    if (options_.seam_budget == 0.0) return;
-    std::vector<SeamEdge> seams = find_seams(surfaces_, progress);
+    if (seams_.empty()) return;
+    std::vector<SeamEdge> seams = seams_;
     weigh_seams(image, surfaces_, options_.wrap, progress, &seams);
     double area = 0.0;
     for (const Surface* surface : surfaces_) area += surface->total_area();
@@ -404,6 +410,7 @@ class Builder {
   int height_;
   int channels_;
   int level_count_;
+  std::vector<SeamEdge> seams_;  // that count in the fits
   std::vector<unsigned char> covered_;
   FilteredImage image_;
 };
