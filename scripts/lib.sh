@@ -364,6 +364,28 @@ ensure_libdeflate() {
   rm -rf "$source"
 }
 
+# fetch_maven FOLDER GROUP:NAME:VERSION:TYPE[:CLASSIFIER] SHA256: unpacks a jar of Maven Central's in a folder of the
+# cache, unless that is there. Maven knows where Central is, or which mirror stands for it.
+fetch_maven() {
+  local folder=$cache_dir/$1 new=$cache_dir/$1.new jars
+  [[ ! -e $folder ]] || return 0
+  lock "$cache_dir/.maven.lock"
+  if [[ ! -e $folder ]]; then
+    ensure_packages maven cmake
+    note "fetching $2 from Maven Central"
+    rm -rf "$new"
+    mkdir -p "$new/jar"
+    logged maven.log mvn --batch-mode --no-transfer-progress "-Dmaven.repo.local=$cache_dir/maven" dependency:copy \
+      "-Dartifact=$2" "-DoutputDirectory=$new/jar"
+    jars=("$new"/jar/*.jar)
+    sha256sum --check --status <<<"$3  ${jars[0]}" || fail "$2: its hash is not $3"
+    (cd "$new" && cmake -E tar xf "${jars[0]}")
+    rm -r "$new/jar"
+    mv "$new" "$folder"
+  fi
+  unlock "$cache_dir/.maven.lock"
+}
+
 # ensure_wheels: fetches what the package imports and the extension brings along: pure Python, as its authors publish it.
 ensure_wheels() {
   [[ ! -e $wheels_dir ]] || return 0
