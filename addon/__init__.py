@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Prefilter: mipmaps that know the mesh, voxels, surfaces of scans, vector shapes, in Blender."""
 
 from importlib import import_module

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What docs/benchmarks.md is made with: a folder a subject, and what they share beside them.
 
 Programs are started by their paths, put the checkout on sys.path, and import from here.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How much memory a piece of work takes at its peak. Linux only; elsewhere it reads 0.
 #pragma once
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Tables and verdicts of a benchmark, printed and kept as markdown."""
 
 import sys

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Peers that are run in turns, so that what else the machine does falls on all of them alike."""
 
 import statistics

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Scans a model from ten sides with noise, reconstructs its surface, and makes a picture of both.
 
 Usage: blender --background --python scripts/demo_scan.py -- FOLDER

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Bakes the mipmaps of a painted model with several filters, and makes pictures of them.
 
 Usage: blender --background --python scripts/demo_scene.py -- FOLDER

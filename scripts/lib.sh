@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # shellcheck shell=bash
 # Functions shared by the programs in scripts/. Source it; it does nothing by itself but set paths.
 #

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Writes the tables of options in docs/ anew, from where the options are declared.
 
 A table stands between `<!-- options: NAME -->` and `<!-- end of options -->`. NAME is a dataclass

@@ -1,4 +1,6 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Make the extension of what is built, check it, and install it.
 
 usage: packaging.py extension --tag cp313 ... [--linked SOURCE ...] [--wheels FOLDER]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes the sampling tables that come with the package: run it where `prefilter` can be imported.
 
 usage: sampling_tables.py FOLDER    (native/python/prefilter/tables)

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # shellcheck shell=bash
 # Steps that are functions, run side by side, as many as there are processors. Source it.
 #

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Arrays of a mesh: where its vertices and corners are, and weights that a user has painted."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Curve and text objects as closed contours: chains of Bezier curves, rational ones included.
 
 As Blender fills them: the closed splines of a curve fill together where they have the same

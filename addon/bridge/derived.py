@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images and texts that are made of an image: figures, views, copies. They are tagged with it."""
 
 import bpy

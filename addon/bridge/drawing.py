@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What is drawn in editors with the graphics card: colors, textures, and a wipe with its labels."""
 
 import blf

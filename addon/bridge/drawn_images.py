@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Image datablocks that are drawn by Prefilter, and drawn again in place."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What images are to a material: colors, normals, roughness, a channel of something, coverage."""
 
 from collections.abc import Iterator

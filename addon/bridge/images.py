@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Image datablocks to scene-linear arrays, and what decoded colors are stored as.
 
 What Blender keeps in `Image.pixels` (rows from the bottom, always four channels):

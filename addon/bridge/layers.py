@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Attributes of meshes that are carried from the corners of triangles to other triangles."""
 
 from collections.abc import Iterator

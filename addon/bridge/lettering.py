@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Text as outlines, from Blender's own font: it needs no file, no window and no GPU."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Where a material samples an image: which UV map, moved how, extended how."""
 
 from collections.abc import Iterator

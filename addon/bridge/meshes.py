@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Evaluated meshes to `prefilter.Surface`: the part of each mesh that uses an image."""
 
 import re

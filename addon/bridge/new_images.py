@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """New image datablocks, and picture files, of arrays."""
 
 import hashlib

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Triangles to Blender: meshes with materials and colours, and the objects that show them."""
 
 import math

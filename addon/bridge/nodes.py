@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Walking over the nodes of shaders, into groups and out of them again, and against the links."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """NURBS curves of Blender as rational Bezier curves, by knot insertion."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """OpenImageIO's own Python module, as far as the add-on needs it; imported when it is needed.
 
 Official Blender builds carry it. A second copy of the library inside Blender's process is a known

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Rational Bezier curves of the plane as parts of `prefilter.Shape`."""
 
 from math import comb

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images that are packed into the .blend file, as files beside it."""
 
 from functools import partial

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The objects that get the results: where they are, and whether they are still there."""
 
 from collections.abc import Iterator

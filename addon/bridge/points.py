@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Objects that show points to arrays: where the points are, their normals, and what they carry.
 
 Positions are in the axes and units of the world, from an origin that is near, as those of solids.

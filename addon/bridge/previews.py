@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What editors draw in the place of an image: kept, and told when the image or an object changes.
 
 Previews are kept by the image's session_uid, which an undo does not change, and no datablock is

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a render of a scene shows: which objects use an image, and who else reads it."""
 
 from dataclasses import dataclass, field

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Evaluated objects to triangles in space: what a solid is made of, with its materials and layers.
 
 Positions are in the axes and units of the world, from an origin that is near, so that objects far

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Subdivision modifiers: the mesh below, and its limit surface."""
 
 from collections.abc import Iterator

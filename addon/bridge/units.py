@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Lengths and volumes as a user reads them, in the units of the scene."""
 
 import bpy

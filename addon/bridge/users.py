@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Which objects show which images in a view layer."""
 
 from collections.abc import Iterable

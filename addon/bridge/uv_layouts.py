@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The UV map of a mesh as what its faces cover: closed polygons around charts."""
 
 from collections import defaultdict

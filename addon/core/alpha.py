@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Straight and associated alpha of (..., 4) texels; the fourth channel stays as it is."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a user may choose for an option, and how it is presented."""
 
 import zlib

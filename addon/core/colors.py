@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Colors as users of commands write them: #RRGGBB or #RRGGBBAA, in sRGB."""
 
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Long work, mostly off the main thread: progress, cancel, result."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The menus that subjects put their operators in: Object > Prefilter and Image > Prefilter.
 
 A search (F3) finds what is in a menu of the editor's header, once for each time that it is there.

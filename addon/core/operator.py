@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """An operator that works for a while: in another thread, with progress and Esc; and its redo."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Options, each declared once, as a field of a dataclass of settings.
 
     @dataclass(frozen=True)

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What work on Blender's data ends with."""
 
 from dataclasses import dataclass, field

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Options as properties of Blender: of operators, and of the scene."""
 
 import math

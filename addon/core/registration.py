@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Registering what consists of parts."""
 
 from collections.abc import Callable

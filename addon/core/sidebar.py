@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The add-on's tab in the sidebar of the 3D view."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Words that several messages share."""
 
 from collections.abc import Iterable, Sequence, Sized

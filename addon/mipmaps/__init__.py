@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Mipmaps that know the mesh: bakes, levels in view, Cycles' texture cache."""
 
 from ..core.registration import registration

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Baking mipmaps: what `reading` has read is computed anywhere, and then written to Blender.
 
 The operator and the command are two ways to call this.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Which images of a scene have PAM levels in the texture cache, for panels: no file is opened."""
 
 import time

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What an image holds, and how its levels are made accordingly."""
 
 from collections.abc import Sequence

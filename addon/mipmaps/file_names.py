@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The files of several images: each has a name of its own, and none is the source of an image."""
 
 import os

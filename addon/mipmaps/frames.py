@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The surfaces of animated objects, over the frames of a scene."""
 
 from collections.abc import Generator, Sequence

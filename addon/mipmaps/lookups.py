@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the setting Lookups means: the footprint that levels are fitted for."""
 
 from dataclasses import replace

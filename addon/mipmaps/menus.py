@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What works on images, in the menus Image > Prefilter and Object > Prefilter."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The settings of a bake as properties, of the operator and of the scene."""
 
 from dataclasses import replace

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The first step of a bake: everything that it needs is copied out of Blender, and checked."""
 
 from collections.abc import Generator, Iterable, Sequence

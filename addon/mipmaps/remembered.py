@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What panels know of a scene without looking at all of it whenever they are drawn."""
 
 import time

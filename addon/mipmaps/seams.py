@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the setting Seams does: the contrast of UV seams in each level, without it and with it."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Baking PAM into Cycles' texture cache in three steps: read, compute anywhere, write.
 
 The operator and the command are two ways to call this. Every image of a scene is baked at once;

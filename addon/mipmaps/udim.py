@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """UDIM images: which part of the surface lies in each tile, and the bakes of all tiles as one."""
 
 import os

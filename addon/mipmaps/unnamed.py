@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The images that a command bakes where none is named, and the files that it writes for them."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The objects that a bake looks at: for the bake, and cheaply for panels."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images of other sizes and in other places."""
 
 from ..core.registration import registration

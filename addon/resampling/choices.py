@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a user may set for images that are resized and resampled, and for sampling tables."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A new image of an old one: what was read is computed anywhere, then written to Blender or a file.
 
 Operators and commands are two ways to call this.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Where an image goes in its result: projective transforms of pixel coordinates.
 
 A point (x, y) of an image is in pixels from its lower left corner, with y upwards. A transform is

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The settings as properties, of operators and of the scene."""
 
 import bpy

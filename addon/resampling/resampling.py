@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Resampling an image: scaled, rotated, in perspective, or out of it."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Sampling tables: built or loaded anywhere, then written as texts of Blender or as files."""
 
 import tempfile

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Surfaces of scans: points with normals to closed meshes."""
 
 from ..core.registration import registration

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points of several scans as one cloud, and its surface."""
 
 from collections.abc import Sequence

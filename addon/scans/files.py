@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The surface of points in files, without objects of them: from file to file, or in memory."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.reconstruct`: the surface of points, as a new object beside them."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reconstructing: a tab in the 3D view's sidebar, entries in the Object and the Convert menu."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The settings of reconstructing as properties, of the operator and of the scene."""
 
 import bpy

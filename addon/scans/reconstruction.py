@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The surface of selected points in three steps: read from Blender, compute, write to Blender."""
 
 from collections.abc import Sequence

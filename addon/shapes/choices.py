@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a user may set for images of shapes."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """From where shapes are seen, and where they are in the image."""
 
 from collections.abc import Sequence

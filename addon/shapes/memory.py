@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """How an image was made, which the image remembers, so that it can be made again in place."""
 
 from collections.abc import Sequence

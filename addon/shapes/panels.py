@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Where a user finds shapes: the sidebars of the 3D view and the Image editor, menus, a header."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """From coverage and associated colors to what images and files hold."""
 
 from collections.abc import Sequence

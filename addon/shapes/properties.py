@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The settings of rasterizing as properties: of operators, of the scene, and of images."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Shapes to an image in three steps: read from Blender, compute, write to Blender or to a file."""
 
 from dataclasses import dataclass, replace

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What is made an image of: curves and texts, a UV map, an SVG file."""
 
 from collections.abc import Sequence

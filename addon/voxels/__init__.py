@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Voxels of any mesh: closed surfaces, volumes, and set operations."""
 
 from ..core.registration import registration

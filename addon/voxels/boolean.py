@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Set operations on objects, in the same three steps as voxelizing them."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a user may set for voxels and booleans."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Where the cells of a tree are, and what they cost."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Voxelizing and booleans: a tab in the 3D view's sidebar, under Remesh, in the Object menu."""
 
 import bpy

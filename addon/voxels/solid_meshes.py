@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Arithmetic on what solids are made of: one mesh, with the layers and materials of all parts."""
 
 from dataclasses import dataclass, field, replace

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What voxelizing and combining have in common: meshes to cells, and cells to a surface."""
 
 from collections.abc import Sequence

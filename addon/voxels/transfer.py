@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a surface gets from the meshes that it was made of: materials, and values of their layers.
 
 Each triangle of the surface comes from one of a mesh. Values at its corners are those of the

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Voxelizing objects in three steps: read from Blender, compute, write to Blender.
 
 The operator and the command are two ways to call this.

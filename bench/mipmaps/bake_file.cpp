@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Makes a mip-mapped TIFF of a picture file: what a program around the library does.
 //
 // usage: prefilter_bake_file PICTURE MESH TARGET FILTER THREADS, with an 8-bit RGBA or RGB PNG as

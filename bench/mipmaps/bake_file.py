@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes a mip-mapped TIFF of a picture file with prefilter: what a tool around the package does.
 
 usage: bake_file.py PICTURE MESH TARGET FILTER THREADS, MESH as scene.py writes it.

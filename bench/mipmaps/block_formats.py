@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures what block compression adds to the error of levels, on a model with one texture.
 
 Usage: python3 bench/mipmaps/block_formats.py MODEL.obj TEXTURE    (with the package importable)

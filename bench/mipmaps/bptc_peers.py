@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures BC7 and BC6H against Intel's encoder: error, and processor time in turns.
 
 Usage: python3 bench/mipmaps/bptc_peers.py IMAGE...

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares prefilter with maketx, picture file to mip-mapped file, in time and memory.
 
 Usage: cmake --preset bench && cmake --build build/bench --target prefilter_bake_file

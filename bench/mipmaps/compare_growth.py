@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares prefilter with itself on larger textures and meshes, picture file to mip-mapped file.
 
 Usage: cmake --preset bench && cmake --build build/bench --target prefilter_bake_file

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares bakes of a large image, and of many in tiles, with those of another checkout.
 
 Usage: python3 bench/mipmaps/compare_large.py FOLDER --before CHECKOUT [--cache] [--rounds N]

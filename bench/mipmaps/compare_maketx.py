@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares pam-bilinear with maketx --filter lanczos3, in time and memory.
 
 Usage: scripts/run python3 bench/mipmaps/compare_maketx.py [--rounds N] [--threads N]

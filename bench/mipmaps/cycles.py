@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures what Cycles renders from PAM in its texture cache, against the cache that Blender makes.
 
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/cycles.py -- [MODEL...]

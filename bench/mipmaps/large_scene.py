@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes scenes with large or many images, and bakes them; runs inside Blender.
 
 Usage: blender --background --python bench/mipmaps/large_scene.py -- WORK FOLDER

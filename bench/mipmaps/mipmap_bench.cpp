@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Time, memory and quality of mipmaps, by filter, image size and number of triangles.
 //
 // Items are texels of level 0. A benchmark without a quality figure is no benchmark, so each has

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures by how many degrees the levels of normal maps are off, over gathered models.
 
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/normals.py -- [MODEL...]

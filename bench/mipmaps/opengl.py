@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures what OpenGL shows of the levels of each filter: error and flicker of turning models.
 
 Usage: PYTHONPATH=PACKAGE python3 bench/mipmaps/opengl.py [MODEL...] [--filters FILTER...]

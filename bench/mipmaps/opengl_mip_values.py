@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures which mip values OpenGL's lookups have on turning models, with and without anisotropy.
 
 Usage: PYTHONPATH=PACKAGE python3 bench/mipmaps/opengl_mip_values.py [MODEL...]

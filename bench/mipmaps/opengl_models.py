@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Writes the models that bench/mipmaps/opengl.py turns, as arrays.
 
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/opengl_models.py

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Finds how near levels can come to what one trilinear lookup a pixel should show.
 
 Usage: PYTHONPATH=PACKAGE python3 bench/mipmaps/opengl_optimum.py [MODEL] [--frames N]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Draws textured models by OpenGL into floats, without a screen.
 
 Mesa's software renderer is told to compute mip values and weights as the specification says,

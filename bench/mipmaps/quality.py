@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures how far the levels of each filter are from their image, over gathered models.
 
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/quality.py -- [MODEL...]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What PAM is measured against: other filters, on the image as it is and on one without background.
 
 Names say the filter, then how it is sharpened, then whether the image was dilated first: its

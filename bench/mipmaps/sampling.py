@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Lookups with numpy at random points of a surface: shares nothing with the library."""
 
 from collections.abc import Iterator, Sequence

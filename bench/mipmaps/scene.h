@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A textured surface of any size for the benchmarks.
 #pragma once
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Writes the picture and the mesh that programs are compared on.
 
 usage: scene.py FOLDER [--spot SPOT] [--triangles N], where SPOT is the folder of the model spot;

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures what a seam budget does to UV seams and to the error, over gathered models.
 
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/seams.py -- [MODEL...]

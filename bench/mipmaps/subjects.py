@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Gathered models: images and the surfaces that wear them, as a user of the add-on gets them.
 
 Models are imported by Blender's own importers, and read through the add-on's bridge: the extension

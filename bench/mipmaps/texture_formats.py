@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures what block formats leave of images, how fast they are written, and what zstd saves.
 
 Usage: python3 bench/mipmaps/texture_formats.py [--astcenc PROGRAM] IMAGE...

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes a ship of tiny parts for bench/mipmaps/opengl.py: a hull, and boxes all over it.
 
 Usage: python3 bench/mipmaps/tiny_parts.py [--folder FOLDER]

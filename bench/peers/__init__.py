@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the benchmarks run, each behind one interface: our own work, and the same by others.
 
 One file a peer; to add one, write a class with the members of `Peer`. Nothing here imports numpy or

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // CGAL's alpha wrap of a triangle soup, for bench/voxels/hard.py. Needs Debian's libcgal-dev:
 //   c++ -O3 -DNDEBUG -std=c++17 bench/peers/alpha_wrap.cpp -o alpha_wrap -lgmp -lmpfr
 // Usage: alpha_wrap IN.off OUT.off ALPHA OFFSET (lengths); prints the CPU seconds that it took.

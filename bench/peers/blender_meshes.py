@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Blender's Remesh modifier and its EXACT boolean: meshes in files to a mesh in a file.
 
 Run inside of Blender, it does every job of a list; see `run_jobs`.

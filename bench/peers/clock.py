@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """One piece of work in a new process: CPU time, wall time and memory of it alone.
 
 `clocked` is for the process that works, `run_clocked` for the one that started it. Neither holds

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Prefilter from a picture file to a mip-mapped file, all in the clock."""
 
 import sys

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // CGAL's holes triangulated, refined and faired, for bench/voxels/holes.py. Needs Debian's
 // libcgal-dev and libeigen3-dev:
 //   c++ -O3 -DNDEBUG -std=c++17 -DCGAL_EIGEN3_ENABLED -I/usr/include/eigen3 -static \

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """OpenImageIO's maketx: a picture file to a mip-mapped file, all in the clock."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Prefilter: a mesh in memory to an octree in memory, or on to the surface of it.
 
 Run as a program, it does the work once and prints what `clock` does.

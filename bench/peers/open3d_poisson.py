@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Open3D's screened Poisson: a file of points to a file of triangles, but for the imports.
 
 Run as a program, it does the work once and prints what `clock` does.

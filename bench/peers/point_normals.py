@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Normals of points by our own function and by Open3D's: only that is in the clock.
 
 Run as a program, it does the work once and prints what `clock` does.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """PoissonRecon by Kazhdan: a file of points to a file of triangles, all in the clock."""
 
 import os

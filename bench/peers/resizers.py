@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Libraries that resize images of floats in memory, each with one thread; rows from the bottom."""
 
 import importlib

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """OpenVDB's meshToVolume, through its Python module: a mesh in memory to a level set in memory.
 
 Run as a program, it does the work once and prints what `clock` does.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Blender's voxel remesh, the operator: a mesh in memory to a mesh in memory.
 
 Run inside of Blender, it does the work once and prints what `clock` does.

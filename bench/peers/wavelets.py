@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Prefilter: points to triangles by wavelets, from file to file or in memory.
 
 Run as a program, it does the work once and prints what `clock` does.

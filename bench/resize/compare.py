@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares resized images with those of other libraries: time, accuracy, and what comes back.
 
 Usage: scripts/run python3 bench/resize/compare.py [--rounds N] [--side N] [--markdown FILE]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares samples by tables with trilinear ones in throughput, on one thread.
 
 Usage: python3 -m bench.sampling.compare [--rounds N] [--samples N] [--markdown FILE]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares samples by tables with those of exact filters, and with trilinear interpolation.
 
 Usage: scripts/run python3 -m bench.sampling.figures [--markdown FILE]

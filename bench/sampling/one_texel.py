@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures samples of one texel each: how far their means are from the exact filter.
 
 Usage: scripts/run python3 bench/sampling/one_texel.py [--pixels N] [--markdown FILE]

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/texture.h>
 #include <unistd.h>

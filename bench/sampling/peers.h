@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Samplers to compare with, of RGBA texels that repeat.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Samples a second of tables and of trilinear interpolation, interleaved, on one thread.
 //
 // usage: sampling_bench [--rounds N] [--samples N]

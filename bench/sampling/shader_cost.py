@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Counts what a sample by a shader takes: texels read, and operations on single numbers.
 
 Usage: python3 -m bench.sampling.shader_cost [--markdown FILE]

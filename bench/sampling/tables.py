@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures sampling tables: errors, sizes, proofs, steps at borders, and how long they take.
 
 Usage: scripts/run python3 -m bench.sampling.tables [--certify] [--markdown FILE]

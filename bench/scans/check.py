@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Checks what the figures rest on: distances, what counts as closed, and that the sets are as said.
 
 Usage: scripts/run python3 -m bench.scans.check

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Streams a file that is larger than the memory allowed, and one of a tenth of its points.
 
 Usage: scripts/run python3 bench/scans/large.py FOLDER [--wavelet haar|d4] [--depth N]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures a reconstructed surface against the mesh that its points were drawn from.
 
 Usage: python3 -m bench.scans.measure MESH.ply SOURCE DEPTH POINTS.ply [--samples N] [--json]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares normals of points with the true ones: which side they are on, their angle, the time.
 
 Usage: scripts/run python3 bench/scans/normals.py [MODEL...] [--points N] [--neighbors N]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points and triangles in binary PLY files, whole arrays at a time."""
 
 import re

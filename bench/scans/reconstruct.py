@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares reconstruct with screened Poisson: time, memory, and nearness to the true surface.
 
 Usage: scripts/run python3 bench/scans/reconstruct.py FOLDER [SET...] [--depth N] [--rounds N]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Range scans of the Stanford repository, put together as their .conf files say."""
 
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes the points that are reconstructed: samples of meshes, worn out in several ways, and scans.
 
 Usage: python3 -m bench.scans.sets FOLDER [NAME...] [--shared FOLDER]

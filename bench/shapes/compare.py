@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares rasterizers in time, memory and error, and Prefilter's filters with each other.
 
 Usage: python3 -m bench.shapes.compare [PATTERN...] [--rounds N] [--markdown FILE]

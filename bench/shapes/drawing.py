@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Times a drawing as a large image, in turns by one thread and by more.
 
 Usage: scripts/run python3 bench/shapes/drawing.py [DRAWING.svg] [--size N] [--filter NAME]

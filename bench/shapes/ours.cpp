@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Prefilter's own rasterizers.
 #include <algorithm>
 #include <span>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Test patterns of the section on rasterizing (2.3), rebuilt from what it says of them, and others.
 #pragma once
 

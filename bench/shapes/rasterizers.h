@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What is measured, each behind one interface: our own rasterizer and others, one file a peer.
 #pragma once
 

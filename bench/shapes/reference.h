@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Coverage that errors are counted against: brute force in double precision, our library not in it.
 #pragma once
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares drawings with resvg's reference images of its own tests.
 
 Usage: python3 bench/shapes/resvg_references.py [FOLDER] (--help lists the options)

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Times of rasterizers on the same patterns, interleaved, and how far they are from the truth.
 //
 // usage: shapes_bench [--rounds N] [--rasterizers NAME;...] [--filters | --seams] [PATTERN...]

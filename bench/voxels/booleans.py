@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Booleans of closed meshes by manifold3d, the truth that octrees are compared with."""
 
 import importlib.util

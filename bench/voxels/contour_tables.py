@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The tables of section 5.4: contours of planes and spheres whose occupancies are exact.
 
 scripts/run python3 bench/voxels/contour_tables.py [--planes N] [--spheres N] [--markdown FILE]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Times sharp contours with Clean Up against those of "plane" without, on the same octree.
 
 Usage: scripts/run python3 bench/voxels/contour_times.py [--depths N...] [--rounds N] [--threads N]

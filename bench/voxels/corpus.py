@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Contours and booleans of many meshes: every result has to be closed, two-manifold and without
 self-intersections, and every boolean has to have its volume.
 

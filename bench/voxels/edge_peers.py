@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The measures of edges.py of what others make: Blender's Remesh, and its EXACT boolean.
 
 Usage: scripts/run python3 bench/voxels/edge_peers.py [--shapes NAME...] [--pairs NAME+NAME...]

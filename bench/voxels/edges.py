@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures how well contours keep the edges of shapes and the rims of booleans.
 
 Usage: scripts/run python3 bench/voxels/edges.py [--shapes NAME...] [--pairs NAME+NAME...]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures what as_solid makes of hard meshes: how much of them is kept, and at what cost.
 
 Usage: scripts/run python3 bench/voxels/hard.py [NAME...] [--cells N] [--markdown FILE]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Meshes that are no solids: open, unoriented, in pieces, without thickness.
 
 With numpy alone. `hard_meshes()` has those that are made; `read_meshes(folder)` those among the

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures patches over holes whose surface is known.
 
 Usage: scripts/run python3 bench/voxels/holes.py [--markdown FILE] [--fill-holes PROGRAM]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Measures of surfaces against the shapes that they were made from.
 
 Lengths are in cells, angles in degrees. Nothing here calls the library.

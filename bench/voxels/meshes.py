@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Reads the triangles of the OBJ and PLY files that are gathered beside the checkout.
 
 With numpy alone, so that nothing else is in the memory that is measured.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Nearest points of triangles and of segments, with nothing of the library."""
 
 from collections.abc import Iterator

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Counts the pairs of triangles that cut each other, with exact predicates of CGAL.
 //
 // Usage: self_intersections MESH...

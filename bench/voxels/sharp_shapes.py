@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Closed triangle meshes whose edges are known, for tests and benchmarks of sharp contours.
 
 They are made here, but for fandisk, which is read. All fit into a cube of side 2 around the origin

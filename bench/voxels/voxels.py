@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Compares voxelize and contour with OpenVDB and Blender's voxel remesh, in time and memory.
 
 Usage: scripts/run python3 bench/voxels/voxels.py [MODEL...] [--sizes N...] [--rounds N]

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Renders one octree's surface by each interpolant, in a mirror finish (figures 3.5 and 5.6).
 
 The solid is a ball in a ring; its box has 64 cells along an axis.

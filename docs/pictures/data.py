@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes the pictures of docs/data.md, and prints their figures.
 
 usage: python3 data.py FOLDER        (with the package prefilter importable)

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Plots the error of filters on the demo's model.
 
 usage: blender --background --python error.py -- TARGET.png

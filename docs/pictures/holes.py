@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Renders a ball with a hole, and what each method of close_holes makes of it, voxelized.
 
 usage: blender --background --factory-startup --python holes.py -- TARGET.png

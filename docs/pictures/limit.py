@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Draws where the surface of Blender's monkey spends its area: as a mesh, and as its limit surface.
 
 usage: blender --background --factory-startup --python limit.py -- TARGET.png

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Takes a picture of the Prefilter tab in a Blender window that nobody sees.
 
 usage: python3 panel.py TARGET.png        (outside of Blender: starts Xvfb and Blender)

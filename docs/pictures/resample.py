@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes the picture of docs/resample.md: an image pinned by its corners, and close-ups by method.
 
 usage: blender --background --python resample.py -- TARGET.png        (with the extension installed)

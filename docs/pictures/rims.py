@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Renders the same boolean by four programs, whole and close to its rim.
 
 A block that is turned against the axes, less a slanted cylinder: by Blender's EXACT solver, that

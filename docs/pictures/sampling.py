@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes the pictures of docs/sampling.md: figures 6.1, 6.9, 6.11 and 6.12 of the dissertation.
 
 usage: python3 sampling.py FOLDER        (with the package prefilter importable)

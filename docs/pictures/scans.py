@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Renders scans and their surface, a noisy cloud by each basis, and triangles as dense as points.
 
 usage: blender --background --factory-startup --python scans.py -- FOLDER [SHARED]

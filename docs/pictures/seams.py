@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Renders the demo's model with a coarse level, whose seams count or not, and where its seams are.
 
 usage: blender --background --python-exit-code 1 --python seams.py -- TARGET.png

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes the picture of docs/shaders.md: a plane in perspective, by GLSL.
 
 usage: python3 shaders.py FOLDER        (with the package prefilter importable, and moderngl)

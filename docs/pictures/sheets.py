@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Pictures side by side, each with a line of text."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Writes pictures as small PNG files of at most 256 colours.
 
 usage: python3 shrink.py FOLDER PICTURE.png...

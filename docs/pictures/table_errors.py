@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Plots figure 6.6: errors of sampling tables for the tent, against the number of texels.
 
 usage: python3 table_errors.py FOLDER        (with the package prefilter importable)

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Rasterizes a text small, by one sample a pixel and by filters, and enlarges the pixels.
 
 usage: blender --background --python text.py -- TARGET.png

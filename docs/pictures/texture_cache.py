@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Renders the demo's model from afar: with its texture, with Blender's cache, and with PAM in it.
 
 usage: blender --background --python-exit-code 1 --python texture_cache.py -- TARGET.png

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What every binding needs: arrays in and out without a copy, and progress.
 #pragma once
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 # Makes the folder PACKAGE hold the FILES of the folder SOURCE, and of what else is there only the native module: a
 # file or folder of an earlier layout could still be imported.
 file(GLOB_RECURSE present LIST_DIRECTORIES true RELATIVE ${PACKAGE} ${PACKAGE}/*)

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The classes of the native module, passed to C++ only once their __init__ has run.
 //
 // Python can make an object without that (Class.__new__(Class)); pybind11 would hand out memory

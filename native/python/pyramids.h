@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Levels in, of whichever type, without a copy.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "python_points.h"
 
 #include <pybind11/stl.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Points that Python code reads, for formats whose libraries are Python modules.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Goes before SSE code of libsquish and of Convection Texture Tools, which uses the processor's
 // estimate of a reciprocal: processors differ in it, and blocks are to be the same on all of them.
 #pragma once

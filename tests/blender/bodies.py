@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Small solids made in code, and what there is to measure on meshes."""
 
 from collections.abc import Sequence

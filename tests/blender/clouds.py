@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points on solids whose surface is known, and objects that have them."""
 
 from collections.abc import Mapping, Sequence

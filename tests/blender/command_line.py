@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The command: in this Blender, which is quick, and in a Blender of its own."""
 
 import contextlib

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """An empty Blender with the add-on enabled, for every test."""
 
 import importlib

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Scenes for Cycles, the files of its texture cache, and what it must render of them."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """glTF files made from their parts, with pictures beside them."""
 
 import base64

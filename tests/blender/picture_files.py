@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Picture files written and read back without Blender."""
 
 import numpy as np

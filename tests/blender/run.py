@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs pytest inside Blender.
 
 blender --background --factory-startup --python-exit-code 1 --python tests/blender/run.py -- ARGS

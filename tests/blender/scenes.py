@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Small scenes made in code."""
 
 from collections.abc import Sequence

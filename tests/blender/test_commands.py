@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`blender --background --command prefilter ...`, in a Blender of its own."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The add-on and the package have the same defaults."""
 
 import inspect

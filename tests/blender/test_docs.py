@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The tables of options in docs/ say what is declared."""
 
 import sys

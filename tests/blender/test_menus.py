@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Every operator is in a menu of an editor's header, where a search (F3) finds it."""
 
 from collections import Counter

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The add-on comes and goes without a trace."""
 
 import dataclasses

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the sessions share that run in a Blender with a window."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points with normals of surfaces that are known."""
 
 from collections.abc import Callable

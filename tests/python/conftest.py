@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes the modules beside the tests importable, wherever pytest is started."""
 
 import os

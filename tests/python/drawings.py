@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Drawings for tests, and images of them."""
 
 import numpy as np

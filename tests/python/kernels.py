@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Filter kernels in closed form, and their weights of texels, independent of the library's."""
 
 import numpy as np

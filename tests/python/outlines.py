@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images of shapes by quadrature over the true shape, row by row.
 
 At a height y an outline passes at some x; between these the winding number says what is inside.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Sampling tables by brute force: filters as dense arrays over the plane.
 
 Nothing here knows inner products in closed form, orthonormal polynomials or exchanges of texels:

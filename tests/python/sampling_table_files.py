@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Sampling tables of random numbers: any offsets and weights that a file may hold."""
 
 import json

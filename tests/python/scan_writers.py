@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Writers of scan files that share nothing with the library, and what they write."""
 
 import struct

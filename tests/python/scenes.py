@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Small surfaces and images for tests, and lookups written without the library."""
 
 from dataclasses import dataclass

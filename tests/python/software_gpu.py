@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Fragment shaders run without a screen, by Mesa on the processor where there is no GPU."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Solids for tests of voxels: meshes, and what is true of them by methods of their own.
 
 Nothing here calls the library, nor shares a method with it: occupancies are exact integrals of

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Probes in a row, against isotropic samples and the elliptical Gaussian."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Any mesh as a solid, against volumes and winding numbers by other methods."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Bad input gets a message that names the argument, what was found and what is allowed.
 
 A row is a function, the arguments that differ from good ones, and what its message must hold: the

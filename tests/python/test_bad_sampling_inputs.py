@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Bad input of what takes samples of images, as in test_bad_inputs.py."""
 
 import numpy as np

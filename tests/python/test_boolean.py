@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Set operations on meshes that others refuse, against random points and winding numbers."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images of bytes: the levels are those of the values that they stand for, to the nearest byte."""
 
 import numpy as np

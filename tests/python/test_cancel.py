@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A cancel is heard within 0.2 s, at any time.
 
 Between two calls of a progress callback nobody can cancel, so the longest time between them counts,

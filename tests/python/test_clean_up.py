@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Contours with Clean Up: what it promises of triangles, checked by other means."""
 
 import itertools

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Holes closed: against the surfaces that had been there, and against what the open mesh has."""
 
 import time

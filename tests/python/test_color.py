@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Colour encodings against the standard's formulas."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Contours of grids: planes, spheres and boxes whose measures are known in closed form."""
 
 import itertools

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What corners of a surface lie on, charts of UV maps, and measures: on boxes and spheres."""
 
 import numpy as np

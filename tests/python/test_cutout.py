@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Cut-outs: the share of the surface that an alpha test keeps, against random lookups."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Masks, roughness, packed channels, light without an upper bound, and both kinds of alpha."""
 
 import numpy as np

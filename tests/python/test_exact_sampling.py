@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The exact filters, against dense sums of their closed forms."""
 
 from itertools import product

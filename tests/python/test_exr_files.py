@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """OpenEXR files of all levels, read back by OpenImageIO."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The C++ library stands on floors: a folder includes only itself and what stands below it."""
 
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Levels for readers that look once a pixel, against dense quadrature, algebra and waves."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images and meshes as people have them: the same, bit for bit, as what they stand for.
 
 What they stand for is written out here: float32 images with an axis of channels, float64 positions,

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What is allowed: see test_bad_inputs.py for what is not."""
 
 import numpy as np

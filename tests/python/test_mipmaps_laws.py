@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What must hold for every filter, whatever the numbers."""
 
 import itertools

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Levels against an independent oracle: dense quadrature over the surface, dense algebra."""
 
 import numpy as np

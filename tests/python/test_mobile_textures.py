@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Formats of mobile devices and zstd in KTX 2, decoded by programs of others.
 
 scripts/decoders.txt lists those: texture2ddecoder, opengl-basisu (Basis Universal's transcoder) and

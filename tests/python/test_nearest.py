@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Nearest points of meshes, by a search over samples of them."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Normal maps against brute force: means of vectors, the lobes that they stand for, angles."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Normals of points: eigenvectors by numpy, surfaces whose normals are known, and nasty points."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The objects of the native module: shared, never emptied, and useless before their __init__."""
 
 import copy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files of octrees: what was saved comes back, and of what is damaged one kind of error tells."""
 
 import io

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What bench/mipmaps/opengl.py takes for granted: lookups by OpenGL are those of its formulas."""
 
 import sys

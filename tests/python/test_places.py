@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Where files are written: regular files are replaced, through links; all else is left alone."""
 
 import os

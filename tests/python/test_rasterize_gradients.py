@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Gradients by stops against quadrature of the colors over the true shape."""
 
 import numpy as np

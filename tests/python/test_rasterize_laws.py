@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What holds for images of any shapes, by any filter."""
 
 import numpy as np

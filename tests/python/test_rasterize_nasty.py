@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Shapes that hold nothing, or too much: no input takes long, crashes or spoils other pixels."""
 
 import copy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images of shapes against quadrature of the true shape: lines, curves of any degree, conics."""
 
 import functools

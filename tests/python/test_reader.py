@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The fit for readers that decode after the lookup, against dense quadrature and a dense solver."""
 
 import numpy as np

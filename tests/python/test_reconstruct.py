@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points to surfaces, against the surfaces that the points were taken from."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Clouds that are nasty and yet have a surface; weights, attributes, and surfaces that end."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Resizing, against dense sums of the filters' closed forms and dense least squares."""
 
 from itertools import product

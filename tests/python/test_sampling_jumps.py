@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Steps of samples where sets of texels change, against samples of every image of one texel."""
 
 import numpy as np

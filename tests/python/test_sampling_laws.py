@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Laws of tables, levels and samples together: equation 6.3 as images show it."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Levels that tables fit, against dense sums of the kernels' closed forms."""
 
 import copy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Sampling tables: arguments out of range, and files that hold none."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Sampling tables, against equations 6.3 and 6.4 integrated by brute force over the plane."""
 
 import numpy as np

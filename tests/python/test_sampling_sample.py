@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Samples of mipmaps, against sums texel by texel that are worked out from what tables say."""
 
 from itertools import product

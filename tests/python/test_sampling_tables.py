@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Sampling tables: those that ship, what they are good for, and their files."""
 
 import numpy as np

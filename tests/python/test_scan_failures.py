@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A reconstruction from file to file that fails leaves the target as it was, and nothing beside."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points in lines of numbers, and in PCD files."""
 
 from pathlib import Path

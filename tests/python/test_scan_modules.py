@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points of LAS and E57 files, where the Python modules that read these can be imported."""
 
 import sys

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The seam term and the contrast across seams, against sums over points along them."""
 
 from itertools import pairwise

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Shaders of sampling tables: what compilers say to them, and that GLSL samples as the package."""
 
 import itertools

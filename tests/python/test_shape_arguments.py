@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What shapes and `rasterize` refuse: each message names the argument, and what is allowed."""
 
 import re

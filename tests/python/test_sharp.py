@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Contours with edges and corners: polyhedra whose edges are known, and what they combine to."""
 
 import itertools

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Sharp contours of shapes whose edges are known, by measures that share nothing with the library.
 
 The same measures, of more shapes and in finer cells, are in bench/voxels/edges.py and corpus.py.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Edges and corners that occupancies fix by themselves, without the meshes that they come from."""
 
 from itertools import product

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Samples of a single texel, whose mean is the weighted sum."""
 
 import numpy as np

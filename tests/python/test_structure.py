@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The house's walls: which modules of the add-on and of the package import which."""
 
 import ast

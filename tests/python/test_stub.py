@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The native module's stub names what the module has, with the same arguments."""
 
 import ast

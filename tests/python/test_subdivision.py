@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Limit surfaces, against closed forms and a slow refinement written from the rules."""
 
 from collections import defaultdict

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Surfaces: weights, placements, poses and UDIM tiles, against closed forms and slow clipping."""
 
 from fractions import Fraction

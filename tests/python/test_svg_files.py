@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files of SVG: what is told of, what is refused."""
 
 import gzip

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Outlines read from SVG, and where they are: against shapes made by hand, and formulas."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Styles, colors and gradients read from SVG: against what its specification says."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Drawings of resvg's tests beside the images that it makes of them."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Strokes read from SVG: against those of shapes made by hand, and their areas."""
 
 import math

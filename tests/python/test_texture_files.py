@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """DDS and KTX 2 files, read back by readers of their own and by other programs."""
 
 import itertools

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a surface uses of its texture, against sampling and lookups written here."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What must hold of octrees, whatever the mesh."""
 
 import time

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Occupancies against exact integrals by another method, and analytic solids."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Shapes by method="wavelet": what it has to have in common with "scanline", and what not."""
 
 import itertools

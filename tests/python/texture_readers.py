@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Readers of DDS and KTX 2 files, after their specifications; nothing here is shared with a writer.
 
 A file is read into a `File`, whose levels are as stored: the top row first.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The programs in scripts/ are imported by the tests."""
 
 import sys

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """No two processes change a build folder at once: what Ninja keeps there would not survive it."""
 
 import subprocess

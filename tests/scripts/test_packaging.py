@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What goes into wheels and the extension, and what the check of them finds."""
 
 import io

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files for engines: DDS and KTX 2 with all levels, and a PNG for each level.
 
 * A byte image in sRGB or data keeps its bytes, in 8-bit and block formats; straight alpha.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Pictures of one level, as PNG and OpenEXR files."""
 
 from pathlib import Path

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files with objects, as Blender imports and exports them."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files staged beside their target and renamed into place, so that no half-written one is seen."""
 
 import os

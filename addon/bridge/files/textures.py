@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Mip-mapped files for renderers.
 
 * OpenEXR: scene-linear, associated alpha, 16-bit floats unless 32 are asked for.

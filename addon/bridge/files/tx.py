@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The files of Cycles' texture cache: made by Blender, their levels replaced here.
 
 What a file holds (Blender 5.2): tiles of 64 x 64, 1 or 4 channels, every level down to 1 x 1, in a

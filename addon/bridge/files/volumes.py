@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """OpenVDB files and volume objects, where Blender's own Python module for them is there."""
 
 import importlib

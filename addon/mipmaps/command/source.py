@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What `bake` and `plot` read: a file with objects, and images that these use."""
 
 import argparse

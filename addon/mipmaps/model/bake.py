@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The bake of a model: image after image is read, computed anywhere, and written.
 
 The operator and the command are two ways to call this. An image that cannot be baked does not stop

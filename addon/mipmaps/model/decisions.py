@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What pixels add to what nodes say of an image: its content, and the format of its file."""
 
 from dataclasses import dataclass

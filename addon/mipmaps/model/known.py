@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The images of a scene as panels list them, looked up again after a change."""
 
 from dataclasses import dataclass

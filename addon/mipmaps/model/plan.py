@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Which images a model has, and what its nodes say about each: no pixel is read for it."""
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a bake of a model does, as a table of text."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.bake_mipmaps`: the levels of an image, right for the meshes that wear it."""
 
 from collections.abc import Generator

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.bake_model`: the levels of every image of a model, each in a file of its own."""
 
 from collections.abc import Callable, Generator

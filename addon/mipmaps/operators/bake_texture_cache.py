@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.bake_texture_cache`: PAM levels for Cycles, for every image of the scene."""
 
 import bpy

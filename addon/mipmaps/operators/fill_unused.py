@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.fill_unused`: a copy of an image without background."""
 
 from functools import partial

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.plot_error`: the errors of filters over the mip value, as a figure and a table."""
 
 import bpy

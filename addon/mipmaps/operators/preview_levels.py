@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.preview_levels` and `prefilter.end_preview`: levels in the place of their image."""
 
 import bpy

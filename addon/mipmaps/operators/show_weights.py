@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.show_weights` and `prefilter.show_source`: where a surface spends its area."""
 
 from functools import partial

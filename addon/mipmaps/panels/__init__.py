@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Where a user finds mipmaps: the Image and UV editors, the 3D view, Cycles' properties."""
 
 from ...core.registration import registration

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The Prefilter tab in the sidebar of the Image and UV editors."""
 
 import bpy

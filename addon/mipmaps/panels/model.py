@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The bake of all images, in the Prefilter tab of the 3D view's sidebar."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The panels that show levels, errors and weights, in the Prefilter tab of the Image editors."""
 
 from typing import Any

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The button in Cycles' render properties, under Performance, Texture Cache."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Seeing mipmaps: levels drawn in the editor, their errors as a figure, the weights of texels."""
 
 from ...core.registration import registration

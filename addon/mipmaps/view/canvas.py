@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A sheet for figures: lines, rectangles and letters, drawn by `prefilter.rasterize`.
 
 Positions are in pixels, with y upwards and row 0 at the bottom, as images have it. Colours are sRGB

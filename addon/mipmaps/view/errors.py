@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The errors of mipmaps over the range of mip values (figure 7.7)."""
 
 from collections.abc import Sequence

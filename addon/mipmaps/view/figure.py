@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Figure 7.7: errors of mipmaps against the mip value, as a picture."""
 
 import colorsys

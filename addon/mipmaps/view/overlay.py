@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Draws levels over their image in the Image and UV editors.
 
 A texel is looked up as a renderer does, in single precision: bilinear within a level, linear

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The levels that editors draw in the place of an image: computed, and kept."""
 
 from collections.abc import Iterable

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the editors show, in all windows: no part of the scene, so no undo changes it."""
 
 import bpy

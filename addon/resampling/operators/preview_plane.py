@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.preview_plane` and `prefilter.end_plane`: trilinear beside few texels, on a plane."""
 
 import bpy

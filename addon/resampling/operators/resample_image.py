@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.resample_image`: an image scaled, rotated, in perspective, or out of it."""
 
 import bpy

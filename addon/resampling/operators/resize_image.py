@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.resize_image`: an image of another size, beside the old one or in its place."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.sampling_table`: a sampling table as shader code or a file."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Where a user finds the operators: sidebars, and Image > Prefilter."""
 
 from ...core.registration import registration

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The preview plane: a panel in the Image editor's sidebar, and entries in Image > Prefilter."""
 
 import bpy

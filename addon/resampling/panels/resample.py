@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Resampling: a panel in the Image editor's sidebar, and an entry in Image > Prefilter."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Sampling tables: a panel in the Text editor's sidebar, and an entry in Image > Prefilter."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Seeing sampling tables: a plane with the image on it, read trilinearly and by a table."""
 
 from ...core.registration import registration

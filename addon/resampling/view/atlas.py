@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The levels of an image side by side in one texture, as Blender cannot upload levels.
 
 Level 0 is at (0, 0). The others follow along its longer side of s texels, level k from

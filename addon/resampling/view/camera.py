@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A camera that looks at a plane tiled with an image."""
 
 import math

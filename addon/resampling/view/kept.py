@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The levels that editors draw on a plane: computed, and kept."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Draws a plane with an image on it in the Image editors: trilinear left, by a table right."""
 
 from functools import lru_cache

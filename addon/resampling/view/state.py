@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """How editors draw a plane, in all windows: no part of the scene, so no undo changes it."""
 
 import math

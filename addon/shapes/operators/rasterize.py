@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.rasterize`: an image of the selected curves and texts, or of a UV map."""
 
 import bpy

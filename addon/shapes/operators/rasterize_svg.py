@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.rasterize_svg`: an image of an SVG file."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the operators share that make images of shapes."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.update_drawn`: an image of shapes made again in place."""
 
 import bpy

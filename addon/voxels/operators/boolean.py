@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.boolean`: union, intersection and difference of any meshes, through voxels."""
 
 import bpy

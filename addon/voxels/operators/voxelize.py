@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.voxelize`: a closed surface in place of any mesh, through voxels."""
 
 import bpy

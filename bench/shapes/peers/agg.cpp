@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Anti-Grain Geometry, gray of 8 bits, with either of its scanlines: unpacked, as its examples
 // have it, a coverage for each pixel; packed, one for a whole run of full pixels.
 #include <agg_conv_curve.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Blend2D, an A8 image, no worker threads: a call has drawn when it returns.
 #include <blend2d/blend2d.h>
 

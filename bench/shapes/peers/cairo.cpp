@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Cairo's image backend, an A8 surface.
 #include <cairo.h>
 

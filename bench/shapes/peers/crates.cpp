@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // vello_cpu and tiny-skia, through the functions that crates/src/lib.rs has.
 #include "bench/shapes/rasterizers.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // FreeType's smooth rasterizer, by spans of 8-bit gray. It is made for one letter at a time: its
 // pool of cells is small, and an outline has at most 32767 points. So each shape is an outline, and
 // spans are added.

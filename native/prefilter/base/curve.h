@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // One segment of an outline: points, parts, and how finely lines follow it.
 #pragma once
 

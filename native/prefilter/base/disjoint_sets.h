@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sets of numbers that are joined (Galler and Fischer 1964), with paths halved (van Leeuwen and
 // van der Weide 1977).
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Two doubles, four integers: for inner loops.
 #pragma once
 

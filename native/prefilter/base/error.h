@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The one exception type of the library.
 //
 // Entry functions throw it for arguments that are out of range; the message names the argument,

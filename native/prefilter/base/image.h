@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Images: interleaved float channels, row 0 at v = 0.
 #pragma once
 

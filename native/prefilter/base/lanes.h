@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Up to four channels, added and multiplied together by the processor.
 #pragma once
 

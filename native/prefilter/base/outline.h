@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Outlines in the plane: contours of lines, Bezier curves of any degree, and conics.
 #pragma once
 

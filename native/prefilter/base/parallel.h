@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Parallel loops whose results do not depend on the number of threads: each index writes only what
 // is its own, and sums are kept per index and added up in order by the caller.
 #pragma once

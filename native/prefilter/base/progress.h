@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Progress of long work, and the way to stop it.
 #pragma once
 

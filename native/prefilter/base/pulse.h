@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Cancelling in the middle of steps whose number is not known.
 #pragma once
 

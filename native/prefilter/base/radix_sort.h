@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sorting of numbers by some of their bits.
 #pragma once
 

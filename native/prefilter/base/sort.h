@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sorting of much, on several threads, that can be stopped on the way.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Wrap modes: what a texture lookup reads outside of the image.
 #pragma once
 

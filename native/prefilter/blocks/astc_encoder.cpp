@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The fitting is that of Arm's encoder, astcenc.
 #include <astcenc.h>
 

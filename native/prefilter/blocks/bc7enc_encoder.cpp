@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // bc7enc searches modes 1 and 6 for opaque blocks, 5, 6 and 7 for others: partitions by estimates,
 // endpoints along the principal axis, then by least squares.
 #include <bc7enc.h>

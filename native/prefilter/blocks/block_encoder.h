@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What compress_blocks needs of a library that encodes blocks; encoders.h lists those there are.
 #pragma once
 

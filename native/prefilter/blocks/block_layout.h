@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The formats of compressed blocks: how many texels and bytes a block has.
 #pragma once
 

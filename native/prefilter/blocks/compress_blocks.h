@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Texels compressed in blocks, as graphics cards decode them.
 #pragma once
 

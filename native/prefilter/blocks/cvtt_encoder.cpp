@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Convection Texture Tools search all modes of BC6H, eight blocks at a time. Errors are those of
 // the bits of half floats, which go with the logarithm ("fast indexing"): in values themselves, the
 // brightest texels of a block would be all that counts.

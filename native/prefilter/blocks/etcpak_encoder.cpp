@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The fitting is etcpak's: both halves of a block, and a plane, and the modes T and H of ETC2 where
 // its heuristics expect them to be better. But blocks of one colour, which it cuts to five bits,
 // are the best of ETC1's differential mode here (Khronos Data Format 1.3, section 21.1).

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The fitting is libsquish's: clusters along the principal axis of a block's colours, all ways to
 // split them tried, and least squares for the ends (Simon Brown, "DXT Compression Techniques").
 #include <squish.h>

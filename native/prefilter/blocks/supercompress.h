@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Levels of a texture file compressed once more, without loss, as KTX 2 files may hold them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The fitting is Basis Universal's: 14 modes of ASTC that turn into BC7 and ETC quickly.
 #include <encoder/basisu_bc7enc.h>
 #include <encoder/basisu_uastc_enc.h>

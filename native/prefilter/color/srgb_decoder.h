@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Fast decoding of sRGB, with its slope, for fits that evaluate it very often.
 #pragma once
 

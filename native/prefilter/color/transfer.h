@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The sRGB transfer curve (IEC 61966-2-1), extended to negative values by symmetry.
 #pragma once
 

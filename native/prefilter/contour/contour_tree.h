@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A tree of cell means as contours see it: leaves inside and outside, and their neighbours.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The dual grid of an octree's leaves: around every corner of a leaf there is a cell with the
 // centres of the eight leaves, or fewer, that meet there (Ju, Losasso, Schaefer and Warren 2002;
 // Schaefer and Warren 2004).

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Where the surface cuts the line between the centres of two cells (section 5.2).
 #pragma once
 

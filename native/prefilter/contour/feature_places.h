@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Where the vertices of a contour's edges and corners are.
 #pragma once
 

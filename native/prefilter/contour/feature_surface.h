@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What a contour's edges and corners are placed on.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The interpolant "plane": vertices moved to the surface that preserves the volume of the
 // neighbouring cells.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Grids of samples in space to closed meshes (chapter 5).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Where the line between two cells' centres meets the surface that preserves the volume of the
 // neighbouring cells.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How a surface passes through a cube of eight samples: marching cubes, from a rule.
 //
 // Corner i of the cube is high along x where bit 0 of i is set, along y for bit 1, along z for bit

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The smooth surfaces that occupancies fix by themselves, for edges and corners where they meet.
 //
 // Beyond the text. Where 3 x 3 columns of cells run from full to empty, and their sums lie on a

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Grids of samples in the plane to closed outlines (section 5.2).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Which side of a shape points are on where parts of its sources meet.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What samples of grids, in the plane and in space, have to be.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Vertices of a contour on the surface that its shape was made of.
 #pragma once
 

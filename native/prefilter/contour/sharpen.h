@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Edges and corners in a contour: extended marching cubes (Kobbelt, Botsch, Schwanecke and Seidel
 // 2001), on loops of any dual grid.
 #pragma once

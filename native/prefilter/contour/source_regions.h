@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The smooth regions of meshes, and the edges between them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The meshes that a shape was made of, close to their edges, ready for searches.
 #pragma once
 

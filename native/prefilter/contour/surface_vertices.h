@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The vertices of a contour: one for each pair of leaves that share a face and are on two sides.
 #pragma once
 

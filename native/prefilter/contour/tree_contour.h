@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Occupancy octrees to closed meshes (chapter 5).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // "OpenEXR File Layout": tile chunks, and ZIP: bytes of even and odd places apart, their
 // differences, deflated.
 #include "prefilter/exr/exr_tiles.h"

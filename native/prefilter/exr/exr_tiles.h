@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The tiles of mip-mapped OpenEXR files, compressed.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // 16-bit floats (IEEE 754 binary16).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // An image as the filters read it: finite, and multiplied by its alpha where that counts.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Filter kernels in one dimension: even functions, piecewise polynomials, of integral 1.
 #pragma once
 

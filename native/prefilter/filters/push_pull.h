@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Filling holes of an image from what is around them.
 #pragma once
 

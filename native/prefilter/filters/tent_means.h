@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Means of an image under the tents of its own texels.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 1.1: the jinc filter, and the window of figure 1.6.
 #include "prefilter/filters/windowed_jinc.h"
 

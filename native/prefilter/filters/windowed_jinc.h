@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The radial low-pass filter of section 1.1, windowed.
 #pragma once
 

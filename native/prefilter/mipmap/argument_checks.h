@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Checks that the entry functions of this room share. Each throws Error.
 #pragma once
 

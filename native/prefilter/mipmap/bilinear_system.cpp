@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 7.3, least squares with the bilinear basis, one level by itself.
 #include "prefilter/mipmap/bilinear_system.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The least-squares problem of one level: which texels, looked up bilinearly, come closest to the
 // image over the surface (section 7.3 with the bilinear basis).
 #pragma once

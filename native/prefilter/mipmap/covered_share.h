@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How much of a surface an alpha test keeps.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The reader's curve bends the least squares of section 7.3: its residual is decode(sum_j b_j t_j)
 // - I, with the Jacobian b_j decode'. Bounded Gauss-Newton; a round that makes a channel worse is
 // halved.

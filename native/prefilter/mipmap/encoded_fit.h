@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The fit of one level for a reader that interpolates encoded texels and decodes the result.
 #pragma once
 

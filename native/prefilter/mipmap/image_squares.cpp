@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "prefilter/mipmap/image_squares.h"
 
 #include "prefilter/moments/four_point_rule.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Integrals over the surface of an image squared, which errors are measured from.
 #pragma once
 

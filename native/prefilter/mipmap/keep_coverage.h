@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Levels of alpha-tested cut-outs that show as much of the surface as the image does.
 #pragma once
 

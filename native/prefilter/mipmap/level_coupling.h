@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How the bilinear basis functions of one level overlap those of the next.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What the texels of a normal map and a roughness map show on average, for readers that
 // interpolate.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Figure 7.7. Between two levels the lookup is linear in the fraction f of the mip value, so the
 // squared error is a quadratic in f, and its three coefficients are quadratic forms in the texels
 // whose matrices are the moments.

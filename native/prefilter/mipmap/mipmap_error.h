@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How far the levels of a mipmap are from the image they stand for, over the surface (figure 7.7).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What the levels of a mipmap are made with.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Chapter 7. SurfaceFilter::kBox is equation 7.1 with a box, where the texels of the image are
 // boxes too, so that an even parameterization gives the plain box filter; section 7.3 level by
 // level is SurfaceFilter::kBilinear.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Mipmaps of a texture on a surface (chapter 7).
 #pragma once
 

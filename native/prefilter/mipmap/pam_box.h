@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Means of an image over the part of a surface in each texel (equation 7.1 with a box).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // UV seams, as the levels of a mipmap see them: one line on the surface with two in the texture.
 #pragma once
 

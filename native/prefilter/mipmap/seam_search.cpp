@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The error rises with the weight w, as w^2 at first and then more slowly, so a secant in the
 // logarithms of both needs few fits; each of them starts from the one before.
 #include "prefilter/mipmap/seam_search.h"

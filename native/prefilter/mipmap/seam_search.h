@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How much seams may count in a fit whose error may rise by so much and no more.
 #pragma once
 

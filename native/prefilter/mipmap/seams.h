@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How much UV seams show in the levels of a mipmap.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Levels by filters in texture space, which know nothing of the surface but, at most, which texels
 // it touches. They are what parameterization-aware levels are compared with.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Block Gauss-Seidel over the levels: the blocks beside the diagonal are at most half of it, so a
 // round takes the error down about fourfold, and each block is solved by a few sweeps from where it
 // is.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The least-squares problem of all levels together, for trilinear lookups (section 7.3).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The integrals along an arc in a cell that the moments of what lies right of it are made of.
 #pragma once
 

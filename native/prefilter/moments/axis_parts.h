@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Unit cells cut further along one axis, and pieces cut to the parts.
 #pragma once
 

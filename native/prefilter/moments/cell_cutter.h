@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Monotone curves cut along the lines of a grid of unit cells.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Moments of a measure on a grid cell, and how they nest.
 //
 // The measure is the surface's area carried into the texture; the cell is [0, 1]^2 in its own

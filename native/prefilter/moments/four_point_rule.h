@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Quadrature over a cell from the moments of its measure.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Curves cut where they turn: pieces along which x and y each only rise or only fall.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Monotone pieces of quadratics and cubics as polynomials.
 #pragma once
 

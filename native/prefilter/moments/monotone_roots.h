@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Where polynomials that only rise or only fall pass many values.
 #pragma once
 

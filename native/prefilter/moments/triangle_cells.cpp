@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Cutting follows section 7.2 (triangles cut so that their images meet only one cell); the moments
 // of a piece are closed forms, triangle by triangle of its fan.
 #include "prefilter/moments/triangle_cells.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Triangles that carry a mass, cut along a unit grid: the primitive under every surface-weighted
 // filter.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Contours cut where they meet: chains of curves, and what lies on both sides of each.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Contours whose overlaps are seen at a glance: convex ones, apart from each other or one in
 // another.
 #pragma once

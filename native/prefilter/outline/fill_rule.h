@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What a fill rule says of a winding number.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Where two monotone pieces of curves meet.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Contours cut into pieces along which neither x nor y turns back.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Set operations of polygons on an integer grid, by the library Clipper2: what is left for outlines
 // whose curves meet in ways that rounding decides.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Outlines whose contours overlap, made into the boundary of what they fill.
 #pragma once
 

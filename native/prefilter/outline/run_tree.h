@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A tree of boxes over monotone runs: which of their pieces may meet, and which lie beside a point.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Unions, intersections and differences of what outlines fill.
 #pragma once
 

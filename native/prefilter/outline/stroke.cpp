@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A stroke is put together from quadrilaterals along the curve, wedges at the outside of corners
 // and caps, all counter-clockwise: the sum of their boundaries runs along both sides, and through
 // the corner itself on its inside. Winding numbers are nowhere negative, so the non-zero rule

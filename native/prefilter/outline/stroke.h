@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Strokes along outlines, as outlines of their own.
 #pragma once
 

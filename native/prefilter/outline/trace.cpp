@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Boundaries put together from the chains of an arrangement.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // All contours of all layers are cut where they meet. To the left and to the right of each part the
 // winding numbers tell which layers are seen, and how much of each: where that differs for a layer,
 // the part is on the boundary of one of its pieces.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Shapes that cover each other, as pieces that only have to be added.
 #pragma once
 

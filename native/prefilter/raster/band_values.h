@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The values of a band of pixel rows, to which layers add.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What outlines cover of pixels: the box filter of chapter 2, on a way of its own.
 #pragma once
 

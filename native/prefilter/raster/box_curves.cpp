@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 2.2 for curves and the box filter.
 //
 // As in box_lines.cpp, a row's pixels follow from E_k, the integral over y of how far x is beyond a

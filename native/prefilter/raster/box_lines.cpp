@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 2.2 for lines and the box filter.
 //
 // In one row let x run along a line from L to R while y rises by d, from the column i of L on. With

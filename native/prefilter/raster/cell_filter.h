@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A filter as polynomials on the cells of a grid, the way its moments are weighed.
 #pragma once
 

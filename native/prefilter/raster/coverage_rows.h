@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Rows of a shape's filtered coverage, held as differences from pixel to pixel.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Rows of box-filtered coverage, as differences from pixel to pixel in whole numbers.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The segments of outlines in coordinates of cells, found again by the rows they pass.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Gradients along a line, as shapes of linear color.
 #pragma once
 

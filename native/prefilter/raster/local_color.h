@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A paint as a polynomial on each cell.
 #pragma once
 

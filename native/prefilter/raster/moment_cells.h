@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The cells of a band of rows that arcs touch, and the moments of what those leave in them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // From the moments in cells to the coverage of pixels: section 2.2.1, with all pieces of the filter
 // at once.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The values of pixels under a shape whose color changes from place to place.
 #pragma once
 

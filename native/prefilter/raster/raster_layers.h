@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Shapes made ready: outlines that wind once round what they fill, colors that only have to be
 // added.
 #pragma once

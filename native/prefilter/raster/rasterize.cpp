@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 2.2: the image of shapes, filtered in closed form.
 //
 // Bands of rows are made one by one, each from the segments that pass it, so that what is held

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Shapes to images, filtered in closed form: chapter 2.
 #pragma once
 

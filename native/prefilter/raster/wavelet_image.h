@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The image of shapes by Haar wavelets: chapter 3, in the plane.
 #pragma once
 

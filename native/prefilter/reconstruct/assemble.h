@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The tree around a slab, put together from the parts that are kept.
 #pragma once
 

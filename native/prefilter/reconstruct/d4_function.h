@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The indicator function in the D4 basis, as trees of values.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Vertices moved onto the surface of the samples around them.
 //
 // Beyond the text: the contour says where the surface is to a fraction of a cell, and how its parts

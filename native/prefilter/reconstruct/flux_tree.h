@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Haar coefficients of sampled surfaces (section 4.2), for cells between two depths.
 #pragma once
 

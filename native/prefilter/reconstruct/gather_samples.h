@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Points to sums of samples in cells.
 #pragma once
 

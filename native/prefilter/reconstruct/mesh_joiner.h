@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Parts of a mesh to one, as they come.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The surface in each cell as a piece of a plane.
 //
 // Beyond the text, which gives each leaf the area of its side. A few samples scattered over a cell

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Slab by slab (section 4.3.2): the samples of all slabs give the coarse levels of the tree; with
 // these a slab's own levels can be made, smoothed, contoured and dropped.
 #include "prefilter/reconstruct/reconstruct.h"

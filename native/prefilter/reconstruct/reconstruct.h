@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Oriented points to closed surfaces (chapter 4).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What is kept of the samples in a cell: sums, which nest.
 //
 // All that the Haar coefficients need is linear in a sample's normal and in the products p_a n_a

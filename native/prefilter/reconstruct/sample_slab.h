@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Samples between two heights, at all depths: where they tell of a surface, and how much of it.
 //
 // Area per sample follows section 4.2, with corrections. A cell counts where at least three of its

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The cells of a cloud, slab by slab: in memory, or where that is not enough, in a temporary file.
 #pragma once
 

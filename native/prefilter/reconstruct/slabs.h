@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What is made of a cloud's slabs, stage by stage, and forgotten where memory is scarce.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Narrow triangles are widened patch by patch, each as far as its own vertices go, and then what is
 // left around the borders of patches. The triangles that are new are then looked at for
 // intersections: where there are any, the patch is done again without those that they were made of.

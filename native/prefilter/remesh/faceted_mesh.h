@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A closed mesh, and what of it is to be kept where its triangles change.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A tree of boxes over the triangles in the order of the Morton curve, those much larger than most
 // by themselves; then pairs of triangles whose boxes meet.
 #include "prefilter/remesh/intersections.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Half-edge collapses, those first that move the surface least by the quadric error of Garland and
 // Heckbert. The quadrics only say in which order: what bounds the distance is that removed vertices
 // are kept as points of the triangle that they are near to, and measured again whenever that

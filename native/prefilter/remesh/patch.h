@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A part of a mesh whose triangles become fewer.
 #pragma once
 

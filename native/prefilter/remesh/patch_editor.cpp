@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Vertices left out, their holes filled by dynamic programming (Klincsek 1980), and edges flipped,
 // whatever of it makes the fewest and the least narrow triangles.
 #include "prefilter/remesh/patch_editor.h"

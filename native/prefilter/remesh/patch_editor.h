@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Edges of a part of a mesh collapsed and flipped, so that its triangles get wider angles.
 #pragma once
 

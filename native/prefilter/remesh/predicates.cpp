@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Floating-point determinants where their error bounds allow it, and else sums of doubles that do
 // not overlap: Shewchuk, Adaptive precision floating-point arithmetic and fast robust geometric
 // predicates (1997).

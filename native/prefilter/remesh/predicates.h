@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Signs of determinants of points, without rounding errors.
 #pragma once
 

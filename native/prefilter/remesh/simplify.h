@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Fewer triangles where the surface is flat or gently curved.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Planes that separate most pairs are found in floating point. What is left is decided by the edges
 // of each triangle that pass through the other one: Möller, A fast triangle-triangle intersection
 // test (1997), with the orientation tests of Guigue and Devillers, Fast and robust

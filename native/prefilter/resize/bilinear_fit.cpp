@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 1.1, the equation before figure 1.8, with the bilinear basis as in section 7.3. The basis
 // functions are products of tents along x and y, and so are the integrals over them.
 #include "prefilter/resize/bilinear_fit.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Resizing by least squares for bilinear interpolation.
 #pragma once
 

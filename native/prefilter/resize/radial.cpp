@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 1.1, figure 1.6.
 #include "prefilter/resize/radial.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sections 1.1 and 1.1.2: images are filtered in linear light, before they are sampled.
 #include "prefilter/resize/resize.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Images of other sizes (chapter 1).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "prefilter/resize/resize_filter.h"
 
 #include "prefilter/base/error.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // McCormack, Perry, Farkas and Jouppi, "Feline: Fast Elliptical Lines for Anisotropic Texture
 // Mapping", 1999, with other probes.
 //

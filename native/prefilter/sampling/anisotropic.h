@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Anisotropic samples of a pyramid: isotropic ones in a row (section 6.3, figure 6.12).
 #pragma once
 

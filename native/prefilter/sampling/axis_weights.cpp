@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The exact filter that section 6.2 approximates, over images that end or repeat.
 #include "prefilter/sampling/axis_weights.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What a kernel of any width weighs the texels of an axis with, once it is wrapped.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Greene and Heckbert, "Creating Raster Omnimax Images from Multiple Perspective Views Using the
 // Elliptical Weighted Average Filter", 1986, over level 0 alone.
 #include "prefilter/sampling/elliptical.h"

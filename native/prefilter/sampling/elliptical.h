@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Samples by elliptical Gaussians, the exact anisotropic filter.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Equation 6.1, with texels for the image.
 #include "prefilter/sampling/exact.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Samples by the filter itself: what tables approximate.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The ellipse of texels that a pixel covers.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Between which levels samples lie, many at a time.
 #pragma once
 

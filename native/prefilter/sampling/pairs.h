@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Coordinates along x and y, worked out together by the processor.
 #pragma once
 

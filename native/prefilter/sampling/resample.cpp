@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 6.3: the filter at the place and the scale that each pixel has in the image.
 #include "prefilter/sampling/resample.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Isotropic samples of a pyramid (section 6.2).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 6.2. Each step goes through all samples of a block, so that the processor has several of
 // them at hand: where they lie in memory, four samples' subdomains at a time, then the weights of
 // four texels at a time and the sum of the texels. Nothing in between depends on what a sample is

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Where and how wide samples of an image are.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 6.2: texels that are the filter itself, at whole mip values and texel centres.
 #include "prefilter/sampling/sampling_levels.h"
 

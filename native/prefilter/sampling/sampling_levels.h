@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Levels that sampling tables of any kernel fit.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Pharr, Wronski, Salvi and Fajardo, "Filtering After Shading With Stochastic Texture Filtering",
 // 2024: one texel of the filter's, also where weights are negative.
 #include "prefilter/sampling/stochastic.h"

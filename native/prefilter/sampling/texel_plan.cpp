@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 6.2: the symmetries of a cell, unfolded; each texel as a distance from the cell's corner.
 #include "prefilter/sampling/texel_plan.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A table's texels as places in memory, for all cells of a pyramid.
 #pragma once
 

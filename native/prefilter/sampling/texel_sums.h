@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Weighted sums of texels, of a few channels at a time.
 #pragma once
 

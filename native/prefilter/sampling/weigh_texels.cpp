@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 6.2: the texels and weights of the subdomain that a sample lies in.
 #include "prefilter/sampling/weigh_texels.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Which texels make up a sample, one sample at a time (section 6.2).
 #pragma once
 

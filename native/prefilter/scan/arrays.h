@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Points from arrays, and a mesh into arrays.
 #pragma once
 

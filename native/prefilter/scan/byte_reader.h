@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A file from its first byte to its last, through a buffer of bounded size.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Open files, read and written at places that the caller names; errors say which file, and where.
 #pragma once
 

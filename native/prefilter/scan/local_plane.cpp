@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Eberly, A Robust Eigensolver for 3 x 3 Symmetric Matrices (2014): without iterations. The
 // eigenvalue that is farther from the other two gives its eigenvector as a cross product of rows;
 // the others are found across it.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A stream is a sequence of runs. A control byte c below 32 is followed by c + 1 bytes to copy.
 // Else c >> 5 is a length, where 7 has a byte more to add to it, and the other five bits, before
 // those of the next byte, tell how far back from here length + 2 bytes repeat, less one.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The compression of Marc Lehmann's LibLZF, which point clouds of PCL have.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Propagation of directions as in Hoppe et al., Surface Reconstruction from Unorganized Points
 // (1992), by patches instead of points: near points whose normals leave no doubt are joined first,
 // and then patch by patch, by the sum of what all pairs along their common border say.

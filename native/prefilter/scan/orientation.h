@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Which of its two directions each normal of a cloud of points has.
 #pragma once
 

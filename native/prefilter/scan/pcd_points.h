@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The points of PCD files, of the Point Cloud Library.
 #pragma once
 

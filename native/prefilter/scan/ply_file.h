@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // PLY files: the header, and the rows of the elements that it announces.
 #pragma once
 

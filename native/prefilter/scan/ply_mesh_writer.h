@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Meshes larger than memory, written to PLY files.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What the numbers that a file keeps for each point mean.
 #pragma once
 

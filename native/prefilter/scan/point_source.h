@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Where points come from: an array, a file that is larger than memory.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A file that is put in place when it is whole.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A file for what does not fit into memory.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Points as lines of numbers: XYZ and PTS.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Items put together by what they have in common, in parallel.
 #pragma once
 

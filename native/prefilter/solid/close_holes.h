@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Caps for the holes of a mesh.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The edges of a mesh, and the triangles on them.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Refinement: P. Liepa, Filling holes in meshes (2003). What is fair: the integral of the squared
 // mean curvature (Willmore), which spheres minimize among all surfaces with their border and their
 // tangents there. It is minimized over the points, with the cotangent formula for the mean

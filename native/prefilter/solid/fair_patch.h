@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A patch that continues the surface around it.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Surfaces of what the outside does not reach.
 #pragma once
 

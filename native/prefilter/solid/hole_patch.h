@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A patch over a hole: a disc of triangles that can be divided and flipped.
 #pragma once
 

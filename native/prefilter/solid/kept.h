@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What of a surface is left in its voxels.
 #pragma once
 

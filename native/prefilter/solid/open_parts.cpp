@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Each part gets the least that keeps it. What winding numbers make of the mesh, with its holes
 // closed, is looked up in the cells that it is going to have; parts that leave no contour there are
 // replaced, and the rest is looked at again, since their caps are gone.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What becomes of patches that are not closed, or too thin.
 #pragma once
 

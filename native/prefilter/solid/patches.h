@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Parts of a surface whose faces can be turned only together.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The mesh's cells are widened by half of the gap; the outside, and what else is left, is flooded
 // and grown back by as much, side by side, so that in a gap the two meet halfway.
 #include "prefilter/solid/reach.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Triangles over a loop that need no other points.
 #pragma once
 

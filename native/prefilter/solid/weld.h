@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Vertices that count as one, and faces that are there more than once.
 #pragma once
 

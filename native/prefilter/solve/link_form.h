@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sums of shares of a few texels, wherever they are, whose squares a system minimises too.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A mass matrix that is scaled by its diagonal has a condition number of about 9 on whole texels,
 // so a few Gauss-Seidel sweeps do; and a sweep that clamps each texel as it goes converges to the
 // solution of the problem with ranges.

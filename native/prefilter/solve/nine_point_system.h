@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Linear systems between the texels of one level in which each texel meets its eight neighbours,
 // and their solution within ranges.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Nested dissection: A. George, Nested dissection of a regular finite element mesh (1973), with
 // cuts between the coordinates. Factors row by row along the elimination tree: T. A. Davis,
 // Algorithm 849: a concise sparse Cholesky factorization package (2005).

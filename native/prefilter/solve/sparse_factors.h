@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sparse symmetric positive definite systems between vertices, solved by factors.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A binary tree of boxes over things in the order of the Morton curve.
 #pragma once
 

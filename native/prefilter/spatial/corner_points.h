@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What the corners of a surface lie on, of the meshes that it was made of.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Points in the order of the Morton curve through their box.
 #pragma once
 

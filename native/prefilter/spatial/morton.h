@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The Morton curve: the order of the cells of an octree.
 #pragma once
 

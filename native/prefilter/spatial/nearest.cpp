@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A binary tree of boxes over the triangles in the order of the Morton curve through their middles.
 //
 // Identical triangles are one, with the lowest of their indices: as their boxes may be nearer than

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The nearest of many points to each of them.
 #pragma once
 

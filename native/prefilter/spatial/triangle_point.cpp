@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Ericson, Real-Time Collision Detection (2005), section 5.1.5.
 #include "prefilter/spatial/triangle_point.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // G. Barill, N. Dickson, R. Schmidt, D. Levin, A. Jacobson, Fast winding numbers for soups and
 // clouds (2018), of the lowest order. Solid angles: A. van Oosterom, J. Strackee, The solid angle
 // of a plane triangle (1983).

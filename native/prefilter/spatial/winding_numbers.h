@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How often a mesh winds around points, open or not.
 #pragma once
 

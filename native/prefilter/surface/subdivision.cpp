@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Uniform refinement by OpenSubdiv, then its limit masks for positions and texture coordinates.
 #include "prefilter/surface/subdivision.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Limit surfaces of subdivision meshes, through OpenSubdiv.
 #pragma once
 

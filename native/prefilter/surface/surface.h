@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // A textured surface: triangles in space with texture coordinates.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sutherland and Hodgman's polygon clipping, in barycentric coordinates of each triangle: these
 // measure areas where texture coordinates are degenerate, too.
 #include "prefilter/surface/udim_tile.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // UDIM: a texture in tiles, each an image of its own.
 #pragma once
 

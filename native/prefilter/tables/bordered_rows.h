@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The equations of a set's weights, with the multiplier of their sum.
 #pragma once
 

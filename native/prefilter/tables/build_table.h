@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Building sampling tables (section 6.2).
 #pragma once
 

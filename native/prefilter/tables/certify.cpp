@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Leaps and bounds (Furnival and Wilson, "Regressions by Leaps and Bounds", 1974): sets without
 // some texels have an error of at least that of all other texels together.
 //

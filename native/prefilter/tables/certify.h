@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Proofs that sets of texels are the best, by branch and bound.
 #pragma once
 

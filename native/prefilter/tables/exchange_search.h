@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sets of few texels with low errors, by exchanging one texel at a time.
 #pragma once
 

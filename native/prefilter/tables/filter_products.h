@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Inner products of filters along an axis: of texels with each other, and with the filter of a
 // sample. Those of the plane are products of two.
 #pragma once

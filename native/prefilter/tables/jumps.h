@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Steps of samples where they pass from one subdomain of a table to another.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Tables that say which few texels of a mipmap make up a filter of any place and scale, and with
 // which weights (section 6.2).
 //

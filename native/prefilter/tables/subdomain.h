@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The part of the samples' domain that a subdomain of a table covers: its quadrature, and the
 // polynomials that are orthonormal over it.
 #pragma once

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Equation 6.4 for a subdomain: which of its texels, with which weights.
 //
 // What is minimised is that, plus TableShape::ramp_weight times the squared distance between the

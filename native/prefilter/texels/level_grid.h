@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Lines that cut a texture into cells on which the bilinear interpolants of levels are polynomials.
 //
 // The interpolant of a level is bilinear between the centres of its texels. The cells of level l

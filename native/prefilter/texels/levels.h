@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sizes of the levels of a mipmap.
 #pragma once
 

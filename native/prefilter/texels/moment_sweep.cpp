@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Sections 7.2 and 7.3: closed-form integrals over triangles cut to the finest cells. Where a texel
 // lies inside of one triangle the integrals of the image are a fixed 3 x 3 stencil.
 #include "prefilter/texels/moment_sweep.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The moment pyramid: one pass over the mesh that yields, for every level, the moments of the
 // surface and of the image on it.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // How a renderer gets from stored texels to a colour.
 #pragma once
 

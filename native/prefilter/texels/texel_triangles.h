@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Where a surface lies in an image: its triangles in texel units, after the wrap mode.
 #pragma once
 

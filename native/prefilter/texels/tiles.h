@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Square tiles of an image, each with the triangles that may meet it.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Set operations on occupancy octrees (section 3.1).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Occupancy octrees: how much of each cell of a box is inside of a shape, finely along its surface.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What an occupancy octree knows of points, boxes and the whole.
 #pragma once
 

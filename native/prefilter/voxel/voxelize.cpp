@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 3.2.3. The mesh is carried to the unit cube, which may stretch it: occupancies do not
 // change.
 #include "prefilter/voxel/voxelize.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Meshes to occupancy octrees (chapter 3).
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What a cell has to know of the pieces of a boundary in it, to give the Haar coefficients of the
 // shape that it bounds: six numbers, which nest.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Functions on the points of a grid that are zero but near a surface.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Convex polygons in space, cut along a grid of unit cells.
 #pragma once
 

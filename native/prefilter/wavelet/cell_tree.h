@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Functions on a cube that are known cell by cell, finely only where they need to be: an octree of
 // cell means.
 //

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The height of a surface over columns of occupancies.
 #pragma once
 

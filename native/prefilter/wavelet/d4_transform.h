@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // D4 coefficients of sampled surfaces, and the function that they make (section 4.2).
 //
 // Let s_j(k) be the mean of the indicator function weighted by phi(2^j x - k). By the divergence

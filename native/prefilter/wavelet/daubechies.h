@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Daubechies' wavelet with four coefficients, D4 (section 4.4).
 //
 // phi(t) = sum of kLow[l] phi(2 t - l), supported on [0, 3]; psi by equation 3.2.

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Synthesis: equation 3.4 evaluated cell by cell, from the root down, in the memory of the
 // coefficients.
 #include "prefilter/wavelet/haar.h"

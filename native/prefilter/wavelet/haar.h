@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The Haar basis on an octree (sections 3.2 and 3.2.3).
 //
 // On a cell, in coordinates that make it the unit cube, the wavelet e = ex + 2 ey + 4 ez is the

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The surface within a leaf of an occupancy octree, as the leaf and its neighbours fix it.
 //
 // Beyond the text, whose cells hold no more than a value. Sums of columns of occupancies are mean

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Section 3.2.2, with every curve cut once, along the finest cells.
 #include "prefilter/wavelet/outline_strip.h"
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Outlines cut along the finest cells of a strip of rows, and their fluxes summed up to bricks.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What a cell of the plane has to know of the curves in it, to give the Haar coefficients of the
 // shape that they bound: four numbers, which nest as those of a surface do (boundary_flux.h).
 //

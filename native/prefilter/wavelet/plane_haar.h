@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The Haar basis on a quadtree (sections 3.2 and 3.2.2), and what outlines have in it.
 //
 // As on the octree (haar.h), without the factor 2^j: the coefficient of a cell is the mean of the

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // In two passes: leaves that are neither full nor empty are split along their surfaces; then those
 // that touch what is on the other side of a surface, as full ones beside empty ones do.
 #include "prefilter/wavelet/refine.h"

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Occupancy octrees whose surface is in cells of one size.
 #pragma once
 

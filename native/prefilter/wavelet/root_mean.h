@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The one coefficient whose field has no compact support: the mean over the root.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Smoothing of functions on octrees (section 4.3.1).
 #pragma once
 

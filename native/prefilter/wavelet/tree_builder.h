@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Trees made cell by cell, by several threads.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Every brick of 16^3 cells gets the triangles that meet it. A brick is cut into its cells, and its
 // fluxes are summed up to one; so is what the bricks left, level by level. Bricks are visited along
 // the Morton curve, and a brick adds its triangles in their order, so that no sum depends on the

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // From triangles to Haar coefficients (section 3.2.3).
 #pragma once
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Prefilter: images and shapes filtered for the surface that uses them.
 
 Arrays are numpy or nested lists of real numbers; images and occupancies come out as float32,

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The native module. The package around it checks and converts arguments; call that."""
 
 from collections.abc import Sequence

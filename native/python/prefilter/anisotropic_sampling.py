@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Anisotropic samples of a mipmap (section 6.3, figure 6.12)."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Contours: grids of samples to outlines and closed meshes."""
 
 import numpy as np

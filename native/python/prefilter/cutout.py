@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Alpha-tested cut-outs: levels that keep as much of the surface as the image does."""
 
 from collections.abc import Sequence

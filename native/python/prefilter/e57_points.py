@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points of E57 files, read by pye57."""
 
 from collections.abc import Iterator

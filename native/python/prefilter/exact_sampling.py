@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Samples of an image by the filters themselves: what tables and probes approximate."""
 
 import numpy.typing as npt

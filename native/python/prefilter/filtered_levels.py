@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Levels of a mipmap that know which filter made them (section 6.2)."""
 
 from collections.abc import Iterable

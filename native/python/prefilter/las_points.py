@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points of LAS and LAZ files, read by laspy."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Mipmaps of normal maps, and the roughness that takes what averaging normals loses."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files of octrees: NumPy archives (.npz) of the cells, level by level."""
 
 import errno

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the native module needs of Python code that reads points."""
 
 import contextlib

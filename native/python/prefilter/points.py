@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Points of a surface, as scanners give them."""
 
 import numpy as np

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Scans: oriented points to closed surfaces."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images moved by affine and projective maps (section 6.3)."""
 
 import numpy as np

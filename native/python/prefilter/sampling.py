@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Samples of a mipmap (section 6.2)."""
 
 from collections.abc import Sequence

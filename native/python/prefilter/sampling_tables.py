@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Tables that reproduce a filter with few texels (chapter 6)."""
 
 import json

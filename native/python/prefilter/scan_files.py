@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files of points, as scanners and their programs write them."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Vector shapes, and their images."""
 
 from collections.abc import Iterable, Sequence

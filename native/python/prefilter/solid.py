@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Meshes made ready for voxelizing: their holes closed."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Any mesh as one that has an inside."""
 
 from dataclasses import dataclass

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Samples of a single texel each, right on average, for renderers that take many."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Surfaces: triangles in space with texture coordinates."""
 
 from collections.abc import Iterable, Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a surface uses of its texture."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The version of the package; also that of the extension."""
 
 VERSION = "0.1.0"

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Voxels: how much of each cell of a grid is inside of a shape."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Curve and text objects as closed contours, against what Blender itself evaluates them to."""
 
 import itertools

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images: what is read, what is refused, and what is written back."""
 
 import bpy

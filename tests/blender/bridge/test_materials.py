@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Materials: which UV map a node reads, and how it is moved."""
 
 import bpy

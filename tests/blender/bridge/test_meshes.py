@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Meshes: which faces become a surface, and where they lie."""
 
 import bmesh

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files of packed images, written beside the .blend file."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Subdivision modifiers: the limit surface, against Blender's own evaluation of it."""
 
 import bmesh

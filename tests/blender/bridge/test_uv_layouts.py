@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The borders of what a UV map covers, by brute force."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: uses the redo panel with the mouse.
 
 Usage: blender --factory-startup --enable-event-simulate --python redo_session.py -- RESULT.json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Jobs: result, error, progress and cancel."""
 
 import threading

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Operators in the background: nothing is left behind, whatever fails, and Esc is heard soon."""
 
 import threading

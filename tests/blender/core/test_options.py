@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Options: what one declaration makes of properties, flags, checks and tables."""
 
 import argparse

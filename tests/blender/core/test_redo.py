@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Adjust Last Operation, in a window that nobody sees: changing a setting changes the result."""
 
 import json

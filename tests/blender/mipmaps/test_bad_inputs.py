@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Bad input gets a report that says what is wrong, and neither images nor files are made.
 
 A row is what is wrong with a good scene, and what the message must hold.

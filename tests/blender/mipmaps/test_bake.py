@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The bake, by what it must give: colour, alpha, wrap, levels, and nothing after a failure."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`bake --all`: every image of a model as what it is, against bakes of single images."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a bake of a large image takes at most, beside what Blender takes."""
 
 import re

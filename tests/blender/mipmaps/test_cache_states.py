@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What the panel says of the images of a scene and their cache files."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images that are no colour: normal maps and their roughness, cut-outs, masks."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Bakes over the frames of an animation."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Levels for renderers that look once a pixel, and those that average many lookups."""
 
 import bpy

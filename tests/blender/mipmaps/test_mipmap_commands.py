@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The command, in a Blender of its own."""
 
 import bpy

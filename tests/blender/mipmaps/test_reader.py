@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Levels for renderers that interpolate the encoded texels of 8-bit sRGB images."""
 
 import bpy

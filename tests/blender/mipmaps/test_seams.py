@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What a bake says of UV seams: the contrast across them, against the library's own."""
 
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The bake into Cycles' texture cache: that renders use it, and that nothing else changes."""
 
 import os

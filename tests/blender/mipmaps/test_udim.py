@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """UDIM images: a bake of each tile, over the part of the surface that lies in it."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Which objects a bake looks at: all that show the image, or those that are selected."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: draws the panels, resamples an image, makes a table.
 
 One run ends well and is done again with another setting, and one is cancelled by Esc.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: draws the panel and the menu, and resizes an image.
 
 One run ends well and is done again with another size, and one is cancelled by Esc.

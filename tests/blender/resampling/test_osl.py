@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The OSL shader of a sampling table, rendered by Cycles."""
 
 import _cycles

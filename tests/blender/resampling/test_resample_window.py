@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Panels, redo and the modal operators of resampling and tables, in a window that nobody sees."""
 
 import json

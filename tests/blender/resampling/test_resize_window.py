@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Panel, menu, redo and the modal operator of resizing, in a window that nobody sees."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: draws the panel and menus, and reconstructs a surface.
 
 One run ends well and is done again with another depth, one is cancelled by Esc, and one is for an

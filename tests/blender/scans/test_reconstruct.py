@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.reconstruct`, as scripts call it, on points of solids that are known."""
 
 import bodies

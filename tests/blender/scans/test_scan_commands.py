@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The command `reconstruct`: from file to file, in memory, and from .blend files."""
 
 import os

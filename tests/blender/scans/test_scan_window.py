@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Panel, menus, redo and the modal operator of scans, in a window that nobody sees."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: draws panels and menus, and rasterizes through the operators.
 
 One run ends well, is done again with another filter, and undone; one is cancelled by Esc; an image

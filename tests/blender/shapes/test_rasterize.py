@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.rasterize`, as scripts call it: areas, colors and places are known."""
 
 import math

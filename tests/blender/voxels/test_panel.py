@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Panels, menus and modal operators of voxels, in a window that nobody sees."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The commands `voxelize` and `boolean`, in a Blender of their own."""
 
 import importlib.util

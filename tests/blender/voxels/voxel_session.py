@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: draws panels and menus, and voxelizes through the operators.
 
 One run ends well, one is cancelled by Esc, one is for an object that goes meanwhile, and one ends

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "prefilter/base/radix_sort.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // BC7 and BC6H, decoded by bcdec, which has nothing in common with the encoders.
 #define BCDEC_STATIC
 #define BCDEC_IMPLEMENTATION

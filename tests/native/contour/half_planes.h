@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The shares of cells that half-planes cover.
 #pragma once
 

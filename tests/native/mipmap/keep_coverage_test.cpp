@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "prefilter/mipmap/keep_coverage.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Curves of every kind, and points of them by Bernstein's polynomials.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // What outlines enclose, by brute force: no part of it is shared with the library.
 #pragma once
 

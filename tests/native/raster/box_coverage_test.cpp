@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // The box filter's own way against a fine sampling of the outline, and its laws.
 #include "prefilter/raster/box_coverage.h"
 

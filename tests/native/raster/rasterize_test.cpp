@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Whole images in C++, so that the sanitizers see them: areas, laws, and what is nasty.
 #include "prefilter/raster/rasterize.h"
 

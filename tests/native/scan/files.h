@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Folders, and disks that are full, for tests of files.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 #include "prefilter/solid/span_loop.h"
 
 #include <gtest/gtest.h>

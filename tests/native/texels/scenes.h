@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Surfaces and images for the tests of this folder.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Work on shapes can be stopped at any time: how much of it is done between two reports. Counted in
 // seconds of the processor, which others on the machine do not change.
 #include <gtest/gtest.h>

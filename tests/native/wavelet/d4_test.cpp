@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // D4 against its definition: the refinement relation, and equation 4.2 summed sample by sample.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Small closed meshes, and what they fill of a cell, in closed form.
 #pragma once
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 // Leaves of any depth with any value, the nastiest of trees.
 #pragma once
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Arguments that several functions take, checked once, here at the border."""
 
 from collections.abc import Callable, Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Arrays as the native module takes them, checked once, here at the border."""
 
 from collections.abc import Sequence

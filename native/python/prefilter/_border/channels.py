@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Images of any number of channels, for native functions that take up to four."""
 
 from collections.abc import Callable

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Levels, and the places of samples, checked once, here at the border."""
 
 from collections.abc import Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """GLSL and HLSL: one text, as HLSL has the same words but for the names of types."""
 
 import re

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """OSL: a shader that reads texels from files, one file a level."""
 
 from string import Template

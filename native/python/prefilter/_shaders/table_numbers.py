@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """A sampling table as shaders hold it: the same numbers, in the same order, in every language."""
 
 import re

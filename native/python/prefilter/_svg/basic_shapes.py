@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The outlines of paths and basic shapes."""
 
 from collections.abc import Mapping

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The XML of a drawing, read by expat, within limits that no honest file meets."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """From elements to what is painted, in the order in which it is."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Groups that are seen as one: whether drawing their shapes one by one shows the same."""
 
 from collections.abc import Iterable

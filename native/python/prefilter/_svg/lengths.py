@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Lengths of attributes in the units of the drawing."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Outlines in the units of the drawing: lines, curves, and exact arcs of ellipses."""
 
 import math

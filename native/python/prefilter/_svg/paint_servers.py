@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Gradients: what their attributes say, directly and by reference, as gradients of shapes."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Which properties an element has: by attributes, style sheets, its style, and its parent."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What attributes and properties hold: numbers, lengths, colors, paints, transforms."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """How the units of a drawing are placed in a rectangle: viewBox and preserveAspectRatio."""
 
 import re

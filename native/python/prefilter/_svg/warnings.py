@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What was found in a drawing and is not in its shapes."""
 
 from dataclasses import dataclass, replace

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The DDS container: Microsoft's programming guide for DDS, with the DX10 header extension."""
 
 import struct

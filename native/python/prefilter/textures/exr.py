@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Mip-mapped OpenEXR files, for renderers and their texture systems."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The KTX 2.0 container, and its basic data format descriptor (Khronos Data Format 1.3)."""
 
 import math

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """How the texels of texture files for engines are laid out, and arrays brought into that layout."""
 
 from collections.abc import Callable, Iterator, Sequence

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Texture files that engines and viewers read: DDS and KTX 2, with all levels."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files for engines, read back by readers of their own and by OpenImageIO."""
 
 import os

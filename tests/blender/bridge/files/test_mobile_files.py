@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Formats of mobile devices and supercompression in KTX 2; the package's tests decode them."""
 
 import os

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Files that are put into place: what may be replaced, and sets that are written whole."""
 
 import os

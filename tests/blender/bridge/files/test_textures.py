@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Texture files, read back by OpenImageIO."""
 
 import tempfile

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender 5.2 with a window: draws the panel, and bakes into the texture cache.
 
 One bake runs to its end, one is cancelled by Esc, and one by loading another file.

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: bakes all images, once to the end and once until Esc.
 
 Usage: blender --factory-startup --enable-event-simulate --python model_session.py -- RESULT.json

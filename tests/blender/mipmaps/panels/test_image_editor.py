@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The panel and the modal operator, in a window that nobody sees."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The bake of all images in a window that nobody sees: Esc leaves nothing, undo takes it back."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The panel and the modal bake into the texture cache, in a window that nobody sees."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: draws the panel, and bakes through the modal operator.
 
 One bake runs to its end, one is cancelled by Esc, and one by loading another file; the same while

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Runs in a Blender with a window: draws levels in an Image editor, and keeps what it shows.
 
 Usage: blender --factory-startup --enable-event-simulate --python preview_session.py -- RESULT.npz

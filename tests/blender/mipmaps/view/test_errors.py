@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The error curves, their figure, and the operator that makes both."""
 
 from itertools import pairwise

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Levels in the place of their image: what the editors draw, and when it is stale."""
 
 from pathlib import Path

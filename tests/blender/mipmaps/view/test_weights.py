@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """The picture of weights, and the copy whose unused texels are filled."""
 
 import bpy

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.boolean`, as scripts call it: volumes of boxes are known."""
 
 import bodies

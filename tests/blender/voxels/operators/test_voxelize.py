@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """`prefilter.voxelize`, as scripts call it: the volume and the place of results are known."""
 
 import importlib.util

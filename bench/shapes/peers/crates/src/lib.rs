@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 //! What the benchmark calls of vello_cpu and tiny-skia; see ../crates.cpp and `Drawing` in
 //! rasterizers.h.
 

@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 //! tiny-skia, an 8-bit mask.
 
 use crate::{Drawing, Path, Sink};

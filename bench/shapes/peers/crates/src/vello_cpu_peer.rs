@@ -1,3 +1,5 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
 //! vello_cpu, RGBA of 8 bits, the only image that it has.
 
 use crate::{Drawing, Path, Sink};
