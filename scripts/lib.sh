@@ -18,20 +18,13 @@ source_dir=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build_dir=$source_dir/build
 cache_dir=${PREFILTER_CACHE:-${XDG_CACHE_HOME:-${HOME:-/root}/.cache}/prefilter}
 headers_dir=$cache_dir/python-headers
-opensubdiv_dir=$cache_dir/opensubdiv-3.6.0
-squish_dir=$cache_dir/squish-1.15
-clipper2_dir=$cache_dir/clipper2-2.0.1
-etcpak_dir=$cache_dir/etcpak-0.6.1
-astcenc_dir=$cache_dir/astcenc-0.6.1
-basisu_dir=$cache_dir/basisu-1.16
-zstd_dir=$cache_dir/zstd-1.5.7
-bc7enc_dir=$cache_dir/bc7enc-0.6.1
-cvtt_dir=$cache_dir/cvtt-3.6
-libdeflate_dir=$cache_dir/libdeflate-1.23
-# Libraries that are linked in, and where their sources are.
-linked_sources=("OPENSUBDIV=$opensubdiv_dir" "SQUISH=$squish_dir" "CLIPPER2=$clipper2_dir" "ETCPAK=$etcpak_dir"
-  "ASTCENC=$astcenc_dir" "BASISU=$basisu_dir" "ZSTD=$zstd_dir" "BC7ENC=$bc7enc_dir"
-  "CVTT=$cvtt_dir" "LIBDEFLATE=$libdeflate_dir")
+# Libraries that are linked in, and where their sources are: NAME=FOLDER.
+linked_sources=()
+while IFS= read -r folder; do
+  name=${folder%-*}
+  linked_sources+=("${name^^}=$cache_dir/$folder")
+done < <(sed -n 's/^\["\(.*\)"\]$/\1/p' "$source_dir/scripts/sources.toml")
+unset folder name
 source_options=("${linked_sources[@]/#/PREFILTER_}")
 source_options=("${source_options[@]/=/_SOURCE=}")
 # Each list has its own: checkouts may differ.
@@ -190,7 +183,8 @@ debian_mirror() {
   [[ -n $uri ]] ||
     uri=$(apt-get indextargets --format '$(REPO_URI)' 'Created-By: Packages' 2>/dev/null |
       grep -E -m 1 '^https?://.*/debian/?$' || true)
-  printf '%s\n' "${uri:-http://deb.debian.org/debian}"
+  [[ -n $uri ]] || fail "apt's sources name no mirror of Debian: set PREFILTER_MIRROR to one"
+  printf '%s\n' "$uri"
 }
 
 # remove_root FOLDER: deletes a Debian root, unless something is mounted in it.
@@ -224,146 +218,16 @@ make_root() {
   mv "$root_dir.new" "$root_dir"
 }
 
-# fetch_source FOLDER URL SHA256: unpacks an archive in FOLDER.source; a URL without a host is a file in Debian's pool/main.
-fetch_source() {
-  local url=$2 new=$1.source mirror
-  if [[ $url != https://* ]]; then
+# ensure_sources: fetches what scripts/sources.toml lists.
+ensure_sources() {
+  local source mirror
+  for source in "${linked_sources[@]#*=}"; do
+    [[ ! -e $source ]] || continue
     mirror=$(debian_mirror)
-    url=${mirror%/}/pool/main/$url
-  fi
-  note "fetching $url"
-  rm -rf "$new"
-  mkdir -p "$new"
-  logged source.log /usr/lib/apt/apt-helper download-file "$url" "$new/source.tar" "SHA256:$3"
-  (cd "$new" && cmake -E tar xf source.tar)
-}
-
-# OpenSubdiv is linked in, and Debian has no static library of it: the source is that of Debian's package.
-ensure_opensubdiv() {
-  [[ ! -e $opensubdiv_dir ]] || return 0
-  local version=${opensubdiv_dir##*-} source=$opensubdiv_dir.source
-  fetch_source "$opensubdiv_dir" "o/opensubdiv/opensubdiv_$version.orig.tar.xz" \
-    09dcab919207361addeba64792e9ebd07dae65881ef205a75be68b087989434e
-  mkdir "$source/kept" "$source/kept/opensubdiv"
-  mv "$source/opensubdiv-$version"/{LICENSE,NOTICE}.txt "$source/kept/"
-  mv "$source/opensubdiv-$version"/opensubdiv/{far,sdc,vtr,version.h} "$source/kept/opensubdiv/"
-  mv "$source/kept" "$opensubdiv_dir"
-  rm -rf "$source"
-}
-
-# libsquish is linked in likewise.
-ensure_squish() {
-  [[ ! -e $squish_dir ]] || return 0
-  local version=${squish_dir##*-} source=$squish_dir.source
-  fetch_source "$squish_dir" "libs/libsquish/libsquish_$version.orig.tar.gz" \
-    628796eeba608866183a61d080d46967c9dda6723bc0a3ec52324c85d2147269
-  mkdir "$source/kept"
-  mv "$source"/{LICENSE.txt,*.cpp,*.h,*.inl} "$source/kept/"
-  mv "$source/kept" "$squish_dir"
-  rm -rf "$source"
-}
-
-# Clipper2 is linked in likewise. Debian 12 and 13 have none; PyPI's package pyclipr 0.1.8 brings version 2.0.1 along.
-ensure_clipper2() {
-  [[ ! -e $clipper2_dir ]] || return 0
-  local source=$clipper2_dir.source
-  fetch_source "$clipper2_dir" https://files.pythonhosted.org/packages/e3/96/c8049cfb9166c1f50d878535f2d1cdae1303e994dea7783a3f9075aa0679/pyclipr-0.1.8.tar.gz \
-    ff8360330f827dc4801a57cd18d3bc925814b6a9a05f14be1e0f8f72cc27488f
-  mkdir "$source/kept"
-  mv "$source"/pyclipr-*/external/clipper2/LICENSE "$source/kept/LICENSE.txt"
-  mv "$source"/pyclipr-*/external/clipper2/CPP/Clipper2Lib/{include,src} "$source/kept/"
-  mv "$source/kept" "$clipper2_dir"
-  rm -rf "$source"
-}
-
-# fetch_crate FOLDER NAME VERSION SHA256: the same for a package of crates.io, in FOLDER.source/NAME-VERSION.
-fetch_crate() {
-  fetch_source "$1" "https://static.crates.io/crates/$2/$2-$3.crate" "$4"
-}
-
-# etcpak is linked in likewise. Debian 12 and 13 have none; the crate ctt-etcpak brings it along, of 2026.
-ensure_etcpak() {
-  [[ ! -e $etcpak_dir ]] || return 0
-  local version=${etcpak_dir##*-} source=$etcpak_dir.source
-  fetch_crate "$etcpak_dir" ctt-etcpak "$version" 9d56f34893228fab7feeb599eeff99a4202b5cbfccd8a280c630365a7f49bce0
-  mkdir "$source/kept"
-  mv "$source/ctt-etcpak-$version/LICENSE-BSD-ETCPAK.md" "$source/kept/LICENSE.txt"
-  mv "$source/ctt-etcpak-$version"/cpp/* "$source/kept/"
-  mv "$source/kept" "$etcpak_dir"
-  rm -rf "$source"
-}
-
-# astcenc is linked in likewise. Debian's source is 34 MB of test images; the crate ctt-astcenc brings the encoder alone.
-ensure_astcenc() {
-  [[ ! -e $astcenc_dir ]] || return 0
-  local version=${astcenc_dir##*-} source=$astcenc_dir.source
-  fetch_crate "$astcenc_dir" ctt-astcenc "$version" dc6dc5595dd5b65dd4cf644bf0d9159f0bd3de2e37c539a1a8df12fb1ecfdd77
-  mkdir "$source/kept"
-  mv "$source/ctt-astcenc-$version/LICENSE-APACHE-ASTCENC.md" "$source/kept/LICENSE.txt"
-  mv "$source/ctt-astcenc-$version"/cpp/* "$source/kept/"
-  mv "$source/kept" "$astcenc_dir"
-  rm -rf "$source"
-}
-
-# The encoder of Basis Universal is linked in likewise, from the crate basis-universal-sys 0.3.1.
-ensure_basisu() {
-  [[ ! -e $basisu_dir ]] || return 0
-  local source=$basisu_dir.source
-  fetch_crate "$basisu_dir" basis-universal-sys 0.3.1 fd9bde5e9547958fb0e77d79fc7879edcf91d5e0c8e372ef8959916cf35e8506
-  mkdir "$source/kept"
-  mv "$source"/basis-universal-sys-0.3.1/vendor/basis_universal/LICENSE "$source/kept/LICENSE.txt"
-  mv "$source"/basis-universal-sys-0.3.1/vendor/basis_universal/{encoder,transcoder} "$source/kept/"
-  mv "$source/kept" "$basisu_dir"
-  rm -rf "$source"
-}
-
-# zstd is linked in likewise.
-ensure_zstd() {
-  [[ ! -e $zstd_dir ]] || return 0
-  local version=${zstd_dir##*-} source=$zstd_dir.source
-  fetch_source "$zstd_dir" "libz/libzstd/libzstd_$version+dfsg.orig.tar.xz" \
-    0c092ef267edce57ba7f3f2645c861f72eaf5e76273c6c3632869423464b90a5
-  mkdir "$source/kept"
-  mv "$source/zstd-$version/LICENSE" "$source/kept/LICENSE.txt"
-  mv "$source/zstd-$version"/lib/{common,compress,zstd.h,zstd_errors.h} "$source/kept/"
-  mv "$source/kept" "$zstd_dir"
-  rm -rf "$source"
-}
-
-# bc7enc is linked in likewise: etcpak brings it along, under a license of its own.
-ensure_bc7enc() {
-  [[ ! -e $bc7enc_dir ]] || return 0
-  local version=${bc7enc_dir##*-} source=$bc7enc_dir.source
-  fetch_crate "$bc7enc_dir" ctt-etcpak "$version" 9d56f34893228fab7feeb599eeff99a4202b5cbfccd8a280c630365a7f49bce0
-  mkdir "$source/kept"
-  mv "$source/ctt-etcpak-$version"/cpp/bc7enc.{cpp,h} "$source/kept/"
-  sed -n '/^ALTERNATIVE A - MIT License/,/^ALTERNATIVE B/{/^ALTERNATIVE B/d;p}' "$source/kept/bc7enc.cpp" >"$source/kept/LICENSE.txt"
-  mv "$source/kept" "$bc7enc_dir"
-  rm -rf "$source"
-}
-
-# Convection Texture Tools are linked in likewise. Debian's source of Godot 3.6 brings them along.
-ensure_cvtt() {
-  [[ ! -e $cvtt_dir ]] || return 0
-  local version=${cvtt_dir##*-} source=$cvtt_dir.source
-  fetch_source "$cvtt_dir" "g/godot/godot_$version+ds.orig.tar.xz" \
-    4d1b91067360e95eb2d3ecdd7835aad9d1bb07682b8bcad32c3b834ff50547b1
-  mv "$source/godot-$version-stable/thirdparty/cvtt" "$source/kept"
-  mv "$source/kept" "$cvtt_dir"
-  rm -rf "$source"
-}
-
-# libdeflate is linked in likewise.
-ensure_libdeflate() {
-  [[ ! -e $libdeflate_dir ]] || return 0
-  local version=${libdeflate_dir##*-} source=$libdeflate_dir.source
-  fetch_source "$libdeflate_dir" "libd/libdeflate/libdeflate_$version.orig.tar.gz" \
-    1ab18349b9fb0ce8a0ca4116bded725be7dcbfa709e19f6f983d99df1fb8b25f
-  mkdir "$source/kept"
-  mv "$source/libdeflate-$version/COPYING" "$source/kept/LICENSE.txt"
-  mv "$source/libdeflate-$version"/{lib,common_defs.h,libdeflate.h} "$source/kept/"
-  mv "$source/kept" "$libdeflate_dir"
-  rm -rf "$source"
+    mkdir -p "$cache_dir"
+    /usr/bin/python3 "$source_dir/scripts/sources.py" "$cache_dir" "$mirror"
+    return 0
+  done
 }
 
 # fetch_maven FOLDER GROUP:NAME:VERSION:TYPE[:CLASSIFIER] SHA256: unpacks a jar of Maven Central's in a folder of the
@@ -476,16 +340,7 @@ setup_host() {
   lock "$cache_dir/.lock"
   choose_blender
   ensure_packages "${host_packages[@]}"
-  ensure_opensubdiv
-  ensure_squish
-  ensure_clipper2
-  ensure_etcpak
-  ensure_astcenc
-  ensure_basisu
-  ensure_zstd
-  ensure_bc7enc
-  ensure_cvtt
-  ensure_libdeflate
+  ensure_sources
   ensure_wheels
   unlock "$cache_dir/.lock"
 }
