@@ -380,6 +380,7 @@ configure() {
   if ! configured "$folder" "CMAKE_HOME_DIRECTORY=$source_dir" "$@"; then
     note "configuring build/$preset"
     mkdir -p "$folder"
+    rm -f "$folder/build.ninja"
     if ! (cd "$source_dir" && cmake --fresh --preset "$preset" "${@/#/-D}") </dev/null >"$folder/.configured" 2>&1; then
       cat "$folder/.configured" >&2
       fail "cmake failed"

@@ -16,18 +16,29 @@ namespace {
 constexpr int kMaxThreads = 64;
 
 // Up to `count` threads, each running body(rank) with ranks from 1; fewer where the system has no
-// more.
-template <typename Body>
-std::vector<std::jthread> start_helpers(int count, const Body& body) {
-  std::vector<std::jthread> helpers;
-  helpers.reserve(static_cast<std::size_t>(std::max(count, 0)));
-  try {
-    for (int rank = 1; rank <= count; ++rank) helpers.emplace_back(body, rank);
-  } catch (const std::exception&) {
-    // No thread or no memory for one: the work is shared among those that there are.
+// more. The destructor waits for them. (Not std::jthread: libc++ before version 20 hides it.)
+class Helpers {
+ public:
+  template <typename Body>
+  Helpers(int count, const Body& body) {
+    threads_.reserve(static_cast<std::size_t>(std::max(count, 0)));
+    try {
+      for (int rank = 1; rank <= count; ++rank) threads_.emplace_back(body, rank);
+    } catch (const std::exception&) {
+      // No thread or no memory for one: the work is shared among those that there are.
+    }
   }
-  return helpers;
-}
+  Helpers(const Helpers&) = delete;
+  Helpers& operator=(const Helpers&) = delete;
+  ~Helpers() {
+    for (std::thread& thread : threads_) thread.join();
+  }
+
+  int count() const { return static_cast<int>(threads_.size()); }
+
+ private:
+  std::vector<std::thread> threads_;
+};
 }  // namespace
 
 int resolve_threads(int threads) {
@@ -60,8 +71,7 @@ void parallel_for(std::int64_t count, int threads, const Progress& progress,
   const auto helper_count =
       static_cast<int>(std::min<std::int64_t>(resolve_threads(threads), count)) - 1;
   {
-    const std::vector<std::jthread> helpers =
-        start_helpers(helper_count, [&](int) { work(false); });
+    const Helpers helpers(helper_count, [&](int) { work(false); });
     work(true);
   }
   if (failure) std::rethrow_exception(failure);
@@ -86,12 +96,12 @@ void parallel_team(int threads, const std::function<void(Team&)>& body) {
   // The barrier is made once it is known how many threads there are; until then they wait.
   std::optional<std::barrier<>> barrier;
   std::atomic<int> size{0};
-  const std::vector<std::jthread> helpers = start_helpers(threads - 1, [&](int rank) {
+  const Helpers helpers(threads - 1, [&](int rank) {
     size.wait(0);
     Team member(rank, size, &*barrier);
     body(member);
   });
-  const int found = static_cast<int>(helpers.size()) + 1;
+  const int found = helpers.count() + 1;
   barrier.emplace(found);
   size.store(found);
   size.notify_all();
