@@ -7,15 +7,13 @@
 #include <cstdint>
 #include <cstring>
 
-#if defined(__SSE4_1__)
-#include <smmintrin.h>
-#endif
+#include "prefilter/base/vectors.h"
 
 namespace prefilter {
 
-using DoublePair [[gnu::vector_size(16)]] = double;
+using DoublePair = Vector<double, 2>;
 /// Counted modulo 2^32.
-using IntFour [[gnu::vector_size(16)]] = std::uint32_t;
+using IntFour = Vector<std::uint32_t, 4>;
 
 inline DoublePair pair_of(double value) { return DoublePair{value, value}; }
 
@@ -29,7 +27,7 @@ inline void store_four(std::uint32_t* to, IntFour values) {
   std::memcpy(to, &values, sizeof(values));
 }
 
-#if defined(__SSE4_1__)
+#if defined(PREFILTER_SSE4_1)
 /// The second where one is not a number.
 inline DoublePair lower(DoublePair a, DoublePair b) { return _mm_min_pd(a, b); }
 inline DoublePair higher(DoublePair a, DoublePair b) { return _mm_max_pd(a, b); }
@@ -66,7 +64,7 @@ inline IntFour round_to_int(DoublePair a) {
 
 /// Rounded to the nearest, halves to even, modulo 2^32. The value must be within 2^63.
 inline std::uint32_t to_steps(double value) {
-#if defined(__SSE4_1__)
+#if defined(PREFILTER_SSE4_1)
   return static_cast<std::uint32_t>(_mm_cvtsd_si64(_mm_set_sd(value)));
 #else
   return static_cast<std::uint32_t>(std::llrint(value));
@@ -75,7 +73,7 @@ inline std::uint32_t to_steps(double value) {
 
 /// 16 numbers that are counted as of below 0, too, times a factor, as bytes: rounded to the
 /// nearest, and those outside to 0 or 255.
-#if defined(__SSE4_1__)
+#if defined(PREFILTER_SSE4_1)
 inline void store_bytes(std::uint8_t* to, const std::uint32_t* values, float factor) {
   const auto four = [&](int i) {
     const __m128i integers = reinterpret_cast<__m128i>(load_four(values + 4 * i));
@@ -96,8 +94,6 @@ inline void store_bytes(std::uint8_t* to, const std::uint32_t* values, float fac
 #endif
 
 /// The first two of each.
-inline IntFour joined(IntFour low, IntFour high) {
-  return __builtin_shufflevector(low, high, 0, 1, 4, 5);
-}
+inline IntFour joined(IntFour low, IntFour high) { return shuffle<0, 1, 4, 5>(low, high); }
 
 }  // namespace prefilter

@@ -12,8 +12,8 @@
 namespace prefilter {
 namespace {
 
-using IntegerLanes [[gnu::vector_size(sizeof(Lanes))]] = std::int32_t;
-using BitLanes [[gnu::vector_size(sizeof(Lanes))]] = std::uint32_t;
+using IntegerLanes = Vector<std::int32_t, kMaxChannels>;
+using BitLanes = Vector<std::uint32_t, kMaxChannels>;
 
 inline Lanes lanes_at(const float* values) {
   Lanes lanes;
@@ -23,13 +23,13 @@ inline Lanes lanes_at(const float* values) {
 
 // To the nearest, halves away from 0: as far from it for an edge and for its reverse.
 inline IntegerLanes rounded(Lanes values) {
-  return __builtin_convertvector(values < 0.0F ? values - 0.5F : values + 0.5F, IntegerLanes);
+  return convert<IntegerLanes>(select(values < 0.0F, values - 0.5F, values + 0.5F));
 }
 
 // Towards 0 of what has this much, of [0, 1), added to its size. Where that is as good as random,
 // sums of arcs much smaller than the unit are right on average.
 inline IntegerLanes rounded(Lanes values, Lanes share) {
-  return __builtin_convertvector(values < 0.0F ? values - share : values + share, IntegerLanes);
+  return convert<IntegerLanes>(select(values < 0.0F, values - share, values + share));
 }
 
 // As good as random, and the same for an edge and for its reverse, which are cut alike.
@@ -38,19 +38,19 @@ inline Lanes share_of(Lanes x, Lanes y) {
       std::bit_cast<BitLanes>(x) * 0x9E3779B1U ^ std::bit_cast<BitLanes>(y) * 0x85EBCA77U;
   bits ^= bits >> 15;
   bits *= 0xC2B2AE3DU;
-  return __builtin_convertvector(std::bit_cast<IntegerLanes>(bits >> 8), Lanes) * 0x1p-24F;
+  return convert<Lanes>(std::bit_cast<IntegerLanes>(bits >> 8)) * 0x1p-24F;
 }
 
 // Of four vectors, in place.
 inline void transpose(IntegerLanes* rows) {
-  const IntegerLanes a = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-  const IntegerLanes b = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-  const IntegerLanes c = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-  const IntegerLanes d = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
-  rows[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
-  rows[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
-  rows[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
-  rows[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+  const IntegerLanes a = shuffle<0, 4, 1, 5>(rows[0], rows[1]);
+  const IntegerLanes b = shuffle<2, 6, 3, 7>(rows[0], rows[1]);
+  const IntegerLanes c = shuffle<0, 4, 1, 5>(rows[2], rows[3]);
+  const IntegerLanes d = shuffle<2, 6, 3, 7>(rows[2], rows[3]);
+  rows[0] = shuffle<0, 1, 4, 5>(a, c);
+  rows[1] = shuffle<2, 3, 6, 7>(a, c);
+  rows[2] = shuffle<0, 1, 4, 5>(b, d);
+  rows[3] = shuffle<2, 3, 6, 7>(b, d);
 }
 
 constexpr float kScale = 1 << kMomentBits;

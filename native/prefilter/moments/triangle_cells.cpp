@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cassert>
 
+#include "prefilter/base/vectors.h"
+
 namespace prefilter {
 namespace {
 
 // Along x and along y.
-using Both [[gnu::vector_size(2 * sizeof(double))]] = double;
+using Both = Vector<double, 2>;
 
 Both swapped(Both v) { return Both{v[1], v[0]}; }
 double sum(Both v) { return v[0] + v[1]; }

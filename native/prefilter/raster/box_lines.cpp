@@ -208,18 +208,18 @@ void BoxLines::add_narrow(const Point2& low, double slope, double begin, double 
       s1 += s3;
       s2 -= s3 + s3;
     }
-    const IntFour s01_low = __builtin_shufflevector(s0, s1, 0, 4, 1, 5);
-    const IntFour s01_high = __builtin_shufflevector(s0, s1, 2, 6, 3, 7);
-    const IntFour s23_low = __builtin_shufflevector(s2, s3, 0, 4, 1, 5);
-    const IntFour s23_high = __builtin_shufflevector(s2, s3, 2, 6, 3, 7);
+    const IntFour s01_low = shuffle<0, 4, 1, 5>(s0, s1);
+    const IntFour s01_high = shuffle<2, 6, 3, 7>(s0, s1);
+    const IntFour s23_low = shuffle<0, 4, 1, 5>(s2, s3);
+    const IntFour s23_high = shuffle<2, 6, 3, 7>(s2, s3);
     const auto add = [&](int k, IntFour steps) {
       to.add_four(static_cast<std::int32_t>(column[k]), steps);
       to = {to.steps + stride, to.marks + mark_stride};
     };
-    add(0, __builtin_shufflevector(s01_low, s23_low, 0, 1, 4, 5));
-    add(1, __builtin_shufflevector(s01_low, s23_low, 2, 3, 6, 7));
-    add(2, __builtin_shufflevector(s01_high, s23_high, 0, 1, 4, 5));
-    add(3, __builtin_shufflevector(s01_high, s23_high, 2, 3, 6, 7));
+    add(0, shuffle<0, 1, 4, 5>(s01_low, s23_low));
+    add(1, shuffle<2, 3, 6, 7>(s01_low, s23_low));
+    add(2, shuffle<0, 1, 4, 5>(s01_high, s23_high));
+    add(3, shuffle<2, 3, 6, 7>(s01_high, s23_high));
   };
   DoublePair y = DoublePair{0.0, 1.0} + static_cast<double>(first_row);
   for (int row = first_row; row < end_row; row += 4, y += 4.0) {

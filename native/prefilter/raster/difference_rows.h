@@ -137,11 +137,11 @@ void DifferenceRows::take(const Block& block, const Run& run) {
           IntFour four = load_four(values + i);
           store_four(values + i, IntFour{});
           const IntFour none{};
-          four += __builtin_shufflevector(none, four, 0, 4, 5, 6);
-          four += __builtin_shufflevector(none, four, 0, 1, 4, 5);
+          four += shuffle<0, 4, 5, 6>(none, four);
+          four += shuffle<0, 1, 4, 5>(none, four);
           four += last;
           store_four(sums + i, four);
-          last = __builtin_shufflevector(four, four, 3, 3, 3, 3);
+          last = shuffle<3, 3, 3, 3>(four, four);
         }
         sum = last[0];
         if (done > begin) block(row, begin, done - begin, sums);

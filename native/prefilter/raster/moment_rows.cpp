@@ -154,7 +154,7 @@ void MomentRows<N>::add_alike(int from, int to, const Across& across) {
 
 template <int N>
 void MomentRows<N>::add_cell(int column, const ArcMoments<N>& cell, const Across& across) {
-  using Integers [[gnu::vector_size(2 * sizeof(std::int32_t))]] = std::int32_t;
+  using Integers = Vector<std::int32_t, 2>;
   const auto load = [&](int place) {
     Integers integers;
     std::memcpy(&integers, cell.sums.data() + place, sizeof integers);
@@ -162,14 +162,13 @@ void MomentRows<N>::add_cell(int column, const ArcMoments<N>& cell, const Across
   };
   Pair moments[kCount][kPairs];
   for (int q = 0; q < kPairs; ++q) {
-    const Pair own =
-        __builtin_convertvector(load(ArcMoments<N>::kAcross + 2 * q), Pair) * kMomentUnit;
+    const Pair own = convert<Pair>(load(ArcMoments<N>::kAcross + 2 * q)) * kMomentUnit;
     Pair before{};
     for (int b = 2 * q; b < std::min(2 * q + 2, kCount); ++b) {
       before[b % 2] = static_cast<double>(across[b]) * kMomentUnit;
     }
     for (int a = 0; a < kCount; ++a) {
-      const Pair inside = __builtin_convertvector(load(a * kCount + 2 * q), Pair) * kMomentUnit;
+      const Pair inside = convert<Pair>(load(a * kCount + 2 * q)) * kMomentUnit;
       moments[a][q] = own * at_high_end(a) - inside + before * mean_power(a);
     }
   }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/base/vectors.h"
 #include "prefilter/raster/cell_filter.h"
 #include "prefilter/raster/coverage_rows.h"
 #include "prefilter/raster/moment_cells.h"
@@ -31,7 +32,7 @@ class MomentRows {
   static constexpr int kCount = N + 1;
   static constexpr int kPairs = (kCount + 1) / 2;
   static constexpr int kMostTaps = 8;
-  using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+  using Pair = Vector<double, 2>;
   struct Powers {
     Pair v[kPairs] = {};
   };

@@ -4,10 +4,6 @@
 // by themselves; then pairs of triangles whose boxes meet.
 #include "prefilter/remesh/intersections.h"
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -17,6 +13,7 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/sort.h"
+#include "prefilter/base/vectors.h"
 #include "prefilter/remesh/predicates.h"
 #include "prefilter/remesh/triangle_pair.h"
 #include "prefilter/spatial/morton.h"
@@ -53,7 +50,7 @@ struct FloatBox {
 
 // Four boxes that are compared with another one at once.
 struct FourBoxes {
-  using Four [[gnu::vector_size(16)]] = float;
+  using Four = Vector<float, 4>;
 
   std::array<Four, 3> lows;
   std::array<Four, 3> highs;
@@ -72,7 +69,7 @@ struct FourBoxes {
     const auto meets = (lows[0] <= other.high[0]) & (highs[0] >= other.low[0]) &
                        (lows[1] <= other.high[1]) & (highs[1] >= other.low[1]) &
                        (lows[2] <= other.high[2]) & (highs[2] >= other.low[2]);
-#if defined(__SSE2__)
+#if defined(PREFILTER_SSE4_1)
     return static_cast<unsigned>(_mm_movemask_ps(reinterpret_cast<__m128>(meets)));
 #else
     return (meets[0] != 0 ? 1U : 0U) | (meets[1] != 0 ? 2U : 0U) | (meets[2] != 0 ? 4U : 0U) |

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr int kLanes = 4;
 
-using Four [[gnu::vector_size(kLanes * sizeof(std::int32_t))]] = std::int32_t;
+using Four = Vector<std::int32_t, kLanes>;
 
 /// The logarithm to base 2 of values in (1, 2]. As an odd function of t = (m - 1) / (m + 1) it
 /// needs five terms, which minimize the largest relative error: 4e-9, before rounding.
@@ -31,16 +32,16 @@ inline Lanes log2_of_mantissas(Lanes m) {
 inline void place_four(const double* scales, std::int32_t coarsest, int* cell_levels, float* f) {
   Lanes scale{};
   for (int i = 0; i < kLanes; ++i) scale[i] = static_cast<float>(scales[i]);
-  scale = scale > 1.0F ? scale : Lanes{} + 1.0F;
-  const Four bits = reinterpret_cast<Four>(scale);
+  scale = lane_max(scale, Lanes{} + 1.0F);
+  const Four bits = std::bit_cast<Four>(scale);
   // Powers of 2 count to the interval below them.
   const Four exponent = ((bits - 1) >> 23) - 127;
-  const Lanes mantissa = reinterpret_cast<Lanes>(bits - (exponent << 23));
+  const Lanes mantissa = std::bit_cast<Lanes>(bits - (exponent << 23));
   const Lanes fraction = lane_min(log2_of_mantissas(mantissa), Lanes{} + 1.0F);
   const Four magnifies = exponent < 0;
   const Four beyond = exponent > coarsest;
-  const Four level = magnifies ? Four{} : (beyond ? Four{} + coarsest : exponent) + 1;
-  const Lanes share = magnifies ? Lanes{} : (beyond ? Lanes{} + 1.0F : fraction);
+  const Four level = select(magnifies, Four{}, select(beyond, Four{} + coarsest, exponent) + 1);
+  const Lanes share = select(magnifies, Lanes{}, select(beyond, Lanes{} + 1.0F, fraction));
   std::memcpy(cell_levels, &level, sizeof level);
   std::memcpy(f, &share, sizeof share);
 }

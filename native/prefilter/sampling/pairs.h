@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdint>
 
+#include "prefilter/base/vectors.h"
+
 namespace prefilter {
 
-using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+using Pair = Vector<double, 2>;
 
 inline Pair floor_pair(Pair values) { return Pair{std::floor(values[0]), std::floor(values[1])}; }
 

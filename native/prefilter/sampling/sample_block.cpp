@@ -16,7 +16,7 @@
 namespace prefilter {
 namespace {
 
-using Four [[gnu::vector_size(16)]] = std::int32_t;
+using Four = Vector<std::int32_t, 4>;
 
 // How many samples ahead of their sums texels are asked for, where caches do not hold them all.
 constexpr int kSamplesAhead = 8;
@@ -66,9 +66,9 @@ void find_subdomains(const TexelPlan& plan, const SampleBlock& block, CellPlaces
   const std::int32_t last_slice = shape.slices - 1;
   const std::int32_t per_slice = shape.subdomains_of_slice();
   const auto index = [](Lanes value, std::int32_t last) {
-    const Four found = __builtin_convertvector(value, Four);
+    const Four found = convert<Four>(value);
     const Four limit = {last, last, last, last};
-    return found < limit ? found : limit;
+    return select(found < limit, found, limit);
   };
   for (int begin = 0; begin < block.count; begin += 4) {
     const Lanes x = load_lanes(&places.x[begin]);
@@ -88,7 +88,7 @@ void find_subdomains(const TexelPlan& plan, const SampleBlock& block, CellPlaces
     const Four tile = subdomain * kSymmetries - mirror_x - 2 * mirror_y - 4 * swapped;
     Four levels;
     std::memcpy(&levels, &block.cell_levels[begin], sizeof levels);
-    const Lanes third = levels == 0 ? larger * smaller : f;
+    const Lanes third = select(levels == 0, larger * smaller, f);
     std::memcpy(&places.x[begin], &larger, sizeof larger);
     std::memcpy(&places.y[begin], &smaller, sizeof smaller);
     std::memcpy(&places.f[begin], &third, sizeof third);

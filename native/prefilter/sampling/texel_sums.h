@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -22,13 +23,13 @@ inline Lanes load_lanes(const float* values) {
 
 /// The four bytes of a word, the lowest first.
 inline Lanes lanes_of_bytes(std::uint32_t word) {
-  using Bytes [[gnu::vector_size(16)]] = std::uint8_t;
-  using Words [[gnu::vector_size(16)]] = std::int32_t;
-  const auto bytes = reinterpret_cast<Bytes>(Words{static_cast<std::int32_t>(word), 0, 0, 0});
+  using Bytes = Vector<std::uint8_t, 16>;
+  using Words = Vector<std::int32_t, 4>;
+  const auto bytes = std::bit_cast<Bytes>(Words{static_cast<std::int32_t>(word), 0, 0, 0});
   const Bytes zeros{};
-  const Bytes wide = __builtin_shufflevector(bytes, zeros, 0, 16, 16, 16, 1, 16, 16, 16, 2, 16, 16,
-                                             16, 3, 16, 16, 16);
-  return __builtin_convertvector(reinterpret_cast<Words>(wide), Lanes);
+  const Bytes wide =
+      shuffle<0, 16, 16, 16, 1, 16, 16, 16, 2, 16, 16, 16, 3, 16, 16, 16>(bytes, zeros);
+  return convert<Lanes>(std::bit_cast<Words>(wide));
 }
 
 inline Lanes load_lanes(const std::uint8_t* values) {

@@ -35,7 +35,7 @@ float channel(const LaneValues& entry, int c) { return entry.v[c]; }
 float inverse_of(float entry) { return entry > 0.0F ? 1.0F / entry : 0.0F; }
 LaneValues inverse_of(const LaneValues& entry) {
   const Lanes zero{};
-  return {entry.v > zero ? 1.0F / entry.v : zero};
+  return {select(entry.v > zero, 1.0F / entry.v, zero)};
 }
 
 }  // namespace
@@ -171,7 +171,7 @@ class NinePointSystem<Entry>::Row {
     sum -= of(south_[east].north_west) * south_values_[east].v;
     sum -= of(here_[west].east) * values_[west].v;
     const Lanes inverse = Lanes{} + of(here_[x].centre);
-    const Lanes free = inverse > 0.0F ? old + kRelaxation * (sum * inverse - old) : old;
+    const Lanes free = select(inverse > 0.0F, old + kRelaxation * (sum * inverse - old), old);
     Lanes scale = Lanes{} + 1.0F;
     if (times_alpha_) {
       scale = Lanes{} + std::clamp(free[3], low_[3], high_[3]);
