@@ -262,6 +262,17 @@ ensure_wheels() {
   mv "$wheels_dir.new" "$wheels_dir"
 }
 
+# ensure_reader: fetches what reads compiled modules; sets reader_dir.
+ensure_reader() {
+  reader_dir=$cache_dir/packager-$(/usr/bin/python3 -V | cat - "$source_dir/scripts/packager.txt" | sha256sum | cut -c 1-12)
+  [[ ! -e $reader_dir ]] || return 0
+  note "fetching what scripts/packager.txt lists from PyPI"
+  rm -rf "$reader_dir.new"
+  logged packager.log /usr/bin/python3 -m pip install --disable-pip-version-check --no-deps --only-binary :all: \
+    --require-hashes --target "$reader_dir.new" --requirement "$source_dir/scripts/packager.txt"
+  mv "$reader_dir.new" "$reader_dir"
+}
+
 ensure_root() {
   local stamp=$root_dir/.prefilter-packages missing packages
   read -ra packages <<<"${root_packages[$suite]}"
@@ -342,6 +353,7 @@ setup_host() {
   ensure_packages "${host_packages[@]}"
   ensure_sources
   ensure_wheels
+  ensure_reader
   unlock "$cache_dir/.lock"
 }
 
@@ -426,11 +438,11 @@ exec_with_blender() {
     PYTHONPATH="$build_dir/release/python/$host_tag${PYTHONPATH:+:$PYTHONPATH}" "$@"
 }
 
-# package_with COMMAND ARGUMENT...: runs scripts/packaging.py, which gets to know how Blender is started.
+# package_with COMMAND ARGUMENT...: runs scripts/packager, which gets to know how Blender is started.
 package_with() {
   local blender=("$blender_file")
   [[ $blender_kind != root ]] || blender=("${enter_root[@]}" blender)
-  /usr/bin/python3 "$source_dir/scripts/packaging.py" "$@" -- "${blender[@]}"
+  /usr/bin/python3 "$source_dir/scripts/packager" "$@" "--reader=$reader_dir" -- "${blender[@]}"
 }
 
 # package_extension [--install FOLDER]: makes build/prefilter-<version>.zip where its contents are new, and sets
