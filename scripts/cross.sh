@@ -1,6 +1,6 @@
-# shellcheck shell=bash
 # SPDX-License-Identifier: GPL-3.0-or-later
 
+# shellcheck shell=bash
 # Functions that build the package for systems other than this machine's. Source it after lib.sh.
 
 # Blender's names of them. Each has a toolchain in native/cross/zig.cmake, and a build folder build/cross/<platform>.
