@@ -43,8 +43,12 @@ struct FloatBox {
     }
   }
   bool meets(const FloatBox& other) const {
-    return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) &
-           (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
+    unsigned meets = 1;  // Of bits: comparing goes on without a branch.
+    for (std::size_t a = 0; a < 3; ++a) {
+      meets &= static_cast<unsigned>(low[a] <= other.high[a]);
+      meets &= static_cast<unsigned>(other.low[a] <= high[a]);
+    }
+    return meets != 0;
   }
 };
 
