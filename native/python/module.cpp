@@ -118,6 +118,7 @@ void set_error(PyObject* type, const char* message) {
 PYBIND11_MODULE(_native, m) {
   using prefilter::Error;
   using prefilter::ErrorCode;
+  m.attr("VERSION") = PREFILTER_VERSION;
   // Never destroyed: at exit there may be no interpreter left to destroy it with.
   static auto* const cancelled = new py::exception<Error>(m, "Cancelled");
   cancelled->attr("__module__") = "prefilter";

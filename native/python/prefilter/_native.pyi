@@ -11,6 +11,8 @@ import numpy.typing as npt
 from ._border.arguments import ProgressCallback
 from .point_reader import PointReader
 
+VERSION: Final[str]
+
 class Cancelled(Exception): ...  # noqa: N818
 
 class Surface:

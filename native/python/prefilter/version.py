@@ -2,4 +2,6 @@
 
 """The version of the package; also that of the extension."""
 
-VERSION = "0.1.0"
+from ._native import VERSION
+
+__all__ = ["VERSION"]

@@ -1,0 +1,71 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Lay out the source distribution: what building the Python package needs, and what tests it.
+
+usage: sdist.py FOLDER PYBIND11 LINKED...
+
+Makes FOLDER/tree. PYBIND11 is the .dist-info folder of pybind11, whose headers are compiled in: it
+gives its license. LINKED are the source folders of libraries that are linked in.
+"""
+
+import re
+import shutil
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+SOURCE = Path(__file__).resolve().parents[1]
+# What is needed of this checkout, beside the text of README.md.
+FILES = (
+    "CMakeLists.txt",
+    "LICENSE",
+    "blender_manifest.toml",
+    "pyproject.toml",
+    "scripts/sources.toml",
+)
+FOLDERS = ("native", "bench/voxels", "tests/python")
+
+
+def portable_text(text: str) -> str:
+    """Returns a text of Markdown without pictures and links that are files of the checkout."""
+    text = re.sub(r"^!\[[^\]]*\]\([^)]*\)\n\n(\*[^*]+\*\n\n)?", "", text, flags=re.M)
+    return re.sub(r"\[([^\]]*)\]\((?!https?:)[^)]*\)", r"\1", text)
+
+
+def lay_out(folder: Path, pybind11: Path, linked: Sequence[Path], source: Path = SOURCE) -> Path:
+    """Makes the tree of the source distribution in a folder, anew; returns where it is.
+
+    Args:
+        folder: Where it is made; nothing else of it stays.
+        pybind11: The .dist-info folder of pybind11.
+        linked: Source folders of linked libraries, NAME-VERSION.
+        source: The checkout.
+    """
+    shutil.rmtree(folder, ignore_errors=True)
+    tree = folder / "tree"
+    unwanted = shutil.ignore_patterns("__pycache__")
+    for name in FOLDERS:
+        shutil.copytree(source / name, tree / name, ignore=unwanted)
+    for name in FILES:
+        (tree / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(source / name, tree / name)
+    (tree / "README.md").write_text(portable_text((source / "README.md").read_text()))
+    for library in linked:
+        shutil.copytree(library, tree / "third_party" / library.name)
+    (license_text,) = pybind11.glob("licenses/LICENSE")
+    target = tree / "third_party" / pybind11.name.removesuffix(".dist-info")
+    target.mkdir()
+    shutil.copy(license_text, target / "LICENSE.txt")
+    return tree
+
+
+def main() -> int:
+    """Does what the command line says."""
+    folder, pybind11, *linked = map(Path, sys.argv[1:])
+    lay_out(folder, pybind11, linked)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The source distribution for pip, and what pyproject.toml says of the package."""
+
+import fnmatch
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import sdist
+
+CHECKOUT = Path(__file__).resolve().parents[2]
+PROJECT = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
+SETTINGS = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["tool"]["scikit-build"]
+VERSION = tomllib.loads((CHECKOUT / "blender_manifest.toml").read_text())["version"]
+
+
+def laid_out(folder: Path) -> Path:
+    library = folder / "cache/some-1.2"
+    (library / "src").mkdir(parents=True)
+    for name in ("LICENSE.txt", "src/a.c"):
+        (library / name).write_text(name)
+    pybind11 = folder / "pybind11-3.0.dist-info"
+    (pybind11 / "licenses").mkdir(parents=True)
+    (pybind11 / "licenses/LICENSE").write_text("terms of pybind11")
+    return sdist.lay_out(folder / "made", pybind11, [library])
+
+
+def test_it_holds_sources_and_licenses(tmp_path: Path) -> None:
+    tree = laid_out(tmp_path)
+    held = {path.relative_to(tree).as_posix() for path in tree.rglob("*") if path.is_file()}
+    assert {
+        "third_party/some-1.2/LICENSE.txt",
+        "third_party/some-1.2/src/a.c",
+        "third_party/pybind11-3.0/LICENSE.txt",
+        "scripts/sources.toml",
+    } <= held
+    assert not any("__pycache__" in name for name in held)
+    command = ("git", "-C", str(CHECKOUT), "ls-files", "native", "tests/python")
+    listed = subprocess.run(command, capture_output=True, text=True).stdout.split()
+    assert {name for name in listed if (CHECKOUT / name).exists()} <= held
+    for pattern in PROJECT["license-files"]:
+        found = fnmatch.filter(held, pattern)
+        assert found or pattern.endswith("NOTICE.txt"), pattern
+    assert PROJECT["readme"] in held
+
+
+def test_its_text_leads_nowhere_else(tmp_path: Path) -> None:
+    text = (laid_out(tmp_path) / "README.md").read_text()
+    assert text.startswith("# Prefilter\n")
+    assert len(text) > 2000
+    assert "![" not in text
+    assert re.findall(r"\]\((?!https://)", text) == []
+
+
+def test_a_link_becomes_its_text() -> None:
+    text = (
+        "![a\nb](c.png)\n\n*What\nit is.*\n\nSee [one page](docs/one.md#x), [two](https://x.y).\n"
+    )
+    assert sdist.portable_text(text) == "See one page, [two](https://x.y).\n"
+
+
+def test_the_version_is_written_once() -> None:
+    written = SETTINGS["metadata"]["version"]
+    found = re.search(written["regex"], (CHECKOUT / written["input"]).read_text())
+    assert found
+    assert found["value"] == VERSION
+    assert "version" not in PROJECT
+    assert "version" in PROJECT["dynamic"]
+    sources = [CHECKOUT / "CMakeLists.txt", CHECKOUT / "pyproject.toml"]
+    for folder in ("native", "addon"):
+        sources += [path for path in (CHECKOUT / folder).rglob("*") if path.is_file()]
+    sources = [path for path in sources if "__pycache__" not in path.parts]
+    assert [path for path in sources if f'"{VERSION}"' in path.read_text()] == []
+
+
+def test_tags_name_the_pythons_that_are_allowed() -> None:
+    minimum = PROJECT["requires-python"].removeprefix(">=")
+    named = [
+        item.rpartition(" :: ")[2]
+        for item in PROJECT["classifiers"]
+        if re.search(r":: 3\.\d+$", item)
+    ]
+    assert named[0] == minimum
+    assert f"Python :: {minimum}" in "\n".join(PROJECT["classifiers"])
