@@ -16,12 +16,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[1]
-# What is needed of this checkout, beside the text of README.md.
+# What is needed of this checkout, beside README.md and pyproject.toml, which are changed a little.
 FILES = (
     "CMakeLists.txt",
     "LICENSE",
     "blender_manifest.toml",
-    "pyproject.toml",
     "scripts/sources.toml",
 )
 FOLDERS = ("native", "bench/voxels", "tests/python")
@@ -53,6 +52,10 @@ def lay_out(folder: Path, pybind11: Path, linked: Sequence[Path], source: Path =
     (tree / "README.md").write_text(portable_text((source / "README.md").read_text()))
     for library in linked:
         shutil.copytree(library, tree / "third_party" / library.name)
+    metadata = (source / "pyproject.toml").read_text()
+    listed = 'license-files = ["LICENSE", "third_party/*/LICENSE.txt", "third_party/*/NOTICE.txt"]'
+    metadata = metadata.replace('license-files = ["LICENSE"]', listed)
+    (tree / "pyproject.toml").write_text(metadata)
     (license_text,) = pybind11.glob("licenses/LICENSE")
     target = tree / "third_party" / pybind11.name.removesuffix(".dist-info")
     target.mkdir()

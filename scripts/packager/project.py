@@ -2,9 +2,9 @@
 
 """Where things are in the checkout, its version, and the errors of packaging."""
 
-import re
 import sys
 import tomllib
+from collections.abc import Iterable
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
@@ -22,18 +22,30 @@ def note(text: str) -> None:
 
 
 def project_version(source: Path = SOURCE) -> str:
-    """Returns the version, on which the manifest and CMake have to agree."""
-    manifest = tomllib.loads((source / "blender_manifest.toml").read_text())["version"]
-    project = re.search(
-        r"^project\(.*VERSION ([0-9.]+)", (source / "CMakeLists.txt").read_text(), re.M
-    )
-    cmake = project[1] if project else ""
-    if manifest != cmake:
-        raise PackagingError(
-            f"blender_manifest.toml has version '{manifest}', CMakeLists.txt '{cmake}': they must "
-            "be equal"
-        )
-    return str(manifest)
+    """Returns the version, which the manifest says; CMake and pip read it there, too."""
+    return str(tomllib.loads((source / "blender_manifest.toml").read_text())["version"])
+
+
+def core_metadata(version: str, licenses: Iterable[str], source: Path = SOURCE) -> str:
+    """Returns METADATA of a wheel: what pyproject.toml says, without a description.
+
+    Args:
+        version: The wheel's.
+        licenses: Names of the license texts in it.
+        source: The checkout.
+    """
+    project = tomllib.loads((source / "pyproject.toml").read_text())["project"]
+    lines = ["Metadata-Version: 2.4", f"Name: {project['name']}", f"Version: {version}"]
+    lines.append(f"Summary: {project['description']}")
+    lines.append(f"Keywords: {','.join(project['keywords'])}")
+    lines.append(f"Author: {', '.join(author['name'] for author in project['authors'])}")
+    lines.append(f"License-Expression: {project['license']}")
+    lines += [f"License-File: {name}" for name in licenses]
+    lines += [f"Classifier: {name}" for name in project["classifiers"]]
+    lines += [f"Project-URL: {name}, {url}" for name, url in project.get("urls", {}).items()]
+    lines.append(f"Requires-Python: {project['requires-python']}")
+    lines += [f"Requires-Dist: {name}" for name in project["dependencies"]]
+    return "\n".join(lines) + "\n"
 
 
 def files_in(folder: Path) -> list[Path]:

@@ -12,20 +12,7 @@ from pathlib import Path
 
 from packager.modules import read_module
 from packager.platforms import Platform, here
-from packager.project import PackagingError, files_in
-
-METADATA = """\
-Metadata-Version: 2.4
-Name: {name}
-Version: {version}
-Summary: Mipmaps that know the mesh
-License-Expression: GPL-3.0-or-later
-{license_files}
-Requires-Python: >=3.11
-Requires-Dist: cssselect2
-Requires-Dist: numpy
-Requires-Dist: tinycss2
-"""
+from packager.project import PackagingError, core_metadata, files_in
 
 WHEEL = """\
 Wheel-Version: 1.0
@@ -95,11 +82,7 @@ def make_wheel(
     info = f"{package.name}-{version}.dist-info"
     files |= {f"{info}/licenses/{name}": path.read_bytes() for name, path in licenses.items()}
     files[f"{info}/WHEEL"] = WHEEL.format(name=package.name, tag=full_tag).encode()
-    files[f"{info}/METADATA"] = METADATA.format(
-        name=package.name,
-        version=version,
-        license_files="\n".join(f"License-File: {name}" for name in licenses),
-    ).encode()
+    files[f"{info}/METADATA"] = core_metadata(version, licenses).encode()
     files[f"{info}/RECORD"] = record(files, f"{info}/RECORD").encode()
     wheel = target / f"{package.name}-{version}-{full_tag}.whl"
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:

@@ -12,7 +12,7 @@ pytest.importorskip("lief")
 
 from packager import extension
 from packager.platforms import PLATFORMS
-from packager.project import SOURCE, PackagingError, project_version
+from packager.project import SOURCE, PackagingError
 
 
 def test_the_manifest_lists_platforms_and_wheels_before_its_tables() -> None:
@@ -32,16 +32,6 @@ def test_the_manifest_lists_platforms_and_wheels_before_its_tables() -> None:
 def test_the_manifest_leaves_to_packaging_what_depends_on_it() -> None:
     manifest = tomllib.loads((SOURCE / "blender_manifest.toml").read_text())
     assert not {"platforms", "wheels"} & manifest.keys()
-
-
-def test_manifest_and_cmake_agree_on_the_version(tmp_path: Path) -> None:
-    assert project_version() == project_version(SOURCE)
-    (tmp_path / "CMakeLists.txt").write_text("project(prefilter VERSION 0.2.0 LANGUAGES CXX)\n")
-    (tmp_path / "blender_manifest.toml").write_text('version = "0.1.0"\n')
-    with pytest.raises(PackagingError, match=r"'0\.1\.0'.*'0\.2\.0'"):
-        project_version(tmp_path)
-    (tmp_path / "blender_manifest.toml").write_text('version = "0.2.0"\n')
-    assert project_version(tmp_path) == "0.2.0"
 
 
 def test_a_release_fails_where_a_package_is_missing(

@@ -19,7 +19,7 @@ VERSION = tomllib.loads((CHECKOUT / "blender_manifest.toml").read_text())["versi
 def laid_out(folder: Path) -> Path:
     library = folder / "cache/some-1.2"
     (library / "src").mkdir(parents=True)
-    for name in ("LICENSE.txt", "src/a.c"):
+    for name in ("LICENSE.txt", "NOTICE.txt", "src/a.c"):
         (library / name).write_text(name)
     pybind11 = folder / "pybind11-3.0.dist-info"
     (pybind11 / "licenses").mkdir(parents=True)
@@ -40,9 +40,9 @@ def test_it_holds_sources_and_licenses(tmp_path: Path) -> None:
     command = ("git", "-C", str(CHECKOUT), "ls-files", "native", "tests/python")
     listed = subprocess.run(command, capture_output=True, text=True).stdout.split()
     assert {name for name in listed if (CHECKOUT / name).exists()} <= held
-    for pattern in PROJECT["license-files"]:
-        found = fnmatch.filter(held, pattern)
-        assert found or pattern.endswith("NOTICE.txt"), pattern
+    patterns = tomllib.loads((tree / "pyproject.toml").read_text())["project"]["license-files"]
+    licensed = {name for pattern in patterns for name in fnmatch.filter(held, pattern)}
+    assert licensed == {name for name in held if re.search(r"LICENSE|NOTICE", name)}
     assert PROJECT["readme"] in held
 
 
@@ -84,3 +84,15 @@ def test_tags_name_the_pythons_that_are_allowed() -> None:
     ]
     assert named[0] == minimum
     assert f"Python :: {minimum}" in "\n".join(PROJECT["classifiers"])
+
+
+def test_one_compiler_makes_all_wheels() -> None:
+    wheels = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["tool"]["cibuildwheel"]
+    pinned = re.findall(r"ziglang==\S+", (CHECKOUT / "scripts/toolchain.txt").read_text())
+    assert re.findall(r"ziglang==\S+", wheels["before-build"]) == pinned
+    toolchain = (CHECKOUT / "native/cross/zig.cmake").read_text()
+    for override in wheels["overrides"]:
+        for name, part in (("CC", "cc"), ("CXX", "c++")):
+            command = override["environment"][name]
+            assert command.startswith(f"python -m ziglang {part} -target ")
+            assert f"set(triple {command.split()[-1]})" in toolchain
