@@ -18,6 +18,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[1]
 # What is needed of this checkout, beside README.md and pyproject.toml, which are changed a little.
 FILES = (
+    "CHANGELOG.md",
     "CMakeLists.txt",
     "LICENSE",
     "blender_manifest.toml",

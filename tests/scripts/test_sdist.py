@@ -13,7 +13,8 @@ import sdist
 CHECKOUT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
 SETTINGS = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["tool"]["scikit-build"]
-VERSION = tomllib.loads((CHECKOUT / "blender_manifest.toml").read_text())["version"]
+MANIFEST = tomllib.loads((CHECKOUT / "blender_manifest.toml").read_text())
+VERSION = MANIFEST["version"]
 
 
 def laid_out(folder: Path) -> Path:
@@ -73,6 +74,14 @@ def test_the_version_is_written_once() -> None:
         sources += [path for path in (CHECKOUT / folder).rglob("*") if path.is_file()]
     sources = [path for path in sources if "__pycache__" not in path.parts]
     assert [path for path in sources if f'"{VERSION}"' in path.read_text()] == []
+
+
+def test_the_manifest_says_the_same() -> None:
+    assert PROJECT["name"] == MANIFEST["id"]
+    assert PROJECT["description"] == MANIFEST["tagline"]
+    assert PROJECT["urls"]["Homepage"] == MANIFEST["website"]
+    assert [author["name"] for author in PROJECT["authors"]] == [MANIFEST["maintainer"]]
+    assert [f"SPDX:{PROJECT['license']}"] == MANIFEST["license"]
 
 
 def test_tags_name_the_pythons_that_are_allowed() -> None:
