@@ -143,7 +143,8 @@ def ball_nodes(shown: bpy.types.Material) -> bpy.types.NodeTree:
 def material(name: str, color: tuple[float, float, float]) -> bpy.types.Material:
     """Returns a matte material."""
     made = bpy.data.materials.new(name)
-    made.use_nodes = True
+    if bpy.app.version < (5, 0, 0):
+        made.use_nodes = True
     nodes = made.node_tree.nodes
     nodes.clear()
     diffuse, output = nodes.new("ShaderNodeBsdfDiffuse"), nodes.new("ShaderNodeOutputMaterial")

@@ -180,7 +180,8 @@ def new_image(pixels: Array) -> bpy.types.Image:
 def add_material(obj: bpy.types.Object, image: bpy.types.Image) -> bpy.types.Node:
     """Shows the image on the object, and returns the node that does it."""
     material = bpy.data.materials.new("Painted")
-    material.use_nodes = True
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
     nodes, links = material.node_tree.nodes, material.node_tree.links
     nodes.clear()
     texture = nodes.new("ShaderNodeTexImage")
@@ -208,7 +209,8 @@ def set_up_render() -> None:
     camera.location = (10 * math.sin(turn) + 0.20, -10 * math.cos(turn), 1.0)
     camera.rotation_euler = (math.radians(84), 0, turn)
     world = bpy.data.worlds.new("World")
-    world.use_nodes = True
+    if bpy.app.version < (5, 0, 0):
+        world.use_nodes = True
     world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0.55
     world.node_tree.nodes["Background"].inputs["Color"].default_value = (1, 1, 1, 1)
     for obj in (sun, camera):

@@ -16,7 +16,10 @@ Owner: TypeAlias = bpy.types.Material | bpy.types.World | bpy.types.Light
 
 def tree_of(owner: Owner) -> bpy.types.NodeTree | None:
     """Returns the shader nodes that something uses; None if there are none."""
-    return owner.node_tree if owner.use_nodes else None
+    switch = owner.bl_rna.properties.get("use_nodes")
+    # Where Blender is about to do without the switch, it is always on, and reading it warns.
+    is_gone = switch is None or getattr(switch, "is_deprecated", False)
+    return owner.node_tree if is_gone or owner.use_nodes else None
 
 
 def walk(

@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import own_modules
+
 FloatArray = NDArray[np.float32]
 
 TILE_SIZE = 64
@@ -26,22 +28,22 @@ Check = Callable[[], None]
 _PIXELS_A_BAND = 1 << 20
 _PATH_SEPARATOR = ";"
 _PLACEHOLDER = "%"
+_PNG = b"\x89PNG\r\n\x1a\n"
 
 
 def module() -> ModuleType:
     """Returns the module.
 
     Raises:
-        OSError: It is not installed.
+        OSError: It is missing.
     """
     try:
-        import OpenImageIO
+        return own_modules.load("OpenImageIO")
     except ImportError as error:
         raise OSError(
-            "OpenImageIO's Python module is missing from this Blender; on Debian and Ubuntu "
-            "install the package python3-openimageio"
+            "this Blender has no OpenImageIO for Python. Official Blenders have it, and so has the "
+            "module bpy since 4.4; on Debian and Ubuntu install python3-openimageio"
         ) from error
-    return OpenImageIO
 
 
 def color_convert(
@@ -79,7 +81,7 @@ def holds_integers(path: str) -> bool:
     try:
         oiio = module()
     except OSError:
-        return False
+        return _is_png(path)
     reader = oiio.ImageInput.open(path)
     if reader is None:
         oiio.geterror()
@@ -87,6 +89,14 @@ def holds_integers(path: str) -> bool:
     kind = reader.spec().format.basetype
     reader.close()
     return kind not in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
+
+
+def _is_png(path: str) -> bool:
+    try:
+        with open(path, "rb") as file:
+            return file.read(len(_PNG)) == _PNG
+    except OSError:
+        return False
 
 
 def write_picture(

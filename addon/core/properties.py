@@ -21,6 +21,7 @@ from .options import Option, declared, option
 
 _ABOVE = 1e-3
 """How far above a limit that it must not have a property begins."""
+_PATHS = frozenset({"FILE_PATH", "DIR_PATH"})
 
 
 def properties(settings: type, without: Collection[str] = ()) -> dict[str, Any]:
@@ -51,7 +52,7 @@ def values(source: Any, settings: type, without: Collection[str] = ()) -> Any:
     for name, default, declaration in declared(settings):
         if declaration.label and name not in without:
             value = getattr(source, name)
-            if declaration.subtype in {"FILE_PATH", "DIR_PATH"}:
+            if declaration.subtype in _PATHS:
                 value = bpy.path.abspath(value)
             elif isinstance(default, tuple) and not declaration.choices:
                 value = tuple(value)
@@ -81,6 +82,8 @@ def _property(default: Any, declaration: Option, **more: Any) -> Any:
     if isinstance(default, bool):
         return BoolProperty(**common)
     common["subtype"] = declaration.subtype
+    if declaration.subtype in _PATHS and bpy.app.version >= (4, 5, 0):
+        common["options"] = {"ANIMATABLE", "PATH_SUPPORTS_BLEND_RELATIVE"}
     if declaration.subtype == "COLOR":
         return FloatVectorProperty(size=len(default), min=0.0, max=1.0, **common)
     if isinstance(default, str):

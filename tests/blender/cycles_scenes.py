@@ -26,7 +26,7 @@ def write_picture(path: Path, pixels: Array, kind: str) -> bpy.types.Image:
 def emission(name: str, image: bpy.types.Image) -> bpy.types.Material:
     """Makes a material that emits an image."""
     made = bpy.data.materials.new(name)
-    made.use_nodes = True
+    scenes.use_nodes(made)
     tree = made.node_tree
     tree.nodes.clear()
     shader = tree.nodes.new("ShaderNodeEmission")

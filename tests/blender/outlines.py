@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import bpy
 import numpy as np
+import scenes
 
 Point = tuple[float, float]
 
@@ -100,7 +101,7 @@ def colored(
     made = []
     for color in colors:
         material = bpy.data.materials.new(name)
-        material.use_nodes = True
+        scenes.use_nodes(material)
         material.node_tree.nodes.clear()
         shader = material.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
         output = material.node_tree.nodes.new("ShaderNodeOutputMaterial")

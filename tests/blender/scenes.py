@@ -74,9 +74,16 @@ def image_node(tree: bpy.types.NodeTree, picture: bpy.types.Image) -> bpy.types.
 def material(name: str, picture: bpy.types.Image) -> bpy.types.Material:
     """Makes a material that shows an image in the active render UV map."""
     made = bpy.data.materials.new(name)
-    made.use_nodes = True
+    use_nodes(made)
     image_node(made.node_tree, picture)
     return made
+
+
+def use_nodes(owner: bpy.types.Material | bpy.types.World) -> bpy.types.NodeTree:
+    """Has a material or a world use nodes, as all do since Blender 5, and returns them."""
+    if bpy.app.version < (5, 0, 0):
+        owner.use_nodes = True
+    return owner.node_tree
 
 
 def quads(

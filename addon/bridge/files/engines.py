@@ -19,9 +19,9 @@ import numpy as np
 import prefilter
 
 from ...core.alpha import unassociated
-from .. import openimageio
 from ..images import Encoding, FloatArray, Picture
-from . import staging
+from ..openimageio import Check
+from . import png, staging
 from .staging import StagedFile
 from .textures import numbered
 
@@ -124,7 +124,7 @@ def stage(
     linear_levels: Sequence[FloatArray],
     stored_levels: Sequence[FloatArray],
     texture_format: str,
-    check: openimageio.Check,
+    check: Check,
     *,
     supercompression: str = "none",
     threads: int = 0,
@@ -180,23 +180,15 @@ def _stage_numbered(
     picture: Picture,
     linear_levels: Sequence[FloatArray],
     stored_levels: Sequence[FloatArray],
-    check: openimageio.Check,
+    check: Check,
 ) -> list[StagedFile]:
-    color_space = "sRGB"
-    if picture.is_data:
-        color_space = "raw"
-    elif not picture.is_float:
-        color_space = picture.colorspace
+    is_srgb = not picture.is_data and (picture.is_float or picture.encoding is Encoding.SRGB)
     staged: list[StagedFile] = []
     try:
         for number, level in enumerate(linear_levels if picture.is_float else stored_levels):
             check()
-            write = partial(
-                openimageio.write_picture,
-                pixels=_png_pixels(picture, level),
-                color_space=color_space,
-            )
-            staged.append(staging.stage_with(numbered(target, number), write))
+            data = png.encoded(_png_pixels(picture, level), is_srgb=is_srgb)
+            staged.append(staging.stage_with(numbered(target, number), partial(_write, data=data)))
     except BaseException:
         for file in staged:
             file.discard()
@@ -204,15 +196,19 @@ def _stage_numbered(
     return staged
 
 
+def _write(path: Path, data: bytes) -> None:
+    path.write_bytes(data)
+
+
 def _png_pixels(picture: Picture, level: FloatArray) -> np.ndarray[Any, Any]:
-    """Returns bytes, or 16 bits, with rows from the top and straight alpha."""
+    """Returns bytes, or 16 bits, with straight alpha."""
     if not picture.is_float:
-        return np.ascontiguousarray(_bytes(level)[::-1])
+        return _bytes(level)
     if picture.alpha_is_coverage and not picture.alpha_is_straight:
         level = unassociated(level)
     if not picture.is_data:
         level = prefilter.to_srgb(level)
-    values = np.clip(np.nan_to_num(level[::-1], nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
+    values = np.clip(np.nan_to_num(level, nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
     return np.rint(values * 65535).astype(np.uint16)
 
 

@@ -31,7 +31,9 @@ def stage(
         OSError: The file cannot be written.
     """
     if target.suffix.lower() == ".png":
-        return staging.stage_with(target, lambda path: path.write_bytes(png.encoded(pixels)))
+        return staging.stage_with(
+            target, lambda path: path.write_bytes(png.encoded(pixels, is_srgb=not is_data))
+        )
     flipped = np.ascontiguousarray(pixels[::-1], np.float32)
     return staging.stage_with(
         target,

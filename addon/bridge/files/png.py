@@ -12,16 +12,18 @@ from numpy.typing import NDArray
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _COLOR_TYPES = {1: 0, 3: 2, 4: 6}
+_PERCEPTUAL = b"\0"
 _COMPRESSION = 3
 _ROWS_AT_ONCE = 64
 
 
-def encoded(pixels: NDArray[Any]) -> bytes:
+def encoded(pixels: NDArray[Any], *, is_srgb: bool = False) -> bytes:
     """Returns a PNG file.
 
     Args:
         pixels: (h, w, 1, 3 or 4) array of uint8 or uint16, row 0 at the bottom: gray, colors, or
             colors and straight alpha.
+        is_srgb: Whether to say that it is sRGB-encoded, as most readers take for granted.
     """
     height, width, channels = pixels.shape
     size = pixels.dtype.itemsize
@@ -33,6 +35,7 @@ def encoded(pixels: NDArray[Any]) -> bytes:
         [
             _SIGNATURE,
             _chunk(b"IHDR", header),
+            *([_chunk(b"sRGB", _PERCEPTUAL)] if is_srgb else []),
             _chunk(b"IDAT", b"".join(data)),
             _chunk(b"IEND", b""),
         ]

@@ -2,7 +2,6 @@
 
 """OpenVDB files and volume objects, where Blender's own Python module for them is there."""
 
-import importlib
 from functools import cache
 from pathlib import Path
 from types import ModuleType
@@ -10,6 +9,8 @@ from types import ModuleType
 import bpy
 import numpy as np
 from numpy.typing import NDArray
+
+from .. import own_modules
 
 NEEDED = "This Blender has no Python module for OpenVDB (openvdb or pyopenvdb)"
 _NAMES = ("openvdb", "pyopenvdb")
@@ -67,7 +68,7 @@ def new_volume(name: str, path: Path) -> bpy.types.Volume:
 def _module() -> ModuleType | None:
     for name in _NAMES:
         try:
-            return importlib.import_module(name)
+            return own_modules.load(name)
         except ImportError:
             continue
     return None

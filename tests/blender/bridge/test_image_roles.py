@@ -15,7 +15,7 @@ def picture():
 @pytest.fixture
 def tree():
     material = bpy.data.materials.new("Wood")
-    material.use_nodes = True
+    scenes.use_nodes(material)
     return material.node_tree
 
 

@@ -273,7 +273,7 @@ def normal_mapped(name, normal_map, rough, **more):
     """Makes a square with a normal map and a roughness image."""
     quad = scenes.quads(name)
     material = bpy.data.materials.new(name)
-    material.use_nodes = True
+    scenes.use_nodes(material)
     quad.data.materials.append(material)
     tree = material.node_tree
     shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")

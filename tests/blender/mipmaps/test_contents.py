@@ -109,7 +109,7 @@ def test_how_a_normal_map_node_gets_its_color(addon, way):
     image = scenes.image("Bumps", bumps(8, 8), colorspace="Non-Color")
     other = scenes.image("Other", bumps(8, 8), colorspace="Non-Color")
     material = bpy.data.materials.new("Bumpy")
-    material.use_nodes = True
+    scenes.use_nodes(material)
     tree = material.node_tree
     texture = scenes.image_node(tree, image)
     node = tree.nodes.new("ShaderNodeNormalMap")

@@ -244,7 +244,7 @@ def gltf_of_five(folder, *, colors=1):
     quad = scenes.quads("Quad", [scenes.UNIT_SQUARE] * colors)
     for index in range(colors):
         material = bpy.data.materials.new(f"Metal {index}")
-        material.use_nodes = True
+        scenes.use_nodes(material)
         quad.data.materials.append(material)
         quad.data.polygons[index].material_index = index
         tree = material.node_tree

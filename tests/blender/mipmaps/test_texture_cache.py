@@ -546,7 +546,7 @@ def of_objects(tree, node):
 def of_the_world(tree, node):
     del tree
     world = bpy.data.worlds.new("Sky")
-    world.use_nodes = True
+    scenes.use_nodes(world)
     world.node_tree.nodes.new("ShaderNodeTexEnvironment").image = node.image
     bpy.context.scene.world = world
 

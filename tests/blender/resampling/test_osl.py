@@ -9,6 +9,7 @@ import numpy as np
 import OpenImageIO as oiio
 import prefilter
 import pytest
+import scenes
 
 pytestmark = pytest.mark.skipif(not _cycles.with_osl, reason="this Blender has no OSL")
 
@@ -63,7 +64,7 @@ def script_material(source, settings, *, output="Color", has_scale=True):
     text = bpy.data.texts.new("shader.osl")
     text.write(source)
     material = bpy.data.materials.new("Script")
-    material.use_nodes = True
+    scenes.use_nodes(material)
     tree = material.node_tree
     tree.nodes.clear()
     script = tree.nodes.new("ShaderNodeScript")

@@ -223,16 +223,19 @@ def test_failure_leaves_no_png_and_no_other(bake, addon, tmp_path, monkeypatch):
     image = scenes.image("Paint", scenes.noise(8, 8))
     bake(image, "out.png")
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
-    module = addon("bridge.openimageio")
-    original, calls = module.write_picture, []
+    module = addon("bridge.files.staging")
+    original, calls = module.stage_with, []
 
-    def fail_at_the_third(path, **options):
-        calls.append(path)
-        original(path, **options)
-        if len(calls) == 3:
-            raise OSError("no space")
+    def fail_at_the_third(target, write):
+        def write_some(path):
+            write(path)
+            if len(calls) == 3:
+                raise OSError("no space")
 
-    monkeypatch.setattr(module, "write_picture", fail_at_the_third)
+        calls.append(target)
+        return original(target, write_some)
+
+    monkeypatch.setattr(module, "stage_with", fail_at_the_third)
     other = scenes.image("Other", scenes.noise(16, 16, seed=5))
     with pytest.raises(OSError, match="no space"):
         bake(other, "out.png")

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Every operator once, on small scenes: what must work in whichever Blender there is.
+
+Nothing here needs a window or OpenImageIO's Python module. A new operator needs a test here, named
+after it.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import bodies
+import bpy
+import clouds
+import numpy as np
+import outlines
+import prefilter
+import pytest
+import scenes
+
+FINISHED = {"FINISHED"}
+HAS_CACHE = "use_texture_cache" in bpy.types.RenderSettings.bl_rna.properties
+TRIANGLE = '<svg viewBox="0 0 4 4"><path d="M0 0h4L0 4z"/></svg>'
+
+
+@pytest.fixture
+def paint() -> bpy.types.Image:
+    """Returns an image that a square shows."""
+    made = scenes.image("Paint", scenes.noise(8, 8))
+    scenes.textured_quad(made)
+    return made
+
+
+@contextmanager
+def image_editor(image: bpy.types.Image) -> Iterator[bpy.types.SpaceImageEditor]:
+    """Makes an editor that shows an image the context, without a window to be seen."""
+    window = bpy.context.window_manager.windows[0]
+    area = window.screen.areas[0]
+    area.type = "IMAGE_EDITOR"
+    space = area.spaces.active
+    space.image = image
+    region = next(one for one in area.regions if one.type == "WINDOW")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        yield space
+
+
+def test_every_operator_is_here():
+    tested = {name.removeprefix("test_") for name in globals() if name.startswith("test_")}
+    missing = set(dir(bpy.ops.prefilter)) - tested
+    assert not missing, f"tests/blender/test_smoke.py has no test of {sorted(missing)}"
+
+
+def test_bake_mipmaps(paint, tmp_path):
+    assert bpy.ops.prefilter.bake_mipmaps(image="Paint") == FINISHED
+    assert tuple(bpy.data.images["Paint.mip03"].size) == (1, 1)
+    for name in ("paint.exr", "paint.dds", "paint.ktx2", "paint.png"):
+        options = {"filepath": str(tmp_path / name)}
+        assert bpy.ops.prefilter.bake_mipmaps(image="Paint", **options) == FINISHED, name
+    written = {path.name for path in tmp_path.iterdir()}
+    assert written == {"paint.exr", "paint.dds", "paint.ktx2"} | {
+        f"paint.{number:02d}.png" for number in range(4)
+    }
+
+
+def test_bake_model(paint, tmp_path):
+    options = {"folder": str(tmp_path), "file_format": "dds"}
+    assert bpy.ops.prefilter.bake_model(**options) == FINISHED
+    assert [path.name for path in tmp_path.iterdir()] == ["Paint.dds"]
+
+
+def test_bake_texture_cache(paint, tmp_path):
+    if not HAS_CACHE:
+        assert not bpy.ops.prefilter.bake_texture_cache.poll()
+        return
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    bpy.context.scene.render.engine = "CYCLES"
+    bpy.context.scene.render.use_texture_cache = True
+    assert bpy.ops.prefilter.bake_texture_cache(use_unpack=True) == FINISHED
+    assert len(list(tmp_path.rglob("*.tx"))) == 1
+
+
+def test_plot_error(paint):
+    assert bpy.ops.prefilter.plot_error(image="Paint", filters={"box", "pam-box"}) == FINISHED
+    assert "Paint.error" in bpy.data.images
+    assert "Paint.error.csv" in bpy.data.texts
+
+
+def test_preview_levels(paint):
+    assert bpy.ops.prefilter.preview_levels(image="Paint") == FINISHED
+
+
+def test_end_preview(paint):
+    bpy.ops.prefilter.preview_levels(image="Paint")
+    with image_editor(paint):
+        assert bpy.ops.prefilter.end_preview() == FINISHED
+        assert not bpy.ops.prefilter.end_preview.poll()
+
+
+def test_show_weights(paint):
+    assert bpy.ops.prefilter.show_weights(image="Paint") == FINISHED
+    assert "Paint.weights" in bpy.data.images
+
+
+def test_show_source(paint):
+    bpy.ops.prefilter.show_weights(image="Paint")
+    with image_editor(bpy.data.images["Paint.weights"]) as editor:
+        assert bpy.ops.prefilter.show_source() == FINISHED
+        assert editor.image == paint
+
+
+def test_fill_unused(paint):
+    assert bpy.ops.prefilter.fill_unused(image="Paint") == FINISHED
+    assert "Paint.filled" in bpy.data.images
+
+
+def test_resize_image(paint, tmp_path):
+    assert bpy.ops.prefilter.resize_image(image="Paint") == FINISHED
+    assert len(bpy.data.images) == 2
+
+
+def test_resample_image(paint):
+    assert bpy.ops.prefilter.resample_image(image="Paint") == FINISHED
+    assert len(bpy.data.images) == 2
+
+
+def test_preview_plane(paint):
+    assert bpy.ops.prefilter.preview_plane(image="Paint", filter="box") == FINISHED
+
+
+def test_end_plane(paint):
+    bpy.ops.prefilter.preview_plane(image="Paint", filter="box")
+    with image_editor(paint):
+        assert bpy.ops.prefilter.end_plane() == FINISHED
+        assert not bpy.ops.prefilter.end_plane.poll()
+
+
+def test_sampling_table():
+    assert bpy.ops.prefilter.sampling_table(filter="tent", texels=6, language="glsl") == FINISHED
+    table = prefilter.SamplingTable.standard("tent", 6)
+    assert bpy.data.texts["tent-6.glsl"].as_string() == table.glsl()
+
+
+def test_rasterize():
+    outlines.square()
+    assert bpy.ops.prefilter.rasterize(width=16, height=16, margin=0) == FINISHED
+    assert np.all(scenes.pixels(bpy.data.images[0].name)[..., 3] == 1)
+
+
+def test_rasterize_svg(tmp_path):
+    path = tmp_path / "triangle.svg"
+    path.write_text(TRIANGLE)
+    options = {"filepath": str(path), "width": 16, "height": 16, "margin": 0}
+    assert bpy.ops.prefilter.rasterize_svg(**options) == FINISHED
+    assert scenes.pixels(bpy.data.images[0].name)[..., 3].mean() == pytest.approx(0.5, abs=1e-3)
+
+
+def test_update_drawn():
+    square = outlines.square()
+    bpy.ops.prefilter.rasterize(width=16, height=16, margin=4)
+    name = bpy.data.images[0].name
+    before = scenes.pixels(name)
+    square.scale.x = 0.5
+    bpy.context.view_layer.update()
+    assert bpy.ops.prefilter.update_drawn(image=name) == FINISHED
+    assert np.any(scenes.pixels(name) != before)
+
+
+def test_voxelize():
+    bodies.cube()
+    assert bpy.ops.prefilter.voxelize(depth=4) == FINISHED
+    found = bpy.context.object
+    assert bodies.is_closed(found)
+    assert bodies.volume(found) == pytest.approx(8, rel=0.05)
+
+
+def test_boolean():
+    bodies.cube("Tool", location=(1, 0, 0))
+    bodies.cube("Base")
+    assert bpy.ops.prefilter.boolean(depth=5) == FINISHED
+    assert bodies.is_closed(bpy.context.object)
+
+
+def test_reconstruct():
+    clouds.scan(*clouds.torus(5_000))
+    assert bpy.ops.prefilter.reconstruct(depth=5) == FINISHED
+    assert bodies.is_closed(bpy.data.objects["Scan.surface"])
