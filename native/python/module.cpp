@@ -18,6 +18,7 @@ void bind_exr(py::module_& m);
 void bind_color(py::module_& m);
 void bind_contour(py::module_& m);
 void bind_cutout(py::module_& m);
+void bind_elementary(py::module_& m);
 void bind_mipmap(py::module_& m);
 void bind_normals(py::module_& m);
 void bind_raster(py::module_& m);
@@ -141,6 +142,7 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_exr(m);
   prefilter::python::bind_color(m);
   prefilter::python::bind_cutout(m);
+  prefilter::python::bind_elementary(m);
   prefilter::python::bind_normals(m);
   prefilter::python::bind_scan(m);
   prefilter::python::bind_solid(m);

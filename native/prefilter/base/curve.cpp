@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prefilter/base/elementary.h"
+
 namespace prefilter {
 namespace {
 
@@ -55,7 +57,7 @@ std::size_t line_count(const Curve& curve, double tolerance) {
   double largest = 0.0;
   for (std::size_t i = 0; i + 2 < controls.size(); ++i) {
     const Point2 bend = controls[i] - 2.0 * controls[i + 1] + controls[i + 2];
-    largest = std::max(largest, std::hypot(bend.x, bend.y));
+    largest = std::max(largest, elementary::hypot(bend.x, bend.y));
   }
   const double degree = curve.degree();
   const double lines = std::ceil(std::sqrt(degree * (degree - 1.0) / 8.0 * largest / tolerance));
@@ -70,7 +72,7 @@ void flatten_conic(const std::array<Weighted, 3>& conic, double tolerance, int d
   const Point2 middle = (1.0 / conic[1].weight) * conic[1].point;
   const double weight = conic[1].weight / std::sqrt(conic[0].weight * conic[2].weight);
   const Point2 bend = middle - 0.5 * (begin + end);
-  if (depth == 0 || std::hypot(bend.x, bend.y) * weight <= tolerance * (1.0 + weight)) {
+  if (depth == 0 || elementary::hypot(bend.x, bend.y) * weight <= tolerance * (1.0 + weight)) {
     points->push_back(end);
     return;
   }

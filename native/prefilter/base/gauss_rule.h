@@ -4,8 +4,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <numbers>
+
+#include "prefilter/base/elementary.h"
 
 namespace prefilter {
 
@@ -22,7 +23,7 @@ const GaussRule<K>& gauss_rule() {
     GaussRule<K> made{};
     for (int i = 0; i < K; ++i) {
       // Newton's steps to a root of Legendre's polynomial, from Chebyshev's.
-      double x = std::cos(std::numbers::pi * (i + 0.75) / (K + 0.5));
+      double x = elementary::cos(std::numbers::pi * (i + 0.75) / (K + 0.5));
       double slope = 1.0;
       for (int step = 0; step < 20; ++step) {
         double before = 1.0;

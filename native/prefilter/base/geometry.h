@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +12,8 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "prefilter/base/elementary.h"
 
 namespace prefilter {
 
@@ -38,7 +39,7 @@ inline Vector3 cross(const Vector3& a, const Vector3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 /// Neither overflows nor underflows on the way.
-inline double length(const Vector3& a) { return std::hypot(a[0], a[1], a[2]); }
+inline double length(const Vector3& a) { return elementary::hypot(a[0], a[1], a[2]); }
 
 /// A box along the axes.
 struct Box {

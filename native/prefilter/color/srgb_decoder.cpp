@@ -2,6 +2,7 @@
 
 #include "prefilter/color/srgb_decoder.h"
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/color/transfer.h"
 
 namespace prefilter {
@@ -21,7 +22,7 @@ SrgbDecoder::Result SrgbDecoder::outside(float encoded) {
   const float magnitude = std::abs(encoded);
   const float slope = magnitude <= 0.04045F
                           ? 1.0F / 12.92F
-                          : 2.4F / 1.055F * std::pow((magnitude + 0.055F) / 1.055F, 1.4F);
+                          : 2.4F / 1.055F * elementary::pow((magnitude + 0.055F) / 1.055F, 1.4F);
   return {srgb_to_linear(encoded), slope};
 }
 

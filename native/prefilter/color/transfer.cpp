@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/parallel.h"
 
 namespace prefilter {
@@ -27,8 +28,8 @@ Image map_colours(const ImageView& image, int threads, const Curve& curve) {
 
 float srgb_to_linear(float encoded) {
   const float magnitude = std::abs(encoded);
-  const float linear =
-      magnitude <= 0.04045F ? magnitude / 12.92F : std::pow((magnitude + 0.055F) / 1.055F, 2.4F);
+  const float linear = magnitude <= 0.04045F ? magnitude / 12.92F
+                                             : elementary::pow((magnitude + 0.055F) / 1.055F, 2.4F);
   return std::copysign(linear, encoded);
 }
 
@@ -36,7 +37,7 @@ float linear_to_srgb(float linear) {
   const float magnitude = std::abs(linear);
   const float encoded = magnitude <= 0.0031308F
                             ? magnitude * 12.92F
-                            : 1.055F * std::pow(magnitude, 1.0F / 2.4F) - 0.055F;
+                            : 1.055F * elementary::pow(magnitude, 1.0F / 2.4F) - 0.055F;
   return std::copysign(encoded, linear);
 }
 

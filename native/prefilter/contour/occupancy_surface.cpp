@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/wavelet/column_height.h"
 #include "prefilter/wavelet/leaf_surface.h"
@@ -188,8 +189,8 @@ bool OccupancySurface::fit(SurfaceCell* cell) const {
   }
   patch.curvatures = {sum_first - 2.0 / 3.0 * sum, sum_second - 2.0 / 3.0 * sum};
   patch.height = sum / 9.0 - (patch.curvatures[0] + patch.curvatures[1]) / 3.0;
-  const double stretch =
-      std::pow(1.0 + patch.slopes[0] * patch.slopes[0] + patch.slopes[1] * patch.slopes[1], 1.5);
+  const double stretch = elementary::pow(
+      1.0 + patch.slopes[0] * patch.slopes[0] + patch.slopes[1] * patch.slopes[1], 1.5);
   for (const double curvature : {patch.curvatures[0], patch.curvatures[1], patch.twist}) {
     if (std::abs(curvature) > kMostCurved * stretch) return false;
   }

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "prefilter/base/disjoint_sets.h"
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/sort.h"
@@ -321,7 +322,7 @@ class RegionFinder {
   double angle_between(const std::array<std::int32_t, 2>& triangles) const {
     const Vector3 a = normal(static_cast<std::size_t>(triangles[0]));
     const Vector3 b = normal(static_cast<std::size_t>(triangles[1]));
-    return std::atan2(length(cross(a, b)), dot(a, b));
+    return elementary::atan2(length(cross(a, b)), dot(a, b));
   }
 
   // Of edges that hang together: whether they are `least` cells long, and no roughness: blunt, and

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <string>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 
 namespace prefilter {
@@ -17,7 +18,7 @@ namespace {
 double sinc(double x) {
   if (std::abs(x) < 1e-9) return 1.0;
   const double angle = std::numbers::pi * x;
-  return std::sin(angle) / angle;
+  return elementary::sin(angle) / angle;
 }
 
 // Mitchell and Netravali, "Reconstruction Filters in Computer Graphics", 1988, equation 8.
@@ -26,7 +27,7 @@ double mitchell(double x) {
   return (((-7.0 / 3.0 * x + 12.0) * x - 20.0) * x + 32.0 / 3.0) / 6.0;
 }
 
-double gaussian(double x) { return std::exp(-std::numbers::pi * x * x); }
+double gaussian(double x) { return elementary::exp(-std::numbers::pi * x * x); }
 
 // Name, radius, width and degree of the pieces, and the function from 0 to the radius. Of those
 // that are no polynomials, lanczos2 is off by 6e-6 at the most, lanczos3 by 2e-6, and gaussian,
@@ -48,7 +49,7 @@ const std::vector<Kernel>& all_kernels() {
 // Where the pieces interpolate.
 double node(int k, int degree) {
   if (degree == 0) return 0.5;
-  return 0.5 - 0.5 * std::cos(std::numbers::pi * k / degree);
+  return 0.5 - 0.5 * elementary::cos(std::numbers::pi * k / degree);
 }
 
 // The polynomial with these values at the nodes, by Newton's divided differences.

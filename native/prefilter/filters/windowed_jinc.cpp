@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "prefilter/base/elementary.h"
+
 namespace prefilter {
 namespace {
 
@@ -19,7 +21,7 @@ constexpr double kSmall = 1e-3;
 double sinc(double x) {
   const double angle = pi * x;
   if (std::abs(angle) < kSmall) return 1.0 - angle * angle * (1.0 - angle * angle / 20.0) / 6.0;
-  return std::sin(angle) / angle;
+  return elementary::sin(angle) / angle;
 }
 
 double jinc(double r) {
@@ -37,7 +39,7 @@ double bessel_j1(double x) {
   const double size = std::abs(x);
   if (size < kSmall) return 0.5 * x * (1.0 - x * x * (1.0 - x * x / 24.0) / 8.0);
   // The last term is for where x is large, and the fall begins slowly.
-  const int start = 2 * static_cast<int>((size + 24.0 + 6.0 * std::cbrt(size)) / 2.0);
+  const int start = 2 * static_cast<int>((size + 24.0 + 6.0 * elementary::cbrt(size)) / 2.0);
   double above = 0.0;
   double here = 1e-300;
   double evens = 0.0;

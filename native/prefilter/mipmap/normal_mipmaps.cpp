@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
@@ -60,7 +61,7 @@ float roughness_of(const float* means) {
   const double z = means[2];
   const double variance = std::clamp(-2.0 * z - (x * x + y * y + z * z), 0.0, 1.0);
   const double lost = variance / (1.0 + std::sqrt(1.0 - variance));  // 1 - L, without cancellation
-  return static_cast<float>(std::pow(std::clamp(means[3] + 2.0 * lost, 0.0, 1.0), 0.25));
+  return static_cast<float>(elementary::pow(std::clamp(means[3] + 2.0 * lost, 0.0, 1.0), 0.25));
 }
 
 class NormalFilter {

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/pulse.h"
 
 namespace prefilter {
@@ -97,7 +98,7 @@ void add_lookup(const TextureCoordinate& at, int width, int height, WrapModes wr
 }
 
 double texel_length(const std::array<TextureCoordinate, 2>& ends, int width, int height) {
-  return std::hypot((ends[1].u - ends[0].u) * width, (ends[1].v - ends[0].v) * height);
+  return elementary::hypot((ends[1].u - ends[0].u) * width, (ends[1].v - ends[0].v) * height);
 }
 
 // Where a line from one coordinate, in texels, to another crosses the centres of texels, as

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prefilter/base/elementary.h"
+
 namespace prefilter {
 namespace {
 
@@ -51,17 +53,18 @@ void WeightSearch::found(double spent) {
   if (done_) return;
   double slope = kTypicalSlope;
   if (between && low_spent_ > 0.0) {
-    slope = std::clamp(std::log(high_spent_ / low_spent_) / std::log(high_ / low_), kFlattest,
-                       kSteepest);
+    slope = std::clamp(elementary::log(high_spent_ / low_spent_) / elementary::log(high_ / low_),
+                       kFlattest, kSteepest);
   }
   double step = over_ ? 1.0 / kFarthestStep : kFarthestStep;
   if (spent > 0.0 && std::isfinite(spent)) {
-    step = std::clamp(std::pow(kAim / spent, 1.0 / slope), 1.0 / kFarthestStep, kFarthestStep);
+    step =
+        std::clamp(elementary::pow(kAim / spent, 1.0 / slope), 1.0 / kFarthestStep, kFarthestStep);
   }
   double next = weight_ * step;
   if (between) {
     // Not closer to either end than a tenth of the way.
-    const double margin = std::pow(high_ / low_, 0.1);
+    const double margin = elementary::pow(high_ / low_, 0.1);
     next = std::clamp(next, low_ * margin, high_ / margin);
   }
   weight_ = std::min(next, kMostWeight);
@@ -125,8 +128,9 @@ void fit_within(double square, const LinkedFit& fit, const Progress& progress,
   }
   if (!search.is_over()) return;
   const double share = draw_back(kept, spent, system);
-  budget->weight = kept_weight > 0.0 ? kept_weight * std::pow(budget->weight / kept_weight, share)
-                                     : share * budget->weight;
+  budget->weight = kept_weight > 0.0
+                       ? kept_weight * elementary::pow(budget->weight / kept_weight, share)
+                       : share * budget->weight;
 }
 
 template void fit_within(double, const LinkedFit&, const Progress&, NinePointSystem<float>*,

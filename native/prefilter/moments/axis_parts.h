@@ -46,8 +46,8 @@ void AxisParts::cut(const CellPiece& piece, int axis, int cell, const Use& use) 
     double high = -HUGE_VAL;
     for (int i = 0; i < rest.count; ++i) {
       const double at = axis == 0 ? rest.corners[i].x : rest.corners[i].y;
-      low = std::fmin(low, at);
-      high = std::fmax(high, at);
+      low = std::min(low, at);
+      high = std::max(high, at);
     }
     if (low >= line) continue;
     if (high <= line) {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "prefilter/base/disjoint_sets.h"
+#include "prefilter/base/elementary.h"
 
 namespace prefilter {
 namespace {
@@ -160,7 +161,7 @@ void Arrangement::merge_sites(SiteList* list) {
         const auto near = places.find({place.first + x, place.second + y});
         if (near == places.end()) continue;
         const Point2 off = sites[near->second].point - point;
-        if (std::hypot(off.x, off.y) <= precision_) same.join(near->second, i);
+        if (elementary::hypot(off.x, off.y) <= precision_) same.join(near->second, i);
       }
     }
   }
@@ -226,7 +227,7 @@ bool Arrangement::is_negligible(const OutlineChain& chain) const {
     const CurvePiece piece = curve_piece(part.piece, chain.contour);
     for (const double t : {part.from, part.to}) {
       const Point2 off = point_at(piece.curve, t) - vertex;
-      is_small = is_small && std::hypot(off.x, off.y) <= 8.0 * precision_;
+      is_small = is_small && elementary::hypot(off.x, off.y) <= 8.0 * precision_;
     }
     return is_small;
   });

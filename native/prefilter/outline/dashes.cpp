@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 
+#include "prefilter/base/elementary.h"
+
 namespace prefilter {
 namespace {
 
-double length(const Point2& p) { return std::hypot(p.x, p.y); }
+double length(const Point2& p) { return elementary::hypot(p.x, p.y); }
 
 // Gauss and Legendre's rule of eight points.
 double gauss_length(const Curve& curve, double from, double to) {

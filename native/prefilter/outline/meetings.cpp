@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 
+#include "prefilter/base/elementary.h"
+
 namespace prefilter {
 namespace {
 
 constexpr int kMostSteps = 20000;
 
-double length(const Point2& p) { return std::hypot(p.x, p.y); }
+double length(const Point2& p) { return elementary::hypot(p.x, p.y); }
 double distance(const Point2& a, const Point2& b) { return length(a - b); }
 
 struct Range {

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <utility>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/text.h"
 #include "prefilter/outline/dashes.h"
@@ -22,7 +23,7 @@ namespace {
 constexpr int kMostDashes = 1000000;
 constexpr int kDeepest = 18;
 
-double length(const Point2& p) { return std::hypot(p.x, p.y); }
+double length(const Point2& p) { return elementary::hypot(p.x, p.y); }
 Point2 unit(const Point2& p) { return (1.0 / length(p)) * p; }
 Point2 left_of(const Point2& direction) { return {-direction.y, direction.x}; }
 
@@ -68,7 +69,8 @@ double turning(std::span<const Point2> controls) {
   for (std::size_t i = 0; i + 1 < controls.size(); ++i) {
     const Point2 step = controls[i + 1] - controls[i];
     if (step == Point2{}) continue;
-    if (!(last == Point2{})) sum += std::fabs(std::atan2(cross(last, step), dot(last, step)));
+    if (!(last == Point2{}))
+      sum += std::fabs(elementary::atan2(cross(last, step), dot(last, step)));
     last = step;
   }
   return sum;
@@ -99,7 +101,7 @@ class PieceMaker {
       : half_width_(half_width),
         tolerance_(0.5 * tolerance),
         most_turning_(half_width > tolerance_
-                          ? std::min(0.5, 2.0 * std::acos(1.0 - tolerance_ / half_width))
+                          ? std::min(0.5, 2.0 * elementary::acos(1.0 - tolerance_ / half_width))
                           : 0.5) {}
 
   std::vector<Piece> pieces_of(const StrokePath& path) {
@@ -397,17 +399,18 @@ class Pen {
   // A circle's arc around the outside of a corner, of conics of a quarter at the most.
   static void arc(const Point2& corner, const Point2& a, const Point2& b, double offset,
                   Outline* path) {
-    double turn = std::atan2(cross(a, b), dot(a, b));
+    double turn = elementary::atan2(cross(a, b), dot(a, b));
     // About to turn back: around on this side.
     if ((turn > 0.0) == (offset > 0.0)) turn = -turn;
     const int parts = std::fabs(turn) > 0.5 * std::numbers::pi * (1.0 + 1e-9) ? 2 : 1;
     const double step = turn / parts;
-    const double weight = std::cos(0.5 * step);
+    const double weight = elementary::cos(0.5 * step);
     Point2 from = a;
     for (int i = 1; i <= parts; ++i) {
-      const Point2 to = i == parts ? b
-                                   : Point2{std::cos(step) * a.x - std::sin(step) * a.y,
-                                            std::sin(step) * a.x + std::cos(step) * a.y};
+      const Point2 to = i == parts
+                            ? b
+                            : Point2{elementary::cos(step) * a.x - elementary::sin(step) * a.y,
+                                     elementary::sin(step) * a.x + elementary::cos(step) * a.y};
       path->conic_to(corner + (offset / (1.0 + dot(from, to))) * (from + to), weight,
                      corner + offset * to);
       from = to;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/outline/arrangement.h"
 
 namespace prefilter {
@@ -42,7 +43,7 @@ void append(const Stretch& stretch, Outline* outline) {
   }
 }
 
-double angle_of(const Point2& direction) { return std::atan2(direction.y, direction.x); }
+double angle_of(const Point2& direction) { return elementary::atan2(direction.y, direction.x); }
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/gauss_rule.h"
 #include "prefilter/filters/windowed_jinc.h"
 
@@ -97,8 +98,8 @@ CellFilter of_radial(double radius) {
       for (std::size_t j = 0; j < points.size(); ++j) {
         std::array<double, kCount> row{};
         for (std::size_t i = 0; i < points.size(); ++i) {
-          const double value = weights[i] * jinc(std::hypot(ox + 0.5 - radius + points[i],
-                                                            oy + 0.5 - radius + points[j]));
+          const double value = weights[i] * jinc(elementary::hypot(ox + 0.5 - radius + points[i],
+                                                                   oy + 0.5 - radius + points[j]));
           for (int n = 0; n < kCount; ++n) row[n] += value * basis[n][i];
         }
         for (int ny = 0; ny < kCount; ++ny) {

@@ -71,8 +71,8 @@ std::vector<GradientStrip> gradient_strips(const Outline& outline, const Paint& 
   double least = HUGE_VAL;
   double most = -HUGE_VAL;
   for (const Point2& point : outline.points()) {
-    least = std::fmin(least, offset(point));
-    most = std::fmax(most, offset(point));
+    least = std::min(least, offset(point));
+    most = std::max(most, offset(point));
   }
   const auto add = [&](double low, double high, const Paint& strip_paint) {
     if (high < least || low > most || !(low < high)) return;

@@ -110,8 +110,8 @@ Outline clip_between(const Outline& outline, const LinearFunction& function, dou
   double least = HUGE_VAL;
   double most = -HUGE_VAL;
   for (const Point2& point : outline.points()) {
-    least = std::fmin(least, function(point));
-    most = std::fmax(most, function(point));
+    least = std::min(least, function(point));
+    most = std::max(most, function(point));
   }
   Outline result = outline;
   if (least < low) result = clip(result, {function.slope, function.constant - low});

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/radix_sort.h"
 
@@ -32,7 +33,7 @@ float normal_scale(const PointBatch& batch, std::size_t i) {
   }
   if (squared > 1e-30F && squared < 1e30F) return 1.0F / std::sqrt(squared);
   const double length =
-      std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+      elementary::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
   return length > 1e-37 && std::isfinite(length) ? static_cast<float>(1.0 / length) : 0.0F;
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/radix_sort.h"
 
@@ -81,7 +82,7 @@ double share_hit(double samples_per_cell) {
   constexpr double kLeast = 0.3;
   double rho = samples_per_cell;
   for (int i = 0; i < 30; ++i) {
-    const double share = 1.0 + std::expm1(-2.0 * rho) / (2.0 * rho);
+    const double share = 1.0 + elementary::expm1(-2.0 * rho) / (2.0 * rho);
     if (share < kLeast) return kLeast;
     rho = samples_per_cell * share;
   }

@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 
@@ -58,7 +59,7 @@ void add_probes(const TexturePlace& place, const Footprint& footprint, const Pro
     probes->coordinates.push_back({place[0] + distance * footprint.direction_x / pyramid.width,
                                    place[1] + distance * footprint.direction_y / pyramid.height});
     probes->scales.push_back(row.width);
-    probes->weights.push_back(std::exp(-row.falloff * distance * distance));
+    probes->weights.push_back(elementary::exp(-row.falloff * distance * distance));
     sum += probes->weights.back();
   }
   for (std::size_t i = begin; i < probes->weights.size(); ++i) probes->weights[i] /= sum;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/sampling/footprint.h"
@@ -43,8 +44,8 @@ struct Gaussian {
     a = along * dx * dx + across * dy * dy;
     b = (along - across) * dx * dy;
     c = along * dy * dy + across * dx * dx;
-    height = kRadius * std::hypot(shape.major * dy, shape.minor * dx);
-    const double width = kRadius * std::hypot(shape.major * dx, shape.minor * dy);
+    height = kRadius * elementary::hypot(shape.major * dy, shape.minor * dx);
+    const double width = kRadius * elementary::hypot(shape.major * dx, shape.minor * dy);
     x = near_axis(place[0], width, image.width, wrap.u);
     y = near_axis(place[1], height, image.height, wrap.v);
   }
@@ -72,11 +73,11 @@ void add_row(const ImageView& image, const Gaussian& gaussian, WrapModes wrap, i
   // A quotient of neighbors changes by a constant factor from one texel to the next; rounding adds
   // up, so it starts anew every some texels.
   constexpr int kRun = 256;
-  const double change = std::exp(-2.0 * kPi * gaussian.a);
+  const double change = elementary::exp(-2.0 * kPi * gaussian.a);
   for (int begin = first; begin <= last; begin += kRun) {
     const double dx = begin + 0.5 - gaussian.x;
-    double weight = std::exp(exponent(dx));
-    double quotient = std::exp(exponent(dx + 1.0) - exponent(dx));
+    double weight = elementary::exp(exponent(dx));
+    double quotient = elementary::exp(exponent(dx + 1.0) - exponent(dx));
     for (int i = begin; i <= std::min(last, begin + kRun - 1); ++i) {
       sums[image.channels] += weight;
       const int column = wrap_index(i, image.width, wrap.u);

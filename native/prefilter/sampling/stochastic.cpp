@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
@@ -54,7 +55,7 @@ WeightedTexel pick(const WeightedTexels& found, double number) {
 
 WeightedTexels weigh_bilinearly(const Pyramid& pyramid, const SamplePlaces& places,
                                 std::size_t sample, WrapModes wrap) {
-  const double mip_value = std::log2(std::max(1.0, places.scale(sample)));
+  const double mip_value = elementary::log2(std::max(1.0, places.scale(sample)));
   const int last = static_cast<int>(pyramid.levels.size()) - 1;
   const int level = std::min(static_cast<int>(std::lround(mip_value)), last);
   const TexturePlace& place = places.coordinates[sample];

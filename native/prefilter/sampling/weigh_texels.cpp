@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "prefilter/base/elementary.h"
+
 namespace prefilter {
 namespace {
 
@@ -67,7 +69,7 @@ WeightedTexels weigh_by_table(const Pyramid& pyramid, const SamplingTable& table
 MipPlace place_between_levels(double scale, int levels) {
   const int last = levels - 1;
   if (scale <= 1.0 || last == 0) return {0, 1, 0.0};
-  const double mip_value = std::log2(scale);
+  const double mip_value = elementary::log2(scale);
   const int finer = std::min(static_cast<int>(std::ceil(mip_value)) - 1, last - 1);
   return {finer + 1, std::min(finer + 2, 3), std::min(mip_value - finer, 1.0)};
 }

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "prefilter/base/elementary.h"
+
 namespace prefilter {
 namespace {
 
@@ -50,9 +52,9 @@ Vector3 least_across(const SymmetricMatrix& m, const Vector3& other) {
   const double vv = product(v, m, v);
   const double uv = product(u, m, v);
   // Half of the angle of (uu - vv, 2 uv) is that of the greatest eigenvalue.
-  const double angle = 0.5 * std::atan2(2.0 * uv, uu - vv);
-  const Vector3 along_u = scaled(u, -std::sin(angle));
-  return along_u + scaled(v, std::cos(angle));
+  const double angle = 0.5 * elementary::atan2(2.0 * uv, uu - vv);
+  const Vector3 along_u = scaled(u, -elementary::sin(angle));
+  return along_u + scaled(v, elementary::cos(angle));
 }
 
 }  // namespace
@@ -73,12 +75,13 @@ Vector3 least_eigenvector(const SymmetricMatrix& matrix) {
   const double determinant =
       x * (y * z - m.yz * m.yz) - m.xy * (m.xy * z - m.yz * m.xz) + m.xz * (m.xy * m.yz - y * m.xz);
   const double cosine = std::clamp(determinant / (2.0 * spread * spread * spread), -1.0, 1.0);
-  const double angle = std::acos(cosine) / 3.0;
+  const double angle = elementary::acos(cosine) / 3.0;
   if (cosine <= 0.0) {
-    const double least = mean + 2.0 * spread * std::cos(angle + 2.0 * std::numbers::pi / 3.0);
+    const double least =
+        mean + 2.0 * spread * elementary::cos(angle + 2.0 * std::numbers::pi / 3.0);
     return null_direction(m, least);
   }
-  return least_across(m, null_direction(m, mean + 2.0 * spread * std::cos(angle)));
+  return least_across(m, null_direction(m, mean + 2.0 * spread * elementary::cos(angle)));
 }
 
 double flatness(const SymmetricMatrix& m, const Vector3& least) {

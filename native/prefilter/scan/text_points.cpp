@@ -7,6 +7,7 @@
 #include <cmath>
 #include <span>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/scan/point_fields.h"
 #include "prefilter/scan/text_reader.h"
@@ -54,7 +55,7 @@ bool is_color(std::span<const Column> columns) {
 
 // Normals are written with few digits.
 bool is_unit(const double* vector) {
-  return std::abs(std::hypot(vector[0], vector[1], vector[2]) - 1.0) < 0.01;
+  return std::abs(elementary::hypot(vector[0], vector[1], vector[2]) - 1.0) < 0.01;
 }
 
 // Names and types of columns, from what was seen in them.

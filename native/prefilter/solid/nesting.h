@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/progress.h"
@@ -39,7 +40,7 @@ inline double winding_of(const std::array<Vector3, 3>& corners, const Vector3& p
   const double lc = length(c);
   const double over = dot(a, cross(b, c));
   const double under = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  return std::atan2(over, under) / (2.0 * std::numbers::pi);
+  return elementary::atan2(over, under) / (2.0 * std::numbers::pi);
 }
 
 /// Which parts are to be turned for each to be right side out or a cavity of others. `part_of(t)`

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/spatial/curve_order.h"
 
@@ -39,7 +40,7 @@ double solid_angle(const std::array<Vector3, 3>& triangle, const Vector3& point)
   const double volume = dot(a, cross(b, c));
   if (std::abs(volume) <= kInPlane * la * lb * lc) return 0.0;
   const double rest = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-  return std::atan2(volume, rest) / (2.0 * std::numbers::pi);
+  return elementary::atan2(volume, rest) / (2.0 * std::numbers::pi);
 }
 
 }  // namespace

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/gauss_rule.h"
 
 namespace prefilter {
 
-double FilterProducts::width(double f) const { return levels_ == 1 ? 1.0 : std::exp2(f - 1.0); }
+double FilterProducts::width(double f) const {
+  return levels_ == 1 ? 1.0 : elementary::exp2(f - 1.0);
+}
 
 FilterProducts::Filter FilterProducts::texel(int finer, int i) {
   const double width = std::ldexp(1.0, -finer);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/filters/kernel.h"
 #include "prefilter/tables/subdomain.h"
 
@@ -202,7 +203,7 @@ double Borders::within(const TableSection& section) {
     for (int side = 0; side < 4; ++side) {
       const Point& a = quad[side];
       const Point& b = quad[(side + 1) % 4];
-      const double length = std::hypot(b.x - a.x, b.y - a.y);
+      const double length = elementary::hypot(b.x - a.x, b.y - a.y);
       if (length == 0.0) continue;
       const Point middle = between(a, b, 0.5);
       const Point beyond{middle.x + (b.y - a.y) / length * kBeyond,

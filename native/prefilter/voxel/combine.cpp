@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/voxel/regrid.h"
@@ -237,7 +238,7 @@ int matching_depth(const Box& root, const Octree& octree) {
   int depth = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double ratio = root.size(axis) / octree.cell_size(axis, octree.cells.depth());
-    depth = std::max(depth, static_cast<int>(std::ceil(std::log2(ratio) - 1e-6)));
+    depth = std::max(depth, static_cast<int>(std::ceil(elementary::log2(ratio) - 1e-6)));
   }
   return std::min(depth, kMaxTreeDepth);
 }

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from . import _native
 from .point_reader import POINTS_AT_ONCE, PointChunk, damage_of, find_module
 
 _CARTESIAN = ("cartesianX", "cartesianY", "cartesianZ")
@@ -87,12 +88,12 @@ class E57Reader:
                 values = {name: each[valid] for name, each in values.items()}
             local = np.stack([values[name] for name in coordinates], axis=1)
             if not is_cartesian:
-                local = _from_spherical(local)
-            positions = local @ rotation.T + translation
+                local = _native.from_spherical(local)
+            positions = _rotated(local, rotation) + translation
             normals = None
             if self.has_normals:
                 along = np.stack([values[name] for name in _NORMALS], axis=1)
-                normals = (along @ rotation.T).astype(np.float32)
+                normals = _rotated(along, rotation).astype(np.float32)
             columns = [values["intensity"][:, None]] if self._has_intensity else []
             if self._has_colors:
                 colors = np.stack([values[name] for name in _COLORS], axis=1)
@@ -130,9 +131,7 @@ def _color_scale(scan: Any) -> np.ndarray:
     return np.array(scales)
 
 
-def _from_spherical(points: np.ndarray) -> np.ndarray:
-    distance, azimuth, elevation = points.T
-    flat = distance * np.cos(elevation)
-    return np.stack(
-        [flat * np.cos(azimuth), flat * np.sin(azimuth), distance * np.sin(elevation)], axis=1
-    )
+def _rotated(vectors: np.ndarray, rotation: np.ndarray) -> np.ndarray:
+    # Products of matrices are added up in another order on another processor.
+    x, y, z = vectors.T[:, :, None]
+    return np.asarray(x * rotation[:, 0] + y * rotation[:, 1] + z * rotation[:, 2])

@@ -322,7 +322,7 @@ class Shape:
         numbers = _as_matrix("matrix", matrix)
         moved = self._with(self._outline.transformed(numbers), self._paint.transformed(numbers))
         # What a map turns over winds the other way.
-        moved._winds_once = self._winds_once and np.linalg.det(np.asarray(matrix)[:, :2]) > 0.0
+        moved._winds_once = self._winds_once and _determinant(numbers) > 0.0
         return moved
 
     def stroked(
@@ -536,9 +536,14 @@ def _as_matrix(name: str, matrix: npt.ArrayLike) -> list[float]:
     found = as_array(name, matrix)
     if found.shape != (2, 3) or found.dtype.kind not in "fiu" or not np.isfinite(found).all():
         raise ValueError(f"{name}: shape {found.shape}; (2, 3) of finite numbers is needed")
-    if np.linalg.det(found[:, :2]) == 0.0:
+    numbers = [float(number) for number in found.ravel()]
+    if _determinant(numbers) == 0.0:
         raise ValueError(f"{name}: maps the plane to a line; a matrix of rank 2 is needed")
-    return [float(number) for number in found.ravel()]
+    return numbers
+
+
+def _determinant(matrix: Sequence[float]) -> float:
+    return matrix[0] * matrix[4] - matrix[1] * matrix[3]
 
 
 def _as_stops(stops: Iterable[Stop]) -> list[tuple[float, list[float]]]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .. import _native
 from ..shapes import Shape
 from .basic_shapes import BASIC_SHAPES, read_shape
 from .document import Document, SvgElement
@@ -87,7 +88,7 @@ class Painted:
         whole = multiplied(matrix, self.matrix)
         shape = self.outline.shape(self.fill_rule)
         if self.stroke is not None:
-            scale = max(math.hypot(*whole[:2]), math.hypot(*whole[2:4]))
+            scale = max(_native.hypot(*whole[:2]), _native.hypot(*whole[2:4]))
             shape = shape.stroked(
                 self.stroke.width,
                 join=self.stroke.join,

@@ -9,6 +9,7 @@ from itertools import chain, pairwise
 
 import numpy as np
 
+from .. import _native
 from ..shapes import Shape
 from .values import NUMBER, leading_numbers
 
@@ -104,7 +105,7 @@ class Outline:
         if rx == 0.0 or ry == 0.0:
             self.line_to(*end)
             return
-        cos, sin = math.cos(math.radians(rotation)), math.sin(math.radians(rotation))
+        cos, sin = _native.cos(math.radians(rotation)), _native.sin(math.radians(rotation))
         half_x, half_y = (start[0] - end[0]) / 2.0, (start[1] - end[1]) / 2.0
         # The start seen from the middle of the chord, where the ellipse is a unit circle.
         x = (cos * half_x + sin * half_y) / rx
@@ -120,8 +121,8 @@ class Outline:
         if is_large == is_positive:
             toward_center = -toward_center
         center_x, center_y = toward_center * y, -toward_center * x
-        first = math.atan2(y - center_y, x - center_x)
-        turn = math.atan2(-y - center_y, -x - center_x) - first
+        first = _native.atan2(y - center_y, x - center_x)
+        turn = _native.atan2(-y - center_y, -x - center_x) - first
         if is_positive and turn <= 0.0:
             turn += 2.0 * math.pi
         elif not is_positive and turn >= 0.0:
@@ -133,11 +134,11 @@ class Outline:
             return (middle[0] + cos * u - sin * v, middle[1] + sin * u + cos * v)
 
         count = max(1, math.ceil(abs(turn) / (math.pi / 2.0) - 1e-9))
-        weight = math.cos(turn / count / 2.0)
+        weight = _native.cos(turn / count / 2.0)
         for k in range(count):
             peak, after = first + turn * (k + 0.5) / count, first + turn * (k + 1) / count
-            control = placed(math.cos(peak) / weight, math.sin(peak) / weight)
-            there = end if k == count - 1 else placed(math.cos(after), math.sin(after))
+            control = placed(_native.cos(peak) / weight, _native.sin(peak) / weight)
+            there = end if k == count - 1 else placed(_native.cos(after), _native.sin(after))
             self.conic_to(*control, weight, *there)
 
     def bounds(self) -> tuple[float, float, float, float] | None:
@@ -168,7 +169,7 @@ class Outline:
         for kind, numbers in self.segments:
             points = numbers[:2] + numbers[3:] if kind == "W" else (numbers or begin)
             for next_x, next_y in zip(points[::2], points[1::2], strict=True):
-                total += math.hypot(next_x - x, next_y - y) if kind != "M" else 0.0
+                total += _native.hypot(next_x - x, next_y - y) if kind != "M" else 0.0
                 x, y = next_x, next_y
             if kind == "M":
                 begin = (x, y)

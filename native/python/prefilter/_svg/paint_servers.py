@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .._native import decode_srgb
+from .. import _native
 from ..shapes import Shape
 from .document import Document, SvgElement
 from .lengths import Units, read_length
@@ -63,7 +63,7 @@ class Colors:
         rgb = values[:, :3]
         if self.is_linear:
             image = np.ascontiguousarray(rgb[None], np.float32)
-            rgb = decode_srgb(image, 1)[0].astype(np.float64)
+            rgb = _native.decode_srgb(image, 1)[0].astype(np.float64)
         rows = np.concatenate([rgb * values[:, 3:], values[:, 3:]], axis=1)
         return [tuple(row) for row in rows.tolist()]
 
@@ -80,7 +80,7 @@ class Colors:
         # is largest where its power begins: 1.4 / (0.04045 + 0.055).
         squares = change[:3].max() * change[3] / 4.0
         if self.is_linear:
-            squares = 2.4 * squares + change[:3].max() ** 2 * (1.4 / 0.09545) / 8.0
+            squares = 2.4 * squares + change[:3].max() * change[:3].max() * (1.4 / 0.09545) / 8.0
         count = max(1, math.ceil(math.sqrt(squares / _TOLERANCE)))
         shares = np.linspace(0.0, 1.0, count + 1)[:, None]
         colors: np.ndarray = ends[0] * (1.0 - shares) + ends[1] * shares
@@ -251,7 +251,7 @@ def _with_focus_inside(numbers: tuple[float, ...]) -> tuple[float, ...]:
     fr = min(max(fr, 0.0), r * _FOCUS_LIMIT)
     # The circle around the focus lies within the other one.
     room = (r - fr) * _FOCUS_LIMIT
-    distance = math.hypot(fx - cx, fy - cy)
+    distance = _native.hypot(fx - cx, fy - cy)
     if distance > room:
         fx, fy = cx + (fx - cx) * room / distance, cy + (fy - cy) * room / distance
     return cx, cy, r, fx, fy, fr

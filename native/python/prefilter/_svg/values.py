@@ -12,6 +12,8 @@ from typing import Any, TypeAlias
 import tinycss2
 import tinycss2.color4
 
+from .. import _native
+
 Matrix: TypeAlias = tuple[float, float, float, float, float, float]
 """a, b, c, d, e, f: (x, y) goes to (a x + c y + e, b x + d y + f)."""
 Color: TypeAlias = tuple[float, float, float, float]
@@ -270,16 +272,16 @@ def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
             there, back = (1.0, 0.0, 0.0, 1.0, x, y), (1.0, 0.0, 0.0, 1.0, -x, -y)
             return multiplied(multiplied(there, _rotation(angle)), back)
         case "skewx", [angle]:
-            return (1.0, 0.0, math.tan(math.radians(angle)), 1.0, 0.0, 0.0)
+            return (1.0, 0.0, _native.tan(math.radians(angle)), 1.0, 0.0, 0.0)
         case "skewy", [angle]:
-            return (1.0, math.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0)
+            return (1.0, _native.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0)
     return None
 
 
 def _rotation(angle: float) -> Matrix:
     # Quarters of a turn are exact, so that upright edges stay upright.
     quarters, rest = divmod(angle, 90.0)
-    cos, sin = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    cos, sin = _native.cos(math.radians(angle)), _native.sin(math.radians(angle))
     if rest == 0.0:
         cos, sin = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarters) % 4]
     return (cos, sin, -sin, cos, 0.0, 0.0)
