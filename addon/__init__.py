@@ -5,7 +5,7 @@
 from importlib import import_module
 
 from .commands import Commands
-from .core import menus
+from .core import menus, running
 from .core.registration import registration
 
 SUBJECTS = (
@@ -18,4 +18,4 @@ SUBJECTS = (
 """The folders of the subjects, in the order in which they are registered."""
 
 _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
-register, unregister = registration(menus, *_packages, Commands(SUBJECTS))
+register, unregister = registration(running, menus, *_packages, Commands(SUBJECTS))

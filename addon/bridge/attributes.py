@@ -11,6 +11,10 @@ from numpy.typing import NDArray
 
 # Rec. 709, as Blender makes a number of a colour.
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
+# What weights may be.
+_DOMAINS = frozenset({"POINT", "FACE", "CORNER"})
+_COLOR_TYPES = frozenset({"FLOAT_COLOR", "BYTE_COLOR"})
+_TYPES = {"FLOAT": np.float32, "INT": np.int32, "INT8": np.int8, "BOOLEAN": np.bool_}
 
 
 @dataclass(frozen=True)
@@ -91,23 +95,35 @@ def read_weights(
     if attribute is None:
         return None
     found = f"object '{object_name}', importance: attribute '{name}' is"
-    if attribute.domain not in {"POINT", "FACE", "CORNER"}:
+    if attribute.domain not in _DOMAINS:
         raise ValueError(
             f"{found} on the domain {attribute.domain}; POINT, FACE or CORNER is needed"
         )
     count = len(attribute.data)
-    if attribute.data_type in {"FLOAT_COLOR", "BYTE_COLOR"}:
+    if attribute.data_type in _COLOR_TYPES:
         colors = np.empty((count, 4), np.float32)
         attribute.data.foreach_get("color", colors.ravel())
         return Weights(attribute.domain, colors[:, :3] @ np.array(_LUMINANCE))
-    types = {"FLOAT": np.float32, "INT": np.int32, "INT8": np.int8, "BOOLEAN": np.bool_}
-    if attribute.data_type not in types:
+    if attribute.data_type not in _TYPES:
         raise ValueError(
             f"{found} of the type {attribute.data_type}; a number, a color or a boolean is needed"
         )
-    values: NDArray[Any] = np.empty(count, types[attribute.data_type])
+    values: NDArray[Any] = np.empty(count, _TYPES[attribute.data_type])
     attribute.data.foreach_get("value", values)
     return Weights(attribute.domain, values.astype(np.float64))
+
+
+def names_of_weights(obj: bpy.types.Object) -> list[str]:
+    """Returns what `read_weights` may be asked for: of an object, evaluated or not."""
+    names = [group.name for group in obj.vertex_groups]
+    names += [
+        attribute.name
+        for attribute in obj.data.attributes
+        if attribute.domain in _DOMAINS
+        and attribute.data_type in {*_TYPES, *_COLOR_TYPES}
+        and not attribute.is_internal
+    ]
+    return names
 
 
 def group_weights(

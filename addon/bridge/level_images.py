@@ -98,6 +98,18 @@ def is_level(image: bpy.types.Image) -> bool:
     return image.get(_SOURCE_KEY) is not None
 
 
+def source_of_level(image: bpy.types.Image | None) -> bpy.types.Image | None:
+    """Returns the image that a bake has made an image as a level of, if that is still there."""
+    name = image.get(_SOURCE_KEY) if image is not None else None
+    return next((other for other in bpy.data.images if other.name_full == name), None)
+
+
+def levels_of(image: bpy.types.Image) -> list[bpy.types.Image]:
+    """Returns the images that bakes have made as levels of an image."""
+    found = bpy.data.images
+    return [one for one in found if one.library is None and one.get(_SOURCE_KEY) == image.name_full]
+
+
 def _earlier_levels(picture: Picture) -> dict[int, list[bpy.types.Image]]:
     """Returns the level images that bakes of a picture have made, in the order of their names.
 

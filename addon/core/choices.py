@@ -18,10 +18,10 @@ def items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str, str, int]]
     """Returns the items of an enumeration property.
 
     Files keep the number of an item. It depends on the key alone, so what is new may stand
-    anywhere.
+    anywhere. Buttons side by side keep it in single precision, so it has 24 bits.
     """
     return [
-        (key, choice.label, choice.description, "", zlib.crc32(key.encode()) & 0x7FFFFFFF)
+        (key, choice.label, choice.description, "", zlib.crc32(key.encode()) & 0xFFFFFF)
         for key, choice in choices.items()
     ]
 

@@ -8,18 +8,19 @@ import time
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import bpy
 import prefilter
 from bpy.props import BoolProperty
 
+from . import running
 from .jobs import Job, Progress, Work
 from .outcome import FAILURES, Outcome
+from .running import TICK_SECONDS, Run
 
 Compute = Callable[[Progress], Any]
-TICK_SECONDS = 0.05
-"""How often a running operator looks at its thread."""
+T = TypeVar("T")
 QUICK_SECONDS = 1.0
 """Work up to this long is redone at once when a user changes a setting; longer work waits for
 Apply, as it would freeze Blender."""
@@ -44,7 +45,7 @@ _HARMLESS_EVENTS = frozenset(
 
 
 @dataclass(frozen=True)
-class _Run:
+class _Past:
     """How long the last run of an operator took, to tell how long a redo will."""
 
     seconds: float
@@ -52,8 +53,8 @@ class _Run:
     effort: float
 
 
-def read_at_once(steps: Generator[float, None, Compute]) -> Compute:
-    """Does all steps of a reading, and returns what is then to be computed."""
+def read_at_once(steps: Generator[float, None, T]) -> T:
+    """Does all steps of a reading, and returns what it does."""
     while True:
         try:
             next(steps)
@@ -79,12 +80,9 @@ class BackgroundOperator:
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
-    _running: ClassVar[set[str]] = set()
-    _applying: ClassVar[dict[str, float]] = {}
-    """By operator, how much of a redo in the background is done."""
-    _runs: ClassVar[dict[str, _Run]] = {}
+    _past: ClassVar[dict[str, _Past]] = {}
     _job: Job[Any] | None = None
-    _timer: bpy.types.Timer | None = None
+    _run: Run | None = None
     _cancelled_at: float = math.inf
     _steps: Generator[float, None, Compute] | None = None
     _replaced: int = 0
@@ -157,12 +155,14 @@ class BackgroundOperator:
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the redo panel."""
         layout = self.layout
-        done = BackgroundOperator._applying.get(self._key())
+        run = running.find(self._key())
+        applied = run if run is not None and run.is_redo else None
         column = layout.column()
-        column.enabled = done is None
+        column.enabled = applied is None
         self.draw_settings(context, column)
-        if done is not None:
-            layout.progress(factor=done, text=f"{round(100 * done)} %   Esc: Cancel")
+        if applied is not None:
+            percent = round(100 * applied.fraction)
+            layout.progress(factor=applied.fraction, text=f"{percent} %   Esc: Cancel")
         elif self._problem:
             for i, line in enumerate(textwrap.wrap(self._problem, _LINE_LENGTH)):
                 layout.label(text=line, icon="BLANK1" if i else "ERROR")
@@ -209,14 +209,12 @@ class BackgroundOperator:
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Shows progress, and writes the result once the thread is done."""
         if event.type == "ESC" and event.value == "PRESS":
-            if self._job is None:
-                self._let_go()
-                return self._end_cancelled(context)
-            self._job.cancel()
-            self._cancelled_at = time.monotonic()
-            return {"RUNNING_MODAL"}
+            return self._stop(context)
         if event.type != "TIMER":
-            return self._handed_on(event)
+            return self._handed_on(context, event)
+        assert self._run is not None
+        if self._cancelled_at == math.inf and self._run.is_cancelled(context):
+            return self._stop(context)
         try:
             with self._discarding():
                 return self._tick(context)
@@ -254,6 +252,15 @@ class BackgroundOperator:
         """Reports what was left out, and the like."""
         for warning in warnings:
             self.report({"WARNING"}, warning)
+
+    def _stop(self, context: bpy.types.Context) -> set[str]:
+        """Ends the reading, or has the thread end."""
+        if self._job is None:
+            self._let_go()
+            return self._end_cancelled(context)
+        self._job.cancel()
+        self._cancelled_at = time.monotonic()
+        return {"RUNNING_MODAL"}
 
     def _tick(self, context: bpy.types.Context) -> set[str]:
         """Goes on with what is to do: reading, waiting for the thread, writing."""
@@ -309,7 +316,7 @@ class BackgroundOperator:
             done = self._work(context, deadline)
         except prefilter.Cancelled:
             self._waits = deadline.expected_seconds()
-            self._note_run(self._waits, BackgroundOperator._runs.get(self._key()))
+            self._note_run(self._waits, BackgroundOperator._past.get(self._key()))
             return {"CANCELLED"}
         self._waits = 0.0
         return done
@@ -325,17 +332,17 @@ class BackgroundOperator:
         return {"CANCELLED"}
 
     def _expected_seconds(self) -> float:
-        run = BackgroundOperator._runs.get(self._key())
-        if run is None:
+        past = BackgroundOperator._past.get(self._key())
+        if past is None:
             return 0.0
         try:
-            return run.seconds * self.effort(run.load) / run.effort
+            return past.seconds * self.effort(past.load) / past.effort
         except ValueError:  # Settings that are refused: the work says why, at once.
             return 0.0
 
-    def _note_run(self, seconds: float, earlier: _Run | None = None) -> None:
+    def _note_run(self, seconds: float, earlier: _Past | None = None) -> None:
         load = self.load() if earlier is None else earlier.load
-        BackgroundOperator._runs[self._key()] = _Run(seconds, load, self.effort(load))
+        BackgroundOperator._past[self._key()] = _Past(seconds, load, self.effort(load))
 
     def _go_on_reading(self) -> None:
         """Reads for a tick's time; starts the thread once everything is read."""
@@ -393,10 +400,13 @@ class BackgroundOperator:
             self._steps.close()
         self.discard()
 
-    def _handed_on(self, event: bpy.types.Event) -> set[str]:
+    def _handed_on(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Returns what an event leads to that says nothing to the operator."""
         is_free = self._job is not None and not self._replaced
-        return {"PASS_THROUGH"} if is_free or event.type in _HARMLESS_EVENTS else {"RUNNING_MODAL"}
+        if is_free or event.type in _HARMLESS_EVENTS:
+            return {"PASS_THROUGH"}
+        is_click = event.type == "LEFTMOUSE" and running.is_over_button(context, event)
+        return {"PASS_THROUGH"} if is_click else {"RUNNING_MODAL"}
 
     def _end_cancelled(self, context: bpy.types.Context) -> set[str]:
         self._leave(context)
@@ -410,7 +420,7 @@ class BackgroundOperator:
 
     @classmethod
     def _is_running(cls) -> bool:
-        return cls._key() in BackgroundOperator._running
+        return running.find(cls._key()) is not None
 
     @classmethod
     def _key(cls) -> str:
@@ -421,35 +431,18 @@ class BackgroundOperator:
         return [item.identifier for item in properties if not (item.is_hidden or item.is_readonly)]
 
     def _enter(self, context: bpy.types.Context) -> set[str]:
-        BackgroundOperator._running.add(self._key())
-        if self._replaced:
-            BackgroundOperator._applying[self._key()] = 0.0
-        manager = context.window_manager
-        manager.progress_begin(0, 100)
-        self._timer = manager.event_timer_add(TICK_SECONDS, window=context.window)
-        manager.modal_handler_add(self)
+        self._run = Run(context, self._key(), is_redo=bool(self._replaced))
+        context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def _show(self, context: bpy.types.Context, what: str, fraction: float) -> None:
-        percent = round(100 * fraction)
-        context.window_manager.progress_update(percent)
-        context.workspace.status_text_set(f"{what}: {percent} %   Esc: Cancel")
-        if self._replaced:
-            BackgroundOperator._applying[self._key()] = fraction
-            _redraw(context, "HUD")
+        assert self._run is not None
+        self._run.show(context, what, fraction)
 
     def _leave(self, context: bpy.types.Context) -> None:
-        if self._timer is None:
-            return
-        BackgroundOperator._running.discard(self._key())
-        BackgroundOperator._applying.pop(self._key(), None)
-        context.window_manager.event_timer_remove(self._timer)
-        self._timer = None
-        context.window_manager.progress_end()
-        if context.workspace is not None:
-            context.workspace.status_text_set(None)
-        # Buttons look as poll has last said; they take no click before they are drawn again.
-        _redraw(context)
+        if self._run is not None:
+            self._run.end(context)
+            self._run = None
 
 
 class WorkOperator(BackgroundOperator):
@@ -497,17 +490,6 @@ class _Deadline:
         """Returns how long all of the work would take, as far as that can be told."""
         passed = time.monotonic() - self._began
         return max(passed / max(self._fraction, 0.1), 2.0 * self._seconds)
-
-
-def _redraw(context: bpy.types.Context, region_type: str | None = None) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if region_type is None:
-                area.tag_redraw()
-                continue
-            for region in area.regions:
-                if region.type == region_type:
-                    region.tag_redraw()
 
 
 def _spoken(seconds: float) -> str:

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The add-on's tab in the sidebar of the 3D view."""
+"""The add-on's tab in the sidebars of the 3D view and the Image editor, and what panels share."""
 
 import bpy
 
+from . import running
+
 
 class SidebarPanel:
-    """A mixin for panels of that tab."""
+    """A mixin for panels of the tab in the 3D view."""
 
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -24,8 +26,47 @@ class SidebarPanel:
         return context.active_object is not None and cls.fits(context.active_object)
 
 
-class OptionsPanel:
-    """A mixin for panels below others, with what is set less often."""
+class ImagePanel:
+    """A mixin for panels of the tab in the Image editor."""
 
-    bl_label = "Options"
-    bl_options = frozenset({"DEFAULT_CLOSED"})
+    bl_space_type = "IMAGE_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Prefilter"
+
+
+def main_button(
+    layout: bpy.types.UILayout, context: bpy.types.Context, operator: type[bpy.types.Operator]
+) -> bpy.types.UILayout | None:
+    """Returns where the main button of a panel goes.
+
+    Returns:
+        None while the operator runs, whose progress is then drawn there.
+    """
+    row = layout.row()
+    row.scale_y = 1.5
+    return None if running.draw(row, context, operator.bl_idname) else row
+
+
+def button(
+    layout: bpy.types.UILayout, context: bpy.types.Context, operator: type[bpy.types.Operator]
+) -> bpy.types.UILayout | None:
+    """Returns where another button goes, as `main_button` does."""
+    return None if running.draw(layout, context, operator.bl_idname) else layout
+
+
+def subpanel(
+    layout: bpy.types.UILayout, name: str, title: str
+) -> tuple[bpy.types.UILayout, bpy.types.UILayout | None]:
+    """Draws a panel in a panel, which is closed at first.
+
+    Args:
+        layout: The panel, across its whole width.
+        name: Tells it from others in the same region.
+        title: What its header says.
+
+    Returns:
+        The header, for more to draw in it, and the body; None while that is closed.
+    """
+    header, body = layout.panel(f"PREFILTER_{name}", default_closed=True)
+    header.label(text=title)
+    return header, body

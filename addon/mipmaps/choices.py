@@ -132,6 +132,20 @@ MODEL_OBJECTS = {
     "scene": Choice("Scene", "All visible meshes of the scene"),
     "selected": Choice("Selected", "The selected meshes"),
 }
+RESULTS = {
+    "preview": Choice(
+        "Preview", "Draw the levels in the Image editor, in the place of the image; nothing is kept"
+    ),
+    "images": Choice(
+        "Images",
+        "Keep each level as a packed image named after the image, with .mip01, .mip02 and so on",
+    ),
+    "file": Choice("File", "Write all levels to a texture file"),
+}
+MODEL_RESULTS = {
+    "images": RESULTS["images"],
+    "file": Choice("Files", "Write the levels of each image to a texture file of its own"),
+}
 FILE_FORMATS = {
     "ktx2": Choice("KTX 2", "For engines and web viewers"),
     "dds": Choice("DDS", "For engines"),
@@ -321,17 +335,12 @@ class Settings:
     frame_step: int = number(
         1, "Step", "Number of frames from one frame of the average to the next", low=1, flag=""
     )
-    use_images: bool = switch(
-        True,
-        "Level Images",
-        "Keep each level as a packed image named after the image, with .mip01, .mip02 and so on",
-        flag="",
-    )
+    use_images: bool = switch(True, "", "Keep each level as a packed image", flag="")
     filepath: str = text(
         "",
         "File",
-        "File for all levels: .exr, .tif or .tx for renderers, .dds or .ktx2 for "
-        "engines; .png writes one file per level. Leave empty for none",
+        "File for all levels; its ending is that of the format. If empty, it is named after the "
+        "image and written beside the .blend file",
         subtype="FILE_PATH",
         flag="--output",
         flag_description="File for all levels: .exr, .tif or .tx for renderers, .dds or "
@@ -341,7 +350,8 @@ class Settings:
     roughness_filepath: str = text(
         "",
         "Roughness File",
-        "File for the levels of the roughness image. Leave empty for none",
+        "File for the levels of the roughness image. If empty, it is named after the image and "
+        "written beside the .blend file",
         subtype="FILE_PATH",
         flag="--roughness-output",
         flag_description="File for the levels of the roughness image, like --output",
@@ -364,6 +374,14 @@ class Settings:
     threads: int = threads()
 
 
+@dataclass(frozen=True)
+class ResultSettings:
+    """What to make of the levels of an image; commands know it from their other flags."""
+
+    result: str = one_of("images", "Result", "What to make of the levels", RESULTS, flag="")
+    file_format: str = one_of("ktx2", "Format", "What the file is", FILE_FORMATS, flag="")
+
+
 NOT_OF_MODELS = frozenset(
     {
         *("content", "threshold", "roughness", "roughness_channel", "roughness_filepath"),
@@ -384,28 +402,50 @@ class ModelSettings:
         MODEL_OBJECTS,
         flag="",
     )
+    material: str = text(
+        "",
+        "Material",
+        "Bake only the images of this material. Leave empty for those of all materials",
+        metavar="NAME",
+        flag_description="with --all, bake only the images of this material",
+    )
+    result: str = one_of("file", "Result", "What to make of the levels", MODEL_RESULTS, flag="")
     folder: str = text(
         "//mipmaps/",
         "Folder",
-        "Folder for a file of each image, named after it. It is made if it is missing. Leave empty "
-        "for none",
+        "Folder for a file of each image, named after it. It is made if it is missing",
         subtype="DIR_PATH",
         flag="",
     )
     file_format: str = one_of(
         "ktx2",
-        "File Format",
-        "The files in the folder",
+        "Format",
+        "What the files in the folder are",
         FILE_FORMATS,
         flag="--format",
         metavar="FORMAT",
         flag_description="with --all, the files in the folder of --output",
     )
-    use_images: bool = switch(
-        False,
-        "Level Images",
-        "Keep each level as a packed image named after the image, with .mip01, .mip02 and so on",
-        flag="",
+
+
+REMOVED = {
+    "preview": Choice("Preview", "The levels that the editors draw"),
+    "images": Choice("Images", "The level images; what uses one then uses the image itself"),
+    "cache": Choice(
+        "Texture Cache",
+        "The files of Cycles' texture cache that have baked levels. Cycles makes its own again; "
+        "undo does not bring them back",
+    ),
+}
+
+
+@dataclass(frozen=True)
+class RemoveSettings:
+    """What `prefilter.remove_levels` removes."""
+
+    kinds: tuple[str, ...] = one_of(("preview", "images"), "Levels", "What to remove", REMOVED)
+    use_all: bool = switch(
+        False, "All Images", "Remove the levels of all images of this file, not only of one"
     )
 
 

@@ -13,6 +13,7 @@ import bpy
 from ..bridge import images
 from ..bridge.files import textures
 from . import udim
+from .choices import FILE_FORMATS
 
 PLACE = "{name}"
 """What stands for the name of an image in a path."""
@@ -60,6 +61,13 @@ class Pattern:
 def is_texture(path: str) -> bool:
     """Tells whether a path has the extension of a texture file."""
     return os.path.splitext(path)[1].lower() in textures.EXTENSIONS
+
+
+def format_of(path: str) -> str:
+    """Returns the key of `choices.FILE_FORMATS` that the ending of a path says; empty for none."""
+    ending = os.path.splitext(path)[1].lower().removeprefix(".")
+    ending = {"tiff": "tif"}.get(ending, ending)
+    return ending if ending in FILE_FORMATS else ""
 
 
 def name_of(image: bpy.types.Image) -> str:

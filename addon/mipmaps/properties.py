@@ -2,117 +2,208 @@
 
 """The settings of a bake as properties, of the operator and of the scene."""
 
+import os
 from dataclasses import replace
+from typing import Any
 
 import bpy
 from bpy.props import PointerProperty
 
 from ..bridge.files import engines
-from ..core.properties import properties, values
-from .choices import FITTED_FILTERS, NOT_OF_MODELS, ModelSettings, Settings
+from ..core.properties import properties, single_property, values
+from ..core.sidebar import subpanel
+from . import file_names
+from .choices import (
+    FITTED_FILTERS,
+    NOT_OF_MODELS,
+    ModelSettings,
+    ResultSettings,
+    Settings,
+)
+from .importance import suggested_names
 
-_OF_FILES = ("texture_format", "supercompression")
-"""What is drawn below the kind of a file."""
+_SEARCH = {"search": suggested_names, "search_options": {"SORT", "SUGGESTION"}}
+
+
+def _follow_path(self: "BakeProperties", context: bpy.types.Context) -> None:
+    """Has the format follow the ending of the file."""
+    del context
+    found = file_names.format_of(self.filepath)
+    if found and self.file_format != found:
+        self.file_format = found
+
+
+def _follow_format(self: "BakeProperties", context: bpy.types.Context) -> None:
+    """Has the endings of the files follow the format."""
+    del context
+    for name in ("filepath", "roughness_filepath"):
+        path = getattr(self, name)
+        if file_names.format_of(path) not in {"", self.file_format}:
+            setattr(self, name, f"{os.path.splitext(path)[0]}.{self.file_format}")
 
 
 class BakeProperties:
     """The properties of a bake; a mixin for an operator and a property group."""
 
-    __annotations__ = properties(Settings)
+    __annotations__ = (
+        properties(ResultSettings)
+        | properties(Settings)
+        | {
+            "file_format": single_property(ResultSettings, "file_format", update=_follow_format),
+            "filepath": single_property(Settings, "filepath", update=_follow_path),
+            "importance": single_property(Settings, "importance", **_SEARCH),
+        }
+    )
 
     def to_settings(self) -> Settings:
-        """Returns the values, with the files' paths made absolute."""
-        settings = values(self, Settings)
-        if self._shows_roughness():
-            return settings
-        # What an earlier choice has left in fields that are not shown.
-        return replace(settings, roughness="", roughness_filepath="")
+        """Returns the values, with the files' paths made absolute.
 
-    def _shows_roughness(self) -> bool:
-        return self.content == "normal" or (self.content == "auto" and bool(self.roughness))
+        A path that is to be that of the image has `file_names.PLACE` in it.
+        """
+        settings = values(self, Settings)
+        if not self._shows_roughness():
+            # What an earlier choice has left in fields that are not shown.
+            settings = replace(settings, roughness="", roughness_filepath="")
+        if self.result != "file":
+            return replace(settings, use_images=True, filepath="", roughness_filepath="")
+        return replace(
+            settings,
+            use_images=False,
+            filepath=self._file(settings.filepath),
+            roughness_filepath=self._file(settings.roughness_filepath)
+            if settings.roughness
+            else "",
+        )
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
         """Draws the properties."""
         layout.use_property_split = True
         layout.use_property_decorate = False
+        _draw_result(self, layout)
+        if self.result == "file":
+            self._draw_file(layout)
         layout.prop(self, "filter")
-        layout.prop(self, "reader")
         if self.reader != "linear" and self.filter == "pam-trilinear":
             layout.label(text="PAM Trilinear requires Linear Light", icon="ERROR")
-        row = layout.row()
-        row.active = self.reader == "linear" and self.filter in FITTED_FILTERS
-        row.prop(self, "lookups")
-        column = layout.column(align=True)
-        column.prop(self, "wrap")
-        column.prop(self, "wrap_v", text="V")
         layout.prop(self, "content")
         if self.content == "cutout":
             layout.prop(self, "threshold")
         if self._shows_roughness():
             layout.prop_search(self, "roughness", bpy.data, "images")
-        has_roughness = self._shows_roughness() and self.roughness
-        if has_roughness:
-            layout.prop(self, "roughness_channel")
-        row = layout.row()
-        row.active = self.content != "normal"
-        row.prop(self, "bounds")
-        layout.prop(self, "levels")
-        layout.separator()
-        layout.prop(self, "objects")
-        layout.prop(self, "importance")
-        layout.prop(self, "seam_budget")
-        layout.prop(self, "use_subdivision_limit")
-        layout.prop(self, "use_frames")
-        column = layout.column(align=True)
-        column.active = self.use_frames
-        column.prop(self, "frame_start")
-        column.prop(self, "frame_end")
-        column.prop(self, "frame_step")
-        layout.separator()
-        layout.prop(self, "use_images")
-        layout.prop(self, "filepath")
-        if has_roughness:
-            layout.prop(self, "roughness_filepath")
-        paths = (self.filepath, self.roughness_filepath if has_roughness else "")
-        if any(engines.has_formats(path) for path in paths):
-            layout.prop(self, "texture_format")
-        if any(engines.has_supercompression(path) for path in paths):
-            layout.prop(self, "supercompression")
+            if self.roughness:
+                layout.prop(self, "roughness_channel")
+        _, body = subpanel(layout, "surface", "Surface")
+        if body:
+            body.prop(self, "objects")
+            _draw_surface(self, body)
+        _draw_frames(self, layout)
+        _, body = subpanel(layout, "reading", "Lookups")
+        if body:
+            _draw_lookups(self, body)
+        _, body = subpanel(layout, "levels", "Levels")
+        if body:
+            body.prop(self, "levels")
+            row = body.row()
+            row.active = self.content != "normal"
+            row.prop(self, "bounds")
+
+    def _shows_roughness(self) -> bool:
+        return self.content == "normal" or (self.content == "auto" and bool(self.roughness))
+
+    def _file(self, path: str) -> str:
+        """Returns a path with the ending of the format."""
+        if not path:
+            return bpy.path.abspath(f"//{file_names.PLACE}.{self.file_format}")
+        return path if file_names.is_texture(path) else f"{path}.{self.file_format}"
+
+    def _draw_file(self, layout: bpy.types.UILayout) -> None:
+        layout.prop(self, "file_format")
+        layout.prop(self, "filepath", placeholder="Beside the .blend file")
+        if self._shows_roughness() and self.roughness:
+            layout.prop(self, "roughness_filepath", placeholder="Beside the .blend file")
+        _draw_compression(self, layout)
 
 
 class ModelProperties:
     """The properties of a bake of a model; a mixin for an operator and a property group."""
 
-    __annotations__ = properties(ModelSettings) | properties(Settings, NOT_OF_MODELS)
+    __annotations__ = (
+        properties(ModelSettings)
+        | properties(Settings, NOT_OF_MODELS)
+        | {"importance": single_property(Settings, "importance", **_SEARCH)}
+    )
 
     def to_settings(self) -> tuple[ModelSettings, Settings]:
         """Returns the values, with the folder's path made absolute."""
-        return values(self, ModelSettings), values(self, Settings, NOT_OF_MODELS)
+        settings = values(self, Settings, NOT_OF_MODELS)
+        return values(self, ModelSettings), replace(settings, use_images=self.result == "images")
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
-        """Draws what is set for models only."""
+        """Draws the properties."""
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(self, "objects")
-        column = layout.column()
-        column.prop(self, "folder")
-        row = column.column()
-        row.active = bool(self.folder)
-        row.prop(self, "file_format")
-        if engines.has_formats(f".{self.file_format}"):
-            row.prop(self, "texture_format")
-        if engines.has_supercompression(f".{self.file_format}"):
-            row.prop(self, "supercompression")
-        layout.prop(self, "use_images")
+        layout.prop_search(self, "material", bpy.data, "materials")
+        _draw_result(self, layout)
+        if self.result == "file":
+            layout.prop(self, "folder")
+            layout.prop(self, "file_format")
+            _draw_compression(self, layout)
+        layout.prop(self, "filter")
+        _, body = subpanel(layout, "model_surface", "Surface")
+        if body:
+            _draw_surface(self, body)
+        _draw_frames(self, layout)
+        _, body = subpanel(layout, "model_lookups", "Lookups")
+        if body:
+            _draw_lookups(self, body)
+        _, body = subpanel(layout, "model_levels", "Levels")
+        if body:
+            body.prop(self, "bounds")
 
-    def draw_others(self, layout: bpy.types.UILayout) -> None:
-        """Draws what all bakes have."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        for name in properties(Settings, {*NOT_OF_MODELS, *_OF_FILES}):
-            column = layout.column()
-            column.active = not name.startswith("frame_") or self.use_frames
-            column.prop(self, name)
+
+def _draw_result(settings: Any, layout: bpy.types.UILayout) -> None:
+    """Draws the buttons across the whole width, without a label."""
+    row = layout.row()
+    row.use_property_split = False
+    row.prop(settings, "result", expand=True)
+
+
+def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
+    """Draws what some formats of files have a choice of."""
+    ending = f".{settings.file_format}"
+    if engines.has_formats(ending):
+        layout.prop(settings, "texture_format")
+    if engines.has_supercompression(ending):
+        layout.prop(settings, "supercompression")
+
+
+def _draw_surface(settings: Any, layout: bpy.types.UILayout) -> None:
+    layout.prop(settings, "importance")
+    layout.prop(settings, "seam_budget")
+    layout.prop(settings, "use_subdivision_limit")
+
+
+def _draw_frames(settings: Any, layout: bpy.types.UILayout) -> None:
+    name = "frames" if isinstance(settings, BakeProperties) else "model_frames"
+    header, body = layout.panel(f"PREFILTER_{name}", default_closed=True)
+    header.use_property_split = False
+    header.prop(settings, "use_frames")
+    if body:
+        column = body.column(align=True)
+        column.active = settings.use_frames
+        for name in ("frame_start", "frame_end", "frame_step"):
+            column.prop(settings, name)
+
+
+def _draw_lookups(settings: Any, layout: bpy.types.UILayout) -> None:
+    layout.prop(settings, "reader")
+    row = layout.row()
+    row.active = settings.reader == "linear" and settings.filter in FITTED_FILTERS
+    row.prop(settings, "lookups")
+    column = layout.column(align=True)
+    column.prop(settings, "wrap")
+    column.prop(settings, "wrap_v", text="V")
 
 
 class PREFILTER_PG_model(ModelProperties, bpy.types.PropertyGroup):

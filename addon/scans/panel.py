@@ -7,7 +7,7 @@ import bpy
 from ..bridge.points import may_be_points
 from ..core.menus import PREFILTER_MT_object
 from ..core.properties import copy
-from ..core.sidebar import OptionsPanel, SidebarPanel
+from ..core.sidebar import SidebarPanel, main_button
 from .choices import ScanSettings
 from .operator import PREFILTER_OT_reconstruct
 
@@ -17,24 +17,16 @@ class _SidebarPanel(SidebarPanel):
 
 
 class PREFILTER_PT_reconstruct(_SidebarPanel, bpy.types.Panel):
-    """What is set most often, and the button."""
+    """Button and settings."""
 
     bl_label = "Reconstruct Surface"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        context.scene.prefilter_reconstruct.draw_most_used(self.layout)
-        _draw_reconstruct(self.layout, context)
-
-
-class PREFILTER_PT_reconstruct_options(_SidebarPanel, OptionsPanel, bpy.types.Panel):
-    """The other settings."""
-
-    bl_parent_id = PREFILTER_PT_reconstruct.__name__
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_reconstruct.draw_others(self.layout)
+        place = main_button(self.layout, context, PREFILTER_OT_reconstruct)
+        if place:
+            _draw_reconstruct(place, context)
+        context.scene.prefilter_reconstruct.draw_in(self.layout)
 
 
 class PREFILTER_MT_scans(bpy.types.Menu):
@@ -52,7 +44,7 @@ class PREFILTER_MT_scans(bpy.types.Menu):
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (PREFILTER_PT_reconstruct, PREFILTER_PT_reconstruct_options, PREFILTER_MT_scans)
+    (PREFILTER_PT_reconstruct, PREFILTER_MT_scans)
 )
 
 

@@ -6,6 +6,7 @@ import bpy
 from bpy.props import PointerProperty
 
 from ..core.properties import properties, values
+from ..core.sidebar import subpanel
 from .choices import ScanSettings
 
 
@@ -20,31 +21,24 @@ class ScanProperties:
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
-        self.draw_most_used(layout)
-        self.draw_others(layout)
-
-    def draw_most_used(self, layout: bpy.types.UILayout) -> None:
-        """Draws what is set most often."""
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(self, "resolution")
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
-        layout.prop(self, "wavelet")
-
-    def draw_others(self, layout: bpy.types.UILayout) -> None:
-        """Draws the other settings."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        column = layout.column(heading="Surface", align=True)
-        column.prop(self, "use_smooth")
-        column.prop(self, "use_fit")
-        column.prop(self, "use_smooth_shading")
         layout.prop(self, "trim", text="Trim (Cells)")
-        layout.prop(self, "isovalue")
-        if self.isovalue == "custom":
-            layout.prop(self, "custom_isovalue")
         layout.prop(self, "points")
-        layout.prop(self, "memory_limit", text="Memory (MB)")
+        _, body = subpanel(layout, "scan_surface", "Surface")
+        if body:
+            body.prop(self, "wavelet")
+            column = body.column(align=True)
+            for name in ("use_smooth", "use_fit", "use_smooth_shading"):
+                column.prop(self, name)
+            body.prop(self, "isovalue")
+            if self.isovalue == "custom":
+                body.prop(self, "custom_isovalue")
+        _, body = subpanel(layout, "scan_performance", "Performance")
+        if body:
+            body.prop(self, "memory_limit", text="Memory (MB)")
 
 
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):

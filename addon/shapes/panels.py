@@ -7,7 +7,7 @@ import bpy
 from ..bridge.curves import is_curve
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
 from ..core.properties import copy
-from ..core.sidebar import OptionsPanel, SidebarPanel
+from ..core.sidebar import ImagePanel, SidebarPanel, main_button
 from .choices import RasterizeSettings
 from .memory import is_drawn
 from .operators.rasterize import PREFILTER_OT_rasterize
@@ -20,73 +20,44 @@ class _CurvesPanel(SidebarPanel):
 
 
 class PREFILTER_PT_rasterize(_CurvesPanel, bpy.types.Panel):
-    """What is set most often for curves and texts, and the button."""
+    """Button and settings for curves and texts."""
 
     bl_label = "Rasterize"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        context.scene.prefilter_rasterize.draw_most_used(self.layout, "curves")
-        _draw_rasterize(self.layout, context, "curves")
+        place = main_button(self.layout, context, PREFILTER_OT_rasterize)
+        if place:
+            _draw_rasterize(place, context, "curves")
+        context.scene.prefilter_rasterize.draw_in(self.layout, "curves")
 
 
-class PREFILTER_PT_rasterize_options(_CurvesPanel, OptionsPanel, bpy.types.Panel):
-    """The other settings."""
+class PREFILTER_PT_drawn(ImagePanel, bpy.types.Panel):
+    """The button that makes the image of the editor again, and what it was made with."""
 
-    bl_parent_id = PREFILTER_PT_rasterize.__name__
+    bl_label = "Rasterized Image"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_rasterize.draw_others(self.layout, "curves")
-        self.layout.prop(context.scene.prefilter_rasterize, "image_name")
-
-
-class _ImagePanel:
-    bl_space_type = "IMAGE_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Prefilter"
-
-
-class _DrawnPanel(_ImagePanel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether the editor shows an image that remembers how it was made."""
         return is_drawn(context.space_data.image)
-
-
-class PREFILTER_PT_drawn(_DrawnPanel, bpy.types.Panel):
-    """What the image of the editor was made with, and the button that makes it again."""
-
-    bl_label = "Rasterized Image"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         layout = self.layout
         image = context.space_data.image
         drawn = image.prefilter_drawn
+        place = main_button(layout, context, PREFILTER_OT_update_drawn)
+        if place:
+            update = PREFILTER_OT_update_drawn.bl_idname
+            operator = place.operator(update, text="Update", icon="FILE_REFRESH")
+            operator.image = image.name
         if drawn.source == "svg":
             layout.prop(drawn, "filepath", text="")
-        drawn.draw_most_used(layout, drawn.source)
-        row = layout.row()
-        row.scale_y = 1.5
-        operator = row.operator(
-            PREFILTER_OT_update_drawn.bl_idname, text="Update", icon="FILE_REFRESH"
-        )
-        operator.image = image.name
+        drawn.draw_in(layout, drawn.source)
 
 
-class PREFILTER_PT_drawn_options(_DrawnPanel, OptionsPanel, bpy.types.Panel):
-    """The other settings of that image."""
-
-    bl_parent_id = PREFILTER_PT_drawn.__name__
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        drawn = context.space_data.image.prefilter_drawn
-        drawn.draw_others(self.layout, drawn.source)
-
-
-class PREFILTER_PT_shapes(_ImagePanel, bpy.types.Panel):
+class PREFILTER_PT_shapes(ImagePanel, bpy.types.Panel):
     """SVG files, and the UV map of the active mesh as a mask."""
 
     bl_label = "Rasterize"
@@ -94,30 +65,18 @@ class PREFILTER_PT_shapes(_ImagePanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        context.scene.prefilter_rasterize.draw_most_used(self.layout, "svg")
-        _draw_svg(self.layout, context)
-        _draw_uv_mask(self.layout, context)
-
-
-class PREFILTER_PT_shapes_options(_ImagePanel, OptionsPanel, bpy.types.Panel):
-    """The other settings."""
-
-    bl_parent_id = PREFILTER_PT_shapes.__name__
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_rasterize.draw_others(self.layout, "svg")
+        column = self.layout.column(align=True)
+        place = main_button(column, context, PREFILTER_OT_rasterize_svg)
+        if place:
+            _draw_svg(place, context)
+        place = main_button(column, context, PREFILTER_OT_rasterize)
+        if place:
+            _draw_uv_mask(place, context)
+        context.scene.prefilter_rasterize.draw_in(self.layout, "svg")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        PREFILTER_PT_rasterize,
-        PREFILTER_PT_rasterize_options,
-        PREFILTER_PT_drawn,
-        PREFILTER_PT_drawn_options,
-        PREFILTER_PT_shapes,
-        PREFILTER_PT_shapes_options,
-    )
+    (PREFILTER_PT_rasterize, PREFILTER_PT_drawn, PREFILTER_PT_shapes)
 )
 
 

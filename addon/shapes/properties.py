@@ -6,6 +6,7 @@ import bpy
 from bpy.props import BoolProperty, CollectionProperty, PointerProperty
 
 from ..core.properties import properties, values
+from ..core.sidebar import subpanel
 from .choices import RasterizeSettings
 
 
@@ -20,14 +21,8 @@ class RasterizeProperties:
 
     def draw_in(self, layout: bpy.types.UILayout, source: str) -> None:
         """Draws the settings that count for a source: a key of `choices.SOURCES` but "auto"."""
-        self.draw_most_used(layout, source)
-        self.draw_others(layout, source)
-
-    def draw_most_used(self, layout: bpy.types.UILayout, source: str) -> None:
-        """Draws what is set most often."""
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(self, "filter")
         if source != "uv" and not self._is_camera(source):
             layout.prop(self, "resolution")
         if self._has_density(source):
@@ -40,24 +35,31 @@ class RasterizeProperties:
             layout.prop(self, "view")
         elif source == "uv":
             layout.prop(self, "tile")
-
-    def draw_others(self, layout: bpy.types.UILayout, source: str) -> None:
-        """Draws the other settings."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+        layout.prop(self, "filter")
         if source != "uv":
-            if not self._is_camera(source):
-                layout.prop(self, "margin")
-            layout.prop(self, "color")
-            if self.color != "mask":
-                layout.prop(self, "background")
-                if self.background == "color":
-                    layout.prop(self, "background_color", text="")
-            layout.prop(self, "overlap")
-        layout.prop(self, "pixel_type")
-        if source != "uv" and self.color != "mask":
-            layout.prop(self, "alpha")
-            layout.prop(self, "use_bleed")
+            _, body = subpanel(layout, "shape_color", "Color")
+            if body:
+                self._draw_color(body, source)
+        _, body = subpanel(layout, "shape_image", "Image")
+        if body:
+            body.prop(self, "pixel_type")
+            if source != "uv" and self.color != "mask":
+                body.prop(self, "alpha")
+                body.prop(self, "use_bleed")
+            self._draw_name(body)
+
+    def _draw_color(self, layout: bpy.types.UILayout, source: str) -> None:
+        layout.prop(self, "color")
+        if self.color != "mask":
+            layout.prop(self, "background")
+            if self.background == "color":
+                layout.prop(self, "background_color", text="")
+        layout.prop(self, "overlap")
+        if not self._is_camera(source):
+            layout.prop(self, "margin")
+
+    def _draw_name(self, layout: bpy.types.UILayout) -> None:
+        layout.prop(self, "image_name")
 
     def _is_camera(self, source: str) -> bool:
         return source == "curves" and self.view == "camera"
@@ -82,6 +84,9 @@ class PREFILTER_PG_drawn(RasterizeProperties, bpy.types.PropertyGroup):
 
     is_drawn: BoolProperty()
     objects: CollectionProperty(type=PREFILTER_PG_drawn_object)
+
+    def _draw_name(self, layout: bpy.types.UILayout) -> None:
+        """Draws nothing: the image has its name."""
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

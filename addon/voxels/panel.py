@@ -7,7 +7,7 @@ import bpy
 from ..bridge.new_meshes import is_solid
 from ..core.menus import PREFILTER_MT_object
 from ..core.properties import copy
-from ..core.sidebar import OptionsPanel, SidebarPanel
+from ..core.sidebar import SidebarPanel, main_button
 from .choices import BooleanSettings, VoxelizeSettings
 from .operators.boolean import PREFILTER_OT_boolean
 from .operators.voxelize import PREFILTER_OT_voxelize
@@ -25,68 +25,50 @@ class _SidebarPanel(SidebarPanel):
     fits = staticmethod(is_solid)
 
 
-class PREFILTER_PT_voxelize(_RemeshPanel, bpy.types.Panel):
-    """Settings and button of voxelizing, of meshes."""
+class _VoxelizePanel:
+    layout: bpy.types.UILayout
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        place = main_button(self.layout, context, PREFILTER_OT_voxelize)
+        if place:
+            _draw_voxelize(place, context)
+        context.scene.prefilter_voxelize.draw_in(self.layout)
+
+
+class _BooleanPanel:
+    layout: bpy.types.UILayout
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        place = main_button(self.layout, context, PREFILTER_OT_boolean)
+        if place:
+            _draw_boolean(place, context)
+        context.scene.prefilter_boolean.draw_in(self.layout)
+
+
+class PREFILTER_PT_voxelize(_VoxelizePanel, _RemeshPanel, bpy.types.Panel):
+    """Button and settings of voxelizing, of meshes."""
 
     bl_label = "Prefilter Voxelize"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_voxelize.draw_in(self.layout)
-        _draw_voxelize(self.layout, context)
 
-
-class PREFILTER_PT_boolean(_RemeshPanel, bpy.types.Panel):
-    """Settings and button of booleans, of meshes."""
+class PREFILTER_PT_boolean(_BooleanPanel, _RemeshPanel, bpy.types.Panel):
+    """Button and settings of booleans, of meshes."""
 
     bl_label = "Prefilter Boolean"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_boolean.draw_in(self.layout)
-        _draw_boolean(self.layout, context)
 
-
-class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, bpy.types.Panel):
-    """What is set most often, and the button of voxelizing."""
+class PREFILTER_PT_voxelize_sidebar(_VoxelizePanel, _SidebarPanel, bpy.types.Panel):
+    """Button and settings of voxelizing."""
 
     bl_label = "Voxelize"
 
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_voxelize.draw_most_used(self.layout)
-        _draw_voxelize(self.layout, context)
 
-
-class PREFILTER_PT_voxelize_options(_SidebarPanel, OptionsPanel, bpy.types.Panel):
-    """The other settings of voxelizing."""
-
-    bl_parent_id = PREFILTER_PT_voxelize_sidebar.__name__
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_voxelize.draw_others(self.layout)
-
-
-class PREFILTER_PT_boolean_sidebar(_SidebarPanel, bpy.types.Panel):
-    """What is set most often, and the button of booleans."""
+class PREFILTER_PT_boolean_sidebar(_BooleanPanel, _SidebarPanel, bpy.types.Panel):
+    """Button and settings of booleans."""
 
     bl_label = "Voxel Boolean"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_boolean.draw_most_used(self.layout)
-        _draw_boolean(self.layout, context)
-
-
-class PREFILTER_PT_boolean_options(_SidebarPanel, OptionsPanel, bpy.types.Panel):
-    """The other settings of booleans."""
-
-    bl_parent_id = PREFILTER_PT_boolean_sidebar.__name__
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_boolean.draw_others(self.layout)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
@@ -94,9 +76,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         PREFILTER_PT_voxelize,
         PREFILTER_PT_boolean,
         PREFILTER_PT_voxelize_sidebar,
-        PREFILTER_PT_voxelize_options,
         PREFILTER_PT_boolean_sidebar,
-        PREFILTER_PT_boolean_options,
     )
 )
 

@@ -7,6 +7,7 @@ from bpy.props import PointerProperty
 
 from ..bridge.files import volumes
 from ..core.properties import properties, values
+from ..core.sidebar import subpanel
 from .choices import BooleanSettings, VoxelizeSettings
 
 
@@ -15,11 +16,6 @@ class VoxelProperties:
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
-        self.draw_most_used(layout)
-        self.draw_others(layout)
-
-    def draw_most_used(self, layout: bpy.types.UILayout) -> None:
-        """Draws what is set most often."""
         layout.use_property_split = True
         layout.use_property_decorate = False
         self._draw_first(layout)
@@ -27,31 +23,39 @@ class VoxelProperties:
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
         if self._makes_mesh():
             layout.prop(self, "adaptivity")
+        self._draw_last(layout)
+        name = type(self).__name__.rpartition("_")[2]
+        _, body = subpanel(layout, f"{name}_repair", "Thin Parts and Holes")
+        if body:
+            self._draw_repair(body)
+        if not self._makes_mesh():
+            return
+        _, body = subpanel(layout, f"{name}_surface", "Surface")
+        if body:
+            self._draw_surface(body)
+        _, body = subpanel(layout, f"{name}_transfer", "Transfer")
+        if body:
+            column = body.column(align=True)
+            for name in ("use_materials", "use_uv_maps", "use_colors", "use_attributes"):
+                column.prop(self, name)
 
-    def draw_others(self, layout: bpy.types.UILayout) -> None:
-        """Draws the other settings."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
-        column = layout.column(align=True)
-        column.prop(self, "thickness")
-        column.prop(self, "gap")
+    def _draw_repair(self, layout: bpy.types.UILayout) -> None:
+        layout.prop(self, "thickness")
+        layout.prop(self, "gap")
         row = layout.row(heading="Close Holes", align=True)
         row.prop(self, "use_close_holes", text="")
         part = row.row()
         part.active = self.use_close_holes
         part.prop(self, "holes", text="")
-        if self._makes_mesh():
-            layout.prop(self, "interpolant")
-            layout.prop(self, "use_cleanup")
-            column = layout.column(heading="Transfer", align=True)
-            for name in ("use_materials", "use_uv_maps", "use_colors", "use_attributes"):
-                column.prop(self, name)
-            row = layout.row(heading="Smooth Shading", align=True)
-            row.prop(self, "use_smooth", text="")
-            part = row.row()
-            part.active = self.use_smooth
-            part.prop(self, "smooth_angle", text="")
-        self._draw_last(layout)
+
+    def _draw_surface(self, layout: bpy.types.UILayout) -> None:
+        layout.prop(self, "interpolant")
+        layout.prop(self, "use_cleanup")
+        row = layout.row(heading="Smooth Shading", align=True)
+        row.prop(self, "use_smooth", text="")
+        part = row.row()
+        part.active = self.use_smooth
+        part.prop(self, "smooth_angle", text="")
 
     def _makes_mesh(self) -> bool:
         return True
@@ -60,7 +64,7 @@ class VoxelProperties:
         """Draws what comes before the resolution."""
 
     def _draw_last(self, layout: bpy.types.UILayout) -> None:
-        """Draws what comes after the shading."""
+        """Draws what comes after the size."""
 
 
 class VoxelizeProperties(VoxelProperties):

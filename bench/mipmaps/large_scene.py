@@ -93,11 +93,7 @@ def bake(folder: Path) -> None:
     """Bakes the picture to an OpenEXR file with the extension as it is installed."""
     bpy.ops.wm.open_mainfile(filepath=str(folder / "picture.blend"))
     target = str(folder / "picture.exr")
-    clocked(
-        lambda: bpy.ops.prefilter.bake_mipmaps(
-            image="picture.png", filepath=target, use_images=False
-        )
-    )
+    clocked(lambda: bpy.ops.prefilter.bake_mipmaps(image="picture.png", filepath=target))
 
 
 def bake_cache(folder: Path) -> None:

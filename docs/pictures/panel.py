@@ -338,12 +338,10 @@ def show_model() -> None:
     view = space.region_3d
     view.view_rotation = Euler((1.3, 0.0, 0.4)).to_quaternion()
     view.view_location, view.view_distance = (0.0, 0.0, 0.0), 3.5
-    panels = (bpy.types.PREFILTER_PT_model, bpy.types.PREFILTER_PT_model_options)
-    for panel in reversed(panels):
-        bpy.utils.unregister_class(panel)
-    panels[0].bl_options = set()
-    for panel in panels:
-        bpy.utils.register_class(panel)
+    panel = bpy.types.PREFILTER_PT_model
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
     bpy.context.scene.prefilter_model.folder = "/textures/"
 
     def open_tab() -> float | None:

@@ -14,11 +14,13 @@ class Layout:
 
     def __init__(self):
         self.operators = []
+        self.made = []
         self.menus = []
 
     def operator(self, name, **_):
         self.operators.append(name)
-        return SimpleNamespace()
+        self.made.append(SimpleNamespace())
+        return self.made[-1]
 
     def menu(self, name, **_):
         self.menus.append(name)
@@ -69,6 +71,17 @@ def test_a_search_finds_what_is_in_two_menus_once():
     found = Counter(drawn("VIEW3D_MT_object", seen) + drawn("VIEW3D_MT_object_convert", seen))
     assert found["prefilter.reconstruct"] == 1
     assert set(found.values()) == {1}
+
+
+def test_the_images_of_a_material(addon):
+    material = bpy.data.materials.new("Wood")
+    layout = Layout()
+    addon("mipmaps.menus")._draw_material_menu(
+        SimpleNamespace(layout=layout), SimpleNamespace(material=material, scene=bpy.context.scene)
+    )
+    assert layout.operators == ["prefilter.bake_model"]
+    assert (layout.made[0].material, layout.made[0].objects) == ("Wood", "scene")
+    assert "prefilter.bake_model" not in drawn("MATERIAL_MT_context_menu")
 
 
 def test_every_operator_is_found():

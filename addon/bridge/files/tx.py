@@ -106,13 +106,43 @@ def state(source: Source) -> str:
     """
     try:
         time = int(source.path.stat().st_mtime)
-        found = list(source.folder.glob(f"{glob.escape(source.path.name)}.*.tx"))
-        ours = [path.stat() for path in found if _is_baked(path)]
+        ours = [path.stat() for path in _cache_files(source) if _is_baked(path)]
     except OSError:
         return "missing"
     if any(int(status.st_mtime) == time for status in ours):
         return "baked"
     return "stale" if ours else "missing"
+
+
+def remove_baked(source: Source) -> list[Path]:
+    """Removes the cache files whose levels a bake has replaced, so that Blender makes its own.
+
+    Returns:
+        What was removed.
+
+    Raises:
+        OSError: A file cannot be removed.
+    """
+    found = [path for path in _cache_files(source) if _has_other_levels(path)]
+    for path in found:
+        path.unlink()
+    return found
+
+
+def _cache_files(source: Source) -> list[Path]:
+    return list(source.folder.glob(f"{glob.escape(source.path.name)}.*.tx"))
+
+
+def _has_other_levels(path: Path) -> bool:
+    """Tells whether a file is of Blender's texture cache, but its levels are not Blender's."""
+    start = _start_of(path)
+    described = (b"oiio:SHA-1", b"oiio:ConstantColor")
+    return b"Blender maketx" in start and not any(words in start for words in described)
+
+
+def _start_of(path: Path) -> bytes:
+    with path.open("rb") as file:
+        return file.read(_START_OF_FILE)
 
 
 def _is_baked(path: Path) -> bool:
@@ -123,8 +153,7 @@ def _is_baked(path: Path) -> bool:
 
 @lru_cache(maxsize=4096)
 def _reads_as_baked(path: Path, *_: int) -> bool:
-    with path.open("rb") as file:
-        start = file.read(_START_OF_FILE)
+    start = _start_of(path)
     # See `_first_spec`: Blender's files have a hash of the image, and those written here have not.
     return b"oiio:SHA-1" not in start or b"oiio:ConstantColor" in start
 

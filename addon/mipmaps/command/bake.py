@@ -89,7 +89,7 @@ def _bake(options: argparse.Namespace) -> None:
 
 def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     """Bakes one image, or the base colors."""
-    for name in ("list", "file_format"):
+    for name in ("list", "file_format", "material"):
         if getattr(options, name, None):
             flag = name.removeprefix("file_")
             options.usage_error(f"--{flag}: needs --all")

@@ -34,7 +34,7 @@ def bake_all(options: argparse.Namespace, settings: Settings) -> None:
         staging.check_writable(Path(path))
     named = scenes.chosen(objects, options.object, WANTED) if options.object else None
     view_layer, depsgraph = bpy.context.view_layer, bpy.context.evaluated_depsgraph_get()
-    planned = plan(view_layer, depsgraph, named)
+    planned = plan(view_layer, depsgraph, named, material=chosen.material)
     images = [image_of(item.full_name) for item in planned.items]
     paths = file_names.paths(pattern, images, [Path(path)])
     files = {image.name_full: file for image, file in zip(images, paths, strict=True)}

@@ -33,12 +33,13 @@ def _look(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> Plan:
 _plans = Remembered(_look)
 
 
-def images(context: bpy.types.Context, choice: str) -> list[Known] | None:
+def images(context: bpy.types.Context, choice: str, material: str = "") -> list[Known] | None:
     """Returns the images to bake; None before a view layer is evaluated.
 
     Args:
         context: The context.
         choice: A key of `choices.MODEL_OBJECTS`.
+        material: The name of the material whose images are baked; empty for all.
     """
     found = _plans.get(context)
     if found is None:
@@ -47,7 +48,8 @@ def images(context: bpy.types.Context, choice: str) -> list[Known] | None:
     return [
         Known(item.image, item.content, names.get(item.normal_map, ""))
         for item in found.items
-        if choice == "scene" or _is_selected(context, item)
+        if (choice == "scene" or _is_selected(context, item))
+        and (not material or material in item.materials)
     ]
 
 
@@ -56,8 +58,9 @@ def _is_selected(context: bpy.types.Context, item: Item) -> bool:
     return any(obj is not None and obj.select_get() for obj in objects)
 
 
-def why_none(context: bpy.types.Context, choice: str) -> str:
-    """Returns why there is nothing to bake; empty if there is, or may be."""
-    if images(context, choice) != []:
+def why_none(context: bpy.types.Context, choice: str, material: str = "") -> str:
+    """Returns why there is nothing to bake, as `images` says; empty if there is, or may be."""
+    if images(context, choice, material) != []:
         return ""
-    return f"No {'selected' if choice == 'selected' else 'visible'} mesh shows an image"
+    shown = f"an image of '{material}'" if material else "an image"
+    return f"No {'selected' if choice == 'selected' else 'visible'} mesh shows {shown}"

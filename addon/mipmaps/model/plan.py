@@ -35,6 +35,7 @@ class Item:
         is_alone: Whether its surfaces are not all of those that show the normal map, so that both
             cannot be baked at once.
         notes: What a user should know.
+        materials: The names of the materials that show it.
     """
 
     image: str
@@ -49,6 +50,7 @@ class Item:
     roughness_channel: str = "all"
     is_alone: bool = False
     notes: tuple[str, ...] = ()
+    materials: frozenset[str] = frozenset()
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,8 @@ def plan(
     view_layer: bpy.types.ViewLayer,
     depsgraph: bpy.types.Depsgraph,
     chosen: Iterable[bpy.types.Object] | None = None,
+    *,
+    material: str = "",
 ) -> Plan:
     """Returns what there is to bake.
 
@@ -133,7 +137,13 @@ def plan(
         depsgraph: Its dependency graph, evaluated before.
         chosen: Whose images, and whose surfaces count; None for all visible objects. What an image
             is, all visible objects say.
+        material: The name of the material whose images are baked; empty for all.
+
+    Raises:
+        ValueError: There is no such material.
     """
+    if material and material not in bpy.data.materials:
+        raise ValueError(f"Material: there is no '{material}' in this file")
     shown = users.shown_materials(depsgraph)
     wanted = dict.fromkeys(shown if chosen is None else chosen)
     for obj in wanted:
@@ -147,7 +157,7 @@ def plan(
     items: list[Item] = []
     left_out: list[LeftOut] = []
     for image, known in found.items():
-        if not known.objects:
+        if not known.objects or not _is_of(known, material):
             continue
         reason = _why_left_out(image, known)
         if reason:
@@ -160,7 +170,7 @@ def plan(
             _pair(items, by_name, rough, partner, found)
     for image in bpy.data.images:
         known = found.get(image, _Found())
-        if known.objects or _is_internal(image):
+        if material or known.objects or _is_internal(image):
             continue
         reason = "as no mesh shows it" if chosen is None else "as none of these objects shows it"
         if known.hidden:
@@ -214,6 +224,10 @@ def _why_left_out(image: bpy.types.Image, known: _Found) -> str:
     return ""
 
 
+def _is_of(known: _Found, material: str) -> bool:
+    return not material or any(one.name == material for one in known.shown_by)
+
+
 def _is_internal(image: bpy.types.Image) -> bool:
     """Tells whether an image is one that Blender or the add-on has made of something else."""
     return (
@@ -236,6 +250,7 @@ def _item(image: bpy.types.Image, known: _Found) -> Item:
         tuple(dict.fromkeys(uses)),
         "data" if image.colorspace_settings.is_data else "color",
         channels=frozenset(role.channel for role in known.roles),
+        materials=frozenset(material.name for material in known.shown_by),
     )
     tests = {
         round(role.threshold, 6): role.channel == "alpha"

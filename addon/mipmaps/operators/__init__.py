@@ -10,6 +10,7 @@ from .bake_texture_cache import PREFILTER_OT_bake_texture_cache
 from .fill_unused import PREFILTER_OT_fill_unused
 from .plot_error import PREFILTER_OT_plot_error
 from .preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
+from .remove_levels import PREFILTER_OT_remove_levels
 from .show_weights import PREFILTER_OT_show_source, PREFILTER_OT_show_weights
 
 _CLASSES = (
@@ -18,6 +19,7 @@ _CLASSES = (
     PREFILTER_OT_bake_texture_cache,
     PREFILTER_OT_preview_levels,
     PREFILTER_OT_end_preview,
+    PREFILTER_OT_remove_levels,
     PREFILTER_OT_plot_error,
     PREFILTER_OT_show_weights,
     PREFILTER_OT_show_source,

@@ -3,18 +3,23 @@
 """`prefilter.bake_mipmaps`: the levels of an image, right for the meshes that wear it."""
 
 from collections.abc import Generator
-from typing import Any
+from dataclasses import replace
 
 import bpy
 from bpy.props import StringProperty
 
-from ...core.operator import Compute, WorkOperator
-from .. import reading, users
+from ...bridge import images
+from ...core.operator import Compute, WorkOperator, read_at_once
+from .. import file_names, reading, users
 from ..bake import Bake
-from ..choices import TEXTURE_SPACE_FILTERS
+from ..choices import TEXTURE_SPACE_FILTERS, Settings
 from ..properties import BakeProperties
 from ..udim import TiledBake
+from ..view.preview import PreviewWork
+from .preview_levels import reading_preview, show
 from .source import ImageOperator, image_to_read
+
+_OF_FILES = ("filepath", "file_format", "roughness_filepath")
 
 
 class PREFILTER_OT_bake_mipmaps(BakeProperties, WorkOperator, ImageOperator, bpy.types.Operator):
@@ -34,6 +39,8 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, WorkOperator, ImageOperator, bpy
         options={"SKIP_SAVE"},
     )
 
+    work: Bake | TiledBake | PreviewWork | None = None
+
     @classmethod
     def reads_surface(cls, context: bpy.types.Context) -> bool:
         """Tells whether the filter of the panel looks at a surface."""
@@ -44,18 +51,49 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, WorkOperator, ImageOperator, bpy
         del context
         self.draw_in(layout)
 
-    def read_work(self, context: bpy.types.Context) -> Bake | TiledBake:
+    def read(self, context: bpy.types.Context) -> Compute:
         """Copies the image and its surfaces."""
-        return reading.read(*self._what_to_read(context))
+        return read_at_once(self.reading(context))
 
     def reading(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
         """Copies frame after frame."""
-        self.work = yield from reading.reading(*self._what_to_read(context))
-        self.doing = f"Baking mipmaps of '{self.work.image_name}'"
-        return self.work.compute
-
-    def _what_to_read(self, context: bpy.types.Context) -> tuple[Any, ...]:
+        given = self.properties.is_property_set
+        if not given("result") and any(map(given, _OF_FILES)):
+            self.result = "file"
         image, settings = image_to_read(context, self.image), self.to_settings()
+        self.doing = f"Baking '{image.name}'"
+        if self.result == "preview":
+            compare = context.window_manager.prefilter_view.compare
+            self.work = yield from reading_preview(context, image.name, settings, compare)
+            return self.work.compute
         objects, warnings = users.objects_to_read(context, image, settings.objects)
         self.warn(warnings)
-        return image, objects, settings, context.evaluated_depsgraph_get()
+        settings = self._with_files(image, settings)
+        depsgraph = context.evaluated_depsgraph_get()
+        self.work = yield from reading.reading(image, objects, settings, depsgraph)
+        return self.work.compute
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Writes the levels, or has the editors draw them."""
+        said = super().finish(context, result)
+        if isinstance(self.work, PreviewWork):
+            show(context, self.work)
+        return said
+
+    def _with_files(self, image: bpy.types.Image, settings: Settings) -> Settings:
+        """Returns settings whose files have names, beside the .blend file where none is given."""
+        paths = (settings.filepath, settings.roughness_filepath)
+        given = (self.filepath, self.roughness_filepath)
+        if any(
+            path and not bpy.data.is_saved and (not own or own.startswith("//"))
+            for path, own in zip(paths, given, strict=True)
+        ):
+            raise ValueError(
+                "File: goes beside the .blend file; save that first, or choose a file elsewhere"
+            )
+        found = []
+        for path, name in zip(paths, (image.name, settings.roughness), strict=True):
+            if file_names.PLACE in path:
+                (path,) = file_names.paths(file_names.Pattern(path), [images.find(name)])
+            found.append(path)
+        return replace(settings, filepath=found[0], roughness_filepath=found[1])

@@ -22,9 +22,9 @@ class PREFILTER_OT_bake_model(ModelProperties, BackgroundOperator, bpy.types.Ope
     bl_idname = "prefilter.bake_model"
     bl_label = "Bake All Images"
     bl_description = (
-        "Make the mipmap levels of every image of the scene or of the selected meshes, weighted by "
-        "the surface that shows it. What an image holds is found from the nodes: color, normals, "
-        "roughness and other data, cut-outs"
+        "Make the mipmap levels of every image of the scene, of the selected meshes or of a "
+        "material, weighted by the surface that shows it. What an image holds is found from the "
+        "nodes: color, normals, roughness and other data, cut-outs"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking all images"
@@ -39,7 +39,8 @@ class PREFILTER_OT_bake_model(ModelProperties, BackgroundOperator, bpy.types.Ope
         reason = "" if bpy.data.images else "There is no image in this file"
         # Scripts may have changed the scene just now, which panels hear of later.
         if context.area is not None:
-            reason = reason or known.why_none(context, context.scene.prefilter_model.objects)
+            settings = context.scene.prefilter_model
+            reason = reason or known.why_none(context, settings.objects, settings.material)
         if reason:
             cls.poll_message_set(reason)
         return not reason
@@ -48,7 +49,6 @@ class PREFILTER_OT_bake_model(ModelProperties, BackgroundOperator, bpy.types.Ope
         """Draws the settings."""
         del context
         self.draw_in(layout)
-        self.draw_others(layout)
 
     def read(self, context: bpy.types.Context) -> Compute:
         """Looks what there is, and copies the first image and its surfaces."""
@@ -86,9 +86,10 @@ class PREFILTER_OT_bake_model(ModelProperties, BackgroundOperator, bpy.types.Ope
 
     def _planned(self, context: bpy.types.Context) -> ModelBake:
         own, shared = self.to_settings()
-        if not own.folder and not own.use_images:
-            raise ValueError("nothing to write: neither a folder nor level images are asked for")
-        if self.folder.startswith("//") and not bpy.data.is_saved:
+        folder = own.folder if own.result == "file" else ""
+        if own.result == "file" and not folder:
+            raise ValueError("Folder: found none; choose one, or Images as the result")
+        if folder and self.folder.startswith("//") and not bpy.data.is_saved:
             raise ValueError(
                 f"Folder: '{self.folder}' is beside the .blend file; save that first, or choose "
                 f"another folder"
@@ -96,13 +97,15 @@ class PREFILTER_OT_bake_model(ModelProperties, BackgroundOperator, bpy.types.Ope
         chosen = None
         if own.objects == "selected":
             chosen = [obj for obj in context.view_layer.objects if obj.select_get()]
-        planned = plan(context.view_layer, context.evaluated_depsgraph_get(), chosen)
+        planned = plan(
+            context.view_layer, context.evaluated_depsgraph_get(), chosen, material=own.material
+        )
         if not planned.items:
             raise ValueError("\n".join(ModelBake(planned, shared, {}).nothing()))
         images = [image_of(item.full_name) for item in planned.items]
-        pattern = file_names.Pattern.in_folder(own.folder, f".{own.file_format}")
+        pattern = file_names.Pattern.in_folder(folder, f".{own.file_format}")
         if not engines.has_formats(pattern.text):
             shared = replace(shared, texture_format="auto")
         paths = file_names.paths(pattern, images)
         files = {image.name_full: file for image, file in zip(images, paths, strict=True)}
-        return ModelBake(planned, replace(shared, use_images=own.use_images), files)
+        return ModelBake(planned, shared, files)

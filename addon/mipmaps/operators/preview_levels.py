@@ -2,18 +2,21 @@
 
 """`prefilter.preview_levels` and `prefilter.end_preview`: levels in the place of their image."""
 
+from collections.abc import Generator
+
 import bpy
 from bpy.props import StringProperty
 
 from ...bridge import editors, images
-from ...core.operator import Compute
+from ...core.operator import Compute, WorkOperator, read_at_once
 from ...core.properties import single_property
 from .. import choices
+from ..choices import Settings
 from ..view import preview
-from .source import ImageOperator, read_source
+from .source import ImageOperator, reading_source
 
 
-class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
+class PREFILTER_OT_preview_levels(WorkOperator, ImageOperator, bpy.types.Operator):
     """Computes the levels of an image for the editors to draw."""
 
     bl_idname = "prefilter.preview_levels"
@@ -32,6 +35,8 @@ class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
     )
     compare: single_property(choices.PreviewSettings, "compare")
 
+    work: preview.PreviewWork | None = None
+
     @classmethod
     def reads_surface(cls, context: bpy.types.Context) -> bool:
         """Tells whether one of the filters of the panels looks at a surface."""
@@ -43,22 +48,20 @@ class PREFILTER_OT_preview_levels(ImageOperator, bpy.types.Operator):
 
     def read(self, context: bpy.types.Context) -> Compute:
         """Copies the image and its surfaces."""
-        settings = context.scene.prefilter_bake.to_settings()
-        needs_surface = self.compare not in choices.TEXTURE_SPACE_FILTERS
-        source = read_source(context, self.image, settings, needs_surface=needs_surface)
-        self.warn(source.warnings)
-        self._name = source.image_name
-        uid = images.find(self._name).session_uid
-        filters = (source.settings.filter, self.compare)
-        return lambda progress: preview.compute(source, uid, filters, progress)
+        return read_at_once(self.reading(context))
 
-    def finish(self, context: bpy.types.Context, result: preview.Preview) -> str:
+    def reading(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
+        """Copies frame after frame."""
+        settings = context.scene.prefilter_bake.to_settings()
+        self.work = yield from reading_preview(context, self.image, settings, self.compare)
+        return self.work.compute
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
         """Has the editors draw the levels."""
-        preview.keep(result)
-        editors.show(context, images.find(self._name))
-        context.window_manager.prefilter_view.use_preview = True
-        editors.redraw()
-        return f"Computed levels 0 to {result.last_level}"
+        said = super().finish(context, result)
+        assert self.work is not None
+        show(context, self.work)
+        return said
 
 
 class PREFILTER_OT_end_preview(bpy.types.Operator):
@@ -82,3 +85,30 @@ class PREFILTER_OT_end_preview(bpy.types.Operator):
         preview.drop(context.space_data.image)
         editors.redraw()
         return {"FINISHED"}
+
+
+def reading_preview(
+    context: bpy.types.Context, name: str, settings: Settings, compare: str
+) -> Generator[float, None, preview.PreviewWork]:
+    """Reads an image and its surfaces for a preview, in steps of a frame.
+
+    Args:
+        context: The context.
+        name: See `reading_source`.
+        settings: Those of the bake.
+        compare: The filter on the left of the wipe.
+
+    Yields:
+        The fraction done.
+    """
+    needs_surface = compare not in choices.TEXTURE_SPACE_FILTERS
+    source = yield from reading_source(context, name, settings, needs_surface=needs_surface)
+    uid = images.find(source.image_name).session_uid
+    return preview.PreviewWork(source, uid, (source.settings.filter, compare))
+
+
+def show(context: bpy.types.Context, work: preview.PreviewWork) -> None:
+    """Has the editors draw what a preview has computed."""
+    editors.show(context, images.find(work.image_name))
+    context.window_manager.prefilter_view.use_preview = True
+    editors.redraw()

@@ -2,16 +2,17 @@
 
 """What the operators share that read an image and its surfaces."""
 
+from collections.abc import Generator
 from dataclasses import replace
 
 import bpy
 
 from ...bridge import derived, image_roles, images, materials
-from ...core.operator import BackgroundOperator
+from ...core.operator import BackgroundOperator, read_at_once
 from .. import lookups, users
 from ..bake import Bake
 from ..choices import Settings
-from ..reading import read
+from ..reading import reading
 
 
 class ImageOperator(BackgroundOperator):
@@ -67,10 +68,15 @@ def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
     return image
 
 
-def read_source(
+def read_source(context: bpy.types.Context, name: str, settings: Settings) -> Bake:
+    """Does all of `reading_source` at once."""
+    return read_at_once(reading_source(context, name, settings))
+
+
+def reading_source(
     context: bpy.types.Context, name: str, settings: Settings, *, needs_surface: bool = True
-) -> Bake:
-    """Reads an image and the objects that use it.
+) -> Generator[float, None, Bake]:
+    """Reads an image and the objects that use it, in steps of a frame.
 
     Args:
         context: The context.
@@ -79,13 +85,16 @@ def read_source(
         settings: How the image wraps, and more.
         needs_surface: Whether a surface is needed whatever the filter.
 
+    Yields:
+        The fraction done.
+
     Raises:
         ValueError: There is no such image, or no surface.
     """
     image = image_to_read(context, name)
     images.check_untiled(image)
     objects, warnings = users.objects_to_read(context, image, settings.objects)
-    source = read(
+    source = yield from reading(
         image,
         objects,
         replace(

@@ -4,30 +4,34 @@
 
 import bpy
 
-from .. import users
+from ...bridge import level_images
+from ...core.sidebar import ImagePanel, main_button
+from .. import removal, users
 from ..menus import draw_bake
+from ..operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
+from ..operators.remove_levels import PREFILTER_OT_remove_levels
 from ..operators.source import shown_image
 
 
-class PREFILTER_PT_bake(bpy.types.Panel):
-    """Settings and button of the bake."""
+class PREFILTER_PT_bake(ImagePanel, bpy.types.Panel):
+    """Button and settings of the bake."""
 
     bl_label = "Mipmaps"
-    bl_space_type = "IMAGE_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Prefilter"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        settings = context.scene.prefilter_bake
-        settings.draw_in(self.layout)
+        layout, settings = self.layout, context.scene.prefilter_bake
+        place = main_button(layout, context, PREFILTER_OT_bake_mipmaps)
+        if place:
+            draw_bake(place, context)
         image = shown_image(context)
         if image is not None:
             text = users.what_is_read(context, image, settings.objects, [settings.filter])
-            self.layout.label(text=text, icon="INFO")
-        row = self.layout.row()
-        row.scale_y = 1.5
-        draw_bake(row, context)
+            layout.label(text=text, icon="INFO")
+        row = layout.row()
+        row.enabled = removal.has_levels(level_images.source_of_level(image) or image)
+        row.operator(PREFILTER_OT_remove_levels.bl_idname, icon="TRASH")
+        settings.draw_in(layout)
 
 
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_bake,))

@@ -5,10 +5,11 @@
 import bpy
 
 from ...bridge.meshes import may_show_image
-from ...core.sidebar import OptionsPanel, SidebarPanel
+from ...core.sidebar import SidebarPanel, main_button, subpanel
 from ..choices import CONTENTS
 from ..menus import draw_bake_model
 from ..model import known
+from ..operators.bake_model import PREFILTER_OT_bake_model
 
 _ICONS = {
     "color": "IMAGE_RGB",
@@ -20,7 +21,7 @@ _MOST_IMAGES = 12
 
 
 class PREFILTER_PT_model(SidebarPanel, bpy.types.Panel):
-    """What is set most often, what there is to bake, and the button."""
+    """The button, the settings, and what there is to bake."""
 
     bl_label = "Mipmaps of All Images"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -28,34 +29,26 @@ class PREFILTER_PT_model(SidebarPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        settings = context.scene.prefilter_model
-        settings.draw_in(self.layout)
-        if settings.folder.startswith("//") and not bpy.data.is_saved:
-            self.layout.label(text="Save the .blend file first", icon="ERROR")
-        found = known.images(context, settings.objects) or []
-        column = self.layout.column(align=True)
+        layout, settings = self.layout, context.scene.prefilter_model
+        place = main_button(layout, context, PREFILTER_OT_bake_model)
+        if place:
+            draw_bake_model(place, context)
+        is_beside = settings.result == "file" and settings.folder.startswith("//")
+        if is_beside and not bpy.data.is_saved:
+            layout.label(text="Save the .blend file first", icon="ERROR")
+        settings.draw_in(layout)
+        found = known.images(context, settings.objects, settings.material) or []
+        header, body = subpanel(layout, "model_images", "Images")
+        header.label(text=str(len(found)))
+        if not body:
+            return
+        column = body.column(align=True)
         for one in found[:_MOST_IMAGES]:
             row = column.row()
             row.label(text=one.image, icon=_ICONS[one.content])
             row.label(text="Roughness" if one.partner else CONTENTS[one.content].label)
         if len(found) > _MOST_IMAGES:
             column.label(text=f"and {len(found) - _MOST_IMAGES} more", icon="BLANK1")
-        row = self.layout.row()
-        row.scale_y = 1.5
-        draw_bake_model(row, context)
 
 
-class PREFILTER_PT_model_options(SidebarPanel, OptionsPanel, bpy.types.Panel):
-    """The other settings of the bake of all images."""
-
-    bl_parent_id = PREFILTER_PT_model.__name__
-    fits = staticmethod(may_show_image)
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        context.scene.prefilter_model.draw_others(self.layout)
-
-
-register, unregister = bpy.utils.register_classes_factory(
-    (PREFILTER_PT_model, PREFILTER_PT_model_options)
-)
+register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_model,))

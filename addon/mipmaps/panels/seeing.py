@@ -9,6 +9,7 @@ import bpy.utils.previews
 import numpy as np
 
 from ...bridge import derived
+from ...core.sidebar import ImagePanel, button
 from ..operators.fill_unused import PREFILTER_OT_fill_unused
 from ..operators.plot_error import PREFILTER_OT_plot_error
 from ..operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
@@ -20,13 +21,7 @@ _swatches: list[tuple[str, str]] = []
 _icons: Any = None
 
 
-class _Panel:
-    bl_space_type = "IMAGE_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Prefilter"
-
-
-class PREFILTER_PT_preview(_Panel, bpy.types.Panel):
+class PREFILTER_PT_preview(ImagePanel, bpy.types.Panel):
     """The level slider and the wipe."""
 
     bl_label = "Preview"
@@ -44,6 +39,16 @@ class PREFILTER_PT_preview(_Panel, bpy.types.Panel):
         settings = context.window_manager.prefilter_view
         image = context.space_data.image
         shown = preview.find(image)
+        place = button(layout, context, PREFILTER_OT_preview_levels)
+        if place:
+            row = place.row(align=True)
+            text = "Preview Levels" if shown is None else "Refresh"
+            operator = row.operator(
+                PREFILTER_OT_preview_levels.bl_idname, text=text, icon="FILE_REFRESH"
+            )
+            operator.compare = settings.compare
+            if shown is not None:
+                row.operator(PREFILTER_OT_end_preview.bl_idname, text="", icon="X")
         if shown is not None:
             column = layout.column()
             column.active = settings.use_preview
@@ -65,16 +70,9 @@ class PREFILTER_PT_preview(_Panel, bpy.types.Panel):
             elif settings.compare not in shown.levels:
                 layout.label(text="The filter has changed", icon="ERROR")
         layout.prop(settings, "compare")
-        text = "Preview Levels" if shown is None else "Refresh"
-        operator = layout.operator(
-            PREFILTER_OT_preview_levels.bl_idname, text=text, icon="FILE_REFRESH"
-        )
-        operator.compare = settings.compare
-        if shown is not None:
-            layout.operator(PREFILTER_OT_end_preview.bl_idname, icon="X")
 
 
-class PREFILTER_PT_error(_Panel, bpy.types.Panel):
+class PREFILTER_PT_error(ImagePanel, bpy.types.Panel):
     """The error plot."""
 
     bl_label = "Error Plot"
@@ -83,16 +81,18 @@ class PREFILTER_PT_error(_Panel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         settings = context.window_manager.prefilter_view
+        place = button(self.layout, context, PREFILTER_OT_plot_error)
+        if place:
+            operator = place.operator(PREFILTER_OT_plot_error.bl_idname, icon="FCURVE")
+            operator.filters = settings.plot_filters
+        _draw_back(self.layout, context)
         self.layout.column(align=True).prop(settings, "plot_filters")
         reader = context.scene.prefilter_bake.reader
         if reader != "linear" and "pam-trilinear" in settings.plot_filters:
             self.layout.label(text="PAM Trilinear requires Linear Light", icon="ERROR")
-        operator = self.layout.operator(PREFILTER_OT_plot_error.bl_idname, icon="FCURVE")
-        operator.filters = settings.plot_filters
-        _draw_back(self.layout, context)
 
 
-class PREFILTER_PT_texel_use(_Panel, bpy.types.Panel):
+class PREFILTER_PT_texel_use(ImagePanel, bpy.types.Panel):
     """The weights of texels, and what to do about unused ones."""
 
     bl_label = "Texel Use"
@@ -101,12 +101,17 @@ class PREFILTER_PT_texel_use(_Panel, bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         layout = self.layout
-        layout.operator(PREFILTER_OT_show_weights.bl_idname, icon="TEXTURE")
+        for operator, icon in (
+            (PREFILTER_OT_show_weights, "TEXTURE"),
+            (PREFILTER_OT_fill_unused, "SNAP_FACE"),
+        ):
+            place = button(layout, context, operator)
+            if place:
+                place.operator(operator.bl_idname, icon=icon)
+        _draw_back(layout, context)
         legend = layout.column(align=True)
         for key, text in _swatches:
             legend.label(text=text, icon_value=_icons[key].icon_id)
-        layout.operator(PREFILTER_OT_fill_unused.bl_idname, icon="SNAP_FACE")
-        _draw_back(layout, context)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

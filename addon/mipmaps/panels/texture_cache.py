@@ -4,8 +4,10 @@
 
 import bpy
 
+from ...core.sidebar import button
 from .. import cache_states
 from ..operators.bake_texture_cache import PREFILTER_OT_bake_texture_cache
+from ..operators.remove_levels import PREFILTER_OT_remove_levels
 
 _ICON = "TEXTURE"
 _ICONS = {"stale": "FILE_REFRESH", "missing": "X", "packed": "PACKAGE", "unfit": "ERROR"}
@@ -32,13 +34,20 @@ class PREFILTER_PT_texture_cache(bpy.types.Panel):
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         column = self.layout.column()
-        column.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)
         found = cache_states.states(context)
-        if any(one.state == "packed" for one in found):
-            operator = column.operator(
+        place = button(column, context, PREFILTER_OT_bake_texture_cache)
+        if place:
+            place.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)
+        if place and any(one.state == "packed" for one in found):
+            operator = place.operator(
                 PREFILTER_OT_bake_texture_cache.bl_idname, text="Unpack and Bake", icon="PACKAGE"
             )
             operator.use_unpack = True
+        if any(one.state in {"baked", "stale"} for one in found):
+            operator = column.operator(
+                PREFILTER_OT_remove_levels.bl_idname, text="Remove from Texture Cache", icon="TRASH"
+            )
+            operator.kinds, operator.use_all = {"cache"}, True
         if found:
             column.label(text=f"Images: {cache_states.summary(found)}")
         others = [one for one in found if one.state != "baked"]

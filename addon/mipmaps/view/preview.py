@@ -9,6 +9,7 @@ from ...bridge.images import FloatArray
 from ...bridge.previews import Previews
 from ...core.alpha import associated
 from ...core.jobs import Progress, parts
+from ...core.outcome import Outcome
 from .. import lookups
 from ..bake import Bake
 from ..choices import Settings
@@ -60,6 +61,37 @@ class Preview:
 _previews: Previews[Preview] = Previews()
 keep, find, drop = _previews.keep, _previews.find, _previews.drop
 register, unregister = _previews.register, _previews.unregister
+
+
+class PreviewWork:
+    """The levels of an image with some filters, as work."""
+
+    def __init__(self, source: Bake, image_uid: int, filters: Iterable[str]) -> None:
+        """Takes what `compute` does."""
+        self._source = source
+        self._image_uid = image_uid
+        self._filters = list(filters)
+        self._preview: Preview | None = None
+
+    @property
+    def image_name(self) -> str:
+        """The name of the image."""
+        return self._source.image_name
+
+    def compute(self, progress: Progress) -> None:
+        """Computes the levels; may run in another thread."""
+        self._preview = compute(self._source, self._image_uid, self._filters, progress)
+
+    def write(self) -> Outcome:
+        """Keeps the levels for the editors to draw."""
+        assert self._preview is not None
+        keep(self._preview)
+        return Outcome(
+            f"Computed levels 0 to {self._preview.last_level}", warnings=self._source.warnings
+        )
+
+    def discard(self) -> None:
+        """Does nothing: there are no files."""
 
 
 def settings_for_preview(settings: Settings) -> Settings:

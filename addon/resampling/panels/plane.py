@@ -5,17 +5,15 @@
 import bpy
 
 from ...core.menus import PREFILTER_MT_image
+from ...core.sidebar import ImagePanel, button
 from ..operators.preview_plane import PREFILTER_OT_end_plane, PREFILTER_OT_preview_plane
 from ..view import kept
 
 
-class PREFILTER_PT_plane(bpy.types.Panel):
-    """How the plane is drawn, and the buttons."""
+class PREFILTER_PT_plane(ImagePanel, bpy.types.Panel):
+    """The buttons, and how the plane is drawn."""
 
     bl_label = "Preview Plane"
-    bl_space_type = "IMAGE_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Prefilter"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context: bpy.types.Context) -> None:
@@ -30,6 +28,12 @@ class PREFILTER_PT_plane(bpy.types.Panel):
         layout.use_property_decorate = False
         settings = context.window_manager.prefilter_plane
         shown = kept.find(context.space_data.image)
+        place = button(layout, context, PREFILTER_OT_preview_plane)
+        if place:
+            row = place.row(align=True)
+            _draw_preview(row, context, "Preview Plane" if shown is None else "Refresh")
+            if shown is not None:
+                row.operator(PREFILTER_OT_end_plane.bl_idname, text="", icon="X")
         if shown is not None:
             column = layout.column()
             column.active = settings.use_plane
@@ -43,9 +47,6 @@ class PREFILTER_PT_plane(bpy.types.Panel):
             elif shown.filter != settings.filter:
                 layout.label(text="The filter has changed", icon="ERROR")
         layout.prop(settings, "filter")
-        _draw_preview(layout, context, "Preview Plane" if shown is None else "Refresh")
-        if shown is not None:
-            layout.operator(PREFILTER_OT_end_plane.bl_idname, icon="X")
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((PREFILTER_PT_plane,))

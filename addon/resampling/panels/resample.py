@@ -6,30 +6,28 @@ import bpy
 
 from ...core.menus import PREFILTER_MT_image
 from ...core.properties import copy
+from ...core.sidebar import ImagePanel, main_button
 from ..choices import ResampleSettings
 from ..operators.resample_image import PREFILTER_OT_resample_image
 from ..placement import placement
 
 
-class PREFILTER_PT_resample(bpy.types.Panel):
-    """Settings and button."""
+class PREFILTER_PT_resample(ImagePanel, bpy.types.Panel):
+    """Button and settings."""
 
     bl_label = "Resample"
-    bl_space_type = "IMAGE_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Prefilter"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         settings = context.scene.prefilter_resample
-        settings.draw_in(self.layout)
+        place = main_button(self.layout, context, PREFILTER_OT_resample_image)
+        if place:
+            _draw_resample(place, context)
         image = context.space_data.image
         if image is not None and all(image.size):
             self.layout.label(**_what_comes_out(settings.to_settings(), *image.size))
-        row = self.layout.row()
-        row.scale_y = 1.5
-        _draw_resample(row, context)
+        settings.draw_in(self.layout)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

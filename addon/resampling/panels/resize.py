@@ -6,31 +6,29 @@ import bpy
 
 from ...core.menus import PREFILTER_MT_image
 from ...core.properties import copy
+from ...core.sidebar import ImagePanel, main_button
 from ..choices import ResizeSettings
 from ..operators.resize_image import PREFILTER_OT_resize_image
 
 
-class PREFILTER_PT_resize(bpy.types.Panel):
-    """Settings and button."""
+class PREFILTER_PT_resize(ImagePanel, bpy.types.Panel):
+    """Button and settings."""
 
     bl_label = "Resize"
-    bl_space_type = "IMAGE_EDITOR"
-    bl_region_type = "UI"
-    bl_category = "Prefilter"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
         settings = context.scene.prefilter_resize
-        settings.draw_in(self.layout)
+        place = main_button(self.layout, context, PREFILTER_OT_resize_image)
+        if place:
+            _draw_resize(place, context)
         image = context.space_data.image
         if image is not None and all(image.size):
             width, height = settings.to_settings().new_size(*image.size)
             text = f"{image.size[0]} x {image.size[1]} to {width} x {height}"
             self.layout.label(text=text, icon="INFO")
-        row = self.layout.row()
-        row.scale_y = 1.5
-        _draw_resize(row, context)
+        settings.draw_in(self.layout)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((PREFILTER_PT_resize,))

@@ -6,12 +6,13 @@ import bpy
 
 from ...core.menus import PREFILTER_MT_image
 from ...core.properties import copy
+from ...core.sidebar import main_button
 from ..choices import TableSettings
 from ..operators.sampling_table import PREFILTER_OT_sampling_table
 
 
 class PREFILTER_PT_sampling_table(bpy.types.Panel):
-    """Settings and button."""
+    """Button and settings."""
 
     bl_label = "Sampling Table"
     bl_space_type = "TEXT_EDITOR"
@@ -20,10 +21,10 @@ class PREFILTER_PT_sampling_table(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
+        place = main_button(self.layout, context, PREFILTER_OT_sampling_table)
+        if place:
+            _draw_make(place, context)
         context.scene.prefilter_sampling_table.draw_in(self.layout)
-        row = self.layout.row()
-        row.scale_y = 1.5
-        _draw_make(row, context)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

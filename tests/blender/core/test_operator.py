@@ -11,7 +11,19 @@ import pytest
 
 TIMER = SimpleNamespace(type="TIMER", value="NOTHING")
 ESC = SimpleNamespace(type="ESC", value="PRESS")
+CLICK = SimpleNamespace(type="LEFTMOUSE", value="PRESS")
 STEPS = ("read", "compute", "finish")
+
+
+class Switches(list):
+    """Stands for a collection of Blender's."""
+
+    def add(self):
+        self.append(SimpleNamespace(name="", use_cancel=False))
+        return self[-1]
+
+    def get(self, name):
+        return next((one for one in self if one.name == name), None)
 
 
 @pytest.fixture
@@ -26,6 +38,7 @@ def context():
         event_timer_remove=calls.append,
         modal_handler_add=lambda operator: None,
         windows=[],
+        prefilter_runs=Switches(),
     )
     workspace = SimpleNamespace(status_text_set=lambda text: None)
     return SimpleNamespace(window_manager=manager, window=None, workspace=workspace, calls=calls)
@@ -72,7 +85,23 @@ def probe(addon, monkeypatch):
                 raise self.error
 
     yield Probe
-    assert not module.BackgroundOperator._running
+    assert addon("core.running").find("prefilter.probe") is None
+
+
+class Drawing:
+    """Stands for a layout of Blender's, and keeps what it is to show."""
+
+    def __init__(self):
+        self.shown = []
+
+    def split(self, **_):
+        return self
+
+    def progress(self, *, factor, text):
+        self.shown.append((text, factor))
+
+    def prop(self, data, name, **_):
+        self.shown.append(name)
 
 
 def played(operator, context):
@@ -176,6 +205,63 @@ def test_esc_ends_within_a_tick_of_the_work(addon, probe, context):
     assert operator.discarded == 1
 
 
+def test_the_button_cancels_as_esc_does(addon, probe, context):
+    operator = probe()
+
+    def compute(progress):
+        while progress(0.25):
+            time.sleep(0.001)
+        raise prefilter.Cancelled("cancelled")
+
+    operator.compute = compute
+    operator.invoke(context, None)
+    while operator._job.progress < 0.25:
+        time.sleep(0.001)
+    assert operator.modal(context, TIMER) == {"PASS_THROUGH"}
+    drawn = Drawing()
+    running = addon("core.running")
+    assert running.draw(drawn, context, probe.bl_idname)
+    assert drawn.shown == [("25 %", 0.25), "use_cancel"]
+    assert not running.draw(drawn, context, "prefilter.other")
+    (switch,) = context.window_manager.prefilter_runs
+    switch.use_cancel = True
+    while operator.modal(context, TIMER) != {"CANCELLED"}:
+        time.sleep(0.001)
+    assert operator.reports == ["Probing canceled"]
+    assert operator.discarded == 1
+    # The button comes back unpressed.
+    assert played(probe(), context) == {"FINISHED"}
+
+
+def test_the_button_cancels_what_is_read(probe, context):
+    operator, closed = probe(), []
+
+    def reading(_):
+        try:
+            while True:
+                yield 0.5
+        finally:
+            closed.append(True)
+
+    operator.reading = reading
+    operator.invoke(context, None)
+    assert operator.modal(context, TIMER) == {"RUNNING_MODAL"}
+    context.window_manager.prefilter_runs[0].use_cancel = True
+    assert operator.modal(context, TIMER) == {"CANCELLED"}
+    assert (closed, operator.discarded) == ([True], 1)
+
+
+def test_while_it_reads_only_the_button_takes_clicks(addon, probe, context, monkeypatch):
+    operator = probe()
+    operator.reading = lambda _: iter(lambda: 0.5, None)
+    operator._let_go = lambda: None
+    operator.invoke(context, None)
+    for is_over, status in ((False, {"RUNNING_MODAL"}), (True, {"PASS_THROUGH"})):
+        monkeypatch.setattr(addon("core.running"), "is_over_button", lambda *_, x=is_over: x)
+        assert operator.modal(context, CLICK) == status
+    assert operator.modal(context, ESC) == {"CANCELLED"}
+
+
 def test_esc_does_not_wait_for_a_step_that_cannot_stop(probe, context):
     waited = []
     for _ in range(3):
@@ -209,7 +295,7 @@ def test_redo_that_is_slow_waits(probe, context):
 
 
 def test_redo_that_turns_out_slow_is_cut_short_and_waits(addon, probe, context, monkeypatch):
-    monkeypatch.setattr(addon("core.operator"), "QUICK_SECONDS", 0.05)
+    monkeypatch.setattr(addon("core.operator"), "QUICK_SECONDS", 0.3)
     assert played(probe(), context) == {"FINISHED"}
     operator = probe()
     operator.options = SimpleNamespace(is_repeat=True, is_repeat_last=False)
@@ -226,7 +312,7 @@ def test_redo_that_turns_out_slow_is_cut_short_and_waits(addon, probe, context, 
     # The next change of a setting does not even try.
     operator.read = None
     assert operator.execute(context) == {"CANCELLED"}
-    assert operator._waits > 0.05
+    assert operator._waits > 0.3
 
 
 @pytest.fixture

@@ -259,6 +259,8 @@ def test_what_output_means(addon, output, expected):
         (["--all", "--output", "o", "--format", "exr", "--texture-format", "bc1"], ["'bc1'"]),
         (["--all", "--output", "o", "--format", "dds", "--supercompression", "zstd"], ["'zstd'"]),
         (["--all", "--output", "o", "--save"], ["--save", ".blend"]),
+        (["--all", "--list", "--material", "Gone"], ["there is no 'Gone'"]),
+        (["--material", "Wood", "--output", "o.exr"], ["--material", "--all"]),
         (["--list", "--output", "o.exr"], ["--list", "--all"]),
         (["--format", "dds", "--output", "o.exr"], ["--format", "--all"]),
     ],

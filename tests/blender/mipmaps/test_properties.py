@@ -9,10 +9,10 @@ import pytest
 
 
 class Layout(SimpleNamespace):
-    """Stands for a layout of Blender's, and keeps the names of what it is to show."""
+    """Stands for a layout of Blender's, with all panels open; keeps names of what it is to show."""
 
     def __init__(self):
-        super().__init__(shown=[])
+        super().__init__(shown=[], panels=[])
 
     def prop(self, data, name, **options):
         self.shown.append(name)
@@ -20,7 +20,7 @@ class Layout(SimpleNamespace):
     def prop_search(self, data, name, *arguments):
         self.shown.append(name)
 
-    def separator(self):
+    def label(self, **options):
         pass
 
     def row(self, **options):
@@ -28,40 +28,75 @@ class Layout(SimpleNamespace):
 
     column = row
 
+    def panel(self, name, *, default_closed):
+        assert default_closed
+        self.panels.append(name)
+        return self, self
 
-@pytest.mark.parametrize(
-    ("filepath", "is_shown"),
-    [("", False), ("//out.exr", False), ("//out.png", False), ("//a.DDS", True), ("b.ktx2", True)],
-)
-def test_the_texture_format_shows_where_it_matters(filepath, is_shown):
-    settings = bpy.context.scene.prefilter_bake
-    settings.filepath = filepath
+
+def shown(settings):
     layout = Layout()
     settings.draw_in(layout)
-    assert "filepath" in layout.shown
-    assert ("texture_format" in layout.shown) == is_shown
+    return layout.shown
 
 
 @pytest.mark.parametrize(
-    ("filepath", "is_shown"), [("", False), ("//a.dds", False), ("b.KTX2", True)]
+    ("result", "file_format", "texture_format", "supercompression"),
+    [
+        ("images", "ktx2", False, False),
+        ("preview", "dds", False, False),
+        ("file", "exr", False, False),
+        ("file", "png", False, False),
+        ("file", "dds", True, False),
+        ("file", "ktx2", True, True),
+    ],
 )
-def test_supercompression_shows_for_ktx2(filepath, is_shown):
+def test_what_files_have_shows_where_it_matters(
+    result, file_format, texture_format, supercompression
+):
     settings = bpy.context.scene.prefilter_bake
-    settings.filepath = filepath
-    layout = Layout()
-    settings.draw_in(layout)
-    assert ("supercompression" in layout.shown) == is_shown
+    settings.result, settings.file_format = result, file_format
+    names = shown(settings)
+    assert ("filepath" in names) == ("file_format" in names) == (result == "file")
+    assert ("texture_format" in names) == texture_format
+    assert ("supercompression" in names) == supercompression
 
 
-def test_the_texture_format_of_a_roughness_file():
+def test_the_file_of_a_roughness_image():
     settings = bpy.context.scene.prefilter_bake
-    settings.content = "normal"
-    settings.roughness = "Rough"
-    settings.roughness_filepath = "//rough.dds"
+    settings.result, settings.content, settings.roughness = "file", "normal", "Rough"
+    assert "roughness_filepath" in shown(settings)
+    assert settings.to_settings().roughness_filepath.endswith("{name}.ktx2")
+    settings.result = "images"
+    assert "roughness_filepath" not in shown(settings)
+    settings.result, settings.content = "file", "color"
+    assert "roughness_filepath" not in shown(settings)
+    assert settings.to_settings().roughness_filepath == ""
+
+
+@pytest.mark.parametrize("name", ["prefilter_bake", "prefilter_model"])
+def test_everything_is_shown_once(name):
+    settings = getattr(bpy.context.scene, name)
+    settings.result = "file"
+    if name == "prefilter_bake":
+        settings.content, settings.roughness = "normal", "Rough"
+    names = shown(settings)
+    assert len(names) == len(set(names))
+    declared = {*type(settings).__annotations__, *dir(settings)} & set(names)
+    missing = set(settings.bl_rna.properties.keys()) - set(names) - {"rna_type", "name"}
+    assert missing == ({"threshold"} if name == "prefilter_bake" else set())
+    assert declared == set(names)
+
+
+def test_panels_are_told_apart():
+    """Blender remembers by the name which panels of a region are open."""
+    names = []
+    for group in ("prefilter_bake", "prefilter_model", "prefilter_voxelize", "prefilter_boolean"):
+        layout = Layout()
+        getattr(bpy.context.scene, group).draw_in(layout)
+        names += layout.panels
     layout = Layout()
-    settings.draw_in(layout)
-    assert "texture_format" in layout.shown
-    settings.content = "color"
-    layout = Layout()
-    settings.draw_in(layout)
-    assert "texture_format" not in layout.shown
+    bpy.context.scene.prefilter_reconstruct.draw_in(layout)
+    bpy.context.scene.prefilter_rasterize.draw_in(layout, "curves")
+    names += layout.panels
+    assert len(names) == len(set(names)) > 10

@@ -50,6 +50,27 @@ def test_an_older_blender_says_what_is_needed():
 
 
 @needs_cache
+def test_levels_are_removed_again(scene, tmp_path):
+    image = cycles.write_picture(tmp_path / "paint.png", smooth(256, 256, 3), "uint8")
+    cycles.shown_on(image)
+    generate()
+    made, levels = contents(tmp_path), [cycles.level(cycles.cache_file(tmp_path), 3)]
+    with pytest.raises(RuntimeError, match="has no levels to remove"):
+        bpy.ops.prefilter.remove_levels(image=image.name, kinds={"cache"})
+    assert contents(tmp_path) == made
+    bake()
+    baked = contents(tmp_path)
+    assert baked != made
+    with pytest.raises(RuntimeError, match="has no levels to remove"):
+        bpy.ops.prefilter.remove_levels(image=image.name)
+    assert contents(tmp_path) == baked
+    assert bpy.ops.prefilter.remove_levels(kinds={"cache"}, use_all=True) == {"FINISHED"}
+    assert not cycles.cache_files(tmp_path)
+    generate()
+    np.testing.assert_array_equal(cycles.level(cycles.cache_file(tmp_path), 3), *levels)
+
+
+@needs_cache
 def test_poll_without_images():
     assert not bpy.ops.prefilter.bake_texture_cache.poll()
     with pytest.raises(RuntimeError, match="no image in this file"):

@@ -39,11 +39,23 @@ def test_what_is_selected(saved):
 
 
 def test_level_images_without_files(saved):
-    assert bake(folder="", use_images=True) == {"FINISHED"}
+    assert bake(result="images") == {"FINISHED"}
     assert files(saved) == ["scene.blend"]
     assert {f"{name}.mip{i:02d}" for name in ("Left", "Right") for i in (1, 2, 3)} < {
         image.name for image in bpy.data.images
     }
+
+
+def test_a_material(saved, capfd):
+    with pytest.raises(RuntimeError, match="Material: there is no 'Gone' in this file"):
+        bake(material="Gone")
+    # Another material shows the image, too: its surface counts, its other images are not baked.
+    other = scenes.textured_quad(bpy.data.images["Right"], "Other")
+    scenes.image_node(other.active_material.node_tree, scenes.image("More", scenes.noise(8, 8)))
+    material = bpy.data.objects["Right"].active_material
+    assert bake(material=material.name) == {"FINISHED"}
+    assert files(saved) == ["mipmaps/Right.ktx2", "scene.blend"]
+    assert "Baked 1 image into 1 file" in capfd.readouterr().out
 
 
 def test_what_fails_stops_nothing_else(saved, capfd):
@@ -77,7 +89,7 @@ def test_reasons_not_to_start(tmp_path):
     assert bpy.ops.prefilter.bake_model.poll()
     with pytest.raises(RuntimeError, match=r"Folder: '//mipmaps/' is beside the \.blend file"):
         bake()
-    with pytest.raises(RuntimeError, match="neither a folder nor level images"):
+    with pytest.raises(RuntimeError, match="Folder: found none"):
         bake(folder="")
     bpy.ops.object.select_all(action="DESELECT")
     with pytest.raises(RuntimeError, match="as none of these objects shows it: 'Paint'"):
@@ -92,5 +104,11 @@ def test_what_the_panel_lists(addon):
     found = known.images(bpy.context, "scene")
     assert [(one.image, one.content, one.partner) for one in found] == [("Paint", "color", "")]
     assert known.why_none(bpy.context, "scene") == ""
+    material = bpy.data.objects["Quad"].active_material.name
+    assert len(known.images(bpy.context, "scene", material)) == 1
+    assert known.images(bpy.context, "scene", "Gone") == []
+    assert (
+        known.why_none(bpy.context, "scene", "Gone") == "No visible mesh shows an image of 'Gone'"
+    )
     assert known.images(bpy.context, "selected") == []
     assert known.why_none(bpy.context, "selected") == "No selected mesh shows an image"

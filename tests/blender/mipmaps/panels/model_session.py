@@ -42,7 +42,7 @@ def session() -> Iterator[None]:
     tab = sidebar.active_panel_category
 
     override = {"window": window, "area": area}
-    options = {"folder": str(FOLDER), "file_format": "tif", "use_images": True}
+    options = {"folder": str(FOLDER), "file_format": "tif"}
     with bpy.context.temp_override(**override):
         started = bpy.ops.prefilter.bake_model("INVOKE_DEFAULT", **options)
         refused_while_running = refused(bpy.ops.prefilter.bake_model)
@@ -52,6 +52,9 @@ def session() -> Iterator[None]:
     after_cancel = {"images": images(), "files": files()}
     with bpy.context.temp_override(**override):
         bpy.ops.prefilter.bake_model("INVOKE_DEFAULT", **options)
+    yield from until(idle)
+    with bpy.context.temp_override(**override):
+        bpy.ops.prefilter.bake_model("INVOKE_DEFAULT", result="images")
     yield from until(idle)
     after_bake = {"images": images(), "files": files()}
     with bpy.context.temp_override(**override):

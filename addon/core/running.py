@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Operators at work: how far they are, in panels and in the status bar, with buttons to cancel."""
+
+import bpy
+from bpy.props import BoolProperty, CollectionProperty
+
+TICK_SECONDS = 0.05
+"""How often a running operator looks at its thread."""
+
+_SWITCH = "use_cancel"
+_STATUS_UNITS = 20.0
+_runs: dict[str, "Run"] = {}
+
+
+class PREFILTER_PG_run(bpy.types.PropertyGroup):
+    """The button that cancels an operator, whose identifier is the name.
+
+    It is a property as Blender tells over which property the mouse is, but not over which operator.
+    """
+
+    use_cancel: BoolProperty(
+        name="Cancel", description="Stop, and keep nothing of the result. Esc does the same"
+    )
+
+
+class Run:
+    """An operator at work, and what Blender shows of that."""
+
+    def __init__(self, context: bpy.types.Context, key: str, *, is_redo: bool) -> None:
+        """Begins.
+
+        Args:
+            context: Where the operator runs; its timer is for the window.
+            key: The identifier of the operator.
+            is_redo: Whether the redo panel shows the progress, too.
+        """
+        self.is_redo = is_redo
+        self.fraction = 0.0
+        self.text = ""
+        self._key = key
+        manager = context.window_manager
+        switch = _switch(manager, key)
+        if switch is None:
+            switch = manager.prefilter_runs.add()
+            switch.name = key
+        switch.use_cancel = False
+        manager.progress_begin(0, 100)
+        self._timer = manager.event_timer_add(TICK_SECONDS, window=context.window)
+        _runs[key] = self
+        _redraw_panels(context)
+
+    def is_cancelled(self, context: bpy.types.Context) -> bool:
+        """Tells whether someone has pressed the button."""
+        switch = _switch(context.window_manager, self._key)
+        return switch is not None and switch.use_cancel
+
+    def show(self, context: bpy.types.Context, what: str, fraction: float) -> None:
+        """Shows what goes on, and how much of all is done."""
+        percent = round(100 * fraction)
+        text = f"{what}: {percent} %"
+        if text == self.text:
+            return
+        self.fraction, self.text = fraction, text
+        context.window_manager.progress_update(percent)
+        context.workspace.status_text_set(_draw_status)
+        _redraw_panels(context)
+
+    def end(self, context: bpy.types.Context) -> None:
+        """Takes everything back; another call does nothing."""
+        if _runs.get(self._key) is not self:
+            return
+        del _runs[self._key]
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.progress_end()
+        if context.workspace is not None and not _runs:
+            context.workspace.status_text_set(None)
+        # Buttons look as poll has last said; they take no click before they are drawn again.
+        for window in context.window_manager.windows:
+            for area in window.screen.areas:
+                area.tag_redraw()
+
+
+def find(key: str) -> Run | None:
+    """Returns the run of an operator, by its identifier; None if it does not run."""
+    return _runs.get(key)
+
+
+def draw(layout: bpy.types.UILayout, context: bpy.types.Context, key: str) -> bool:
+    """Draws how far an operator is, and a button that cancels it; False if it does not run."""
+    run = _runs.get(key)
+    if run is None:
+        return False
+    parts = layout.split(factor=0.65, align=True)
+    parts.progress(factor=run.fraction, text=f"{round(100 * run.fraction)} %")
+    _draw_switch(parts, context, key)
+    return True
+
+
+def is_over_button(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Tells whether the mouse is over a button that cancels."""
+    for area in context.window.screen.areas:
+        for region in area.regions:
+            x, y = event.mouse_x - region.x, event.mouse_y - region.y
+            if not (0 <= x < region.width and 0 <= y < region.height):
+                continue
+            with context.temp_override(area=area, region=region):
+                under = bpy.context.property
+            if under is not None and under[1].rpartition(".")[2] == _SWITCH:
+                return True
+    return False
+
+
+def register() -> None:
+    """Registers the buttons."""
+    bpy.utils.register_class(PREFILTER_PG_run)
+    bpy.types.WindowManager.prefilter_runs = CollectionProperty(type=PREFILTER_PG_run)
+
+
+def unregister() -> None:
+    """Removes them."""
+    del bpy.types.WindowManager.prefilter_runs
+    bpy.utils.unregister_class(PREFILTER_PG_run)
+
+
+def _switch(manager: bpy.types.WindowManager, key: str) -> PREFILTER_PG_run | None:
+    return manager.prefilter_runs.get(key)
+
+
+def _draw_switch(layout: bpy.types.UILayout, context: bpy.types.Context, key: str) -> None:
+    # Loading a file may have removed it.
+    switch = _switch(context.window_manager, key)
+    if switch is not None:
+        layout.prop(switch, _SWITCH, icon="X", toggle=True)
+
+
+def _draw_status(header: bpy.types.Header, context: bpy.types.Context) -> None:
+    for key, run in _runs.items():
+        row = header.layout.row(align=True)
+        row.ui_units_x = _STATUS_UNITS
+        row.progress(factor=run.fraction, text=run.text)
+        _draw_switch(row, context, key)
+    header.layout.label(text="Esc: Cancel")
+    header.layout.separator_spacer()
+
+
+def _redraw_panels(context: bpy.types.Context) -> None:
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            for region in area.regions:
+                if region.type in {"UI", "HUD"} or area.type == "PROPERTIES":
+                    region.tag_redraw()

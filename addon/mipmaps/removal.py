@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Removing the levels of images: previews, level images, and those in Cycles' texture cache."""
+
+from collections.abc import Collection, Iterable
+from contextlib import suppress
+
+import bpy
+
+from ..bridge import level_images
+from ..bridge.files import tx
+from ..core.outcome import Outcome
+from ..core.wording import counted
+from . import cache_states
+from .view import preview
+
+
+def has_levels(image: bpy.types.Image | None) -> bool:
+    """Tells whether there is a preview of an image, or a level image."""
+    if image is None:
+        return False
+    return preview.find(image) is not None or bool(level_images.levels_of(image))
+
+
+def remove(images: Iterable[bpy.types.Image], kinds: Collection[str]) -> Outcome:
+    """Removes the levels of images.
+
+    Args:
+        images: The images; level images among them are left out.
+        kinds: Keys of `choices.REMOVED`.
+
+    Raises:
+        ValueError: There is nothing to remove.
+        OSError: A file cannot be removed.
+    """
+    own = [image for image in images if not level_images.is_level(image)]
+    results: list[str] = []
+    previews = [image for image in own if preview.find(image) is not None]
+    if "preview" in kinds and previews:
+        for image in previews:
+            preview.drop(image)
+        results.append(counted(previews, "preview"))
+    levels = [(image, level) for image in own for level in level_images.levels_of(image)]
+    if "images" in kinds and levels:
+        for image, level in levels:
+            level.user_remap(image)
+            bpy.data.images.remove(level)
+        results.append(counted(levels, "level image"))
+    if "cache" in kinds:
+        files = [path for image in own for path in _removed_from_cache(image)]
+        if files:
+            results.append(counted(files, "file of the texture cache"))
+    if not results:
+        who = f"image '{own[0].name}' has" if len(own) == 1 else "no image has"
+        raise ValueError(f"{who} {'no ' if len(own) == 1 else ''}levels to remove")
+    return Outcome(f"Removed {' and '.join(results)}")
+
+
+def _removed_from_cache(image: bpy.types.Image) -> list[str]:
+    removed: list[str] = []
+    # An image without a file has none in the cache.
+    with suppress(ValueError):
+        for source in cache_states.sources(image).values():
+            removed += [str(path) for path in tx.remove_baked(source)]
+    cache_states.look_again()
+    return removed
