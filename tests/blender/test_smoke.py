@@ -79,6 +79,13 @@ def test_bake_texture_cache(paint, tmp_path):
     assert len(list(tmp_path.rglob("*.tx"))) == 1
 
 
+def test_remove_levels(paint):
+    bpy.ops.prefilter.bake_mipmaps(image="Paint")
+    bpy.ops.prefilter.bake_mipmaps(image="Paint", result="preview")
+    assert bpy.ops.prefilter.remove_levels(image="Paint") == FINISHED
+    assert [image.name for image in bpy.data.images] == ["Paint"]
+
+
 def test_plot_error(paint):
     assert bpy.ops.prefilter.plot_error(image="Paint", filters={"box", "pam-box"}) == FINISHED
     assert "Paint.error" in bpy.data.images
