@@ -93,7 +93,7 @@ bool are_surely_one_side(const Points& plane, const Points& points) {
 int view_axis(const Points& triangle) {
   const Vector3 normal = cross(triangle[1] - triangle[0], triangle[2] - triangle[0]);
   std::array<int, 3> axes = {0, 1, 2};
-  std::sort(axes.begin(), axes.end(), [&](int i, int j) {
+  std::stable_sort(axes.begin(), axes.end(), [&](int i, int j) {
     return std::abs(normal[static_cast<std::size_t>(i)]) >
            std::abs(normal[static_cast<std::size_t>(j)]);
   });
