@@ -2,8 +2,7 @@
 
 #include "prefilter/base/memory.h"
 
-#include <fstream>
-#include <limits>
+#include <cstdio>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/text.h"
@@ -17,18 +16,6 @@ std::string in_gigabytes(double bytes) {
   return buffer;
 }
 }  // namespace
-
-std::uint64_t available_memory() {
-  // Linux tells it here; other systems have no such file.
-  std::ifstream info("/proc/meminfo");
-  std::string key;
-  std::uint64_t kilobytes = 0;
-  while (info >> key >> kilobytes) {
-    if (key == "MemAvailable:") return kilobytes * 1024;
-    info.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  return std::numeric_limits<std::uint64_t>::max();
-}
 
 void check_memory(const std::string& what, double bytes) {
   const auto available = static_cast<double>(available_memory());

@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "prefilter/scan/system_file.h"
+
 namespace prefilter {
 
 /// An open regular file; closed when this goes. Several threads may read at once. All functions
@@ -18,10 +20,10 @@ class File {
  public:
   /// For reading. Throws where it does not exist, or is a folder, a device or the like.
   static File open(const std::string& path);
-  /// A new file without a name, for reading and writing: it is gone when it is closed, also by a
-  /// kill. `name` is what messages call it.
-  static File create_unnamed(const std::string& folder, std::string name);
-  /// The same, but one that link can give a name; none where the system cannot do that.
+  /// A new file for reading and writing: it is gone when it is closed, also by a kill. `name` is
+  /// what messages call it.
+  static File create_temporary(const std::string& folder, std::string name);
+  /// The same, but one that link makes last; none where the system cannot do that.
   static std::optional<File> create_linkable(const std::string& folder, std::string name);
   /// A new file for reading and writing. Throws where there is one.
   static File create(const std::string& path, std::string name);
@@ -37,17 +39,17 @@ class File {
   std::size_t read_at(std::uint64_t offset, std::span<std::byte> bytes) const;
   void write_at(std::uint64_t offset, std::span<const std::byte> bytes);
   /// Gives a linkable file a name. Throws where there is a file of that name.
-  void link(const std::string& path) const;
-  /// Its permissions, as those of chmod.
-  void set_mode(unsigned mode) const;
+  void link(const std::string& path);
+  /// Gives it the permissions of another file, where the system gives new files permissions of
+  /// their own.
+  void copy_permissions(const std::string& from);
   /// Closes it; unlike the destructor, throws where the system had put off an error until now.
   void close();
 
  private:
-  static std::optional<File> open_without_name(const std::string& folder, std::string name);
-  File(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
+  File(system_file::Handle handle, std::string name) : handle_(handle), name_(std::move(name)) {}
 
-  int descriptor_ = -1;
+  system_file::Handle handle_ = system_file::kNone;
   std::string name_;
 };
 

@@ -3,9 +3,9 @@
 #include "prefilter/scan/open_points.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "prefilter/base/error.h"
+#include "prefilter/scan/path_text.h"
 #include "prefilter/scan/pcd_points.h"
 #include "prefilter/scan/ply_points.h"
 #include "prefilter/scan/text_points.h"
@@ -26,7 +26,7 @@ constexpr Format kFormats[] = {
 }  // namespace
 
 std::unique_ptr<PointSource> open_points(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
+  std::string ending = to_text(to_path(path).extension());
   // No locale takes part in the names of formats.
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });

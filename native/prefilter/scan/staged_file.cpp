@@ -2,10 +2,10 @@
 
 #include "prefilter/scan/staged_file.h"
 
-#include <filesystem>
 #include <system_error>
 
 #include "prefilter/base/error.h"
+#include "prefilter/scan/path_text.h"
 
 namespace prefilter {
 namespace {
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 void check_target(const std::string& target) {
   std::error_code ignored;
-  const fs::file_status status = fs::status(target, ignored);
+  const fs::file_status status = fs::status(to_path(target), ignored);
   if (!fs::exists(status) || fs::is_regular_file(status)) return;
   throw Error(ErrorCode::kFile, "'" + target + "' is a " +
                                     (fs::is_directory(status) ? "folder" : "device or pipe") +
@@ -23,16 +23,16 @@ void check_target(const std::string& target) {
 
 std::string without_links(const std::string& target) {
   std::error_code error;
-  const fs::path path = fs::weakly_canonical(fs::absolute(target), error);
+  const fs::path path = fs::weakly_canonical(fs::absolute(to_path(target)), error);
   if (error) throw Error(ErrorCode::kFile, "'" + target + "': " + error.message());
-  return path.string();
+  return to_text(path);
 }
 
 }  // namespace
 
 StagedFile::StagedFile(const std::string& target)
     : target_(without_links(target)),
-      folder_(fs::path(target_).parent_path().string()),
+      folder_(to_text(to_path(target_).parent_path())),
       file_(create()) {}
 
 File StagedFile::create() {
@@ -44,24 +44,21 @@ File StagedFile::create() {
 }
 
 StagedFile::~StagedFile() {
-  std::error_code ignored;
-  if (!path_.empty()) fs::remove(path_, ignored);
+  if (!path_.empty()) system_file::remove(path_);
 }
 
 void StagedFile::commit() {
   check_target(target_);
-  std::error_code error;
-  const fs::file_status replaced = fs::status(target_, error);
-  if (fs::exists(replaced)) file_.set_mode(static_cast<unsigned>(replaced.permissions()));
+  std::error_code ignored;
+  if (fs::exists(to_path(target_), ignored)) file_.copy_permissions(target_);
   if (path_.empty()) {
     const std::string path = random_path(folder_);
     file_.link(path);
     path_ = path;
   }
   file_.close();
-  fs::rename(path_, target_, error);
-  if (error) {
-    throw Error(ErrorCode::kFile, "'" + target_ + "': cannot be replaced: " + error.message());
+  if (!system_file::rename(path_, target_)) {
+    throw_system_error("'" + target_ + "': cannot be replaced");
   }
   path_.clear();
 }

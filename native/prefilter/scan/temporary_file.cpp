@@ -2,9 +2,8 @@
 
 #include "prefilter/scan/temporary_file.h"
 
-#include <filesystem>
-
 #include "prefilter/base/error.h"
+#include "prefilter/scan/path_text.h"
 
 namespace prefilter {
 namespace {
@@ -12,12 +11,12 @@ namespace {
 File unnamed_file(std::string folder) {
   if (folder.empty()) {
     std::error_code error;
-    folder = std::filesystem::temp_directory_path(error).string();
+    folder = to_text(std::filesystem::temp_directory_path(error));
     if (error) {
       throw Error(ErrorCode::kFile, "there is no folder for temporary files: " + error.message());
     }
   }
-  return File::create_unnamed(folder, "temporary file in '" + folder + "'");
+  return File::create_temporary(folder, "temporary file in '" + folder + "'");
 }
 
 }  // namespace

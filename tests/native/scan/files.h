@@ -3,14 +3,18 @@
 // Folders, and disks that are full, for tests of files.
 #pragma once
 
+#ifndef _WIN32
 #include <fcntl.h>
 #include <sys/resource.h>
 #include <unistd.h>
+#endif
 
-#include <atomic>
 #include <csignal>
 #include <filesystem>
+#include <random>
 #include <string>
+
+#include "prefilter/scan/path_text.h"
 
 namespace prefilter {
 
@@ -18,17 +22,19 @@ namespace prefilter {
 class TestFolder {
  public:
   TestFolder() {
-    static std::atomic<int> count{0};
-    path_ = std::filesystem::temp_directory_path() /
-            ("prefilter-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
+    std::random_device random;
+    path_ = std::filesystem::canonical(std::filesystem::temp_directory_path()) /
+            ("prefilter-test-" + std::to_string(random()) + "-" + std::to_string(random()));
     std::filesystem::create_directory(path_);
   }
   ~TestFolder() { std::filesystem::remove_all(path_); }
   TestFolder(const TestFolder&) = delete;
   TestFolder& operator=(const TestFolder&) = delete;
 
-  std::string path() const { return path_.string(); }
-  std::string path(const std::string& name) const { return (path_ / name).string(); }
+  std::string path() const { return to_text(path_); }
+  std::string path(const std::string& name) const {
+    return to_text((path_ / to_path(name)).make_preferred());
+  }
   /// Whether files in it can do without a name; older overlays, of containers, cannot do that.
   bool has_unnamed_files() const {
 #ifdef O_TMPFILE
@@ -37,6 +43,14 @@ class TestFolder {
     return descriptor >= 0;
 #else
     return false;
+#endif
+  }
+  /// How many files a mesh is while it is written, as far as they have names.
+  std::size_t names_while_written() const {
+#ifdef _WIN32
+    return 2;
+#else
+    return has_unnamed_files() ? 0 : 1;
 #endif
   }
   std::size_t file_count() const {
@@ -48,6 +62,7 @@ class TestFolder {
   std::filesystem::path path_;
 };
 
+#ifndef _WIN32
 /// While it is there no file grows beyond so many bytes: what a full disk does, for any user.
 class FileSizeLimit {
  public:
@@ -67,5 +82,6 @@ class FileSizeLimit {
   rlimit before_{};
   void (*handler_)(int);
 };
+#endif
 
 }  // namespace prefilter

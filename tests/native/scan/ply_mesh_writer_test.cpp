@@ -3,8 +3,10 @@
 #include "prefilter/scan/ply_mesh_writer.h"
 
 #include <gtest/gtest.h>
+#ifndef _WIN32
 #include <sys/stat.h>
 #include <sys/wait.h>
+#endif
 
 #include <cmath>
 #include <csignal>
@@ -29,7 +31,9 @@ std::string contents(const std::string& path) {
   return all.str();
 }
 
-void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
+void write_text(const std::string& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 template <typename T>
 T value_at(const std::string& bytes, std::size_t offset) {
@@ -60,7 +64,7 @@ TEST(PlyMeshWriter, WritesWhatItIsGiven) {
     writer.add_vertices({{-1, 0, 7}}, {300, -2, NAN});
     writer.add_triangles({{0, 1, 2}});
     writer.add_triangles({{2, 1, 0}});
-    EXPECT_EQ(folder.file_count(), folder.has_unnamed_files() ? 0U : 1U);
+    EXPECT_EQ(folder.file_count(), folder.names_while_written());
     writer.finish(Progress());
     EXPECT_EQ(writer.vertex_count(), 3U);
     EXPECT_EQ(writer.triangle_count(), 2U);
@@ -126,7 +130,7 @@ TEST(PlyMeshWriter, WritesInPieces) {
   const std::string path = folder.path("mesh.ply");
   PlyMeshWriter writer(path, {{"gray", true}}, true);
   add_grid(kVertices, kTriangles, &writer);
-  EXPECT_EQ(folder.file_count(), folder.has_unnamed_files() ? 0U : 1U);
+  EXPECT_EQ(folder.file_count(), folder.names_while_written());
   writer.finish(Progress());
   const std::string body = header_and_body(path).second;
   ASSERT_EQ(body.size(), kVertices * 25 + kTriangles * 13);
@@ -163,6 +167,7 @@ TEST(PlyMeshWriter, LeavesTheTargetUntilItIsDone) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
+#ifndef _WIN32
 TEST(PlyMeshWriter, ReplacesWhatALinkLeadsToAndKeepsItsMode) {
   const TestFolder folder;
   write_text(folder.path("real.ply"), "before");
@@ -177,6 +182,7 @@ TEST(PlyMeshWriter, ReplacesWhatALinkLeadsToAndKeepsItsMode) {
   EXPECT_EQ(status.st_mode & 07777U, 0640U);
   EXPECT_EQ(folder.file_count(), 2U);
 }
+#endif
 
 TEST(PlyMeshWriter, TellsOfTargetsThatCannotBe) {
   const TestFolder folder;
@@ -189,14 +195,17 @@ TEST(PlyMeshWriter, TellsOfTargetsThatCannotBe) {
     }
     return std::string();
   };
-  const std::string none = folder.path("none") + "/mesh.ply";
+  const std::string none = folder.path("none/mesh.ply");
   EXPECT_EQ(message(none), "'" + none + "': cannot be created: No such file or directory");
   EXPECT_EQ(message(folder.path()),
             "'" + folder.path() + "' is a folder; a regular file, or a new one, is needed");
+#ifndef _WIN32
   EXPECT_EQ(message("/dev/null"),
             "'/dev/null' is a device or pipe; a regular file, or a new one, is needed");
+#endif
 }
 
+#ifndef _WIN32
 TEST(PlyMeshWriter, TellsOfAFullDiskAndLeavesNothing) {
   const TestFolder folder;
   const std::string path = folder.path("mesh.ply");
@@ -237,6 +246,7 @@ TEST(PlyMeshWriter, LeavesNothingWhenItIsKilled) {
   EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
   EXPECT_EQ(folder.file_count(), 0U);
 }
+#endif
 
 }  // namespace
 }  // namespace prefilter

@@ -13,22 +13,31 @@
 namespace prefilter {
 namespace {
 
-TEST(TemporaryFile, HasNoNameAndHoldsWhatIsWritten) {
+#ifdef _WIN32
+constexpr std::size_t kNames = 1;
+#else
+constexpr std::size_t kNames = 0;
+#endif
+
+TEST(TemporaryFile, HoldsWhatIsWrittenAndLeavesNothing) {
   const TestFolder folder;
   std::vector<int> values(100000);
   std::iota(values.begin(), values.end(), 0);
   const auto bytes = std::as_bytes(std::span(values));
-  TemporaryFile file(folder.path());
+  {
+    TemporaryFile file(folder.path());
+    EXPECT_EQ(folder.file_count(), kNames);
+    file.write(bytes.subspan(0, 12345));
+    file.write({});
+    file.write(bytes.subspan(12345));
+    EXPECT_EQ(file.size(), bytes.size());
+    EXPECT_EQ(folder.file_count(), kNames);
+    std::vector<int> found(1000);
+    file.read_at(4 * 70000, std::as_writable_bytes(std::span(found)));
+    EXPECT_TRUE(std::equal(found.begin(), found.end(), values.begin() + 70000));
+    EXPECT_THROW(file.read_at(4 * 99001, std::as_writable_bytes(std::span(found))), Error);
+  }
   EXPECT_EQ(folder.file_count(), 0U);
-  file.write(bytes.subspan(0, 12345));
-  file.write({});
-  file.write(bytes.subspan(12345));
-  EXPECT_EQ(file.size(), bytes.size());
-  EXPECT_EQ(folder.file_count(), 0U);
-  std::vector<int> found(1000);
-  file.read_at(4 * 70000, std::as_writable_bytes(std::span(found)));
-  EXPECT_TRUE(std::equal(found.begin(), found.end(), values.begin() + 70000));
-  EXPECT_THROW(file.read_at(4 * 99001, std::as_writable_bytes(std::span(found))), Error);
 }
 
 TEST(TemporaryFile, IsInTheSystemsFolderWithoutAnyOther) {
@@ -52,6 +61,7 @@ TEST(TemporaryFile, TellsOfAFolderThatIsNotThere) {
   }
 }
 
+#ifndef _WIN32
 TEST(TemporaryFile, TellsOfAFullDiskAndWritesOnLater) {
   const TestFolder folder;
   TemporaryFile file(folder.path());
@@ -73,6 +83,7 @@ TEST(TemporaryFile, TellsOfAFullDiskAndWritesOnLater) {
   file.write(bytes);
   EXPECT_EQ(file.size(), 20000U);
 }
+#endif
 
 }  // namespace
 }  // namespace prefilter
