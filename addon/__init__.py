@@ -4,8 +4,9 @@
 
 from importlib import import_module
 
+from . import preferences
 from .commands import Commands
-from .core import menus, running
+from .core import menus, presets, running
 from .core.registration import registration
 
 SUBJECTS = (
@@ -18,4 +19,6 @@ SUBJECTS = (
 """The folders of the subjects, in the order in which they are registered."""
 
 _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
-register, unregister = registration(running, menus, *_packages, Commands(SUBJECTS))
+register, unregister = registration(
+    preferences, presets, running, menus, *_packages, Commands(SUBJECTS)
+)

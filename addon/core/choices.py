@@ -21,9 +21,14 @@ def items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str, str, int]]
     anywhere. Buttons side by side keep it in single precision, so it has 24 bits.
     """
     return [
-        (key, choice.label, choice.description, "", zlib.crc32(key.encode()) & 0xFFFFFF)
+        (key, choice.label, choice.description, "", number_of(key))
         for key, choice in choices.items()
     ]
+
+
+def number_of(key: str) -> int:
+    """Returns the number of an item."""
+    return zlib.crc32(key.encode()) & 0xFFFFFF
 
 
 def flag_items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str]]:

@@ -6,10 +6,13 @@ import argparse
 import math
 from collections.abc import Collection, Iterator
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 from .colors import from_hex
 from .options import Option, declared
+from .preferences import preferred
+
+Settings = TypeVar("Settings")
 
 
 def add_flags(
@@ -44,7 +47,8 @@ def add_flags(
             notes = [found.allowed] if found.has_limits else []
             # What a color is without its flag is another option's to say.
             if default != "" and found.subtype != "COLOR" and name not in without_default:
-                notes.append(f"default: {found.shown(default)}")
+                follows = ", or as in the preferences" if found.preference else ""
+                notes.append(f"default: {found.shown(default)}{follows}")
             if notes:
                 text += f" ({'; '.join(notes)})"
         target = group if name in exclusive else parser
@@ -58,6 +62,11 @@ def given(options: argparse.Namespace, settings: type) -> dict[str, Any]:
         for name, default, _, _ in _flags(settings, ())
         if (value := getattr(options, name, None)) is not None
     }
+
+
+def settings_given(options: argparse.Namespace, settings: type[Settings], **more: Any) -> Settings:
+    """Returns settings: by `more`, else by flags, else by the preferences of the add-on."""
+    return settings(**preferred(settings) | given(options, settings) | more)
 
 
 def tables(settings: type, *names: str) -> list[str]:

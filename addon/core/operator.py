@@ -72,7 +72,6 @@ class BackgroundOperator:
 
     doing: str
     """What the status bar says that goes on."""
-
     use_apply: BoolProperty(
         name="Apply",
         description="Run again with these settings in the background. Press Esc to cancel",
@@ -177,6 +176,10 @@ class BackgroundOperator:
         """Works and waits; a redo that would take long does not."""
         if self._is_running():
             return self._fail(_RUNNING)
+        try:
+            self.complete_settings()
+        except ValueError as error:
+            return self._fail(error)
         if self.options.is_repeat_last and self._expected_seconds() > QUICK_SECONDS:
             return self._start_again(use_apply=False)
         if self.options.is_repeat:
@@ -197,6 +200,7 @@ class BackgroundOperator:
         self._seconds = 0.0
         in_steps = type(self).reading is not BackgroundOperator.reading
         try:
+            self.complete_settings()
             # Blender brings back what it has undone for the redo: nothing read then may be used
             # in a later step.
             if not (self._replaced and in_steps):
@@ -252,6 +256,9 @@ class BackgroundOperator:
         """Reports what was left out, and the like."""
         for warning in warnings:
             self.report({"WARNING"}, warning)
+
+    def complete_settings(self) -> None:
+        """Sets the settings that the caller has left, where they are not as declared."""
 
     def _stop(self, context: bpy.types.Context) -> set[str]:
         """Ends the reading, or has the thread end."""

@@ -41,6 +41,8 @@ class Option:
         flag: What commands call it; None for the field's name with dashes, empty for nothing.
         metavar: What stands for the value in their help.
         flag_description: What the flag does, where that is not `description`.
+        preference: The preference of the add-on that it follows until a user sets it; empty for
+            none.
     """
 
     label: str
@@ -54,6 +56,7 @@ class Option:
     flag: str | None = None
     metavar: str = ""
     flag_description: str = ""
+    preference: str = ""
 
     @property
     def allowed(self) -> str:
@@ -138,7 +141,14 @@ def rgba(default: Color, label: str, description: str, **more: Any) -> Any:
 
 def threads() -> Any:
     """Declares how many threads to use, which commands alone let a user say."""
-    return number(0, "", "How many threads to use; 0 uses all", low=0, metavar="N")
+    return number(
+        0,
+        "",
+        "How many threads to use; 0 uses all",
+        low=0,
+        metavar="N",
+        preference="threads",
+    )
 
 
 def declared(settings: type) -> Iterator[tuple[str, Any, Option]]:

@@ -3,7 +3,7 @@
 """Options as properties of Blender: of operators, and of the scene."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import bpy
@@ -16,12 +16,15 @@ from bpy.props import (
     StringProperty,
 )
 
-from .choices import flag_items, items
+from .choices import flag_items, items, number_of
 from .options import Option, declared, option
+from .preferences import preference
 
 _ABOVE = 1e-3
 """How far above a limit that it must not have a property begins."""
 _PATHS = frozenset({"FILE_PATH", "DIR_PATH"})
+_SET = "_set"
+"""What follows the name of an option where a scene keeps it that otherwise follows a preference."""
 
 
 def properties(settings: type, without: Collection[str] = ()) -> dict[str, Any]:
@@ -38,6 +41,32 @@ def properties(settings: type, without: Collection[str] = ()) -> dict[str, Any]:
     }
 
 
+def following(settings: type, **more: Mapping[str, Any]) -> dict[str, Any]:
+    """Returns the annotations that let options in scenes follow the preferences until they are set.
+
+    They stand for those of the same name that `properties` returns. What a user sets is kept in a
+    second property, as a property of its own functions has no value of its own.
+
+    Args:
+        settings: A dataclass.
+        more: For a field, more arguments of its property, such as `update`.
+    """
+    found: dict[str, Any] = {}
+    for name, default, declaration in declared(settings):
+        if declaration.label and declaration.preference:
+            found[f"{name}{_SET}"] = _property(default, declaration, options={"HIDDEN"})
+            get, put = _accessors(name, default, declaration)
+            found[name] = _property(default, declaration, get=get, set=put, **more.get(name, {}))
+    return found
+
+
+def set_unset(operator: bpy.types.Operator, values: Mapping[str, Any]) -> None:
+    """Sets those of an operator's properties that its caller has not set."""
+    for name, value in values.items():
+        if not operator.properties.is_property_set(name):
+            setattr(operator, name, value)
+
+
 def single_property(settings: type, name: str, **more: Any) -> Any:
     """Returns one option as a property, with more arguments such as `update`."""
     return _property(*option(settings, name), **more)
@@ -46,10 +75,12 @@ def single_property(settings: type, name: str, **more: Any) -> Any:
 def values(source: Any, settings: type, without: Collection[str] = ()) -> Any:
     """Returns the settings that properties have; paths are absolute.
 
-    Fields in `without` keep their defaults.
+    Fields in `without` keep their defaults, and those that are no properties the preferences.
     """
     found = {}
     for name, default, declaration in declared(settings):
+        if not declaration.label and declaration.preference:
+            found[name] = preference(declaration.preference, default)
         if declaration.label and name not in without:
             value = getattr(source, name)
             if declaration.subtype in _PATHS:
@@ -64,6 +95,24 @@ def copy(source: Any, target: Any, settings: type, without: Collection[str] = ()
     """Copies the options of a dataclass between a property group and an operator's properties."""
     for name in properties(settings, without):
         setattr(target, name, getattr(source, name))
+
+
+def _accessors(
+    name: str, default: Any, declaration: Option
+) -> tuple[Callable[[Any], Any], Callable[[Any, Any], None]]:
+    """Returns the functions of a property that follows a preference."""
+    keys = {number_of(key): key for key in declaration.choices}
+    kept = f"{name}{_SET}"
+
+    def get(group: Any) -> Any:
+        is_set = group.is_property_set(kept)
+        value = getattr(group, kept) if is_set else preference(declaration.preference, default)
+        return number_of(value) if keys else value
+
+    def put(group: Any, value: Any) -> None:
+        setattr(group, kept, keys[value] if keys else value)
+
+    return get, put
 
 
 def _property(default: Any, declaration: Option, **more: Any) -> Any:

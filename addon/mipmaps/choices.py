@@ -160,6 +160,11 @@ TEXTURE_FORMATS = {
         "Bytes for byte images, half floats for float images. For all images of a model, blocks "
         "that suit what each image holds",
     ),
+    "blocks": Choice(
+        "Blocks by Content",
+        "Compressed blocks that suit what the image holds: BC7 for color, BC5 for normal maps, BC4 "
+        "for grayscale data, BC6H for light beyond 1",
+    ),
     "rgba8": Choice("8-Bit", "Four bytes a texel, uncompressed"),
     "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes a texel, for high dynamic range"),
     "rgba32f": Choice("Float", "Scene-linear, 16 bytes a texel"),
@@ -379,7 +384,9 @@ class ResultSettings:
     """What to make of the levels of an image; commands know it from their other flags."""
 
     result: str = one_of("images", "Result", "What to make of the levels", RESULTS, flag="")
-    file_format: str = one_of("ktx2", "Format", "What the file is", FILE_FORMATS, flag="")
+    file_format: str = one_of(
+        "ktx2", "Format", "What the file is", FILE_FORMATS, flag="", preference="file_format"
+    )
 
 
 NOT_OF_MODELS = frozenset(
@@ -425,6 +432,7 @@ class ModelSettings:
         flag="--format",
         metavar="FORMAT",
         flag_description="with --all, the files in the folder of --output",
+        preference="file_format",
     )
 
 

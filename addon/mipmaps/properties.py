@@ -10,7 +10,8 @@ import bpy
 from bpy.props import PointerProperty
 
 from ..bridge.files import engines
-from ..core.properties import properties, single_property, values
+from ..core import presets
+from ..core.properties import following, properties, single_property, values
 from ..core.sidebar import subpanel
 from . import file_names
 from .choices import (
@@ -22,6 +23,11 @@ from .choices import (
 )
 from .importance import suggested_names
 
+_FRAMES = ("use_frames", "frame_start", "frame_end", "frame_step")
+BAKE = presets.Kind("bake", "prefilter_bake", [(ResultSettings, ()), (Settings, _FRAMES)])
+MODEL = presets.Kind(
+    "model", "prefilter_model", [(ModelSettings, ()), (Settings, {*NOT_OF_MODELS, *_FRAMES})]
+)
 _SEARCH = {"search": suggested_names, "search_options": {"SORT", "SUGGESTION"}}
 
 
@@ -209,15 +215,23 @@ def _draw_lookups(settings: Any, layout: bpy.types.UILayout) -> None:
 class PREFILTER_PG_model(ModelProperties, bpy.types.PropertyGroup):
     """The settings that the panel shows; they stay with the scene."""
 
+    __annotations__ = following(ModelSettings)
+
 
 class PREFILTER_PG_bake(BakeProperties, bpy.types.PropertyGroup):
     """The settings that the panel shows; they stay with the scene."""
 
+    __annotations__ = following(ResultSettings, file_format={"update": _follow_format})
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (PREFILTER_PG_bake, PREFILTER_PG_model, presets.panel(BAKE), presets.panel(MODEL))
+)
+
 
 def register() -> None:
     """Registers the settings on the scene."""
-    bpy.utils.register_class(PREFILTER_PG_bake)
-    bpy.utils.register_class(PREFILTER_PG_model)
+    _register_classes()
     bpy.types.Scene.prefilter_bake = PointerProperty(type=PREFILTER_PG_bake)
     bpy.types.Scene.prefilter_model = PointerProperty(type=PREFILTER_PG_model)
 
@@ -226,5 +240,4 @@ def unregister() -> None:
     """Removes the settings from the scene."""
     del bpy.types.Scene.prefilter_model
     del bpy.types.Scene.prefilter_bake
-    bpy.utils.unregister_class(PREFILTER_PG_model)
-    bpy.utils.unregister_class(PREFILTER_PG_bake)
+    _unregister_classes()

@@ -14,7 +14,7 @@ from ..bridge.files import engines, textures
 from ..bridge.images import Picture
 from ..core.options import check
 from ..core.wording import listed
-from . import contents, frames, udim
+from . import blocks, contents, frames, udim
 from .bake import Bake, reads_encoded, roughness_format
 from .choices import TEXTURE_SPACE_FILTERS, Settings
 
@@ -124,6 +124,9 @@ def reading(
             f"goes with images of one tile"
         )
     threshold = settings.threshold if content == "cutout" else None
+    if settings.texture_format == "blocks":
+        may_lose_channels = True
+        settings = replace(settings, texture_format=_blocks(pictures, content))
     checked = partial(engines.checked, may_lose_channels=may_lose_channels)
     told = [
         note
@@ -187,6 +190,12 @@ def reading(
             f"roughness '{settings.roughness}' is left out: '{image.name}' is no normal map"
         )
     return job
+
+
+def _blocks(pictures: Sequence[Picture], content: str) -> str:
+    """Returns the format that suits an image; of several tiles, one that suits them all."""
+    found = {blocks.suiting(one, content, reads_alpha=one.shape[2] == 4) for one in pictures}
+    return next(one for one in ("rgba16f", "bc6h", "bc7", "bc5", "bc4") if one in found)
 
 
 def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:

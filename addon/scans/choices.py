@@ -120,5 +120,6 @@ class ScanSettings:
         low=0,
         display={"soft_max": 65536},
         metavar="MB",
+        preference="memory_limit",
     )
     threads: int = threads()

@@ -10,11 +10,12 @@ import bpy
 
 from ..bridge.files import scenes, staging
 from ..bridge.points import may_be_points
-from ..core import command
+from ..core import command, presets
 from ..core.flags import add_flags, given, tables
 from ..core.wording import either
 from .choices import ScanSettings
 from .files import SOURCES, STREAMED_TARGET, FilesReconstruction, Streaming
+from .properties import RECONSTRUCT
 from .reconstruction import Reconstruction
 
 _HELP = "make the surface of points that a scanner has measured"
@@ -53,6 +54,7 @@ def add(commands: Any) -> None:
         default=[],
         help="an object of a .blend file; repeat for several (default: all that are visible)",
     )
+    presets.add_flag(parser)
     add_flags(parser, ScanSettings, exclusive=("depth", "voxel_size"))
     parser.set_defaults(execute=_reconstruct, usage_error=parser.error)
 
@@ -95,8 +97,10 @@ def _is_wanted(obj: bpy.types.Object) -> bool:
 
 def _settings(options: argparse.Namespace) -> ScanSettings:
     """Returns the settings that were given, with what follows from them."""
-    found = given(options, ScanSettings)
-    found["resolution"] = "size" if "voxel_size" in found else "depth"
+    found, more = given(options, ScanSettings), {}
+    for name, resolution in (("depth", "depth"), ("voxel_size", "size")):
+        if name in found:
+            more["resolution"] = resolution
     if "custom_isovalue" in found:
-        found["isovalue"] = "custom"
-    return ScanSettings(**found)
+        more["isovalue"] = "custom"
+    return presets.settings_given(options, RECONSTRUCT, ScanSettings, **more)

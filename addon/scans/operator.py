@@ -6,11 +6,12 @@ import bpy
 
 from ..bridge.points import may_be_points
 from ..core.operator import WorkOperator
-from .properties import ScanProperties
+from ..core.presets import PresetsOperator
+from .properties import RECONSTRUCT, ScanProperties
 from .reconstruction import Load, Reconstruction
 
 
-class PREFILTER_OT_reconstruct(ScanProperties, WorkOperator, bpy.types.Operator):
+class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bpy.types.Operator):
     """Reconstructs the surface of the selected points."""
 
     bl_idname = "prefilter.reconstruct"
@@ -21,6 +22,7 @@ class PREFILTER_OT_reconstruct(ScanProperties, WorkOperator, bpy.types.Operator)
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Reconstructing"
+    presets = RECONSTRUCT
 
     work: Reconstruction | None = None
 

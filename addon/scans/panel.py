@@ -6,20 +6,23 @@ import bpy
 
 from ..bridge.points import may_be_points
 from ..core.menus import PREFILTER_MT_object
+from ..core.presets import PresetsPanel
 from ..core.properties import copy
 from ..core.sidebar import SidebarPanel, main_button
 from .choices import ScanSettings
 from .operator import PREFILTER_OT_reconstruct
+from .properties import RECONSTRUCT
 
 
 class _SidebarPanel(SidebarPanel):
     fits = staticmethod(may_be_points)
 
 
-class PREFILTER_PT_reconstruct(_SidebarPanel, bpy.types.Panel):
+class PREFILTER_PT_reconstruct(_SidebarPanel, PresetsPanel, bpy.types.Panel):
     """Button and settings."""
 
     bl_label = "Reconstruct Surface"
+    presets = RECONSTRUCT
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""

@@ -5,9 +5,12 @@
 import bpy
 from bpy.props import PointerProperty
 
-from ..core.properties import properties, values
+from ..core import presets
+from ..core.properties import following, properties, values
 from ..core.sidebar import subpanel
 from .choices import ScanSettings
+
+RECONSTRUCT = presets.Kind("reconstruct", "prefilter_reconstruct", [(ScanSettings, ())])
 
 
 class ScanProperties:
@@ -44,14 +47,21 @@ class ScanProperties:
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):
     """The settings that the panel shows; they stay with the scene."""
 
+    __annotations__ = following(ScanSettings)
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (PREFILTER_PG_reconstruct, presets.panel(RECONSTRUCT))
+)
+
 
 def register() -> None:
     """Registers the settings on the scene."""
-    bpy.utils.register_class(PREFILTER_PG_reconstruct)
+    _register_classes()
     bpy.types.Scene.prefilter_reconstruct = PointerProperty(type=PREFILTER_PG_reconstruct)
 
 
 def unregister() -> None:
     """Removes the settings from the scene."""
     del bpy.types.Scene.prefilter_reconstruct
-    bpy.utils.unregister_class(PREFILTER_PG_reconstruct)
+    _unregister_classes()

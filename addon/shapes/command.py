@@ -13,7 +13,7 @@ from ..bridge.curves import is_curve
 from ..bridge.files import pictures, scenes, staging
 from ..bridge.uv_layouts import has_uv_map
 from ..core import command
-from ..core.flags import add_flags, given, tables
+from ..core.flags import add_flags, given, settings_given, tables
 from ..core.wording import either
 from .choices import RasterizeSettings
 from .memory import Request
@@ -89,7 +89,7 @@ def _is_wanted(is_kind: Any) -> Any:
 def _settings(options: argparse.Namespace) -> RasterizeSettings:
     """Returns the settings that were given, with what follows from them."""
     found = given(options, RasterizeSettings)
-    settings = RasterizeSettings(**found)
+    settings = settings_given(options, RasterizeSettings)
     if "density" in found:
         if "width" in found or "height" in found:
             options.usage_error("--density: not allowed with --width and --height")

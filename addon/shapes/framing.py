@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
-from ..core.memory import available_memory
+from ..core.memory import usable_memory
 from .choices import LARGEST_SIDE, RasterizeSettings
 
 FloatArray = NDArray[np.float64]
@@ -145,9 +145,9 @@ def _frame(width: int, height: int, scale: Sequence[float], shift: Sequence[floa
 def check_memory(width: int, height: int) -> None:
     """Raises MemoryError where an image of that size cannot be made."""
     needed = _BYTES_PER_PIXEL * width * height
-    free = available_memory()
+    free, why = usable_memory()
     if needed > free:
         raise MemoryError(
-            f"an image of {width} x {height} pixels needs about {needed / 2**30:.1f} GB of memory, "
-            f"and {free / 2**30:.1f} GB are free; make it smaller"
+            f"an image of {width} x {height} pixels needs about {needed / 1e9:.1f} GB of memory; "
+            f"{why}: make it smaller"
         )

@@ -3,7 +3,6 @@
 """The commands `voxelize` and `boolean`."""
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -11,11 +10,12 @@ import bpy
 
 from ..bridge.files import scenes, staging
 from ..bridge.new_meshes import is_solid
-from ..core import command
+from ..core import command, presets
 from ..core.flags import add_flags, given, tables
 from ..core.wording import either
 from .boolean import Boolean
 from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
+from .properties import BOOLEAN, VOXELIZE
 from .voxelization import Voxelization
 
 Settings = TypeVar("Settings", bound=VoxelSettings)
@@ -61,6 +61,7 @@ def _add_voxelize(commands: Any) -> None:
         default=[],
         help="an object to voxelize; repeat for several (default: all that are visible)",
     )
+    presets.add_flag(parser)
     add_flags(parser, VoxelizeSettings, exclusive=_RESOLUTIONS)
     parser.set_defaults(execute=_voxelize, usage_error=parser.error)
 
@@ -86,6 +87,7 @@ def _add_boolean(commands: Any) -> None:
         default=[],
         help="an operand; the first one gets the result (default: each file is one)",
     )
+    presets.add_flag(parser)
     add_flags(parser, BooleanSettings, exclusive=_RESOLUTIONS)
     parser.set_defaults(execute=_boolean, usage_error=parser.error)
 
@@ -98,7 +100,7 @@ def _voxelize(options: argparse.Namespace) -> None:
     more = {"output": "volume", "filepath": str(target)} if is_volume else {}
     work = Voxelization.read(
         scenes.chosen(objects, options.object, _WANTED),
-        _settings(options, VoxelizeSettings, **more),
+        _settings(options, VOXELIZE, VoxelizeSettings, **more),
         bpy.context.evaluated_depsgraph_get(),
     )
     outcome = command.done(work)
@@ -121,7 +123,7 @@ def _boolean(options: argparse.Namespace) -> None:
     else:
         names = [Path(path).stem for path in options.files]
         operands = [scenes.as_one(name, group) for name, group in zip(names, groups, strict=True)]
-    settings = _settings(options, BooleanSettings, operands="hide")
+    settings = _settings(options, BOOLEAN, BooleanSettings, operands="hide")
     work = Boolean.read(operands[0], operands[1:], settings, bpy.context.evaluated_depsgraph_get())
     outcome = command.done(work)
     scenes.save(target, outcome.objects)
@@ -132,9 +134,14 @@ def _is_wanted(obj: bpy.types.Object) -> bool:
     return is_solid(obj) and obj.visible_get()
 
 
-def _settings(options: argparse.Namespace, settings: type[Settings], **more: Any) -> Settings:
+def _settings(
+    options: argparse.Namespace, kind: presets.Kind, settings: type[Settings], **more: Any
+) -> Settings:
     """Returns the settings that were given, with what follows from them."""
-    found = given(options, settings) | more
-    found["resolution"] = "size" if "voxel_size" in found else "depth"
-    chosen = settings(**found)
-    return replace(chosen, use_smooth=chosen.smooth_angle > 0.0)
+    found = given(options, settings)
+    for name, resolution in (("depth", "depth"), ("voxel_size", "size")):
+        if name in found:
+            more["resolution"] = resolution
+    if "smooth_angle" in found:
+        more["use_smooth"] = found["smooth_angle"] > 0.0
+    return presets.settings_given(options, kind, settings, **more)

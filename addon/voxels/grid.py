@@ -9,7 +9,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
-from ..core.memory import available_memory
+from ..core.memory import usable_memory
 from ..core.wording import amount
 from .choices import VoxelSettings
 
@@ -96,22 +96,21 @@ def check_memory(grid: Grid, area: float) -> None:
         area: The area of the surface.
     """
     crossed = cells_crossed(grid, area)
-    needed, free = _BYTES_PER_CELL * crossed, available_memory()
+    needed, (free, why) = _BYTES_PER_CELL * crossed, usable_memory()
     if needed > free or 6 * crossed > _MOST_CORNERS:
         raise MemoryError(
             f"cells of {grid.spacing:.3g} need about {needed / 1e9:.3g} GB of memory, and "
-            f"{amount(2 * crossed, 'triangle')}; {free / 1e9:.3g} GB are free: use fewer or larger "
-            f"cells"
+            f"{amount(2 * crossed, 'triangle')}; {why}: use fewer or larger cells"
         )
 
 
 def check_dense_memory(grid: Grid) -> None:
     """Raises MemoryError where a full array of the cells does not fit into memory."""
-    needed, free = 4.0 * float(grid.cells) ** 3, available_memory()
+    needed, (free, why) = 4.0 * float(grid.cells) ** 3, usable_memory()
     if needed > free:
         raise MemoryError(
-            f"a volume of {grid.cells}³ cells needs {needed / 1e9:.3g} GB of memory; "
-            f"{free / 1e9:.3g} GB are free: use fewer or larger cells"
+            f"a volume of {grid.cells}³ cells needs {needed / 1e9:.3g} GB of memory; {why}: use "
+            f"fewer or larger cells"
         )
 
 

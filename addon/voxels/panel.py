@@ -6,11 +6,13 @@ import bpy
 
 from ..bridge.new_meshes import is_solid
 from ..core.menus import PREFILTER_MT_object
+from ..core.presets import PresetsPanel
 from ..core.properties import copy
 from ..core.sidebar import SidebarPanel, main_button
 from .choices import BooleanSettings, VoxelizeSettings
 from .operators.boolean import PREFILTER_OT_boolean
 from .operators.voxelize import PREFILTER_OT_voxelize
+from .properties import BOOLEAN, VOXELIZE
 
 
 class _RemeshPanel:
@@ -47,28 +49,32 @@ class _BooleanPanel:
         context.scene.prefilter_boolean.draw_in(self.layout)
 
 
-class PREFILTER_PT_voxelize(_VoxelizePanel, _RemeshPanel, bpy.types.Panel):
+class PREFILTER_PT_voxelize(_VoxelizePanel, _RemeshPanel, PresetsPanel, bpy.types.Panel):
     """Button and settings of voxelizing, of meshes."""
 
     bl_label = "Prefilter Voxelize"
+    presets = VOXELIZE
 
 
-class PREFILTER_PT_boolean(_BooleanPanel, _RemeshPanel, bpy.types.Panel):
+class PREFILTER_PT_boolean(_BooleanPanel, _RemeshPanel, PresetsPanel, bpy.types.Panel):
     """Button and settings of booleans, of meshes."""
 
     bl_label = "Prefilter Boolean"
+    presets = BOOLEAN
 
 
-class PREFILTER_PT_voxelize_sidebar(_VoxelizePanel, _SidebarPanel, bpy.types.Panel):
+class PREFILTER_PT_voxelize_sidebar(_VoxelizePanel, _SidebarPanel, PresetsPanel, bpy.types.Panel):
     """Button and settings of voxelizing."""
 
     bl_label = "Voxelize"
+    presets = VOXELIZE
 
 
-class PREFILTER_PT_boolean_sidebar(_BooleanPanel, _SidebarPanel, bpy.types.Panel):
+class PREFILTER_PT_boolean_sidebar(_BooleanPanel, _SidebarPanel, PresetsPanel, bpy.types.Panel):
     """Button and settings of booleans."""
 
     bl_label = "Voxel Boolean"
+    presets = BOOLEAN
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

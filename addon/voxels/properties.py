@@ -6,9 +6,13 @@ import bpy
 from bpy.props import PointerProperty
 
 from ..bridge.files import volumes
+from ..core import presets
 from ..core.properties import properties, values
 from ..core.sidebar import subpanel
 from .choices import BooleanSettings, VoxelizeSettings
+
+VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, ())])
+BOOLEAN = presets.Kind("boolean", "prefilter_boolean", [(BooleanSettings, ["operation"])])
 
 
 class VoxelProperties:
@@ -111,10 +115,19 @@ class PREFILTER_PG_boolean(BooleanProperties, bpy.types.PropertyGroup):
     """The settings that the panel shows; they stay with the scene."""
 
 
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (
+        PREFILTER_PG_voxelize,
+        PREFILTER_PG_boolean,
+        presets.panel(VOXELIZE),
+        presets.panel(BOOLEAN),
+    )
+)
+
+
 def register() -> None:
     """Registers the settings on the scene."""
-    bpy.utils.register_class(PREFILTER_PG_voxelize)
-    bpy.utils.register_class(PREFILTER_PG_boolean)
+    _register_classes()
     bpy.types.Scene.prefilter_voxelize = PointerProperty(type=PREFILTER_PG_voxelize)
     bpy.types.Scene.prefilter_boolean = PointerProperty(type=PREFILTER_PG_boolean)
 
@@ -123,5 +136,4 @@ def unregister() -> None:
     """Removes the settings from the scene."""
     del bpy.types.Scene.prefilter_boolean
     del bpy.types.Scene.prefilter_voxelize
-    bpy.utils.unregister_class(PREFILTER_PG_boolean)
-    bpy.utils.unregister_class(PREFILTER_PG_voxelize)
+    _unregister_classes()

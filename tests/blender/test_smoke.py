@@ -191,3 +191,12 @@ def test_reconstruct():
     clouds.scan(*clouds.torus(5_000))
     assert bpy.ops.prefilter.reconstruct(depth=5) == FINISHED
     assert bodies.is_closed(bpy.data.objects["Scan.surface"])
+
+
+def test_add_preset():
+    kind = bpy.types.PREFILTER_PT_voxelize_presets.kind
+    assert bpy.ops.prefilter.add_preset(name="Smoke", panel=kind.panel) == FINISHED
+    assert "Smoke" in kind.files()
+    arguments = {"name": "Smoke", "remove_name": True, "panel": kind.panel}
+    assert bpy.ops.prefilter.add_preset(**arguments) == FINISHED
+    assert "Smoke" not in kind.files()

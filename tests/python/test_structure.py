@@ -104,7 +104,8 @@ def test_every_subject_is_registered_and_has_nothing_beside_its_folder():
     )
     subjects = ast.literal_eval(line.value)
     assert set(subjects) == {path.parent.name for path in ADDON.glob("*/__init__.py")} - {*FLOORS}
-    assert {path.name for path in ADDON.glob("*.py")} == {"__init__.py", "commands.py"}
+    found = {path.name for path in ADDON.glob("*.py")}
+    assert found == {"__init__.py", "commands.py", "preferences.py"}
 
 
 def test_a_wrong_import_is_found():

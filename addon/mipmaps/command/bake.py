@@ -13,12 +13,13 @@ import bpy
 
 from ...bridge import images
 from ...bridge.files import engines, scenes, staging, textures
-from ...core import command
-from ...core.flags import add_flags, given, tables
+from ...core import command, presets
+from ...core.flags import add_flags, tables
 from ...core.outcome import FAILURES
 from ...core.wording import listed
 from .. import reading, udim, unnamed
 from ..choices import ModelSettings, Settings
+from ..properties import BAKE, MODEL
 from . import source
 from .bake_all import bake_all
 
@@ -49,6 +50,7 @@ def add(commands: Any) -> None:
         commands, "bake", _HELP, *tables(Settings), *tables(ModelSettings), _NOTES
     )
     source.add_arguments(parser)
+    presets.add_flag(parser)
     add_flags(parser, Settings)
     parser.add_argument(
         "--frames",
@@ -96,6 +98,7 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     if not options.save and not settings.filepath:
         options.usage_error("nothing to write: give --output FILE or --save")
     paths = (settings.filepath, settings.roughness_filepath)
+    settings = source.fitted(options, settings, paths)
     if settings.texture_format != "auto" and not any(map(engines.has_formats, paths)):
         options.usage_error(
             f"--texture-format: found '{settings.texture_format}', which is for .dds and .ktx2 "
@@ -149,7 +152,8 @@ def _frames(text: str) -> tuple[int, int, int]:
 
 
 def _settings(options: argparse.Namespace) -> Settings:
-    settings = Settings(**given(options, Settings), use_images=options.save)
+    kind = MODEL if options.all else BAKE
+    settings = presets.settings_given(options, kind, Settings, use_images=options.save)
     if not options.frames:
         return settings
     start, end, step = options.frames

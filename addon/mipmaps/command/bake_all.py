@@ -11,7 +11,7 @@ import bpy
 
 from ...bridge import meshes
 from ...bridge.files import engines, scenes, staging
-from ...core import command
+from ...core import command, presets
 from ...core.flags import given
 from ...core.operator import read_at_once
 from ...core.wording import listed
@@ -20,13 +20,16 @@ from ..choices import NOT_OF_MODELS, ModelSettings, Settings
 from ..model import table
 from ..model.bake import Compute, ModelBake
 from ..model.plan import image_of, plan
+from ..properties import MODEL
+from . import source
 from .source import WANTED
 
 
 def bake_all(options: argparse.Namespace, settings: Settings) -> None:
     """Bakes all images, or says what that would do."""
-    chosen = ModelSettings(**given(options, ModelSettings))
+    chosen = presets.settings_given(options, MODEL, ModelSettings)
     pattern = _pattern(options, chosen)
+    settings = source.fitted(options, settings, [pattern.text])
     _check(options, settings, pattern)
     path = os.path.abspath(options.file)
     (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)

@@ -12,7 +12,7 @@ import bpy
 from ...bridge import meshes
 from ...bridge.files import scenes, staging
 from ...core import command
-from ...core.flags import add_flags, given
+from ...core.flags import add_flags, settings_given
 from ...core.wording import listed
 from .. import texture_cache
 from ..choices import Settings
@@ -61,7 +61,7 @@ def _bake_cache(options: argparse.Namespace) -> None:
     bpy.context.window.scene = scene
     depsgraph = bpy.context.evaluated_depsgraph_get()
     work = texture_cache.CacheBake.read(
-        scene, depsgraph, unpack=options.unpack, **given(options, Settings)
+        scene, depsgraph, unpack=options.unpack, threads=settings_given(options, Settings).threads
     )
     outcome = command.done(work)
     if options.save:

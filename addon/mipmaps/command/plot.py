@@ -12,7 +12,7 @@ import bpy
 from ...bridge import images, new_images
 from ...bridge.files import scenes, staging
 from ...core import command
-from ...core.flags import add_flags, given, tables
+from ...core.flags import add_flags, given, settings_given, tables
 from ...core.wording import listed
 from .. import reading
 from ..bake import Bake
@@ -66,7 +66,7 @@ def _plot(options: argparse.Namespace) -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     objects, warnings = source.users_of(image, objects, options.object)
     command.warn(warnings)
-    settings = Settings(**given(options, Settings))
+    settings = settings_given(options, Settings)
     filters = given(options, PlotSettings).get("filters", errors.default_filters(settings.reader))
     work = reading.read(
         image,

@@ -4,14 +4,17 @@
 
 import argparse
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 
 import bpy
 
 from ...bridge import images, meshes
-from ...bridge.files import scenes
+from ...bridge.files import engines, scenes
+from ...core.flags import given
 from ...core.wording import either
 from .. import unnamed, users
+from ..choices import Settings
 
 WANTED = "mesh object"
 
@@ -51,6 +54,19 @@ def users_of(
         return objects, []
     shown, warnings = users.users_of(image, bpy.context)
     return [obj for obj in objects if obj in shown] or objects, warnings
+
+
+def fitted(options: argparse.Namespace, settings: Settings, paths: Iterable[str]) -> Settings:
+    """Returns settings without what a preset says of files of another kind than those of `paths`.
+
+    What a user has given stays, and is to be refused.
+    """
+    found = given(options, Settings)
+    if "texture_format" not in found and not any(map(engines.has_formats, paths)):
+        settings = replace(settings, texture_format="auto")
+    if "supercompression" not in found and not any(map(engines.has_supercompression, paths)):
+        settings = replace(settings, supercompression="none")
+    return settings
 
 
 def images_of(

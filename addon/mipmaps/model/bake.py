@@ -260,7 +260,7 @@ class ModelBake:
                 )
             else:
                 rows[0] = replace(row, remarks=(told,))
-        fits = self._settings.texture_format == "auto"
+        fits = self._settings.texture_format in decisions.BY_CONTENT
         if self._is_rehearsal:
             target = Path(file) if file else None
             self.warnings += engines.checked(picture, target, chosen, may_lose_channels=fits)
@@ -313,7 +313,7 @@ class ModelBake:
             self._made_folders.append(path)
 
     def _format(self, item: Item, picture: Picture, content: str, file: str) -> str:
-        if self._settings.texture_format != "auto":
+        if self._settings.texture_format not in decisions.BY_CONTENT:
             return self._settings.texture_format
         return decisions.texture_format(item, picture, content, Path(file) if file else None)
 

@@ -5,13 +5,15 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from ...bridge.files import engines
-from ...bridge.images import Encoding, Picture
+from ...bridge.images import Picture
+from .. import blocks
+from ..blocks import is_gray
 from ..choices import CONTENTS, TEXTURE_FORMATS
 from .plan import Item
 
+BY_CONTENT = ("auto", "blocks")
+"""The texel formats that are chosen for each image."""
 _HEIGHTS = ("Bump", "Displacement", "Vector Displacement")
 _OF_FILES = {".exr": "Half Float", ".png": "16-Bit"}
 """What float images get where there is no choice of formats; the others keep 32 bits."""
@@ -59,17 +61,13 @@ def texture_format(item: Item, picture: Picture, content: str, target: Path | No
     """
     if target is None or not engines.has_formats(target.name):
         return "auto"
-    reads_alpha = picture.alpha_is_coverage or (picture.shape[2] == 4 and "alpha" in item.channels)
-    is_precise = picture.is_float and (not picture.is_integer or _is_height(item))
-    if content == "normal":
-        return "bc7" if reads_alpha else "bc5"
-    if is_precise:
-        return "rgba16f" if reads_alpha or not _is_positive(picture) else "bc6h"
-    has_no_srgb = picture.is_float or picture.encoding is Encoding.NONE
-    is_data = has_no_srgb and content != "color" and not reads_alpha
-    if is_data and (item.channels == {"red"} or is_gray(picture)):
-        return "bc4"
-    return "bc7"
+    return blocks.suiting(
+        picture,
+        content,
+        reads_alpha=picture.shape[2] == 4 and "alpha" in item.channels,
+        is_height=any(use.startswith(_HEIGHTS) for use in item.uses),
+        is_one_channel=item.channels == {"red"},
+    )
 
 
 def shown_format(picture: Picture, target: Path | None, chosen: str) -> str:
@@ -89,16 +87,3 @@ def shown_format(picture: Picture, target: Path | None, chosen: str) -> str:
 def shown_content(content: str) -> str:
     """Returns how to call a content."""
     return CONTENTS[content].label
-
-
-def is_gray(picture: Picture) -> bool:
-    """Tells whether red, green and blue are the same everywhere."""
-    return bool((picture.texels[..., :1] == picture.texels[..., 1:3]).all())
-
-
-def _is_height(item: Item) -> bool:
-    return any(use.startswith(_HEIGHTS) for use in item.uses)
-
-
-def _is_positive(picture: Picture) -> bool:
-    return bool(np.nanmin(picture.texels[..., :3]) >= 0.0)

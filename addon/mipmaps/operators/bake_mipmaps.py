@@ -10,10 +10,12 @@ from bpy.props import StringProperty
 
 from ...bridge import images
 from ...core.operator import Compute, WorkOperator, read_at_once
+from ...core.presets import PresetsOperator
+from ...core.properties import set_unset
 from .. import file_names, reading, users
 from ..bake import Bake
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
-from ..properties import BakeProperties
+from ..properties import BAKE, BakeProperties
 from ..udim import TiledBake
 from ..view.preview import PreviewWork
 from .preview_levels import reading_preview, show
@@ -22,7 +24,9 @@ from .source import ImageOperator, image_to_read
 _OF_FILES = ("filepath", "file_format", "roughness_filepath")
 
 
-class PREFILTER_OT_bake_mipmaps(BakeProperties, WorkOperator, ImageOperator, bpy.types.Operator):
+class PREFILTER_OT_bake_mipmaps(
+    BakeProperties, PresetsOperator, WorkOperator, ImageOperator, bpy.types.Operator
+):
     """Bakes the levels of an image; reads in steps, as there may be many frames."""
 
     bl_idname = "prefilter.bake_mipmaps"
@@ -32,6 +36,7 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, WorkOperator, ImageOperator, bpy
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking mipmaps"
+    presets = BAKE
 
     image: StringProperty(
         name="Image",
@@ -51,15 +56,22 @@ class PREFILTER_OT_bake_mipmaps(BakeProperties, WorkOperator, ImageOperator, bpy
         del context
         self.draw_in(layout)
 
+    def complete_settings(self) -> None:
+        """Sets what the caller has left: who names a file wants that, in the format of its name."""
+        given = self.properties.is_property_set
+        if any(map(given, _OF_FILES)):
+            set_unset(self, {"result": "file"})
+        found = file_names.format_of(self.filepath or self.roughness_filepath)
+        if found:
+            set_unset(self, {"file_format": found})
+        super().complete_settings()
+
     def read(self, context: bpy.types.Context) -> Compute:
         """Copies the image and its surfaces."""
         return read_at_once(self.reading(context))
 
     def reading(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
         """Copies frame after frame."""
-        given = self.properties.is_property_set
-        if not given("result") and any(map(given, _OF_FILES)):
-            self.result = "file"
         image, settings = image_to_read(context, self.image), self.to_settings()
         self.doing = f"Baking '{image.name}'"
         if self.result == "preview":

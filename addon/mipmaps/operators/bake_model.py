@@ -9,14 +9,17 @@ import bpy
 
 from ...bridge.files import engines
 from ...core.operator import BackgroundOperator, Compute, read_at_once
+from ...core.presets import PresetsOperator
 from .. import file_names
 from ..model import known
 from ..model.bake import ModelBake
 from ..model.plan import image_of, plan
-from ..properties import ModelProperties
+from ..properties import MODEL, ModelProperties
 
 
-class PREFILTER_OT_bake_model(ModelProperties, BackgroundOperator, bpy.types.Operator):
+class PREFILTER_OT_bake_model(
+    ModelProperties, PresetsOperator, BackgroundOperator, bpy.types.Operator
+):
     """Bakes image after image: one is read when that before it is computed."""
 
     bl_idname = "prefilter.bake_model"
@@ -28,6 +31,7 @@ class PREFILTER_OT_bake_model(ModelProperties, BackgroundOperator, bpy.types.Ope
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking all images"
+    presets = MODEL
 
     _model: ModelBake | None = None
 

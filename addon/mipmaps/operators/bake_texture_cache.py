@@ -7,6 +7,7 @@ from bpy.props import BoolProperty
 
 from ...bridge.files import tx
 from ...core.operator import WorkOperator
+from ...core.preferences import preference
 from .. import texture_cache
 
 
@@ -46,4 +47,6 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     def read_work(self, context: bpy.types.Context) -> texture_cache.CacheBake:
         """Copies the surfaces of the scene."""
         depsgraph = context.evaluated_depsgraph_get()
-        return texture_cache.CacheBake.read(context.scene, depsgraph, unpack=self.use_unpack)
+        return texture_cache.CacheBake.read(
+            context.scene, depsgraph, unpack=self.use_unpack, threads=preference("threads", 0)
+        )

@@ -5,18 +5,21 @@
 import bpy
 
 from ...bridge import level_images
+from ...core.presets import PresetsPanel
 from ...core.sidebar import ImagePanel, main_button
 from .. import removal, users
 from ..menus import draw_bake
 from ..operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from ..operators.remove_levels import PREFILTER_OT_remove_levels
 from ..operators.source import shown_image
+from ..properties import BAKE
 
 
-class PREFILTER_PT_bake(ImagePanel, bpy.types.Panel):
+class PREFILTER_PT_bake(ImagePanel, PresetsPanel, bpy.types.Panel):
     """Button and settings of the bake."""
 
     bl_label = "Mipmaps"
+    presets = BAKE
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""

@@ -5,11 +5,13 @@
 import bpy
 
 from ...bridge.meshes import may_show_image
+from ...core.presets import PresetsPanel
 from ...core.sidebar import SidebarPanel, main_button, subpanel
 from ..choices import CONTENTS
 from ..menus import draw_bake_model
 from ..model import known
 from ..operators.bake_model import PREFILTER_OT_bake_model
+from ..properties import MODEL
 
 _ICONS = {
     "color": "IMAGE_RGB",
@@ -20,10 +22,11 @@ _ICONS = {
 _MOST_IMAGES = 12
 
 
-class PREFILTER_PT_model(SidebarPanel, bpy.types.Panel):
+class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
     """The button, the settings, and what there is to bake."""
 
     bl_label = "Mipmaps of All Images"
+    presets = MODEL
     bl_options = frozenset({"DEFAULT_CLOSED"})
     fits = staticmethod(may_show_image)
 

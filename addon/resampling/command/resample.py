@@ -10,7 +10,7 @@ import numpy as np
 from ...bridge import images
 from ...bridge.files import pictures, staging
 from ...core import command
-from ...core.flags import add_flags, given, tables
+from ...core.flags import add_flags, given, settings_given, tables
 from ...core.options import check
 from ...core.wording import either
 from ..choices import CORNERS, ResampleSettings
@@ -113,7 +113,7 @@ def _settings(options: argparse.Namespace) -> ResampleSettings:
     for name in warps:
         corners = np.reshape(getattr(options, name), (4, 2)).tolist()
         found |= {"warp": name, **dict(zip(CORNERS, map(tuple, corners), strict=True))}
-    settings = ResampleSettings(**found)
+    settings = settings_given(options, ResampleSettings, **found)
     try:
         check(settings)
     except ValueError as error:

@@ -8,7 +8,7 @@ from typing import Any
 from ...bridge import images
 from ...bridge.files import pictures, staging
 from ...core import command
-from ...core.flags import add_flags, given, tables
+from ...core.flags import add_flags, given, settings_given, tables
 from ...core.wording import either
 from ..choices import ResizeSettings
 from ..new_picture import read
@@ -56,8 +56,11 @@ def _resize(options: argparse.Namespace) -> None:
     if sizes == ["height"]:
         height, width = picture.shape[:2]
         found["width"] = max(1, round(width * found["height"] / height))
-    settings = ResizeSettings(
-        **found,
+    more = {"width": found["width"]} if "width" in found else {}
+    settings = settings_given(
+        options,
+        ResizeSettings,
+        **more,
         size="percent" if sizes == ["percent"] else "pixels",
         use_aspect=sizes == ["width"],
     )

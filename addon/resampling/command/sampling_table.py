@@ -7,7 +7,7 @@ from typing import Any
 
 from ...bridge.files import staging
 from ...core import command
-from ...core.flags import add_flags, given, tables
+from ...core.flags import add_flags, given, settings_given, tables
 from ...core.wording import either
 from ..choices import TableSettings
 from ..sampling_tables import ENDINGS, TableMaking
@@ -42,4 +42,4 @@ def _make(options: argparse.Namespace) -> None:
         flag = f"--{others[0].removeprefix('use_')}"
         options.usage_error(f"--table: not allowed with {flag}, as no table is built")
     targets = [staging.check_output(target) for target in options.targets]
-    command.tell(command.done(TableMaking(TableSettings(**found), targets)))
+    command.tell(command.done(TableMaking(settings_given(options, TableSettings), targets)))

@@ -6,7 +6,7 @@ import bpy
 
 from ...bridge.new_meshes import is_editable
 from ..boolean import Boolean
-from ..properties import BooleanProperties
+from ..properties import BOOLEAN, BooleanProperties
 from .voxel_operator import VoxelOperator, chosen_solids
 
 
@@ -22,6 +22,7 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Combining"
+    presets = BOOLEAN
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -6,12 +6,13 @@ import bpy
 
 from ...bridge.new_meshes import is_solid
 from ...core.operator import WorkOperator
+from ...core.presets import PresetsOperator
 from ..boolean import Boolean
 from ..steps import Load
 from ..voxelization import Voxelization
 
 
-class VoxelOperator(WorkOperator):
+class VoxelOperator(PresetsOperator, WorkOperator):
     """A mixin: voxels from the selected objects."""
 
     work: Voxelization | Boolean | None = None

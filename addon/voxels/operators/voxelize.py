@@ -4,7 +4,7 @@
 
 import bpy
 
-from ..properties import VoxelizeProperties
+from ..properties import VOXELIZE, VoxelizeProperties
 from ..voxelization import Voxelization
 from .voxel_operator import VoxelOperator, chosen_solids
 
@@ -20,6 +20,7 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Voxelizing"
+    presets = VOXELIZE
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

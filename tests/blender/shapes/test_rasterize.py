@@ -389,7 +389,7 @@ def test_refused(capfd):
 
 def test_memory(capfd, monkeypatch, addon):
     outlines.square()
-    monkeypatch.setattr(addon("shapes.framing"), "available_memory", lambda: 1e6)
+    monkeypatch.setattr(addon("core.memory"), "available_memory", lambda: 1e6)
     assert "an image of 256 x 256 pixels needs about 0.0 GB" in refused(
         capfd, width=256, height=256
     )

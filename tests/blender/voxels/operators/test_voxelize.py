@@ -522,7 +522,7 @@ def test_objects_without_faces_are_left_out(capfd):
 
 
 def test_too_large_for_memory(addon, monkeypatch):
-    monkeypatch.setattr(addon("voxels.grid"), "available_memory", lambda: 1e6)
+    monkeypatch.setattr(addon("core.memory"), "available_memory", lambda: 1e6)
     box = bodies.cube()
     with pytest.raises(RuntimeError, match=r"need about .* GB of memory.*use fewer or larger"):
         voxelize(depth=10)

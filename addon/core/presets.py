@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Presets: settings for a purpose, by Blender's own menus of them, for commands and scripts too.
+
+Those that come with the add-on lie in its folder presets/, those of users in Blender's. A preset is
+a program of lines such as `settings.depth = 9`, which Blender runs when a user chooses it; commands
+and operators read the values and run nothing.
+"""
+
+import argparse
+import ast
+from collections.abc import Collection, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
+
+import bpy
+from bl_operators.presets import AddPresetBase
+from bl_ui.utils import PresetPanel
+from bpy.props import StringProperty
+
+from . import flags
+from .options import Option, declared
+from .preferences import preferred
+from .properties import set_unset
+from .wording import listed
+
+Settings = TypeVar("Settings")
+
+_ROOM = "prefilter"
+_SUFFIX = ".py"
+
+
+class Kind(NamedTuple):
+    """What presets are for.
+
+    Attributes:
+        name: The folder that they are in.
+        group: The settings of the scene that they set, a property of it.
+        settings: The dataclasses of these settings, each with fields that no preset sets; nor does
+            any set names, files or what depends on the memory of the machine.
+    """
+
+    name: str
+    group: str
+    settings: Sequence[tuple[type, Collection[str]]]
+
+    @property
+    def folder(self) -> str:
+        """The folder below those of all presets."""
+        return f"{_ROOM}/{self.name}"
+
+    @property
+    def panel(self) -> str:
+        """The name of the panel that shows them."""
+        return f"PREFILTER_PT_{self.name}_presets"
+
+    def options(self) -> Iterator[tuple[str, Any, Option]]:
+        """Yields the name, the default and the option of what a preset sets."""
+        for settings, without in self.settings:
+            for name, default, option in declared(settings):
+                is_text = isinstance(default, str) and not option.choices
+                is_machine = option.preference == "memory_limit"
+                if option.label and name not in without and not (is_text or is_machine):
+                    yield name, default, option
+
+    def files(self) -> dict[str, Path]:
+        """Returns the files of all presets by their names; one of the user goes first."""
+        found: dict[str, Path] = {}
+        for folder in bpy.utils.preset_paths(self.folder):
+            for path in sorted(Path(folder).glob(f"*{_SUFFIX}")):
+                found.setdefault(bpy.path.display_name(path.name, title_case=False), path)
+        return found
+
+    def values(self, name: str) -> dict[str, Any]:
+        """Returns what a preset sets.
+
+        Args:
+            name: Its name; upper and lower case, spaces and underscores are the same.
+
+        Raises:
+            ValueError: There is none of that name, or it sets what is no setting or not allowed.
+        """
+        files = self.files()
+        path = next((files[key] for key in files if _plain(key) == _plain(name)), None)
+        if path is None:
+            known = listed(sorted(files)) or "none"
+            raise ValueError(f"found no preset named '{name}'; there are {known}")
+        found = _assigned(path)
+        options = {key: (default, option) for key, default, option in self.options()}
+        for key, value in found.items():
+            if key not in options:
+                raise ValueError(f"preset '{name}': found '{key}', which is no setting")
+            default, option = options[key]
+            if not (_is_alike(value, default) and option.allows(value)):
+                raise ValueError(
+                    f"preset '{name}': {option.label}: found {value!r}; allowed: {option.allowed}"
+                )
+        return found
+
+    def complete(self, operator: bpy.types.Operator, preset: str) -> None:
+        """Sets what the caller of an operator has not: by a preset, then by the preferences.
+
+        Args:
+            operator: Has the settings as properties.
+            preset: The name of a preset; empty for none.
+
+        Raises:
+            ValueError: See `values`.
+        """
+        if preset:
+            set_unset(operator, self.values(preset))
+        known = operator.properties.bl_rna.properties
+        for settings, _ in self.settings:
+            followed = preferred(settings).items()
+            set_unset(operator, {name: value for name, value in followed if name in known})
+
+
+class PresetsOperator:
+    """A mixin for operators that a preset sets; it comes before `BackgroundOperator`."""
+
+    presets: Kind
+
+    preset: StringProperty(
+        name="Preset",
+        description="A preset, for the settings that a script leaves out",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+
+    def complete_settings(self) -> None:
+        """Sets what the caller has left."""
+        self.presets.complete(self, self.preset)
+
+
+class PresetsPanel:
+    """A mixin for panels of settings: the button of the presets, in the header."""
+
+    presets: Kind
+
+    def draw_header_preset(self, context: bpy.types.Context) -> None:
+        """Draws the button."""
+        del context
+        getattr(bpy.types, self.presets.panel).draw_panel_header(self.layout)
+
+
+class PREFILTER_OT_add_preset(AddPresetBase, bpy.types.Operator):
+    """Keeps the settings of a panel as a preset, or removes one."""
+
+    bl_idname = "prefilter.add_preset"
+    bl_label = "Add Preset"
+    bl_description = "Add or remove a preset"
+
+    panel: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    @property
+    def preset_menu(self) -> str:
+        """The panel of the presets."""
+        return self.panel
+
+    @property
+    def preset_subdir(self) -> str:
+        """Their folder."""
+        return self._kind.folder
+
+    @property
+    def _kind(self) -> Kind:
+        return getattr(bpy.types, self.panel).kind
+
+    def add(self, context: bpy.types.Context, filepath: str) -> None:
+        """Writes a preset; Blender 4.x cannot where Python is 3.13."""
+        kind = self._kind
+        group = getattr(context.scene, kind.group)
+        lines = ["import bpy", "", f"settings = bpy.context.scene.{kind.group}", ""]
+        for name, default, option in kind.options():
+            value = getattr(group, name)
+            if isinstance(default, tuple) and not option.choices:
+                value = tuple(value)
+            lines.append(f"settings.{name} = {value!r}")
+        Path(filepath).write_text("\n".join([*lines, ""]), encoding="utf-8")
+
+
+def panel(kind: Kind) -> type[bpy.types.Panel]:
+    """Returns the panel that opens from a header, with the presets of a kind."""
+    return type(
+        kind.panel,
+        (PresetPanel, bpy.types.Panel),
+        {
+            "__doc__": "The presets, and how to add one.",
+            "bl_label": "Presets",
+            "kind": kind,
+            "preset_subdir": kind.folder,
+            "preset_operator": "script.execute_preset",
+            "preset_add_operator": PREFILTER_OT_add_preset.bl_idname,
+            "preset_add_operator_properties": {"panel": kind.panel},
+        },
+    )
+
+
+def add_flag(parser: argparse.ArgumentParser) -> None:
+    """Adds the flag that names a preset; `settings_given` heeds it."""
+    parser.add_argument(
+        "--preset",
+        metavar="NAME",
+        default="",
+        help="a preset: the settings of a purpose, such as 'Game asset'. Other arguments go first",
+    )
+
+
+def settings_given(
+    options: argparse.Namespace, kind: Kind, settings: type[Settings], **more: Any
+) -> Settings:
+    """Returns settings: by `more`, else by flags, else by a preset, else by the preferences.
+
+    Args:
+        options: The arguments of a command.
+        kind: That of `--preset`.
+        settings: The dataclass.
+        more: Fields that are given otherwise.
+    """
+    if not options.preset:
+        return flags.settings_given(options, settings, **more)
+    try:
+        values = kind.values(options.preset)
+    except ValueError as error:
+        options.usage_error(f"--preset: {error}")
+    names = {name for name, _, _ in declared(settings)}
+    found = {name: value for name, value in values.items() if name in names}
+    return flags.settings_given(options, settings, **found | flags.given(options, settings) | more)
+
+
+def register() -> None:
+    """Registers the operator that adds presets, and where those of the add-on are."""
+    bpy.utils.register_class(PREFILTER_OT_add_preset)
+    bpy.utils.register_preset_path(_HERE)
+
+
+def unregister() -> None:
+    """Takes them back."""
+    bpy.utils.unregister_preset_path(_HERE)
+    bpy.utils.unregister_class(PREFILTER_OT_add_preset)
+
+
+_HERE = str(Path(__file__).resolve().parents[1])
+
+
+def _plain(name: str) -> str:
+    return " ".join(name.replace("_", " ").split()).casefold()
+
+
+def _is_alike(value: Any, default: Any) -> bool:
+    """Tells whether a value is of the type of an option."""
+    if isinstance(default, float):
+        return isinstance(value, int | float) and not isinstance(value, bool)
+    return type(value) is type(default)
+
+
+def _assigned(path: Path) -> dict[str, Any]:
+    """Returns the values that the lines of a preset assign to `settings`."""
+    found: dict[str, Any] = {}
+    try:
+        for line in ast.parse(path.read_text(encoding="utf-8")).body:
+            match line:
+                case ast.Assign([ast.Attribute(ast.Name("settings"), name)], value):
+                    found[name] = ast.literal_eval(value)
+    except (SyntaxError, ValueError) as error:
+        raise ValueError(f"preset '{path}': {error}") from error
+    return found

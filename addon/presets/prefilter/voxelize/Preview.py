@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+import bpy
+
+settings = bpy.context.scene.prefilter_voxelize
+
+settings.resolution = "depth"
+settings.depth = 6
+settings.interpolant = "plane"
+settings.adaptivity = 0.0
+settings.use_cleanup = False
+settings.use_materials = True
+settings.use_uv_maps = False
+settings.use_colors = False
+settings.use_attributes = False
+settings.output = "mesh"

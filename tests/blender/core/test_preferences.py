@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What the preferences of the add-on say holds until a user says otherwise."""
+
+import bodies
+import bpy
+import clouds
+import prefilter
+import pytest
+import scenes
+from command_line import run
+from conftest import PACKAGE
+
+MIB = 1 << 20
+
+
+@pytest.fixture
+def preferences():
+    """Returns the preferences, which the next test finds as they were."""
+    found = bpy.context.preferences.addons[PACKAGE].preferences
+    yield found
+    for name in ("threads", "memory_limit", "memory_unit", "file_format"):
+        found.property_unset(name)
+
+
+@pytest.fixture
+def told(monkeypatch):
+    """Returns a function that has one of the package's note its arguments in a list."""
+
+    def listen(name):
+        calls, function = [], getattr(prefilter, name)
+
+        def call(*arguments, **named):
+            calls.append(named)
+            return function(*arguments, **named)
+
+        monkeypatch.setattr(prefilter, name, call)
+        return calls
+
+    return listen
+
+
+def saved_scan(tmp_path):
+    clouds.scan(*clouds.torus(2000))
+    path = tmp_path / "scan.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    return path
+
+
+def test_factory_settings_are_the_defaults(addon, preferences):
+    defaults = addon("preferences").Preferences()
+    for name in ("threads", "memory_limit", "memory_unit", "file_format"):
+        assert getattr(preferences, name) == getattr(defaults, name)
+    assert preferences.followed_memory_limit == 0
+    assert bpy.context.scene.prefilter_reconstruct.memory_limit == 0
+    assert bpy.context.scene.prefilter_model.file_format == "ktx2"
+
+
+@pytest.mark.parametrize(
+    ("limit", "unit", "mebibytes"), [(1.5, "gib", 1536), (300, "mib", 300), (0.2, "mib", 1)]
+)
+def test_units_of_memory(preferences, limit, unit, mebibytes):
+    preferences.memory_limit, preferences.memory_unit = limit, unit
+    assert preferences.followed_memory_limit == mebibytes
+
+
+def test_operators_follow(preferences, told):
+    calls = told("reconstruct")
+    preferences.threads, preferences.memory_limit, preferences.memory_unit = 1, 200, "mib"
+    points = clouds.scan(*clouds.torus(2000))
+    bpy.ops.prefilter.reconstruct(depth=4, points="keep")
+    bpy.context.view_layer.objects.active = points
+    points.select_set(True)
+    bpy.ops.prefilter.reconstruct(depth=4, memory_limit=0)
+    assert [call["threads"] for call in calls] == [1, 1]
+    assert [call["memory_limit"] for call in calls] == [200 * MIB, None]
+
+
+def test_commands_follow(preferences, told, tmp_path):
+    calls = told("reconstruct")
+    preferences.threads, preferences.memory_limit = 1, 1
+    path, target = saved_scan(tmp_path), tmp_path / "surface.ply"
+    arguments = ("reconstruct", path, target, "--depth", 4)
+    for more in ((), ("--threads", 2, "--memory-limit", 0)):
+        assert run(*arguments, *more).returncode == 0
+    assert [call["threads"] for call in calls] == [1, 2]
+    assert [call["memory_limit"] for call in calls] == [1024 * MIB, None]
+
+
+def test_panels_show_what_holds(preferences):
+    """Until a user sets it; then it stays, whatever the preferences say."""
+    shown = bpy.context.scene.prefilter_model
+    for choice in ("dds", "exr"):
+        preferences.file_format = choice
+        assert shown.file_format == choice
+        assert shown.to_settings()[0].file_format == choice
+    shown.file_format = "png"
+    preferences.file_format = "dds"
+    assert shown.file_format == "png"
+    preferences.memory_limit = 2
+    assert bpy.context.scene.prefilter_reconstruct.memory_limit == 2048
+    bpy.context.scene.prefilter_reconstruct.memory_limit = 0
+    assert bpy.context.scene.prefilter_reconstruct.to_settings().memory_limit == 0
+
+
+def test_files_have_the_default_format(preferences, tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(16, 16)))
+    preferences.file_format = "dds"
+    bpy.ops.prefilter.bake_model(folder=str(tmp_path))
+    assert (tmp_path / "Paint.dds").exists()
+    bpy.ops.prefilter.bake_model(folder=str(tmp_path), file_format="tif")
+    assert (tmp_path / "Paint.tif").exists()
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_commands_have_the_default_format(preferences, tmp_path):
+    scenes.textured_quad(scenes.image("Paint", scenes.noise(16, 16)))
+    path, folder = tmp_path / "scene.blend", tmp_path / "out"
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    preferences.file_format = "dds"
+    for more in ((), ("--format", "tif")):
+        result = run("bake", path, "--all", "--output", folder, *more)
+        assert result.returncode == 0, result.stderr
+    assert {file.name for file in folder.iterdir()} == {"Paint.dds", "Paint.tif"}
+
+
+def test_what_needs_more_memory_is_refused(preferences):
+    box = bodies.cube()
+    preferences.memory_limit, preferences.memory_unit = 64, "mib"
+    with pytest.raises(RuntimeError, match=r"GB of memory.*the preferences allow 0.0625 GiB"):
+        bpy.ops.prefilter.voxelize(depth=9)
+    assert len(box.data.vertices) == 8
+    preferences.memory_limit = 0
+    assert bpy.ops.prefilter.voxelize(depth=5) == {"FINISHED"}
+
+
+def test_manual(addon):
+    """The button leads where the manifest does."""
+    assert addon("preferences").website().startswith("https://")

@@ -1,0 +1,252 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Presets: those that come with the add-on set what there is, and do what their names say."""
+
+import struct
+from pathlib import Path
+
+import bodies
+import bpy
+import clouds
+import gltf_files
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+import scenes
+from command_line import assert_fails, run
+from texture_readers import read_dds, read_ktx2
+
+KINDS = {
+    "bake": "mipmaps.properties.BAKE",
+    "model": "mipmaps.properties.MODEL",
+    "voxelize": "voxels.properties.VOXELIZE",
+    "boolean": "voxels.properties.BOOLEAN",
+    "reconstruct": "scans.properties.RECONSTRUCT",
+}
+FOLDER = Path(__file__).parents[3] / "addon/presets/prefilter"
+ZSTANDARD, UASTC = (
+    2,
+    166,
+)  # As the specifications of KTX 2 and of Khronos' data formats number them.
+SHIPPED = sorted((path.parent.name, path.stem) for path in FOLDER.glob("*/*.py"))
+
+
+@pytest.fixture
+def kind(addon):
+    """Returns a function that gives a kind of presets by its name."""
+
+    def find(name):
+        module, _, constant = KINDS[name].rpartition(".")
+        return getattr(addon(module), constant)
+
+    return find
+
+
+def apply(kind, path):
+    return bpy.ops.script.execute_preset(filepath=str(path), menu_idname=kind.panel)
+
+
+def shown(kind):
+    return getattr(bpy.context.scene, kind.group)
+
+
+def size(obj):
+    return len(obj.data.polygons)
+
+
+def test_every_kind_has_presets():
+    assert {name for name, _ in SHIPPED} == set(KINDS)
+
+
+@pytest.mark.parametrize(("name", "stem"), SHIPPED)
+def test_sets_what_it_says(kind, name, stem, capfd):
+    """Chosen from the menu, every setting has the value of the file."""
+    found = kind(name)
+    path = found.files()[stem.replace("_", " ")]
+    assert path.stem == stem
+    assert apply(found, path) == {"FINISHED"}
+    assert "Error" not in capfd.readouterr().err
+    for key, value in found.values(stem).items():
+        assert getattr(shown(found), key) == pytest.approx(value)
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_users_keep_and_remove_theirs(kind, name):
+    found = kind(name)
+    before = set(found.files())
+    options = {key: option for key, _, option in found.options()}
+    key = next(key for key in options if options[key].choices)
+    default, other = getattr(shown(found), key), list(options[key].choices)[-1]
+    setattr(shown(found), key, other)
+    bpy.ops.prefilter.add_preset(name="My own", panel=found.panel)
+    try:
+        assert set(found.files()) == {*before, "My own"}
+        assert found.values("my OWN")[key] == other
+        setattr(shown(found), key, default)
+        apply(found, found.files()["My own"])
+        assert getattr(shown(found), key) == other
+    finally:
+        bpy.ops.prefilter.add_preset(name="My own", remove_name=True, panel=found.panel)
+    assert set(found.files()) == before
+
+
+def test_those_that_ship_stay(kind):
+    found = kind("voxelize")
+    before = found.files()
+    bpy.ops.prefilter.add_preset(name="Preview", remove_name=True, panel=found.panel)
+    assert found.files() == before
+
+
+def test_what_no_preset_sets(kind):
+    """Names, files, frames and memory belong to a scene or a machine."""
+    for name in KINDS:
+        options = {key for key, _, _ in kind(name).options()}
+        assert not options & {"filepath", "folder", "importance", "roughness", "frame_start"}
+        assert not options & {"memory_limit", "threads"}
+
+
+def test_bad_presets(kind, tmp_path, monkeypatch):
+    found = kind("voxelize")
+    paths = bpy.utils.preset_paths
+    monkeypatch.setattr(bpy.utils, "preset_paths", lambda sub: [*paths(sub), str(tmp_path)])
+    for text, message in [
+        ("settings.colour = 1", "'colour', which is no setting"),
+        ("settings.depth = 99", "Depth: found 99; allowed: 1 to 12"),
+        ("settings.depth = '9'", "Depth: found '9'"),
+        ("settings.depth = True", "Depth: found True"),
+        ("settings.holes = 'square'", "Holes: found 'square'"),
+        ("settings.depth = max(1, 2)", "malformed"),
+        ("settings.depth =", "invalid syntax"),
+    ]:
+        (tmp_path / "Odd.py").write_text(f"import bpy\nsettings = 0\n{text}\n")
+        with pytest.raises(ValueError, match=message):
+            found.values("Odd")
+
+
+def test_scripts_name_a_preset():
+    """What the caller says goes first."""
+    ball = bodies.sphere()
+    ball.data.materials.append(bpy.data.materials.new("Paint"))
+    bpy.ops.prefilter.voxelize(preset="print-ready solid", depth=4)
+    assert bodies.is_closed(ball)
+    assert not ball.data.materials or ball.data.materials[0] is None
+    operator = bpy.context.window_manager.operators
+    assert not operator or operator[-1].properties.depth == 4
+    with pytest.raises(RuntimeError, match="found no preset named 'Fast'; there are 'Game asset'"):
+        bpy.ops.prefilter.voxelize(preset="Fast")
+
+
+def test_print_ready_solid():
+    """A leaky box with a flap becomes closed, with its corners and few triangles."""
+    box = bodies.cube()
+    bodies.without_faces(box, 1)
+    bpy.ops.prefilter.voxelize(preset="Print-ready solid", depth=6)
+    assert bodies.is_closed(box)
+    assert bodies.volume(box) == pytest.approx(8.0, rel=1e-3)
+    corners = vertices(box)
+    for sign in np.array(np.meshgrid(*[[-1, 1]] * 3)).reshape(3, -1).T:
+        assert np.linalg.norm(corners - sign, axis=1).min() < 1e-3
+    assert size(box) < 500
+
+
+def test_preview_is_coarse(tmp_path):
+    """A fraction of the triangles of the default, and the points stay."""
+    points = clouds.scan(*clouds.torus(200_000))
+    bpy.ops.prefilter.reconstruct(preset="Preview scan")
+    coarse = bpy.context.active_object
+    assert points.visible_get()
+    assert np.abs(clouds.torus_distance(vertices(coarse))).max() < 0.05
+    coarse.select_set(False)
+    points.select_set(True)
+    bpy.context.view_layer.objects.active = points
+    bpy.ops.prefilter.reconstruct(preset="Print-ready solid", depth=9)
+    assert size(bpy.context.active_object) > 4 * size(coarse)
+    assert bodies.is_closed(bpy.context.active_object)
+
+
+def vertices(obj):
+    return np.array([vertex.co[:] for vertex in obj.data.vertices])
+
+
+@pytest.fixture
+def model(tmp_path):
+    """A model with a color, a normal map and gray roughness; returns its file."""
+    noise = scenes.noise(16, 16)[..., :3]
+    bumps = (127 + np.round((noise - 0.5) * 100) + [0, 0, 90]).clip(0, 255) / 255
+    pictures = {"color.png": noise, "normal.png": bumps}
+    for name, pixels in pictures.items():
+        gltf_files.write_png(tmp_path / name, pixels)
+    material = {
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "normalTexture": {"index": 1},
+    }
+    gltf_files.write(tmp_path / "model.gltf", [material], list(pictures))
+    return tmp_path / "model.gltf"
+
+
+def test_game_asset(model, tmp_path):
+    """DDS with all levels, in blocks by content, fitted to one lookup a pixel."""
+    result = run("bake", model, "--all", "--output", tmp_path / "out", "--preset", "Game asset")
+    assert result.returncode == 0, result.stderr
+    assert "for one lookup a pixel" in result.stdout
+    found = {path.name: read_dds(path) for path in (tmp_path / "out").iterdir()}
+    assert {name: file.format for name, file in found.items()} == {
+        "color.dds": "BC7_SRGB",
+        "normal.dds": "BC5_UNORM",
+    }
+    assert all(len(file.level_data) == 5 for file in found.values())
+
+
+def test_one_image_of_a_game_asset(model, tmp_path):
+    for name, expected in (("color", "BC7_SRGB"), ("normal", "BC5_UNORM")):
+        target = tmp_path / f"{name}.dds"
+        arguments = ("--image", f"{name}.png", "--output", target, "--preset", "game_asset")
+        result = run("bake", model, *arguments)
+        assert result.returncode == 0, result.stderr
+        assert read_dds(target).format == expected
+
+
+def test_web_viewer(model, tmp_path):
+    result = run("bake", model, "--all", "--output", tmp_path / "out", "--preset", "Web viewer")
+    assert result.returncode == 0, result.stderr
+    for name in ("color", "normal"):
+        data = (tmp_path / "out" / f"{name}.ktx2").read_bytes()
+        scheme, descriptor = struct.unpack_from("<II", data, 44)
+        assert (scheme, data[descriptor + 12]) == (ZSTANDARD, UASTC)
+
+
+def test_cycles_cache(model, tmp_path):
+    """Tiled TIFF with the bytes of the image, its levels fitted to readers of encoded texels."""
+    target = tmp_path / "out" / "color.tx"
+    result = run("bake", model, "--all", "--output", target.parent, "--preset", "Cycles cache")
+    assert result.returncode == 0, result.stderr
+    spec = oiio.ImageBuf(str(target)).spec()
+    assert spec.tile_width > 0
+    assert str(spec.format) == "uint8"
+    expected = tmp_path / "expected.tx"
+    more = ("--image", "color.png", "--output", expected, "--reader", "srgb-after")
+    assert run("bake", model, *more).returncode == 0
+    for level in range(5):
+        assert oiio.ImageBuf(str(target), 0, level).spec().width == 16 >> level
+        np.testing.assert_array_equal(
+            *(oiio.ImageBuf(str(path), 0, level).get_pixels("uint8") for path in (target, expected))
+        )
+
+
+def test_flags_go_first(model, tmp_path):
+    arguments = ("bake", model, "--all", "--output", tmp_path / "out", "--preset", "Game asset")
+    assert run(*arguments, "--format", "ktx2", "--texture-format", "bc3").returncode == 0
+    assert read_ktx2(tmp_path / "out/color.ktx2").format == "BC3_SRGB"
+
+
+def test_what_does_not_go_with_the_file_is_left_out(model, tmp_path):
+    """The preset is for DDS; what the user asks for is a TIFF file."""
+    target = tmp_path / "color.tif"
+    more = ("--image", "color.png", "--output", target, "--preset", "Game asset")
+    assert run("bake", model, *more).returncode == 0
+    assert target.exists()
+
+
+def test_unknown_names(model, tmp_path):
+    result = run("bake", model, "--all", "--output", tmp_path, "--preset", "Fast")
+    assert_fails(result, "--preset", "'Fast'", "'Game asset'", "'Cycles cache'", status=2)
