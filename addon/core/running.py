@@ -73,8 +73,8 @@ class Run:
         del _runs[self._key]
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
-        if context.workspace is not None and not _runs:
-            context.workspace.status_text_set(None)
+        if not _runs:
+            _clear_status(context)
         # Buttons look as poll has last said; they take no click before they are drawn again.
         for window in context.window_manager.windows:
             for area in window.screen.areas:
@@ -142,6 +142,15 @@ def _draw_status(header: bpy.types.Header, context: bpy.types.Context) -> None:
         _draw_switch(row, context, key)
     header.layout.label(text="Esc: Cancel")
     header.layout.separator_spacer()
+
+
+def _clear_status(context: bpy.types.Context) -> None:
+    if context.workspace is not None:
+        context.workspace.status_text_set(None)
+    # While a file is loaded there is no workspace, but the header stays.
+    header = getattr(bpy.types, "STATUSBAR_HT_header", None)
+    if header is not None and header.draw is _draw_status:
+        header.draw = header._draw_orig
 
 
 def _redraw_panels(context: bpy.types.Context) -> None:

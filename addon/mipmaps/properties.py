@@ -185,7 +185,7 @@ def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
 
 
 def _draw_surface(settings: Any, layout: bpy.types.UILayout) -> None:
-    layout.prop(settings, "importance")
+    layout.prop(settings, "importance", placeholder="Group or attribute")
     layout.prop(settings, "seam_budget")
     layout.prop(settings, "use_subdivision_limit")
 

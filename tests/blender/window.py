@@ -62,6 +62,21 @@ def stepped(window: bpy.types.Window, x: int, y: int, *, up: bool) -> Iterator[N
     yield
 
 
+def cancelled(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
+    """Presses the first button Cancel in the sidebar of an area."""
+    sidebar = region(area, "UI")
+    x = sidebar.x + sidebar.width * 3 // 4
+    for below_top in range(20, 120, 8):
+        y = sidebar.y + sidebar.height - below_top
+        yield from moved(window, x, y)
+        with bpy.context.temp_override(window=window, area=area, region=sidebar):
+            under = bpy.context.property
+        if under is not None and under[1].endswith("use_cancel"):
+            yield from clicked(window, x, y)
+            return
+    raise AssertionError("there is no button Cancel in the sidebar")
+
+
 def region(area: bpy.types.Area, kind: str) -> bpy.types.Region:
     """Returns the region of a kind."""
     return next(found for found in area.regions if found.type == kind)

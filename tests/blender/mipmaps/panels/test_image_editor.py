@@ -22,5 +22,6 @@ def test_panel_and_modal_bake(in_window, tmp_path):
     assert found["frame_while_reading"] != 9
     assert found["frame_after_cancel"] == 9
     assert found["after_frames"] == sorted([*found["after_bake"], "Big.mip01"])
+    assert not found["status"].startswith("bl_ext")
     assert found["polls_in_next_file"]
     assert found["in_next_file"] == ["Next"]

@@ -19,7 +19,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import idle, play, refused, until
+from window import cancelled, idle, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -72,7 +72,7 @@ def session() -> Iterator[None]:
         bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", **endless)
     yield
     frame_while_reading = scene.frame_current
-    window.event_simulate(type="ESC", value="PRESS")
+    yield from cancelled(window, area)
     yield from until(idle)
     frame_after_cancel = scene.frame_current
     with bpy.context.temp_override(**override):
@@ -101,6 +101,7 @@ def session() -> Iterator[None]:
     yield
     scenes.image("Next", scenes.noise(2, 2))
     yield
+    status = bpy.types.STATUSBAR_HT_header.draw.__module__
     RESULT.write_text(
         json.dumps(
             {
@@ -114,6 +115,7 @@ def session() -> Iterator[None]:
                 "frame_while_reading": frame_while_reading,
                 "frame_after_cancel": frame_after_cancel,
                 "after_frames": after_frames,
+                "status": status,
                 "polls_in_next_file": bpy.ops.prefilter.bake_mipmaps.poll(),
                 "in_next_file": image_names(),
             }
