@@ -27,10 +27,16 @@ FILES = (
 FOLDERS = ("native", "bench/voxels", "tests/python")
 
 
-def portable_text(text: str) -> str:
-    """Returns a text of Markdown without pictures and links that are files of the checkout."""
-    text = re.sub(r"^!\[[^\]]*\]\([^)]*\)\n\n(\*[^*]+\*\n\n)?", "", text, flags=re.M)
-    return re.sub(r"\[([^\]]*)\]\((?!https?:)[^)]*\)", r"\1", text)
+def description(readme: str, python_page: str) -> str:
+    """Returns what PyPI shows: how the README opens, and the first example of docs/python.md.
+
+    Pictures and links that are files of the checkout are left out.
+    """
+    opening = readme.partition("\n## ")[0]
+    opening = re.sub(r"^!\[[^\]]*\]\([^)]*\)\n\n(\*[^*]+\*\n\n)?", "", opening, flags=re.M)
+    opening = re.sub(r"\[([^\]]*)\]\((?!https?:)[^)]*\)", r"\1", opening)
+    example = re.search(r"^```python\n.*?^```\n", python_page, re.M | re.S)
+    return f"{opening.rstrip()}\n" + (f"\n{example[0]}" if example else "")
 
 
 def lay_out(folder: Path, pybind11: Path, linked: Sequence[Path], source: Path = SOURCE) -> Path:
@@ -50,7 +56,8 @@ def lay_out(folder: Path, pybind11: Path, linked: Sequence[Path], source: Path =
     for name in FILES:
         (tree / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(source / name, tree / name)
-    (tree / "README.md").write_text(portable_text((source / "README.md").read_text()))
+    pages = ((source / name).read_text() for name in ("README.md", "docs/python.md"))
+    (tree / "README.md").write_text(description(*pages))
     for library in linked:
         shutil.copytree(library, tree / "third_party" / library.name)
     metadata = (source / "pyproject.toml").read_text()

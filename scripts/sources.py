@@ -43,10 +43,11 @@ def read_table() -> dict[str, dict[str, Any]]:
 
 
 def pip_setting(name: str) -> str:
-    """Returns a setting of pip's, from its files or its environment; empty where it has none."""
+    """Returns a setting of pip's, from its environment or its files; empty where it has none."""
     done = subprocess.run((*PIP, "config", "list"), capture_output=True, text=True)
-    found = re.findall(rf"^[^=]*\b{name}='(.*)'$", done.stdout, re.M)
-    return found[-1] if found else ""
+    found = dict(re.findall(r"^(\S+?)='(.*)'$", done.stdout, re.M))
+    sections = (":env:", "download", "global")
+    return next((found[key] for s in sections if (key := f"{s}.{name}") in found), "")
 
 
 @functools.cache

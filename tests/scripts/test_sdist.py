@@ -47,19 +47,25 @@ def test_it_holds_sources_and_licenses(tmp_path: Path) -> None:
     assert PROJECT["readme"] in held
 
 
-def test_its_text_leads_nowhere_else(tmp_path: Path) -> None:
+def test_what_pypi_shows_leads_nowhere_else(tmp_path: Path) -> None:
     text = (laid_out(tmp_path) / "README.md").read_text()
     assert text.startswith("# Prefilter\n")
-    assert len(text) > 2000
+    assert len(text) > 1000
     assert "![" not in text
     assert re.findall(r"\]\((?!https://)", text) == []
+    example = text.partition("```python\n")[2].removesuffix("```\n")
+    compile(example, "the example", "exec")
+    assert "import prefilter" in example
 
 
 def test_a_link_becomes_its_text() -> None:
-    text = (
-        "![a\nb](c.png)\n\n*What\nit is.*\n\nSee [one page](docs/one.md#x), [two](https://x.y).\n"
+    readme = (
+        "# A\n\n![a\nb](c.png)\n\n*What\nit is.*\n\nSee [one page](docs/one.md#x), [two](https://x.y)."
+        "\n\n## More\n\nNot here.\n"
     )
-    assert sdist.portable_text(text) == "See one page, [two](https://x.y).\n"
+    page = "# Use it\n\n```python\n1\n```\n\n```python\n2\n```\n"
+    expected = "# A\n\nSee one page, [two](https://x.y).\n\n```python\n1\n```\n"
+    assert sdist.description(readme, page) == expected
 
 
 def test_the_version_is_written_once() -> None:

@@ -93,6 +93,21 @@ def test_a_file_of_pypi_comes_from_the_index_of_pip(
         sources.fetch_from_pypi("other", "other-1.tar.gz")
 
 
+def test_settings_of_pip_are_read_as_pip_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("PIP_INDEX_URL", "PIP_EXTRA_INDEX_URL"):
+        monkeypatch.delenv(name, raising=False)
+    (tmp_path / "pip.conf").write_text(
+        "[global]\nextra-index-url = http://extra/\nindex-url = http://one/\n"
+    )
+    monkeypatch.setenv("PIP_CONFIG_FILE", str(tmp_path / "pip.conf"))
+    assert sources.pip_setting("index-url") == "http://one/"
+    monkeypatch.setenv("PIP_INDEX_URL", "http://two/")
+    assert sources.pip_setting("index-url") == "http://two/"
+    assert sources.pip_setting("client-cert") == ""
+
+
 @pytest.mark.parametrize("template", ["", "/{crate}/{version}/download"])
 def test_a_crate_comes_from_the_registry_of_cargo(
     registry: tuple[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, template: str
