@@ -9,13 +9,13 @@ Makes FOLDER/tree. PYBIND11 is the .dist-info folder of pybind11, whose headers 
 gives its license. LINKED are the source folders of libraries that are linked in.
 """
 
-import re
 import shutil
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[1]
+from packager.project import SOURCE, description
+
 # What is needed of this checkout, beside README.md and pyproject.toml, which are changed a little.
 FILES = (
     "CHANGELOG.md",
@@ -25,18 +25,6 @@ FILES = (
     "scripts/sources.toml",
 )
 FOLDERS = ("native", "bench/voxels", "tests/python")
-
-
-def description(readme: str, python_page: str) -> str:
-    """Returns what PyPI shows: how the README opens, and the first example of docs/python.md.
-
-    Pictures and links that are files of the checkout are left out.
-    """
-    opening = readme.partition("\n## ")[0]
-    opening = re.sub(r"^!\[[^\]]*\]\([^)]*\)\n\n(\*[^*]+\*\n\n)?", "", opening, flags=re.M)
-    opening = re.sub(r"\[([^\]]*)\]\((?!https?:)[^)]*\)", r"\1", opening)
-    example = re.search(r"^```python\n.*?^```\n", python_page, re.M | re.S)
-    return f"{opening.rstrip()}\n" + (f"\n{example[0]}" if example else "")
 
 
 def lay_out(folder: Path, pybind11: Path, linked: Sequence[Path], source: Path = SOURCE) -> Path:
@@ -56,8 +44,7 @@ def lay_out(folder: Path, pybind11: Path, linked: Sequence[Path], source: Path =
     for name in FILES:
         (tree / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(source / name, tree / name)
-    pages = ((source / name).read_text() for name in ("README.md", "docs/python.md"))
-    (tree / "README.md").write_text(description(*pages))
+    (tree / "README.md").write_text(description(source))
     for library in linked:
         shutil.copytree(library, tree / "third_party" / library.name)
     metadata = (source / "pyproject.toml").read_text()

@@ -55,7 +55,8 @@ def cross_package(platform: str, tag: str) -> Path:
 
 def fingerprint(tags: Sequence[str], parts: Parts) -> str:
     """Returns a hash of everything that goes into the extension of this machine."""
-    files = [SOURCE / "blender_manifest.toml", SOURCE / "pyproject.toml"]
+    written = ("blender_manifest.toml", "pyproject.toml", "README.md", "docs/python.md")
+    files = [SOURCE / name for name in written]
     files += [*license_texts(parts.linked, here()).values(), *parts.bundled]
     for folder in (Path(__file__).parent, SOURCE / "addon", *map(built_package, tags)):
         files += files_in(folder)

@@ -2,6 +2,7 @@
 
 """Where things are in the checkout, its version, and the errors of packaging."""
 
+import re
 import sys
 import tomllib
 from collections.abc import Iterable
@@ -26,8 +27,21 @@ def project_version(source: Path = SOURCE) -> str:
     return str(tomllib.loads((source / "blender_manifest.toml").read_text())["version"])
 
 
+def description(source: Path = SOURCE) -> str:
+    """Returns what PyPI shows: how the README opens, and the first example of docs/python.md.
+
+    Pictures and links that are files of the checkout are left out.
+    """
+    opening = (source / "README.md").read_text().partition("\n## ")[0]
+    opening = re.sub(r"^!\[[^\]]*\]\([^)]*\)\n\n(\*[^*]+\*\n\n)?", "", opening, flags=re.M)
+    opening = re.sub(r"\[([^\]]*)\]\((?!https?:)[^)]*\)", r"\1", opening)
+    page = (source / "docs/python.md").read_text()
+    example = re.search(r"^```python\n.*?^```\n", page, re.M | re.S)
+    return f"{opening.rstrip()}\n" + (f"\n{example[0]}" if example else "")
+
+
 def core_metadata(version: str, licenses: Iterable[str], source: Path = SOURCE) -> str:
-    """Returns METADATA of a wheel: what pyproject.toml says, without a description.
+    """Returns METADATA of a wheel: what pyproject.toml says.
 
     Args:
         version: The wheel's.
@@ -45,7 +59,8 @@ def core_metadata(version: str, licenses: Iterable[str], source: Path = SOURCE) 
     lines += [f"Project-URL: {name}, {url}" for name, url in project.get("urls", {}).items()]
     lines.append(f"Requires-Python: {project['requires-python']}")
     lines += [f"Requires-Dist: {name}" for name in project["dependencies"]]
-    return "\n".join(lines) + "\n"
+    lines += ["Description-Content-Type: text/markdown", "", description(source)]
+    return "\n".join(lines)
 
 
 def files_in(folder: Path) -> list[Path]:

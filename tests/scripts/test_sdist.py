@@ -9,6 +9,7 @@ import tomllib
 from pathlib import Path
 
 import sdist
+from packager.project import description
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["project"]
@@ -58,14 +59,15 @@ def test_what_pypi_shows_leads_nowhere_else(tmp_path: Path) -> None:
     assert "import prefilter" in example
 
 
-def test_a_link_becomes_its_text() -> None:
-    readme = (
+def test_a_link_becomes_its_text(tmp_path: Path) -> None:
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "README.md").write_text(
         "# A\n\n![a\nb](c.png)\n\n*What\nit is.*\n\nSee [one page](docs/one.md#x), [two](https://x.y)."
         "\n\n## More\n\nNot here.\n"
     )
-    page = "# Use it\n\n```python\n1\n```\n\n```python\n2\n```\n"
+    (tmp_path / "docs/python.md").write_text("# Use\n\n```python\n1\n```\n\n```python\n2\n```\n")
     expected = "# A\n\nSee one page, [two](https://x.y).\n\n```python\n1\n```\n"
-    assert sdist.description(readme, page) == expected
+    assert description(tmp_path) == expected
 
 
 def test_the_version_is_written_once() -> None:
