@@ -31,6 +31,7 @@ NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
 # Images of up to so many texels are baked at the same time, each in a thread of its own: within one
 # threads would wait for each other more than they work.
 _MOST_SMALL_TEXELS = 1 << 21
+_CYCLES = "CYCLES"
 _MADE = 0.2  # What the progress is once Blender has made its cache files.
 
 
@@ -113,6 +114,11 @@ class CacheBake:
             raise OSError(NEEDED)
         warnings: list[str] = []
         notes: list[str] = []
+        if scene.render.engine != _CYCLES:
+            warnings.append(
+                f"scene '{scene.name}' is not rendered by Cycles, which alone reads the texture "
+                f"cache: set Render Engine to Cycles"
+            )
         viewers = rendered.viewers(scene, depsgraph)
         files: dict[bpy.types.Image, dict[int | None, tx.Source]] = {}
         for image in viewers:
