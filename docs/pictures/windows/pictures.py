@@ -1,0 +1,88 @@
+"""Which photographs there are of Blender's windows, and which panels they show."""
+
+import json
+import re
+import struct
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+FOLDER = Path(__file__).resolve().parents[1]
+KEYWORD = "Panels"
+_SIGNATURE = b"\x89PNG\r\n\x1a\n"
+
+
+@dataclass(frozen=True)
+class Photograph:
+    """A photograph of a window.
+
+    Attributes:
+        panels: The panels that it shows, and with them those below.
+        scene: The function of scenes.py that makes what is in the window.
+        opened: Panels that start closed, and are open in the photograph.
+        since: The first Blender that has the panels.
+    """
+
+    panels: tuple[str, ...]
+    scene: str
+    opened: tuple[str, ...] = ()
+    since: tuple[int, int] = (4, 2)
+
+
+def _panel(name: str, scene: str = "mesh", *opened: str, **more: tuple[int, int]) -> Photograph:
+    return Photograph((f"PREFILTER_PT_{name}",), scene, (f"PREFILTER_PT_{name}", *opened), **more)
+
+
+CROPPED = {
+    "bake": _panel("bake"),
+    "bake_all_images": _panel("model"),
+    "preview": _panel("preview"),
+    "error_plot": _panel("error"),
+    "texel_use": _panel("texel_use"),
+    "texture_cache": _panel("texture_cache", "cache", since=(5, 2)),
+    "voxelize": _panel("voxelize_sidebar"),
+    "boolean": _panel("boolean_sidebar"),
+    "reconstruct": _panel("reconstruct", "points"),
+    "rasterize": _panel("rasterize", "text"),
+    "rasterize_svg": _panel("shapes"),
+    "resize": _panel("resize"),
+    "resample": _panel("resample"),
+    "preview_plane": _panel("plane"),
+    "sampling_table": _panel("sampling_table"),
+}
+"""Photographs of one panel: `panels/NAME-VERSION.png`, in every Blender."""
+
+WHOLE = {
+    "panel": Photograph(("PREFILTER_PT_bake",), "image"),
+    "preview": Photograph(("PREFILTER_PT_preview",), "levels"),
+    "weights": Photograph(
+        ("PREFILTER_PT_texel_use",), "weights", opened=("PREFILTER_PT_texel_use",)
+    ),
+    "voxelize": Photograph(
+        ("PREFILTER_PT_voxelize_sidebar", "PREFILTER_PT_boolean_sidebar"), "voxels"
+    ),
+    "rasterize": Photograph(("PREFILTER_PT_rasterize", "PREFILTER_PT_drawn"), "shapes"),
+    "plane": Photograph(("PREFILTER_PT_plane",), "plane", opened=("PREFILTER_PT_plane",)),
+    "model": Photograph(("PREFILTER_PT_model",), "model", opened=("PREFILTER_PT_model",)),
+}
+"""Photographs of a window: `NAME.png`."""
+
+
+def version_of(picture: Path) -> tuple[int, int]:
+    """Returns the version of the Blender in which a photograph of a panel was taken."""
+    major, minor = re.findall(r"-(\d+)\.(\d+)$", picture.stem)[0]
+    return int(major), int(minor)
+
+
+def read_text(picture: Path) -> dict[str, object]:
+    """Returns what a photograph says about the panels in it; nothing if it says nothing."""
+    data = picture.read_bytes()
+    position = len(_SIGNATURE)
+    while position < len(data):
+        size, kind = struct.unpack_from(">I4s", data, position)
+        chunk = data[position + 8 : position + 8 + size]
+        keyword, _, rest = chunk.partition(b"\0")
+        if kind == b"zTXt" and keyword == KEYWORD.encode():
+            return json.loads(zlib.decompress(rest[1:]))
+        position += size + 12
+    return {}
