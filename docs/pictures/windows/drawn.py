@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """What panels draw, in order: settings with labels and defaults, buttons, texts.
 
 A photograph of panels carries this as text, and a test compares it with what they draw today.
@@ -70,9 +72,13 @@ class Layout:
     def prop(self, data: Any, name: str, *, text: str | None = None, **_: Any) -> None:
         """Notes a setting, with its label and default."""
         setting = data.bl_rna.properties[name]
-        self._rows.append(["setting", name, setting.name if text is None else text, _default(setting)])
+        self._rows.append(
+            ["setting", name, setting.name if text is None else text, _default(setting)]
+        )
 
-    def prop_search(self, data: Any, name: str, *_: Any, text: str | None = None, **__: Any) -> None:
+    def prop_search(
+        self, data: Any, name: str, *_: Any, text: str | None = None, **__: Any
+    ) -> None:
         """Notes a setting that is picked from a list."""
         self.prop(data, name, text=text)
 

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Photographs windows of Blender on a screen that nobody sees.
 
 usage: python3 photograph.py panels|windows [NAME...]
@@ -61,7 +63,9 @@ def photograph(kind: str, name: str, display: str, look) -> None:
                 told = json.loads(line.removeprefix(READY))
                 break
         if told is None:
-            raise SystemExit(f"{name}: Blender ended before its window was ready\n{''.join(output)}")
+            raise SystemExit(
+                f"{name}: Blender ended before its window was ready\n{''.join(output)}"
+            )
         if told.get("left_out"):
             print(f"{name}: not in Blender {told['version']}")
             return

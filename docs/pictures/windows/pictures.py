@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Which photographs there are of Blender's windows, and which panels they show."""
 
 import json

@@ -1,3 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
 """Makes what photographs show, inside of a Blender with a window. See photograph.py.
 
 usage: blender --python scenes.py -- panels|windows NAME
@@ -18,9 +20,9 @@ from mathutils import Euler
 HERE = Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent), str(HERE.parents[2] / "scripts")]
 
-import demo_scene
-import drawn
-from pictures import CROPPED, WHOLE, Photograph
+import demo_scene  # noqa: E402
+import drawn  # noqa: E402
+from pictures import CROPPED, WHOLE, Photograph  # noqa: E402
 
 READY = "prefilter: ready "
 SCALE = 1.5
