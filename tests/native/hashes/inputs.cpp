@@ -111,7 +111,10 @@ Surface surface_of(const Torus& torus) {
 TorusPoints::TorusPoints(std::size_t count) {
   Random random(17);
   for (std::size_t i = 0; i < count; ++i) {
-    Place place = torus_place(random.between(0.0, 1.0), random.between(0.0, 1.0), 0.2);
+    // Arguments are evaluated in an order that compilers choose.
+    const double u = random.between(0.0, 1.0);
+    const double v = random.between(0.0, 1.0);
+    Place place = torus_place(u, v, 0.2);
     std::array<float, 3> normal{};
     for (std::size_t a = 0; a < 3; ++a) {
       place.position[a] += random.between(-0.01, 0.01);
