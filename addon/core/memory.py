@@ -2,11 +2,10 @@
 
 """How much memory there is."""
 
-import math
+from prefilter import available_memory
 
 from .preferences import preference
 
-_MEMORY = "/proc/meminfo"
 _MIB = 1 << 20
 
 
@@ -16,15 +15,3 @@ def usable_memory() -> tuple[float, str]:
     if 0 < limit < free:
         return limit, f"the preferences allow {limit / 2**30:.3g} GiB"
     return free, f"{free / 1e9:.3g} GB are free"
-
-
-def available_memory() -> float:
-    """Returns the bytes that can be had without driving others out; infinity where unknown."""
-    try:
-        with open(_MEMORY, encoding="ascii") as lines:
-            for line in lines:
-                if line.startswith("MemAvailable:"):
-                    return 1024.0 * int(line.split()[1])
-    except OSError:
-        pass
-    return math.inf

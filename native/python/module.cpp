@@ -3,11 +3,13 @@
 #include <pybind11/pybind11.h>
 
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <utility>
 
 #include "convert.h"
 #include "prefilter/base/error.h"
+#include "prefilter/base/memory.h"
 
 namespace py = pybind11;
 
@@ -120,6 +122,12 @@ PYBIND11_MODULE(_native, m) {
   using prefilter::Error;
   using prefilter::ErrorCode;
   m.attr("VERSION") = PREFILTER_VERSION;
+  m.def("available_memory", [] {
+    const std::uint64_t bytes = prefilter::available_memory();
+    return bytes == std::numeric_limits<std::uint64_t>::max()
+               ? std::numeric_limits<double>::infinity()
+               : static_cast<double>(bytes);
+  });
   // Never destroyed: at exit there may be no interpreter left to destroy it with.
   static auto* const cancelled = new py::exception<Error>(m, "Cancelled");
   cancelled->attr("__module__") = "prefilter";

@@ -3,7 +3,6 @@
 """A reconstruction from file to file that fails leaves the target as it was, and nothing beside."""
 
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -13,6 +12,11 @@ import numpy as np
 import prefilter
 import pytest
 from scan_writers import ply, write
+
+try:
+    import resource
+except ImportError:  # Windows
+    resource = None
 
 BEFORE = b"what was there before"
 
@@ -58,6 +62,7 @@ def test_a_source_that_ends_too_early(tmp_path, sphere):
         prefilter.reconstruct_file(source, target, depth=5)
 
 
+@pytest.mark.skipif(resource is None, reason="files cannot be kept small")
 @pytest.mark.parametrize("size", [1000, 100_000, 400_000])
 @pytest.mark.parametrize("memory_limit", [None, 0])
 def test_a_full_disk(tmp_path, sphere, size, memory_limit):
@@ -85,25 +90,48 @@ def test_cancelling(tmp_path, sphere, memory_limit):
 
 
 def test_a_kill(tmp_path, sphere):
-    try:
-        os.close(os.open(tmp_path, os.O_RDWR | os.O_TMPFILE))
-    except (AttributeError, OSError):
-        pytest.skip(f"files need names in {tmp_path}")
+    if os.name != "nt":
+        try:
+            os.close(os.open(tmp_path, os.O_RDWR | os.O_TMPFILE))
+        except (AttributeError, OSError):
+            pytest.skip(f"files need names in {tmp_path}")
+    kill = signal.SIGTERM if os.name == "nt" else signal.SIGKILL
     source = write(tmp_path, "cloud.ply", sphere)
     program = f"""
 import os, prefilter, signal
 def stop(done):
     if done > 0.5:
-        os.kill(os.getpid(), {int(signal.SIGKILL)})
+        os.kill(os.getpid(), {int(kill)})
 prefilter.reconstruct_file({str(source)!r}, {str(tmp_path / "mesh.ply")!r}, depth=7,
                            memory_limit=0, progress=stop)
 """
     with only_target_is_left(tmp_path):
         ended = subprocess.run([sys.executable, "-c", program], check=False)
-        assert ended.returncode == -signal.SIGKILL
+        assert abs(ended.returncode) == kill
 
 
 def test_the_source_as_target(tmp_path, sphere):
     source = write(tmp_path, "cloud.ply", sphere)
     report = prefilter.reconstruct_file(source, source, depth=5)
     assert len(prefilter.read_points(source).positions) == report.vertices
+
+
+def test_names_in_any_language(tmp_path, sphere):
+    folder = tmp_path / "Größe 大小 📐"
+    folder.mkdir()
+    source, target = write(folder, "Wölfe.ply", sphere), folder / "läuft.ply"
+    for _ in range(2):
+        report = prefilter.reconstruct_file(source, target, depth=5)
+        assert len(prefilter.read_points(target).positions) == report.vertices
+    assert sorted(path.name for path in folder.iterdir()) == ["Wölfe.ply", "läuft.ply"]
+
+
+@pytest.mark.skipif(os.name != "nt", reason="elsewhere files that are open can be replaced")
+def test_a_target_that_is_open_is_told(tmp_path, sphere):
+    source = write(tmp_path, "cloud.ply", sphere)
+    with (
+        only_target_is_left(tmp_path) as target,
+        target.open("rb"),
+        pytest.raises(OSError, match=r"mesh.ply': cannot be replaced: another program has"),
+    ):
+        prefilter.reconstruct_file(source, target, depth=5)

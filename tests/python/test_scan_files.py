@@ -3,6 +3,7 @@
 """Files of points are read as others write them, and damage is told."""
 
 import os
+import re
 import tarfile
 from pathlib import Path
 
@@ -167,7 +168,7 @@ def vertices(form="ascii", properties=XYZ, rows=CORNERS):
 )
 def test_damaged_ply_files(tmp_path, contents, message):
     path = write(tmp_path, "cloud.ply", contents)
-    with pytest.raises(ValueError, match=f"^'{path}'.*{message}"):
+    with pytest.raises(ValueError, match=f"^'{re.escape(str(path))}'.*{message}"):
         prefilter.read_points(path)
 
 
@@ -211,6 +212,8 @@ def test_what_the_system_refuses(tmp_path):
     (tmp_path / "folder.ply").mkdir()
     with pytest.raises(OSError, match=r"folder.ply' is a folder; a regular file is needed"):
         prefilter.read_points(tmp_path / "folder.ply")
+    if not hasattr(os, "mkfifo"):
+        return
     os.mkfifo(tmp_path / "pipe.ply")
     with pytest.raises(OSError, match=r"pipe.ply' is a device or pipe; a regular file is needed"):
         prefilter.read_points(tmp_path / "pipe.ply")
@@ -334,7 +337,7 @@ def test_range_grids(tmp_path, form):
 )
 def test_damaged_range_grids(tmp_path, contents, message):
     path = write(tmp_path, "scan.ply", contents)
-    with pytest.raises(ValueError, match=f"^'{path}'.*{message}"):
+    with pytest.raises(ValueError, match=f"^'{re.escape(str(path))}'.*{message}"):
         read_range_grid(path)
 
 

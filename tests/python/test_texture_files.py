@@ -445,6 +445,8 @@ def test_places_that_cannot_be_written(tmp_path, kind):
     with pytest.raises(OSError, match="is read-only"):
         write(target, GOOD)
     assert target.read_bytes() == b"kept"
+    if os.name == "nt":  # Folders have no such marks there.
+        return
     folder = tmp_path / "locked"
     folder.mkdir(0o555)
     with pytest.raises(OSError, match="is read-only"):
@@ -458,6 +460,10 @@ def test_file_is_replaced_with_its_mode_and_through_links(tmp_path, kind):
     target.write_bytes(b"old")
     target.chmod(0o640)
     link = tmp_path / "link"
+    if os.name == "nt":  # Links need rights there, and modes are no more than read-only or not.
+        write(target, GOOD)
+        np.testing.assert_array_equal(read(target).levels[0][..., :3], GOOD[0])
+        return
     link.symlink_to(target)
     write(link, GOOD)
     assert link.is_symlink()

@@ -24,7 +24,7 @@ class StagedFile:
         """Renames the file into place; it gets the mode of a file that it replaces."""
         if self.target.exists():
             shutil.copymode(self.target, self.temporary)
-        os.replace(self.temporary, self.target)
+        _rename(self.temporary, self.target)
 
     def discard(self) -> None:
         """Removes the temporary file, if it is still there."""
@@ -74,6 +74,16 @@ def commit_all(files: Sequence[StagedFile]) -> None:
             earlier.unlink(missing_ok=True)
 
 
+def _rename(new: Path, target: Path) -> None:
+    try:
+        os.replace(new, target)
+    except PermissionError as error:
+        if os.name == "nt" and target.exists():
+            message = f"file '{target}' cannot be replaced: another program has it open"
+            raise OSError(message) from error
+        raise
+
+
 def _second_name(target: Path) -> Path | None:
     """Gives a file a second name that outlasts its replacement; None where there is no file."""
     if not target.exists():
@@ -92,7 +102,7 @@ def _put_back(target: Path, earlier: Path | None) -> str:
         if earlier is None:
             target.unlink(missing_ok=True)
         else:
-            os.replace(earlier, target)
+            _rename(earlier, target)
             # Renaming does nothing where both are still names of one file.
             earlier.unlink(missing_ok=True)
     except OSError as error:
@@ -188,4 +198,7 @@ def _staged(target: Path) -> StagedFile:
 
 
 def _is_writable(path: Path) -> bool:
+    if os.name == "nt" and path.is_dir():
+        # What marks folders there as read-only means that they have a look of their own.
+        return True
     return os.access(path, os.W_OK) and bool(path.stat().st_mode & _WRITE_BITS)

@@ -19,6 +19,7 @@ from .cutout import keep_coverage
 from .exact_sampling import sample_ewa, sample_exact
 from .filtered_levels import SAMPLING_FILTERS, FilteredLevels, sampling_levels
 from .measures import MeshMeasures, measure_mesh
+from .memory import available_memory
 from .mipmap import (
     MIPMAP_FILTERS,
     MipmapFilter,
@@ -77,6 +78,7 @@ __all__ = [
     "TableSection",
     "TracedContour",
     "as_solid",
+    "available_memory",
     "close_holes",
     "coarser_levels",
     "contour",

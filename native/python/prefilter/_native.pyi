@@ -13,6 +13,8 @@ from .point_reader import PointReader
 
 VERSION: Final[str]
 
+def available_memory() -> float: ...
+
 class Cancelled(Exception): ...  # noqa: N818
 
 class Surface:

@@ -40,8 +40,7 @@ def as_target(path: str | os.PathLike[str]) -> Path:
     if not target.parent.is_dir():
         raise OSError(f"path: there is no folder '{target.parent}'")
     for place in (target, target.parent) if target.exists() else (target.parent,):
-        writable = os.access(place, os.W_OK) and place.stat().st_mode & _WRITE_BITS
-        if not writable:
+        if not _is_writable(place):
             raise OSError(f"path: '{place}' is read-only")
     return target
 
@@ -55,9 +54,26 @@ def replace_file(target: Path, write: Callable[[BinaryIO], object]) -> None:
         _check_regular(target)
         if target.exists():
             shutil.copymode(target, new)
-        os.replace(new, target)
+        _rename(new, target)
     except BaseException:
         new.unlink(missing_ok=True)
+        raise
+
+
+def _is_writable(path: Path) -> bool:
+    if os.name == "nt" and path.is_dir():
+        # What marks folders there as read-only means that they have a look of their own.
+        return True
+    return os.access(path, os.W_OK) and bool(path.stat().st_mode & _WRITE_BITS)
+
+
+def _rename(new: Path, target: Path) -> None:
+    try:
+        os.replace(new, target)
+    except PermissionError as error:
+        if os.name == "nt" and target.exists():
+            message = f"path: '{target}' cannot be replaced: another program has it open"
+            raise OSError(message) from error
         raise
 
 
