@@ -2,19 +2,21 @@
 
 """`blender --background --command prefilter ...`: the operators without a window."""
 
-import argparse
-import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
+from typing import TYPE_CHECKING
 
 import bpy
 import prefilter
 
 from .core.outcome import FAILURES
 
-_CANCELED = 128 + signal.SIGINT
+if TYPE_CHECKING:
+    import argparse
+
+_CANCELED = 130  # 128 + SIGINT
 _PROGRAM = "blender --background --command prefilter"
 
 
@@ -54,8 +56,10 @@ class Commands:
             return 1
         return 0
 
-    def parser(self) -> argparse.ArgumentParser:
+    def parser(self) -> "argparse.ArgumentParser":
         """Returns what reads the arguments."""
+        import argparse
+
         parser = argparse.ArgumentParser(
             prog=_PROGRAM,
             description=(

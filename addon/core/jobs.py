@@ -6,7 +6,6 @@ import os
 import threading
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
 from typing import Generic, Protocol, TypeVar, cast
 
 import prefilter
@@ -58,6 +57,8 @@ def at_once(works: Sequence[Callable[[Progress], None]], progress: Progress, thr
     Raises:
         BaseException: What the first of them raises that fails; the others are stopped.
     """
+    from concurrent.futures import ThreadPoolExecutor, wait
+
     done = [0.0] * len(works)
     lock = threading.Lock()
     failed = threading.Event()

@@ -7,22 +7,23 @@ a program of lines such as `settings.depth = 9`, which Blender runs when a user 
 and operators read the values and run nothing.
 """
 
-import argparse
 import ast
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import bpy
 from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 from bpy.props import StringProperty
 
-from . import flags
 from .options import Option, declared
 from .preferences import preferred
 from .properties import set_unset
 from .wording import listed
+
+if TYPE_CHECKING:
+    import argparse
 
 Settings = TypeVar("Settings")
 
@@ -195,7 +196,7 @@ def panel(kind: Kind) -> type[bpy.types.Panel]:
     )
 
 
-def add_flag(parser: argparse.ArgumentParser) -> None:
+def add_flag(parser: "argparse.ArgumentParser") -> None:
     """Adds the flag that names a preset; `settings_given` heeds it."""
     parser.add_argument(
         "--preset",
@@ -206,7 +207,7 @@ def add_flag(parser: argparse.ArgumentParser) -> None:
 
 
 def settings_given(
-    options: argparse.Namespace, kind: Kind, settings: type[Settings], **more: Any
+    options: "argparse.Namespace", kind: Kind, settings: type[Settings], **more: Any
 ) -> Settings:
     """Returns settings: by `more`, else by flags, else by a preset, else by the preferences.
 
@@ -216,6 +217,8 @@ def settings_given(
         settings: The dataclass.
         more: Fields that are given otherwise.
     """
+    from . import flags
+
     if not options.preset:
         return flags.settings_given(options, settings, **more)
     try:

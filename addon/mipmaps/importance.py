@@ -4,11 +4,11 @@
 
 import bpy
 
-from ..bridge.attributes import names_of_weights
-
 
 def suggested_names(self: object, context: bpy.types.Context, typed: str) -> list[str]:
     """Returns the vertex groups and attributes of all meshes; Blender picks those that fit."""
+    from ..bridge.attributes import names_of_weights
+
     del self, typed
     depsgraph = context.view_layer.depsgraph
     found: dict[str, None] = {}

@@ -9,11 +9,9 @@ from typing import Any
 import bpy
 from bpy.props import PointerProperty
 
-from ..bridge.files import engines
 from ..core import presets
 from ..core.properties import following, properties, single_property, values
 from ..core.sidebar import subpanel
-from . import file_names
 from .choices import (
     FITTED_FILTERS,
     NOT_OF_MODELS,
@@ -33,6 +31,8 @@ _SEARCH = {"search": suggested_names, "search_options": {"SORT", "SUGGESTION"}}
 
 def _follow_path(self: "BakeProperties", context: bpy.types.Context) -> None:
     """Has the format follow the ending of the file."""
+    from . import file_names
+
     del context
     found = file_names.format_of(self.filepath)
     if found and self.file_format != found:
@@ -41,6 +41,8 @@ def _follow_path(self: "BakeProperties", context: bpy.types.Context) -> None:
 
 def _follow_format(self: "BakeProperties", context: bpy.types.Context) -> None:
     """Has the endings of the files follow the format."""
+    from . import file_names
+
     del context
     for name in ("filepath", "roughness_filepath"):
         path = getattr(self, name)
@@ -118,6 +120,8 @@ class BakeProperties:
 
     def _file(self, path: str) -> str:
         """Returns a path with the ending of the format."""
+        from . import file_names
+
         if not path:
             return bpy.path.abspath(f"//{file_names.PLACE}.{self.file_format}")
         return path if file_names.is_texture(path) else f"{path}.{self.file_format}"
@@ -177,6 +181,8 @@ def _draw_result(settings: Any, layout: bpy.types.UILayout) -> None:
 
 def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
     """Draws what some formats of files have a choice of."""
+    from ..bridge.files import engines
+
     ending = f".{settings.file_format}"
     if engines.has_formats(ending):
         layout.prop(settings, "texture_format")

@@ -2,13 +2,16 @@
 
 """`prefilter.reconstruct`: the surface of points, as a new object beside them."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
-from ..bridge.points import may_be_points
 from ..core.operator import WorkOperator
 from ..core.presets import PresetsOperator
 from .properties import RECONSTRUCT, ScanProperties
-from .reconstruction import Load, Reconstruction
+
+if TYPE_CHECKING:
+    from .reconstruction import Load, Reconstruction
 
 
 class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bpy.types.Operator):
@@ -24,7 +27,8 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
     doing = "Reconstructing"
     presets = RECONSTRUCT
 
-    work: Reconstruction | None = None
+    if TYPE_CHECKING:
+        work: Reconstruction | None
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -39,8 +43,10 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
             return False
         return True
 
-    def read_work(self, context: bpy.types.Context) -> Reconstruction:
+    def read_work(self, context: bpy.types.Context) -> "Reconstruction":
         """Copies the selected points."""
+        from .reconstruction import Reconstruction
+
         return Reconstruction.read(
             _chosen(context),
             context.active_object,
@@ -48,12 +54,12 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
             context.evaluated_depsgraph_get(),
         )
 
-    def load(self) -> Load:
+    def load(self) -> "Load":
         """Returns how much there was to do."""
         assert self.work is not None
         return self.work.load
 
-    def effort(self, load: Load) -> float:
+    def effort(self, load: "Load") -> float:
         """Returns about how many seconds the points take with the present settings."""
         return load.seconds(self.to_settings())
 
@@ -64,6 +70,8 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
 
 
 def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
+    from ..bridge.points import may_be_points
+
     return [obj for obj in context.selected_objects if may_be_points(obj)]
 
 

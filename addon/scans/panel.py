@@ -4,7 +4,6 @@
 
 import bpy
 
-from ..bridge.points import may_be_points
 from ..core.menus import PREFILTER_MT_object
 from ..core.presets import PresetsPanel
 from ..core.properties import copy
@@ -15,7 +14,12 @@ from .properties import RECONSTRUCT
 
 
 class _SidebarPanel(SidebarPanel):
-    fits = staticmethod(may_be_points)
+    @staticmethod
+    def fits(obj: bpy.types.Object) -> bool:
+        """Tells whether the panel is for an object."""
+        from ..bridge.points import may_be_points
+
+        return may_be_points(obj)
 
 
 class PREFILTER_PT_reconstruct(_SidebarPanel, PresetsPanel, bpy.types.Panel):

@@ -4,19 +4,22 @@
 
 import bpy
 
-from ..bridge.curves import is_curve
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
 from ..core.properties import copy
 from ..core.sidebar import ImagePanel, SidebarPanel, main_button
 from .choices import RasterizeSettings
-from .memory import is_drawn
 from .operators.rasterize import PREFILTER_OT_rasterize
 from .operators.rasterize_svg import PREFILTER_OT_rasterize_svg
 from .operators.update_drawn import PREFILTER_OT_update_drawn
 
 
 class _CurvesPanel(SidebarPanel):
-    fits = staticmethod(is_curve)
+    @staticmethod
+    def fits(obj: bpy.types.Object) -> bool:
+        """Tells whether the panel is for an object."""
+        from ..bridge.curves import is_curve
+
+        return is_curve(obj)
 
 
 class PREFILTER_PT_rasterize(_CurvesPanel, bpy.types.Panel):
@@ -40,6 +43,8 @@ class PREFILTER_PT_drawn(ImagePanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether the editor shows an image that remembers how it was made."""
+        from .memory import is_drawn
+
         return is_drawn(context.space_data.image)
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -116,6 +121,8 @@ def _draw_uv_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
 
 
 def _draw_header(header: bpy.types.Header, context: bpy.types.Context) -> None:
+    from .memory import is_drawn
+
     image = context.space_data.image
     if is_drawn(image):
         update = PREFILTER_OT_update_drawn.bl_idname

@@ -4,7 +4,6 @@
 
 import bpy
 
-from ..bridge.new_meshes import is_solid
 from ..core.menus import PREFILTER_MT_object
 from ..core.presets import PresetsPanel
 from ..core.properties import copy
@@ -24,7 +23,12 @@ class _RemeshPanel:
 
 
 class _SidebarPanel(SidebarPanel):
-    fits = staticmethod(is_solid)
+    @staticmethod
+    def fits(obj: bpy.types.Object) -> bool:
+        """Tells whether the panel is for an object."""
+        from ..bridge.new_meshes import is_solid
+
+        return is_solid(obj)
 
 
 class _VoxelizePanel:

@@ -5,7 +5,6 @@
 import bpy
 from bpy.props import PointerProperty
 
-from ..bridge.files import volumes
 from ..core import presets
 from ..core.properties import properties, values
 from ..core.sidebar import subpanel
@@ -84,6 +83,8 @@ class VoxelizeProperties(VoxelProperties):
         return self.output == "mesh"
 
     def _draw_last(self, layout: bpy.types.UILayout) -> None:
+        from ..bridge.files import volumes
+
         layout.prop(self, "output")
         if self.output != "volume":
             return

@@ -29,6 +29,7 @@ from pathlib import Path
 
 import numpy as np
 import prefilter
+import prefilter.mipmap
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))

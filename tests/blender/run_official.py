@@ -42,28 +42,29 @@ def check_wheel() -> None:
     print(f"Blender {bpy.app.version_string}, Python {sys.version.split()[0]}: {', '.join(found)}")
 
 
-def load_openimageio() -> None:
-    """Lets tests import OpenImageIO, which the add-on finds where Blender has it, since 4.4.
+def load_own_modules() -> None:
+    """Lets tests and Cycles import what the add-on finds where Blender has it, since 4.4.
 
     Raises:
-        AssertionError: It has found another copy.
+        AssertionError: There is no OpenImageIO of Blender's own.
     """
     own_modules = importlib.import_module(f"{PACKAGE}.bridge.own_modules")
-    try:
-        module = own_modules.load("OpenImageIO")
-    except ImportError:
-        assert bpy.app.version < (4, 4, 0), "the add-on does not find Blender's own OpenImageIO"
-        return
-    own = bpy.utils.resource_path("LOCAL")
-    if bpy.app.version >= (4, 4, 0):
-        assert Path(module.__file__).is_relative_to(own), module.__file__
+    for name in ("OpenImageIO", "oslquery"):
+        try:
+            module = own_modules.load(name)
+        except ImportError:
+            assert bpy.app.version < (4, 4, 0), f"the add-on does not find Blender's own {name}"
+            continue
+        own = bpy.utils.resource_path("LOCAL")
+        if bpy.app.version >= (4, 4, 0):
+            assert Path(module.__file__).is_relative_to(own), module.__file__
 
 
 def main() -> int:
     """Does what the command line says; returns the exit status."""
     install(Path(sys.argv[1]).resolve())
     check_wheel()
-    load_openimageio()
+    load_own_modules()
     sys.stdout.flush()
     return int(pytest.main(sys.argv[2:]))
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import prefilter
+import prefilter.scan_files
 import pytest
 from scan_writers import garbled_are_refused, pcd, write
 

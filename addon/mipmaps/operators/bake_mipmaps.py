@@ -4,22 +4,23 @@
 
 from collections.abc import Generator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import bpy
 from bpy.props import StringProperty
 
-from ...bridge import images
 from ...core.operator import Compute, WorkOperator, read_at_once
 from ...core.presets import PresetsOperator
 from ...core.properties import set_unset
-from .. import file_names, reading, users
-from ..bake import Bake
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
 from ..properties import BAKE, BakeProperties
-from ..udim import TiledBake
 from ..view.preview import PreviewWork
 from .preview_levels import reading_preview, show
 from .source import ImageOperator, image_to_read
+
+if TYPE_CHECKING:
+    from ..bake import Bake
+    from ..udim import TiledBake
 
 _OF_FILES = ("filepath", "file_format", "roughness_filepath")
 
@@ -44,7 +45,8 @@ class PREFILTER_OT_bake_mipmaps(
         options={"SKIP_SAVE"},
     )
 
-    work: Bake | TiledBake | PreviewWork | None = None
+    if TYPE_CHECKING:
+        work: Bake | TiledBake | PreviewWork | None
 
     @classmethod
     def reads_surface(cls, context: bpy.types.Context) -> bool:
@@ -58,6 +60,8 @@ class PREFILTER_OT_bake_mipmaps(
 
     def complete_settings(self) -> None:
         """Sets what the caller has left: who names a file wants that, in the format of its name."""
+        from .. import file_names
+
         given = self.properties.is_property_set
         if any(map(given, _OF_FILES)):
             set_unset(self, {"result": "file"})
@@ -72,6 +76,8 @@ class PREFILTER_OT_bake_mipmaps(
 
     def reading(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
         """Copies frame after frame."""
+        from .. import reading, users
+
         image, settings = image_to_read(context, self.image), self.to_settings()
         self.doing = f"Baking '{image.name}'"
         if self.result == "preview":
@@ -94,6 +100,9 @@ class PREFILTER_OT_bake_mipmaps(
 
     def _with_files(self, image: bpy.types.Image, settings: Settings) -> Settings:
         """Returns settings whose files have names, beside the .blend file where none is given."""
+        from ...bridge import images
+        from .. import file_names
+
         paths = (settings.filepath, settings.roughness_filepath)
         given = (self.filepath, self.roughness_filepath)
         if any(

@@ -4,17 +4,16 @@
 
 from collections.abc import Callable, Generator
 from dataclasses import replace
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ...bridge.files import engines
 from ...core.operator import BackgroundOperator, Compute, read_at_once
 from ...core.presets import PresetsOperator
-from .. import file_names
-from ..model import known
-from ..model.bake import ModelBake
-from ..model.plan import image_of, plan
 from ..properties import MODEL, ModelProperties
+
+if TYPE_CHECKING:
+    from ..model.bake import ModelBake
 
 
 class PREFILTER_OT_bake_model(
@@ -33,11 +32,13 @@ class PREFILTER_OT_bake_model(
     doing = "Baking all images"
     presets = MODEL
 
-    _model: ModelBake | None = None
+    _model: Any = None
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether an object shows an image."""
+        from ..model import known
+
         if cls.may_be_redone(context):
             return True
         reason = "" if bpy.data.images else "There is no image in this file"
@@ -88,7 +89,12 @@ class PREFILTER_OT_bake_model(
         """Returns what removes what was staged."""
         return self._model.discard if self._model is not None else super().releaser()
 
-    def _planned(self, context: bpy.types.Context) -> ModelBake:
+    def _planned(self, context: bpy.types.Context) -> "ModelBake":
+        from ...bridge.files import engines
+        from .. import file_names
+        from ..model.bake import ModelBake
+        from ..model.plan import image_of, plan
+
         own, shared = self.to_settings()
         folder = own.folder if own.result == "file" else ""
         if own.result == "file" and not folder:

@@ -2,13 +2,16 @@
 
 """`prefilter.bake_texture_cache`: PAM levels for Cycles, for every image of the scene."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 from bpy.props import BoolProperty
 
-from ...bridge.files import tx
 from ...core.operator import WorkOperator
 from ...core.preferences import preference
-from .. import texture_cache
+
+if TYPE_CHECKING:
+    from .. import texture_cache
 
 
 class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
@@ -36,6 +39,9 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether this Blender has a texture cache, and there is an image to bake."""
+        from ...bridge.files import tx
+        from .. import texture_cache
+
         if not tx.is_available():
             cls.poll_message_set(texture_cache.NEEDED)
             return False
@@ -44,8 +50,10 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
             return False
         return True
 
-    def read_work(self, context: bpy.types.Context) -> texture_cache.CacheBake:
+    def read_work(self, context: bpy.types.Context) -> "texture_cache.CacheBake":
         """Copies the surfaces of the scene."""
+        from .. import texture_cache
+
         depsgraph = context.evaluated_depsgraph_get()
         return texture_cache.CacheBake.read(
             context.scene, depsgraph, unpack=self.use_unpack, threads=preference("threads", 0)

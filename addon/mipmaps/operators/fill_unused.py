@@ -3,18 +3,21 @@
 """`prefilter.fill_unused`: a copy of an image without background."""
 
 from functools import partial
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
 import prefilter
 from bpy.props import BoolProperty, StringProperty
 
-from ...bridge import derived, editors, images
-from ...bridge.images import FloatArray
+from ...bridge import editors
 from ...core.jobs import Progress
 from ...core.operator import Compute
-from ..bake import Bake
 from .source import ImageOperator, read_source
+
+if TYPE_CHECKING:
+    from ...bridge.images import FloatArray
+    from ..bake import Bake
 
 
 class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
@@ -46,8 +49,10 @@ class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
         self.warn(self._source.warnings)
         return partial(_fill, self._source)
 
-    def finish(self, context: bpy.types.Context, result: FloatArray) -> str:
+    def finish(self, context: bpy.types.Context, result: "FloatArray") -> str:
         """Writes the copy."""
+        from ...bridge import derived, images
+
         picture = self._source.picture
         filled = derived.write_picture(picture, "filled", result, like_source=True)
         if self.use_in_place:
@@ -57,8 +62,10 @@ class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
         return f"Filled {changed:.1%} of the texels in '{filled.name}'"
 
 
-def _fill(source: Bake, progress: Progress) -> FloatArray:
+def _fill(source: "Bake", progress: Progress) -> "FloatArray":
     """Returns stored values; those of texels that are used are the image's own, bit for bit."""
+    from ...bridge import images
+
     linear = source.linear(progress)
     with source.naming_objects():
         filled = prefilter.fill_unused(linear, source.surfaces, wrap=source.wrap, progress=progress)

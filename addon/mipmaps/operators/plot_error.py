@@ -2,15 +2,19 @@
 
 """`prefilter.plot_error`: the errors of filters over the mip value, as a figure and a table."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 from bpy.props import StringProperty
 
-from ...bridge import derived, editors
+from ...bridge import editors
 from ...core.operator import Compute
 from ...core.properties import single_property
 from .. import choices
-from ..view import errors, figure
 from .source import ImageOperator, read_source
+
+if TYPE_CHECKING:
+    from ..view import errors
 
 
 class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
@@ -35,13 +39,18 @@ class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
 
     def read(self, context: bpy.types.Context) -> Compute:
         """Copies the image and its surfaces."""
+        from ..view import errors
+
         self._source = read_source(context, self.image, context.scene.prefilter_bake.to_settings())
         self.warn(self._source.warnings)
         chosen = [name for name in choices.FILTERS if name in self.filters]
         return lambda progress: errors.measure(self._source, chosen, progress)
 
-    def finish(self, context: bpy.types.Context, result: errors.ErrorCurves) -> str:
+    def finish(self, context: bpy.types.Context, result: "errors.ErrorCurves") -> str:
         """Draws the figure and writes the table."""
+        from ...bridge import derived
+        from ..view import figure
+
         picture = self._source.picture
         plot = derived.write_picture(picture, "error", figure.draw(result))
         table = derived.write_text(picture, "error.csv", result.table())

@@ -7,7 +7,7 @@ from collections.abc import Generator
 import bpy
 from bpy.props import StringProperty
 
-from ...bridge import editors, images
+from ...bridge import editors
 from ...core.operator import Compute, WorkOperator, read_at_once
 from ...core.properties import single_property
 from .. import choices
@@ -101,6 +101,8 @@ def reading_preview(
     Yields:
         The fraction done.
     """
+    from ...bridge import images
+
     needs_surface = compare not in choices.TEXTURE_SPACE_FILTERS
     source = yield from reading_source(context, name, settings, needs_surface=needs_surface)
     uid = images.find(source.image_name).session_uid
@@ -109,6 +111,8 @@ def reading_preview(
 
 def show(context: bpy.types.Context, work: preview.PreviewWork) -> None:
     """Has the editors draw what a preview has computed."""
+    from ...bridge import images
+
     editors.show(context, images.find(work.image_name))
     context.window_manager.prefilter_view.use_preview = True
     editors.redraw()

@@ -5,10 +5,9 @@
 import bpy
 from bpy.props import StringProperty
 
-from ...bridge import editors, level_images
+from ...bridge import editors
 from ...core.outcome import FAILURES
 from ...core.properties import single_property
-from .. import removal
 from ..choices import RemoveSettings
 from .source import image_to_read, shown_image
 
@@ -55,6 +54,9 @@ class PREFILTER_OT_remove_levels(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Removes them."""
+        from ...bridge import level_images
+        from .. import removal
+
         try:
             if self.use_all:
                 chosen = list(bpy.data.images)

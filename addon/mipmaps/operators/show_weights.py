@@ -3,17 +3,20 @@
 """`prefilter.show_weights` and `prefilter.show_source`: where a surface spends its area."""
 
 from functools import partial
+from typing import TYPE_CHECKING
 
 import bpy
 import prefilter
 from bpy.props import StringProperty
 
-from ...bridge import derived, editors
+from ...bridge import editors
 from ...core.jobs import Progress
 from ...core.operator import Compute
-from ..bake import Bake
-from ..view import weights
 from .source import ImageOperator, read_source
+
+if TYPE_CHECKING:
+    from ..bake import Bake
+    from ..view import weights
 
 
 class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
@@ -39,8 +42,10 @@ class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
         self.warn(self._source.warnings)
         return partial(_weigh, self._source)
 
-    def finish(self, context: bpy.types.Context, result: weights.Weights) -> str:
+    def finish(self, context: bpy.types.Context, result: "weights.Weights") -> str:
         """Writes the picture."""
+        from ...bridge import derived
+
         made = derived.write_picture(self._source.picture, "weights", result.picture)
         editors.show(context, made)
         return f"{result.used_share:.1%} of the texels hold some of the surface; see '{made.name}'"
@@ -57,6 +62,8 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether the editor shows such a picture."""
+        from ...bridge import derived
+
         if derived.source_of(getattr(context.space_data, "image", None)) is None:
             cls.poll_message_set("The editor shows no picture that was made of an image")
             return False
@@ -64,11 +71,15 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Shows the image."""
+        from ...bridge import derived
+
         context.space_data.image = derived.source_of(context.space_data.image)
         return {"FINISHED"}
 
 
-def _weigh(source: Bake, progress: Progress) -> weights.Weights:
+def _weigh(source: "Bake", progress: Progress) -> "weights.Weights":
+    from ..view import weights
+
     height, width = source.picture.shape[:2]
     with source.naming_objects():
         found = prefilter.texel_weights(

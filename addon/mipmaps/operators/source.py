@@ -4,15 +4,15 @@
 
 from collections.abc import Generator
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import bpy
 
-from ...bridge import derived, image_roles, images, materials
 from ...core.operator import BackgroundOperator, read_at_once
-from .. import lookups, users
-from ..bake import Bake
 from ..choices import Settings
-from ..reading import reading
+
+if TYPE_CHECKING:
+    from ..bake import Bake
 
 
 class ImageOperator(BackgroundOperator):
@@ -27,6 +27,8 @@ class ImageOperator(BackgroundOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there is an image."""
+        from .. import users
+
         if cls.may_be_redone(context):
             return True
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
@@ -47,6 +49,8 @@ class ImageOperator(BackgroundOperator):
 
 def shown_image(context: bpy.types.Context) -> bpy.types.Image | None:
     """Returns the image of the editor, or that which it shows a picture about, as an error plot."""
+    from ...bridge import derived
+
     shown = getattr(context.space_data, "image", None)
     return derived.pictured(shown) or shown
 
@@ -57,6 +61,8 @@ def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
     Raises:
         ValueError: There is no such image.
     """
+    from ...bridge import images
+
     if name:
         return images.find(name)
     image = shown_image(context) or _image_of(context.active_object)
@@ -68,14 +74,14 @@ def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
     return image
 
 
-def read_source(context: bpy.types.Context, name: str, settings: Settings) -> Bake:
+def read_source(context: bpy.types.Context, name: str, settings: Settings) -> "Bake":
     """Does all of `reading_source` at once."""
     return read_at_once(reading_source(context, name, settings))
 
 
 def reading_source(
     context: bpy.types.Context, name: str, settings: Settings, *, needs_surface: bool = True
-) -> Generator[float, None, Bake]:
+) -> "Generator[float, None, Bake]":
     """Reads an image and the objects that use it, in steps of a frame.
 
     Args:
@@ -91,6 +97,11 @@ def reading_source(
     Raises:
         ValueError: There is no such image, or no surface.
     """
+    from ...bridge import images
+    from .. import lookups, users
+    from ..bake import Bake
+    from ..reading import reading
+
     image = image_to_read(context, name)
     images.check_untiled(image)
     objects, warnings = users.objects_to_read(context, image, settings.objects)
@@ -115,6 +126,8 @@ def reading_source(
 
 def _image_of(obj: bpy.types.Object | None) -> bpy.types.Image | None:
     """Returns the base color of an object's active material, or its only image."""
+    from ...bridge import image_roles, materials
+
     material = obj.active_material if obj is not None else None
     if material is None:
         return None

@@ -4,10 +4,8 @@
 
 import bpy
 
-from ...bridge import level_images
 from ...core.presets import PresetsPanel
 from ...core.sidebar import ImagePanel, main_button
-from .. import removal, users
 from ..menus import draw_bake
 from ..operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from ..operators.remove_levels import PREFILTER_OT_remove_levels
@@ -23,6 +21,9 @@ class PREFILTER_PT_bake(ImagePanel, PresetsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
+        from ...bridge import level_images
+        from .. import removal, users
+
         layout, settings = self.layout, context.scene.prefilter_bake
         place = main_button(layout, context, PREFILTER_OT_bake_mipmaps)
         if place:

@@ -4,12 +4,10 @@
 
 import bpy
 
-from ...bridge.meshes import may_show_image
 from ...core.presets import PresetsPanel
 from ...core.sidebar import SidebarPanel, main_button, subpanel
 from ..choices import CONTENTS
 from ..menus import draw_bake_model
-from ..model import known
 from ..operators.bake_model import PREFILTER_OT_bake_model
 from ..properties import MODEL
 
@@ -28,10 +26,18 @@ class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
     bl_label = "Mipmaps of All Images"
     presets = MODEL
     bl_options = frozenset({"DEFAULT_CLOSED"})
-    fits = staticmethod(may_show_image)
+
+    @staticmethod
+    def fits(obj: bpy.types.Object) -> bool:
+        """Tells whether the panel is for an object."""
+        from ...bridge.meshes import may_show_image
+
+        return may_show_image(obj)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
+        from ..model import known
+
         layout, settings = self.layout, context.scene.prefilter_model
         place = main_button(layout, context, PREFILTER_OT_bake_model)
         if place:

@@ -8,13 +8,12 @@ import bpy
 import bpy.utils.previews
 import numpy as np
 
-from ...bridge import derived
 from ...core.sidebar import ImagePanel, button
 from ..operators.fill_unused import PREFILTER_OT_fill_unused
 from ..operators.plot_error import PREFILTER_OT_plot_error
 from ..operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
 from ..operators.show_weights import PREFILTER_OT_show_source, PREFILTER_OT_show_weights
-from ..view import preview, weights
+from ..view import preview
 
 _SWATCH_SIDE = 16
 _swatches: list[tuple[str, str]] = []
@@ -132,6 +131,8 @@ def unregister() -> None:
 
 
 def _load_swatches() -> None:
+    from ..view import weights
+
     global _icons
     _icons = bpy.utils.previews.new()
     for octave in range(weights.OCTAVES, -weights.OCTAVES - 1, -2):
@@ -157,5 +158,7 @@ def _add_swatch(text: str, color: np.ndarray | tuple[float, float, float]) -> No
 
 
 def _draw_back(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    from ...bridge import derived
+
     if derived.source_of(context.space_data.image) is not None:
         layout.operator(PREFILTER_OT_show_source.bl_idname, icon="LOOP_BACK")

@@ -5,7 +5,6 @@
 import bpy
 
 from ...core.sidebar import button
-from .. import cache_states
 from ..operators.bake_texture_cache import PREFILTER_OT_bake_texture_cache
 from ..operators.remove_levels import PREFILTER_OT_remove_levels
 
@@ -33,6 +32,8 @@ class PREFILTER_PT_texture_cache(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
+        from .. import cache_states
+
         column = self.layout.column()
         found = cache_states.states(context)
         place = button(column, context, PREFILTER_OT_bake_texture_cache)

@@ -15,7 +15,6 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
-from ...bridge.drawing import COLOR_FUNCTIONS, draw_wipe, uploaded
 from ..choices import FILTERS
 from . import preview
 from .preview import Preview
@@ -144,6 +143,8 @@ def draw_levels(
 
 
 def _compiled() -> gpu.types.GPUShader:
+    from ...bridge.drawing import COLOR_FUNCTIONS
+
     global _shader
     if _shader is None:
         info = gpu.types.GPUShaderCreateInfo()
@@ -180,6 +181,8 @@ def _compiled() -> gpu.types.GPUShader:
 
 def _textures(shown: Preview, wanted: list[tuple[str, int]]) -> list[gpu.types.GPUTexture]:
     """Returns textures of levels; those that no drawing wants any longer are freed."""
+    from ...bridge.drawing import uploaded
+
     keys = [("", 0) if level == 0 else (name, level) for name, level in wanted]
     kept = {key: shown.textures[key] for key in keys if key in shown.textures}
     for key, (name, level) in zip(keys, wanted, strict=True):
@@ -220,6 +223,8 @@ def _draw_view() -> None:
 
 
 def _draw_labels() -> None:
+    from ...bridge.drawing import draw_wipe
+
     found = _shown_here()
     if found is None:
         return

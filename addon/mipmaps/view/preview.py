@@ -4,15 +4,17 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
-from ...bridge.images import FloatArray
 from ...bridge.previews import Previews
 from ...core.alpha import associated
 from ...core.jobs import Progress, parts
 from ...core.outcome import Outcome
-from .. import lookups
-from ..bake import Bake
 from ..choices import Settings
+
+if TYPE_CHECKING:
+    from ...bridge.images import FloatArray
+    from ..bake import Bake
 
 _WRAPS = ("clamp", "repeat", "border")
 
@@ -35,7 +37,7 @@ class Preview:
 
     image_uid: int
     settings: Settings
-    levels: dict[str, list[FloatArray]]
+    levels: "dict[str, list[FloatArray]]"
     wrap: tuple[str, str]
     blends: bool
     decodes_after: bool
@@ -66,7 +68,7 @@ register, unregister = _previews.register, _previews.unregister
 class PreviewWork:
     """The levels of an image with some filters, as work."""
 
-    def __init__(self, source: Bake, image_uid: int, filters: Iterable[str]) -> None:
+    def __init__(self, source: "Bake", image_uid: int, filters: Iterable[str]) -> None:
         """Takes what `compute` does."""
         self._source = source
         self._image_uid = image_uid
@@ -96,10 +98,12 @@ class PreviewWork:
 
 def settings_for_preview(settings: Settings) -> Settings:
     """Returns settings without what does not change a level."""
+    from .. import lookups
+
     return replace(lookups.resolved(settings), levels=0, use_images=True, filepath="")
 
 
-def compute(source: Bake, image_uid: int, filters: Iterable[str], progress: Progress) -> Preview:
+def compute(source: "Bake", image_uid: int, filters: Iterable[str], progress: Progress) -> Preview:
     """Computes the levels with each filter; raises what `Bake.compute` does.
 
     Args:

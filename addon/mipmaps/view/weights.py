@@ -3,12 +3,14 @@
 """The weights of texels as colours."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import prefilter
 from numpy.typing import ArrayLike, NDArray
 
-from ...bridge.images import FloatArray
+if TYPE_CHECKING:
+    from ...bridge.images import FloatArray
 
 OCTAVES = 4
 """Colours span weights from 2^-OCTAVES to 2^OCTAVES; what is beyond has the colour of the end."""
@@ -41,7 +43,7 @@ _LMS_TO_RGB = np.array(
 class Weights:
     """A picture of weights, and the share of texels that have any."""
 
-    picture: FloatArray
+    picture: "FloatArray"
     used_share: float
 
 
@@ -58,7 +60,7 @@ def colors(weights: ArrayLike) -> NDArray[np.float32]:
     return prefilter.to_srgb(flat).reshape(light.shape)
 
 
-def picture(weights: NDArray[np.float32]) -> FloatArray:
+def picture(weights: NDArray[np.float32]) -> "FloatArray":
     """Returns (height, width, 4) sRGB colours; texels of weight 0 are hatched in grey."""
     height, width = weights.shape
     rgba = np.ones((height, width, 4), np.float32)

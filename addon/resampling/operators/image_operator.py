@@ -2,13 +2,17 @@
 
 """What the operators share that work on an image."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 from bpy.props import BoolProperty, StringProperty
 
-from ...bridge import editors, images
-from ...bridge.images import Picture
+from ...bridge import editors
 from ...core.operator import WorkOperator
-from ..new_picture import NewPicture, read
+
+if TYPE_CHECKING:
+    from ...bridge.images import Picture
+    from ..new_picture import NewPicture
 
 
 class ImageOperator:
@@ -38,6 +42,8 @@ class ImageOperator:
         Raises:
             ValueError: There is none.
         """
+        from ...bridge import images
+
         shown = getattr(context.space_data, "image", None)
         image = images.find(self.image) if self.image else shown
         if image is None:
@@ -57,9 +63,10 @@ class NewImageOperator(ImageOperator, WorkOperator):
         default=False,
     )
 
-    work: NewPicture | None = None
+    if TYPE_CHECKING:
+        work: NewPicture | None
 
-    def work_on(self, picture: Picture) -> NewPicture:
+    def work_on(self, picture: "Picture") -> "NewPicture":
         """Returns what is to do to an image."""
         raise NotImplementedError
 
@@ -72,8 +79,10 @@ class NewImageOperator(ImageOperator, WorkOperator):
         """Tells whether there is an image."""
         return cls.may_be_redone(context) or super().poll(context)
 
-    def read_work(self, context: bpy.types.Context) -> NewPicture:
+    def read_work(self, context: bpy.types.Context) -> "NewPicture":
         """Copies the image."""
+        from ..new_picture import read
+
         image = self.chosen_image(context)
         # The editor will show the copy, and nothing once that is undone to be done again.
         self.image = image.name

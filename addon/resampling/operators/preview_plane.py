@@ -4,11 +4,10 @@
 
 import bpy
 
-from ...bridge import editors, images
+from ...bridge import editors
 from ...core.operator import BackgroundOperator, Compute
 from ...core.properties import single_property
 from ..choices import PlaneSettings
-from ..new_picture import read
 from ..view import kept
 from .image_operator import ImageOperator
 
@@ -29,6 +28,8 @@ class PREFILTER_OT_preview_plane(ImageOperator, BackgroundOperator, bpy.types.Op
 
     def read(self, context: bpy.types.Context) -> Compute:
         """Copies the image."""
+        from ..new_picture import read
+
         image = self.chosen_image(context)
         self._name = image.name
         picture, uid, filter_name = read(image), image.session_uid, self.filter
@@ -36,6 +37,8 @@ class PREFILTER_OT_preview_plane(ImageOperator, BackgroundOperator, bpy.types.Op
 
     def finish(self, context: bpy.types.Context, result: kept.Plane) -> str:
         """Has the editors draw the plane."""
+        from ...bridge import images
+
         kept.keep(result)
         editors.show(context, images.find(self._name))
         context.window_manager.prefilter_plane.use_plane = True

@@ -2,12 +2,16 @@
 
 """`prefilter.resample_image`: an image scaled, rotated, in perspective, or out of it."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
-from ...bridge.images import Picture
 from ..properties import ResampleProperties
-from ..resampling import Resampling, effort
 from .image_operator import NewImageOperator
+
+if TYPE_CHECKING:
+    from ...bridge.images import Picture
+    from ..resampling import Resampling
 
 
 class PREFILTER_OT_resample_image(ResampleProperties, NewImageOperator, bpy.types.Operator):
@@ -22,10 +26,14 @@ class PREFILTER_OT_resample_image(ResampleProperties, NewImageOperator, bpy.type
     bl_options = {"REGISTER", "UNDO"}
     doing = "Resampling"
 
-    def work_on(self, picture: Picture) -> Resampling:
+    def work_on(self, picture: "Picture") -> "Resampling":
         """Returns what is to do to an image."""
+        from ..resampling import Resampling
+
         return Resampling(picture, self.to_settings(), in_place=self.use_in_place)
 
     def effort(self, load: tuple[int, int]) -> float:
         """Returns about how long it takes."""
+        from ..resampling import effort
+
         return effort(self.to_settings(), *load)

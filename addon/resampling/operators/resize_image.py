@@ -2,12 +2,16 @@
 
 """`prefilter.resize_image`: an image of another size, beside the old one or in its place."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
-from ...bridge.images import Picture
 from ..properties import ResizeProperties
-from ..resizing import Resizing
 from .image_operator import NewImageOperator
+
+if TYPE_CHECKING:
+    from ...bridge.images import Picture
+    from ..resizing import Resizing
 
 
 class PREFILTER_OT_resize_image(ResizeProperties, NewImageOperator, bpy.types.Operator):
@@ -22,8 +26,10 @@ class PREFILTER_OT_resize_image(ResizeProperties, NewImageOperator, bpy.types.Op
     bl_options = {"REGISTER", "UNDO"}
     doing = "Resizing"
 
-    def work_on(self, picture: Picture) -> Resizing:
+    def work_on(self, picture: "Picture") -> "Resizing":
         """Returns what is to do to an image."""
+        from ..resizing import Resizing
+
         return Resizing(picture, self.to_settings(), in_place=self.use_in_place)
 
     def effort(self, load: tuple[int, int]) -> float:

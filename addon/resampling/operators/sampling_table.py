@@ -2,12 +2,15 @@
 
 """`prefilter.sampling_table`: a sampling table as shader code or a file."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
-from ...bridge.files import staging
 from ...core.operator import WorkOperator
 from ..properties import TableProperties
-from ..sampling_tables import TableMaking, effort
+
+if TYPE_CHECKING:
+    from ..sampling_tables import TableMaking
 
 
 class PREFILTER_OT_sampling_table(TableProperties, WorkOperator, bpy.types.Operator):
@@ -22,10 +25,14 @@ class PREFILTER_OT_sampling_table(TableProperties, WorkOperator, bpy.types.Opera
     bl_options = {"REGISTER", "UNDO"}
     doing = "Making a sampling table"
 
-    work: TableMaking | None = None
+    if TYPE_CHECKING:
+        work: TableMaking | None
 
-    def read_work(self, context: bpy.types.Context) -> TableMaking:
+    def read_work(self, context: bpy.types.Context) -> "TableMaking":
         """Looks at the file to write."""
+        from ...bridge.files import staging
+        from ..sampling_tables import TableMaking
+
         del context
         settings = self.to_settings()
         if not settings.filepath:
@@ -45,6 +52,8 @@ class PREFILTER_OT_sampling_table(TableProperties, WorkOperator, bpy.types.Opera
 
     def effort(self, load: None) -> float:
         """Returns about how long it takes."""
+        from ..sampling_tables import effort
+
         del load
         return effort(self.to_settings())
 

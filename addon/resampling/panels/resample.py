@@ -9,7 +9,6 @@ from ...core.properties import copy
 from ...core.sidebar import ImagePanel, main_button
 from ..choices import ResampleSettings
 from ..operators.resample_image import PREFILTER_OT_resample_image
-from ..placement import placement
 
 
 class PREFILTER_PT_resample(ImagePanel, bpy.types.Panel):
@@ -59,6 +58,8 @@ def _draw_resample(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
 
 def _what_comes_out(settings: ResampleSettings, width: int, height: int) -> dict[str, str]:
     """Returns the size of the result, or what is wrong, as arguments of a label."""
+    from ..placement import placement
+
     try:
         placed = placement(settings, width, height)
     except ValueError as error:

@@ -7,10 +7,12 @@ s - (s >> (k - 1)) + k - 1 on: each has half the texels of the one before, round
 """
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...bridge.images import FloatArray
+if TYPE_CHECKING:
+    from ...bridge.images import FloatArray
 
 READ_TEXELS = """
 ivec2 size_of(int level)
@@ -33,7 +35,7 @@ vec4 texel_of(int level, ivec2 texel)
 """GLSL: reads the sampler `atlas`, where `size_0` is the size of level 0."""
 
 
-def packed(levels: Sequence[FloatArray]) -> FloatArray:
+def packed(levels: "Sequence[FloatArray]") -> "FloatArray":
     """Returns all levels in one array.
 
     Args:

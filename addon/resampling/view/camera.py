@@ -3,17 +3,19 @@
 """A camera that looks at a plane tiled with an image."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..placement import Matrix
+if TYPE_CHECKING:
+    from ..placement import Matrix
 
 _FOCAL_LENGTH = 1.0  # In heights of the picture.
 
 
 def uv_of_picture(
     tilt: float, rotation: float, tiles: float, *, picture_aspect: float, image_aspect: float
-) -> Matrix:
+) -> "Matrix":
     """Returns the transform from a picture, [0, 1]^2 from its lower left corner, to UVs.
 
     The factor of (u, v, 1) is above 0 below the horizon.

@@ -3,17 +3,18 @@
 """The levels that editors draw on a plane: computed, and kept."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import gpu
 import prefilter
 
-from ...bridge import images
-from ...bridge.drawing import uploaded
-from ...bridge.images import FloatArray, Picture
 from ...bridge.previews import Previews
 from ...core.alpha import associated
 from ...core.jobs import Progress, go_on, share
 from .atlas import packed
+
+if TYPE_CHECKING:
+    from ...bridge.images import FloatArray, Picture
 
 LONGEST_SIDE = 4096
 """Of the finest level that is drawn, in texels; larger images are made smaller."""
@@ -41,7 +42,7 @@ class Plane:
     size: tuple[int, int]
     aspect: float
     level_count: int
-    atlas: FloatArray | None
+    atlas: "FloatArray | None"
     is_data: bool
     is_stale: bool = False
     _texture: gpu.types.GPUTexture | None = None
@@ -53,6 +54,8 @@ class Plane:
 
     def texture(self) -> gpu.types.GPUTexture:
         """Returns the levels as a texture; main thread only."""
+        from ...bridge.drawing import uploaded
+
         if self._texture is None:
             assert self.atlas is not None
             self._texture, self.atlas = uploaded(self.atlas), None
@@ -64,7 +67,7 @@ keep, find, drop = _planes.keep, _planes.find, _planes.drop
 register, unregister = _planes.register, _planes.unregister
 
 
-def compute(picture: Picture, image_uid: int, filter: str, progress: Progress) -> Plane:
+def compute(picture: "Picture", image_uid: int, filter: str, progress: Progress) -> Plane:
     """Computes the levels of an image that tiles the plane.
 
     Args:
@@ -78,6 +81,8 @@ def compute(picture: Picture, image_uid: int, filter: str, progress: Progress) -
         ValueError: The library refuses the image.
         MemoryError: There is not enough memory.
     """
+    from ...bridge import images
+
     linear = images.scene_linear(picture, lambda: go_on(progress, 0.0))
     if picture.alpha_is_straight:
         linear = associated(linear)

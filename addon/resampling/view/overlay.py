@@ -3,19 +3,21 @@
 """Draws a plane with an image on it in the Image editors: trilinear left, by a table right."""
 
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import bpy
 import gpu
 import prefilter
 from gpu_extras.batch import batch_for_shader
 
-from ...bridge.drawing import COLOR_FUNCTIONS, draw_wipe
 from ..choices import METHODS, TABLE_FILTERS
-from ..placement import Matrix
 from . import kept
 from .atlas import READ_TEXELS
 from .camera import uv_of_picture
 from .kept import Plane
+
+if TYPE_CHECKING:
+    from ..placement import Matrix
 
 _VERTEX = """
 void main()
@@ -86,7 +88,7 @@ _handles: list[object] = []
 
 def draw_plane(
     shown: Plane,
-    uv_of_place: Matrix,
+    uv_of_place: "Matrix",
     size: tuple[int, int],
     *,
     texels: int,
@@ -118,6 +120,8 @@ def draw_plane(
 
 @lru_cache(maxsize=8)
 def _compiled(filter: str, texels: int) -> gpu.types.GPUShader:
+    from ...bridge.drawing import COLOR_FUNCTIONS
+
     table = prefilter.SamplingTable.standard(filter, texels)
     info = gpu.types.GPUShaderCreateInfo()
     for kind, name in (
@@ -148,6 +152,8 @@ def _compiled(filter: str, texels: int) -> gpu.types.GPUShader:
 
 
 def _draw() -> None:
+    from ...bridge.drawing import draw_wipe
+
     settings = bpy.context.window_manager.prefilter_plane
     shown = kept.find(bpy.context.space_data.image)
     if shown is None or not settings.use_plane:

@@ -2,14 +2,15 @@
 
 """`prefilter.rasterize`: an image of the selected curves and texts, or of a UV map."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
-from ...bridge.curves import is_curve
-from ...bridge.uv_layouts import has_uv_map
-from ..memory import Request
 from ..properties import RasterizeProperties
-from ..rasterization import Rasterization
 from .shape_operator import ShapeOperator
+
+if TYPE_CHECKING:
+    from ..rasterization import Rasterization
 
 _NEEDED = {
     "auto": "Select curves or texts, or make a mesh with a UV map the active object",
@@ -39,8 +40,11 @@ class PREFILTER_OT_rasterize(RasterizeProperties, ShapeOperator, bpy.types.Opera
             return False
         return True
 
-    def read_work(self, context: bpy.types.Context) -> Rasterization:
+    def read_work(self, context: bpy.types.Context) -> "Rasterization":
         """Copies the selected curves, or the UV map."""
+        from ..memory import Request
+        from ..rasterization import Rasterization
+
         settings = self.to_settings()
         if settings.source == "svg":
             request = Request("svg", filepath=settings.filepath)
@@ -56,6 +60,8 @@ class PREFILTER_OT_rasterize(RasterizeProperties, ShapeOperator, bpy.types.Opera
 
 def found_source(context: bpy.types.Context, source: str) -> str:
     """Returns what "auto" means at present, or a source itself if it is there; else nothing."""
+    from ...bridge.uv_layouts import has_uv_map
+
     if source != "uv" and chosen_curves(context):
         return "curves"
     if source != "curves" and has_uv_map(context.active_object):
@@ -65,5 +71,7 @@ def found_source(context: bpy.types.Context, source: str) -> str:
 
 def chosen_curves(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Returns the selected curves and texts, the active one first."""
+    from ...bridge.curves import is_curve
+
     selected = [obj for obj in context.selected_objects if is_curve(obj)]
     return sorted(selected, key=lambda obj: obj != context.active_object)

@@ -2,13 +2,16 @@
 
 """`prefilter.rasterize_svg`: an image of an SVG file."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 from bpy.props import StringProperty
 
-from ..memory import Request
 from ..properties import RasterizeProperties
-from ..rasterization import Rasterization
 from .shape_operator import ShapeOperator
+
+if TYPE_CHECKING:
+    from ..rasterization import Rasterization
 
 
 class PREFILTER_OT_rasterize_svg(RasterizeProperties, ShapeOperator, bpy.types.Operator):
@@ -38,7 +41,10 @@ class PREFILTER_OT_rasterize_svg(RasterizeProperties, ShapeOperator, bpy.types.O
             return self._start_again(use_apply=False)
         return super().execute(context)
 
-    def read_work(self, context: bpy.types.Context) -> Rasterization:
+    def read_work(self, context: bpy.types.Context) -> "Rasterization":
         """Looks for the file."""
+        from ..memory import Request
+        from ..rasterization import Rasterization
+
         settings = self.to_settings()
         return Rasterization.read(Request("svg", filepath=settings.filepath), settings, context)

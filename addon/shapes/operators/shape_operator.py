@@ -2,29 +2,34 @@
 
 """What the operators share that make images of shapes."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
 from ...bridge import editors
 from ...core.operator import WorkOperator
 from ...core.outcome import Outcome
-from ..rasterization import Load, Rasterization
+
+if TYPE_CHECKING:
+    from ..rasterization import Load, Rasterization
 
 
 class ShapeOperator(WorkOperator):
     """A mixin: an image of shapes."""
 
     doing = "Rasterizing"
-    work: Rasterization | None = None
+    if TYPE_CHECKING:
+        work: Rasterization | None
     source_drawn = "curves"
     """The source whose settings the redo panel shows."""
 
-    def load(self) -> Load:
+    def load(self) -> "Load":
         """Returns how much there was to do."""
         assert self.work is not None
         assert self.work.load is not None
         return self.work.load
 
-    def effort(self, load: Load) -> float:
+    def effort(self, load: "Load") -> float:
         """Returns about how many seconds the image takes with the present settings."""
         return load.seconds(self.to_settings())
 

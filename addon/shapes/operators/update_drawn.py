@@ -2,13 +2,15 @@
 
 """`prefilter.update_drawn`: an image of shapes made again in place."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 from bpy.props import StringProperty
 
-from ...bridge import images
-from ..memory import is_drawn, recall
-from ..rasterization import Load, Rasterization
 from .shape_operator import ShapeOperator
+
+if TYPE_CHECKING:
+    from ..rasterization import Load, Rasterization
 
 
 class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
@@ -31,6 +33,8 @@ class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there is an image that remembers how it was made."""
+        from ..memory import is_drawn
+
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
             if not is_drawn(context.space_data.image):
                 cls.poll_message_set("The image of this editor was not made by Rasterize")
@@ -40,7 +44,7 @@ class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
             return False
         return True
 
-    def effort(self, load: Load) -> float:
+    def effort(self, load: "Load") -> float:
         """Returns how long it takes: as long as before."""
         del load
         return 1.0
@@ -48,8 +52,12 @@ class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
     def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
         """Draws nothing: the image has the settings."""
 
-    def read_work(self, context: bpy.types.Context) -> Rasterization:
+    def read_work(self, context: bpy.types.Context) -> "Rasterization":
         """Copies what the image shows."""
+        from ...bridge import images
+        from ..memory import is_drawn, recall
+        from ..rasterization import Rasterization
+
         if self.image:
             image = images.find(self.image)
         else:
@@ -64,6 +72,8 @@ class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
 
 
 def _only_drawn() -> bpy.types.Image:
+    from ..memory import is_drawn
+
     drawn = [image for image in bpy.data.images if is_drawn(image)]
     if len(drawn) != 1:
         raise ValueError("image: no name is given, and the editor shows no image")

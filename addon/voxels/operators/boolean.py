@@ -2,12 +2,15 @@
 
 """`prefilter.boolean`: union, intersection and difference of any meshes, through voxels."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
-from ...bridge.new_meshes import is_editable
-from ..boolean import Boolean
 from ..properties import BOOLEAN, BooleanProperties
 from .voxel_operator import VoxelOperator, chosen_solids
+
+if TYPE_CHECKING:
+    from ..boolean import Boolean
 
 
 class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator):
@@ -27,6 +30,8 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there are an active object to change and others."""
+        from ...bridge.new_meshes import is_editable
+
         if not super().poll(context):
             return False
         if cls.may_be_redone(context):
@@ -44,8 +49,10 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
             return False
         return True
 
-    def read_work(self, context: bpy.types.Context) -> Boolean:
+    def read_work(self, context: bpy.types.Context) -> "Boolean":
         """Copies the selected objects."""
+        from ..boolean import Boolean
+
         active = context.active_object
         others = [obj for obj in chosen_solids(context) if obj != active]
         return Boolean.read(active, others, self.to_settings(), context.evaluated_depsgraph_get())

@@ -2,27 +2,31 @@
 
 """What the operators share that work on voxels."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
-from ...bridge.new_meshes import is_solid
 from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
-from ..boolean import Boolean
-from ..steps import Load
-from ..voxelization import Voxelization
+
+if TYPE_CHECKING:
+    from ..boolean import Boolean
+    from ..steps import Load
+    from ..voxelization import Voxelization
 
 
 class VoxelOperator(PresetsOperator, WorkOperator):
     """A mixin: voxels from the selected objects."""
 
-    work: Voxelization | Boolean | None = None
+    if TYPE_CHECKING:
+        work: Voxelization | Boolean | None
 
-    def load(self) -> list[Load]:
+    def load(self) -> "list[Load]":
         """Returns how much there was to do."""
         assert self.work is not None
         return self.work.loads
 
-    def effort(self, load: list[Load]) -> float:
+    def effort(self, load: "list[Load]") -> float:
         """Returns about how many seconds voxels take with the present settings."""
         return sum((one.seconds(self.to_settings()) for one in load), 0.0)
 
@@ -42,4 +46,6 @@ class VoxelOperator(PresetsOperator, WorkOperator):
 
 def chosen_solids(context: bpy.types.Context) -> list[bpy.types.Object]:
     """Returns the selected objects that may show something with an inside."""
+    from ...bridge.new_meshes import is_solid
+
     return [obj for obj in context.selected_objects if is_solid(obj)]

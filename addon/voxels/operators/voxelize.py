@@ -2,11 +2,15 @@
 
 """`prefilter.voxelize`: a closed surface in place of any mesh, through voxels."""
 
+from typing import TYPE_CHECKING
+
 import bpy
 
 from ..properties import VOXELIZE, VoxelizeProperties
-from ..voxelization import Voxelization
 from .voxel_operator import VoxelOperator, chosen_solids
+
+if TYPE_CHECKING:
+    from ..voxelization import Voxelization
 
 
 class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operator):
@@ -34,8 +38,10 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
             return False
         return True
 
-    def read_work(self, context: bpy.types.Context) -> Voxelization:
+    def read_work(self, context: bpy.types.Context) -> "Voxelization":
         """Copies the selected objects."""
+        from ..voxelization import Voxelization
+
         return Voxelization.read(
             chosen_solids(context), self.to_settings(), context.evaluated_depsgraph_get()
         )

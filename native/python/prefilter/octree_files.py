@@ -5,14 +5,16 @@
 import errno
 import io
 import os
-import zipfile
-from typing import Any, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _native
 from ._border.output import as_path, as_target, replace_file
+
+if TYPE_CHECKING:
+    import zipfile
 
 _FORMAT = "prefilter octree 2"
 _LONGEST_HEADER = 256
@@ -58,6 +60,8 @@ def read_octree(path: str | os.PathLike[str]) -> _native.Octree:
 def _contents(
     file: BinaryIO,
 ) -> tuple[_Levels, float, tuple[list[float], list[float]], int]:
+    import zipfile
+
     archive = zipfile.ZipFile(file)
     found = str(_array(archive, "format", np.dtype(f"<U{len(_FORMAT)}"), ()))
     if found != _FORMAT:
@@ -81,7 +85,7 @@ def _contents(
 
 
 def _array(
-    archive: zipfile.ZipFile, name: str, dtype: np.dtype, shape: tuple[int, ...]
+    archive: "zipfile.ZipFile", name: str, dtype: np.dtype, shape: tuple[int, ...]
 ) -> np.ndarray:
     """An array of the archive; nothing is unpacked unless it takes as many bytes as it should."""
     try:

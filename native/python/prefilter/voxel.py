@@ -13,7 +13,6 @@ import numpy.typing as npt
 from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
 from ._border.arrays import as_floats, as_labels, as_mesh, as_threads
-from .octree_files import read_octree, write_octree
 
 Corner = Sequence[float] | npt.NDArray[np.floating]
 Box = tuple[Corner, Corner]
@@ -247,6 +246,8 @@ class Octree(_native.Octree):
             ValueError: `path` is no path.
             OSError: The file can't be written, or is a device or a pipe.
         """
+        from .octree_files import write_octree
+
         write_octree(path, self)
 
     @classmethod
@@ -258,6 +259,8 @@ class Octree(_native.Octree):
             ValueError: It is no octree, or a damaged one.
             MemoryError: The octree would not fit into memory.
         """
+        from .octree_files import read_octree
+
         return cls(read_octree(path))
 
     def _combined(

@@ -48,14 +48,14 @@ def test_all_users_count_whatever_is_selected(pair, capfd):
 @pytest.mark.parametrize("operator", ["preview_levels", "plot_error", "show_weights"])
 def test_other_operators_heed_the_setting_of_the_panel(pair, addon, monkeypatch, operator):
     read = []
-    source = addon("mipmaps.operators.source")
-    original = source.read
+    reading = addon("mipmaps.reading")
+    original = reading.reading
 
     def caught(image, objects, *rest, **options):
         read.append([obj.name for obj in objects])
         return original(image, objects, *rest, **options)
 
-    monkeypatch.setattr(source, "read", caught)
+    monkeypatch.setattr(reading, "reading", caught)
     for choice in ("all", "selected"):
         bpy.context.scene.prefilter_bake.objects = choice
         assert getattr(bpy.ops.prefilter, operator)(image="Flag") == {"FINISHED"}

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What Blender loads when it starts with the add-on: what draws and declares, and no work."""
+
+import os
+import re
+import subprocess
+import sys
+
+import bpy
+from conftest import PACKAGE
+
+# Of the add-on: what registers classes, and what these need to say what there is to set.
+AT_ENABLING = re.compile(
+    r"""
+    | core(\..*)? | commands | preferences
+    | bridge(\.(files|editors|previews))?
+    | \w+ (\.(choices|properties|menus|panels?|operators?|remembered|importance|view|model)(\..*)?)?
+    """,
+    re.VERBOSE,
+)
+WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
+# Of the package: what options take their limits and choices from.
+OF_PACKAGE = re.compile(
+    r"prefilter(\.(_native|version|mipmap|memory|surface|voxel|filtered_levels|color"
+    r"|scan_files|_border(\..*)?))?"
+)
+SLOW = {"argparse", "concurrent.futures", "logging", "tempfile", "zipfile", "OpenImageIO"}
+PROGRAM = f"""
+import sys
+import addon_utils, bpy, numpy, numpy.typing
+known = set(sys.modules)
+assert addon_utils.enable({PACKAGE!r}, default_set=True) is not None
+print("LOADED", *(set(sys.modules) - known))
+"""
+
+
+def loaded_at_enabling() -> set[str]:
+    """Returns the modules that enabling the add-on loads in a Blender of its own."""
+    command = [sys.executable, "-S", "-c", f"import bpy{PROGRAM}"]
+    if bpy.app.binary_path:
+        command = [bpy.app.binary_path, "--background", "--factory-startup"]
+        command += ["--python-exit-code", "1", "--python-expr", PROGRAM]
+    done = subprocess.run(
+        command, env=dict(os.environ), capture_output=True, text=True, timeout=300, check=False
+    )
+    lines = [line for line in done.stdout.splitlines() if line.startswith("LOADED ")]
+    assert lines, done.stdout + done.stderr
+    return set(lines[0].split()[1:])
+
+
+def test_only_what_is_needed_is_loaded():
+    found = loaded_at_enabling()
+    own = {name.removeprefix(PACKAGE).lstrip(".") for name in found if name.startswith(PACKAGE)}
+    assert {"core.operator", "mipmaps.choices"} <= own
+    wrong = {name for name in own if not AT_ENABLING.fullmatch(name) or WORK.fullmatch(name)}
+    assert not wrong, f"import these in the functions that need them: {sorted(wrong)}"
+    package = {name for name in found if re.match(r"prefilter\b", name)}
+    assert {name for name in package if not OF_PACKAGE.fullmatch(name)} == set()
+    assert not found & SLOW
