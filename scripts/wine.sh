@@ -36,7 +36,7 @@ under_wine() {
   start_wine >/dev/null 2>&1
   (
     set -o pipefail
-    "${wine_program[@]}" "$@" </dev/null 2>&1 | tr -d '\r'
+    "${wine_program[@]}" "$@" </dev/null 2>&1 | stdbuf -o L tr -d '\r'
   )
 }
 
