@@ -205,7 +205,7 @@ ROWS = [
     ),
     (
         "from_subdivision",
-        {"faces": np.array([0])},
+        {"faces": np.array([0], np.int64)},
         ["faces: shape (1,) of int64", "(1,) of bool is needed"],
     ),
     *(
@@ -535,9 +535,9 @@ ROWS = [
         {"image": np.zeros((4, 4, 1), np.float32)},
         ["image: 1 channels", "2 to 4 are allowed", "alpha"],
     ),
-    ("fill_transparent", {"image": BYTES.astype(int)}, ["image: dtype int64", TEXELS]),
+    ("fill_transparent", {"image": BYTES.astype(np.int64)}, ["image: dtype int64", TEXELS]),
     ("fill_transparent", {"wrap": "mirror"}, ["wrap: ", "mirror"]),
-    ("fill_unused", {"image": BYTES.astype(int)}, ["image: dtype int64", TEXELS]),
+    ("fill_unused", {"image": BYTES.astype(np.int64)}, ["image: dtype int64", TEXELS]),
     ("fill_unused", {"surface": None}, ["surface: none was given", "at least one is needed"]),
     (
         "fill_unused",
@@ -577,7 +577,7 @@ ROWS = [
             ({"threads": -1}, ["threads: -1", THREADS]),
         )
     ),
-    ("to_srgb", {"image": BYTES.astype(int)}, ["image: dtype int64", TEXELS]),
+    ("to_srgb", {"image": BYTES.astype(np.int64)}, ["image: dtype int64", TEXELS]),
     *(
         ("coarser_levels", arguments, words)
         for arguments, words in (

@@ -73,7 +73,7 @@ ROWS = [
                 ["levels: level 1 has 3 channels of uint8", "3 of float32"],
             ),
             ({"levels": [IMAGE[0, 0]]}, ["levels: level 0: shape (3,)", AXES]),
-            ({"levels": [IMAGE.astype(int)]}, ["levels: level 0: dtype int64", TEXELS]),
+            ({"levels": [IMAGE.astype(np.int64)]}, ["levels: level 0: dtype int64", TEXELS]),
             ({"table": "bilinear"}, ["table: 'bilinear'", "a SamplingTable is needed"]),
             ({"table": None}, ["table: None", "or 'trilinear'"]),
             (
@@ -197,7 +197,7 @@ ROWS = [
         ("resample", arguments, words)
         for arguments, words in (
             ({"image": IMAGE[0, 0]}, ["image: shape (3,)", AXES]),
-            ({"image": np.zeros((4, 4, 3), int)}, ["image: dtype int64", TEXELS]),
+            ({"image": np.zeros((4, 4, 3), np.int64)}, ["image: dtype int64", TEXELS]),
             ({"image": changed(IMAGE, (2, 3, 1), NAN)}, ["image: the texel in row 2, column 3"]),
             ({"transform": np.eye(4)}, ["transform: shape (4, 4)", "(3, 3) or (2, 3) is needed"]),
             ({"transform": "turn"}, ["transform: dtype <U4", "numbers are needed"]),
@@ -224,7 +224,7 @@ ROWS = [
         ("sampling_levels", arguments, words)
         for arguments, words in (
             ({"image": IMAGE[0, 0]}, ["image: shape (3,)", AXES]),
-            ({"image": np.zeros((4, 4, 3), int)}, ["image: dtype int64", TEXELS]),
+            ({"image": np.zeros((4, 4, 3), np.int64)}, ["image: dtype int64", TEXELS]),
             ({"image": IMAGE[:0]}, ["image: shape (0, 16, 3)", "at least one"]),
             ({"image": changed(IMAGE, (2, 3, 1), NAN)}, ["image: the texel in row 2, column 3"]),
             (

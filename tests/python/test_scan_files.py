@@ -229,6 +229,8 @@ def test_bad_arguments(tmp_path):
 
 
 def test_any_name_of_a_file(tmp_path):
+    if os.name == "nt":
+        pytest.skip("names are Unicode there, whatever they hold")
     name = os.fsdecode(b"b\xe4r ' \xf0.PLY")
     assert len(read(tmp_path, vertices(), name).positions) == 3
     with pytest.raises(ValueError, match=r"b\\xe4r"):

@@ -386,7 +386,7 @@ BAD = [
     ({"weights": np.full(8, np.inf)}, "weights: vertex 0 has inf"),
     ({"faces": np.zeros(6, bool)}, "faces: none is chosen"),
     ({"faces": np.zeros(5, bool)}, r"faces: shape \(5,\) of bool; \(6,\)"),
-    ({"faces": np.arange(6)}, r"faces: shape \(6,\) of int64"),
+    ({"faces": np.arange(6, dtype=np.int64)}, r"faces: shape \(6,\) of int64"),
     ({"progress": 3}, "progress: 3; a callable"),
 ]
 

@@ -4,6 +4,7 @@
 
 import errno
 import io
+import math
 import os
 from typing import TYPE_CHECKING, Any, BinaryIO
 
@@ -92,7 +93,7 @@ def _array(
         member = archive.getinfo(f"{name}.npy")
     except KeyError:
         raise ValueError(f"it has no '{name}'") from None
-    expected = dtype.itemsize * int(np.prod(shape))
+    expected = dtype.itemsize * math.prod(shape)
     if not expected < member.file_size <= expected + _LONGEST_HEADER:
         raise ValueError(
             f"'{name}' takes {member.file_size} bytes; {expected} and a header are expected"

@@ -103,7 +103,7 @@ def write_exr(
                 )
                 file.write(chunks.data)
                 sizes.extend(chunk_sizes)
-        offsets = table + 8 * tile_count + np.concatenate([[0], np.cumsum(sizes[:-1])])
+        offsets = table + 8 * tile_count + np.cumsum([0, *sizes[:-1]], dtype=np.int64)
         file.seek(table)
         file.write(offsets.astype("<u8").tobytes())
 
