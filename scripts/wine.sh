@@ -81,5 +81,5 @@ python_under_wine() {
   ensure_wine
   ensure_wine_python "$1"
   path=$(windows_path "$2" "$wine_python/site-packages")
-  PYTHONPATH=$path PYTHONDONTWRITEBYTECODE=1 under_wine "$wine_python/python/python.exe" "${@:3}"
+  PYTHONPATH=$path PYTHONDONTWRITEBYTECODE=1 PYTHONUNBUFFERED=1 under_wine "$wine_python/python/python.exe" "${@:3}"
 }
