@@ -8,6 +8,7 @@ import struct
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 FOLDER = Path(__file__).resolve().parents[1]
 KEYWORD = "Panels"
@@ -22,30 +23,38 @@ class Photograph:
         panels: The panels that it shows, and with them those below.
         scene: The function of scenes.py that makes what is in the window.
         opened: Panels that start closed, and are open in the photograph.
+        unfolded: Whether the parts of the panel are open, which start closed.
         since: The first Blender that has the panels.
     """
 
     panels: tuple[str, ...]
     scene: str
     opened: tuple[str, ...] = ()
+    unfolded: bool = False
     since: tuple[int, int] = (4, 2)
 
 
-def _panel(name: str, scene: str = "mesh", *opened: str, **more: tuple[int, int]) -> Photograph:
-    return Photograph((f"PREFILTER_PT_{name}",), scene, (f"PREFILTER_PT_{name}", *opened), **more)
+def _panel(name: str, scene: str = "mesh", **more: Any) -> Photograph:
+    return Photograph((f"PREFILTER_PT_{name}",), scene, (f"PREFILTER_PT_{name}",), **more)
 
 
 CROPPED = {
     "bake": _panel("bake"),
+    "bake_unfolded": _panel("bake", unfolded=True),
     "bake_all_images": _panel("model"),
+    "bake_all_images_unfolded": _panel("model", unfolded=True),
     "preview": _panel("preview"),
     "error_plot": _panel("error"),
     "texel_use": _panel("texel_use"),
     "texture_cache": _panel("texture_cache", "cache", since=(5, 2)),
     "voxelize": _panel("voxelize_sidebar"),
+    "voxelize_unfolded": _panel("voxelize_sidebar", unfolded=True),
     "boolean": _panel("boolean_sidebar"),
+    "boolean_unfolded": _panel("boolean_sidebar", unfolded=True),
     "reconstruct": _panel("reconstruct", "points"),
+    "reconstruct_unfolded": _panel("reconstruct", "points", unfolded=True),
     "rasterize": _panel("rasterize", "text"),
+    "rasterize_unfolded": _panel("rasterize", "text", unfolded=True),
     "rasterize_svg": _panel("shapes"),
     "resize": _panel("resize"),
     "resample": _panel("resample"),

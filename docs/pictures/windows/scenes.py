@@ -110,8 +110,43 @@ def rearrange(opened: Sequence[str], only: Sequence[str] = (), first: str = "") 
         panel.bl_options = set(getattr(panel, "bl_options", ())) - {"DEFAULT_CLOSED"} | closed
         if panel.__name__ == first:
             panel.bl_order = -1
-        if panel in kept:
+        # Panels of headers are lists of presets, which buttons in other panels open.
+        if panel in kept or panel.bl_region_type == "HEADER":
             bpy.utils.register_class(panel)
+
+
+class Unfolded:
+    """A layout whose parts that open and close are open."""
+
+    def __init__(self, layout: bpy.types.UILayout) -> None:
+        """Takes a panel's layout."""
+        object.__setattr__(self, "_layout", layout)
+
+    def panel(self, name: str, **_: object) -> tuple[bpy.types.UILayout, bpy.types.UILayout]:
+        """Begins such a part."""
+        return self._layout.panel(f"{name}_unfolded", default_closed=False)
+
+    def __getattr__(self, name: str) -> object:
+        """Returns what the layout has."""
+        return getattr(self._layout, name)
+
+    def __setattr__(self, name: str, value: object) -> None:
+        """Sets what the layout has."""
+        setattr(self._layout, name, value)
+
+
+def unfold(panel: type) -> None:
+    """Has a panel draw its parts open."""
+    draw = panel.draw
+
+    class Drawing:
+        def __init__(self, drawing: bpy.types.Panel) -> None:
+            self._panel, self.layout = drawing, Unfolded(drawing.layout)
+
+        def __getattr__(self, name: str) -> object:
+            return getattr(self._panel, name)
+
+    panel.draw = lambda self, context: draw(Drawing(self), context)
 
 
 # Single panels.
@@ -132,6 +167,8 @@ def show_panel(shown: Photograph) -> Iterator[float]:
     area.type = panel.bl_space_type
     if panel.bl_space_type == "IMAGE_EDITOR":
         area.spaces.active.image = bpy.data.images[demo_scene.IMAGE]
+    if shown.unfolded:
+        unfold(panel)
     rearrange(shown.opened, only=shown.panels)
     if panel.bl_space_type == "PROPERTIES":
         yield 0.5
