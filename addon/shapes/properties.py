@@ -31,11 +31,11 @@ class RasterizeProperties:
             column = layout.column(align=True)
             column.prop(self, "width")
             column.prop(self, "height")
+        layout.prop(self, "filter")
         if source == "curves":
             layout.prop(self, "view")
         elif source == "uv":
             layout.prop(self, "tile")
-        layout.prop(self, "filter")
         if source != "uv":
             _, body = subpanel(layout, "shape_color", "Color")
             if body:
