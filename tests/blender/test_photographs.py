@@ -36,6 +36,15 @@ def test_panels_draw_what_their_photograph_shows(name):
     compare(picture, pictures.CROPPED[name])
 
 
+@pytest.mark.parametrize("name", pictures.WHOLE)
+def test_panels_draw_what_photographs_of_windows_show(name):
+    picture = pictures.FOLDER / f"{name}.png"
+    taken = tuple(map(int, pictures.read_text(picture)["blender"].split(".")))
+    if taken > VERSION:
+        pytest.skip("the photograph is of a later Blender")
+    compare(picture, pictures.WHOLE[name])
+
+
 def compare(picture, shown):
     # Where they differ, docs/pictures/windows/photograph takes it again.
     told = pictures.read_text(picture)["drawn"]

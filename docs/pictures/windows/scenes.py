@@ -26,8 +26,8 @@ from pictures import CROPPED, WHOLE, Photograph  # noqa: E402
 
 READY = "prefilter: ready "
 SCALE = 1.5
-SIDEBAR_WIDTH = 0.3
-"""Of the window, where a panel of the Properties editor is photographed."""
+PROPERTIES_WIDTH = 0.4
+"""Of the largest area, where a panel of the Properties editor is photographed."""
 
 
 def session(kind: str, name: str) -> Iterator[float]:
@@ -38,6 +38,7 @@ def session(kind: str, name: str) -> Iterator[float]:
         tell(told | {"left_out": True})
         return
     told["drawn"] = drawn.drawn(shown.panels)
+    largest_area().type = "VIEW_3D"
     clear()
     yield 1.0
     if kind == "panels":
@@ -182,7 +183,7 @@ def split(area: bpy.types.Area) -> bpy.types.Area:
     """Cuts a narrow area off another."""
     before = set(bpy.context.window_manager.windows[0].screen.areas)
     with inside(area):
-        bpy.ops.screen.area_split(direction="VERTICAL", factor=SIDEBAR_WIDTH)
+        bpy.ops.screen.area_split(direction="VERTICAL", factor=PROPERTIES_WIDTH)
     (made,) = set(bpy.context.window_manager.windows[0].screen.areas) - before
     return min((made, area), key=lambda one: one.width)
 
@@ -194,11 +195,14 @@ def keep_panels_around(panel: type) -> None:
     while parent:
         around.add(parent)
         parent = getattr(getattr(bpy.types, parent), "bl_parent_id", "")
-    for other in drawn.registered_panels():
-        if other.bl_space_type != "PROPERTIES" or other.__name__.startswith("PREFILTER_PT_"):
-            continue
-        if other.bl_rna.identifier not in around:
+    others = [one for one in drawn.registered_panels() if one.bl_space_type == "PROPERTIES"]
+    kept = [one for one in others if one.bl_rna.identifier in around]
+    for other in others:
+        if not other.__name__.startswith("PREFILTER_PT_"):
             bpy.utils.unregister_class(other)
+    for other in kept:
+        other.bl_options = set(getattr(other, "bl_options", ())) - {"DEFAULT_CLOSED"}
+        bpy.utils.register_class(other)
 
 
 def place_of(area: bpy.types.Area) -> list[int]:
