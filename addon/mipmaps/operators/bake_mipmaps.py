@@ -65,6 +65,9 @@ class PREFILTER_OT_bake_mipmaps(
         given = self.properties.is_property_set
         if any(map(given, _OF_FILES)):
             set_unset(self, {"result": "file"})
+        alone = bool(self.roughness_filepath) and not self.roughness
+        if alone and given("roughness_filepath") and not self.options.is_repeat:
+            raise ValueError("roughness file: needs the name of a roughness image, found none")
         found = file_names.format_of(self.filepath or self.roughness_filepath)
         if found:
             set_unset(self, {"file_format": found})

@@ -129,15 +129,6 @@ ROWS = {
         ["levels: found 9", "8 x 8 has 1 to 4"],
         {"levels": 9},
     ),
-    "nothing to write": Row(
-        ["nothing to write", "neither level images nor a file"],
-        {"use_images": False},
-    ),
-    "extension": Row(
-        ["'.jpg'", "use ", ".exr"],
-        {"filepath": "out.jpg"},
-    ),
-    "no extension": Row(["extension ''", "use "], {"filepath": "out"}),
     "no folder": Row(["there is no folder", "nowhere"], {"filepath": "nowhere/out.exr"}),
     "folder": Row(["folder.exr", "is a folder"], {"filepath": "folder.exr"}),
     "read-only file": Row(["kept.exr", "is read-only"], {"filepath": "kept.exr"}),

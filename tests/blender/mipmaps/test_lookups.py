@@ -123,7 +123,8 @@ def test_cut_outs_heed_it(bake):
 
 def test_the_preview_shows_what_the_file_gets(addon, paint, tmp_path):
     settings = bpy.context.scene.prefilter_bake
-    settings.wrap, settings.filepath = "clamp", str(tmp_path / "out.ktx2")
+    settings.wrap, settings.result = "clamp", "file"
+    settings.filepath = str(tmp_path / "out.ktx2")
     preview = addon("mipmaps.view.preview")
     for lookups, footprint in (("auto", 1.0), ("supersampled", 0.0)):
         settings.lookups = lookups

@@ -71,7 +71,6 @@ def test_levels_are_removed_again(scene, tmp_path):
 
 
 @needs_cache
-@needs_cache
 def test_who_renders_with_another_engine_is_told(scene, tmp_path, capfd):
     cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(256, 256, 3), "uint8"))
     bake()
@@ -81,6 +80,7 @@ def test_who_renders_with_another_engine_is_told(scene, tmp_path, capfd):
     assert "Warning: scene 'Scene' is not rendered by Cycles" in capfd.readouterr().out
 
 
+@needs_cache
 def test_poll_without_images():
     assert not bpy.ops.prefilter.bake_texture_cache.poll()
     with pytest.raises(RuntimeError, match="no image in this file"):
