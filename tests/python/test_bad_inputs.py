@@ -324,7 +324,7 @@ ROWS = [
             (IMAGE[:0], ["image: shape (0, 16, 3) holds no pixels", "at least one is needed"]),
             ([[1.0], [1.0, 2.0]], ["image: found no array", "inhomogeneous"]),
             (np.zeros((16, 16, 3), np.int16), ["image: dtype int16", TEXELS]),
-            (IMAGE * 1j, ["image: dtype complex64", TEXELS]),
+            (IMAGE.astype(np.complex64), ["image: dtype complex64", TEXELS]),
             (None, ["image: dtype object", TEXELS]),
             ("image.png", ["image: dtype <U9", TEXELS]),
             ([], ["image: shape (0,)", AXES]),
