@@ -27,10 +27,11 @@ OF_PACKAGE = re.compile(
 )
 SLOW = {"argparse", "concurrent.futures", "logging", "tempfile", "zipfile", "OpenImageIO"}
 PROGRAM = f"""
-import os, sys
+import gc, os, sys
 import addon_utils, bpy, numpy, numpy.typing
 known = set(sys.modules)
 assert addon_utils.enable({PACKAGE!r}, default_set=True) is not None
+assert gc.isenabled()
 print("LOADED", *(set(sys.modules) - known), flush=True)
 os._exit(0)  # Official 4.5, as a module, may not come to its end.
 """
