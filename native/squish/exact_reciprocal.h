@@ -6,4 +6,5 @@
 
 #include <xmmintrin.h>
 
+#undef _mm_rcp_ps
 #define _mm_rcp_ps(value) _mm_div_ps(_mm_set1_ps(1.0F), (value))

@@ -20,8 +20,8 @@ TEST(RadixSort, SortsByTheBitsAndKeepsTheOrderOfEqualOnes) {
       std::vector<std::uint64_t> values(count);
       // Few different digits, so that many are equal.
       for (std::uint64_t& value : values) value = random() & random() & random();
-      const auto digits = [low = low, high = high](std::uint64_t value) {
-        return high == low ? 0 : value << (64 - high) >> (64 - high + low);
+      const auto digits = [first = low, end = high](std::uint64_t value) {
+        return end == first ? 0 : value << (64 - end) >> (64 - end + first);
       };
       std::vector<std::uint64_t> wanted = values;
       std::stable_sort(wanted.begin(), wanted.end(),

@@ -31,6 +31,56 @@ Place torus_place(double u, double v, double lean) {
   return {leaning({radius * outward[0], radius * outward[1], bump * up}), leaning(normal)};
 }
 
+/// A channel of a tile of `tiles`, between any two values.
+class Pattern {
+ public:
+  static constexpr int kCount = 7;
+
+  Pattern(int kind, Random* random) : kind_(kind), random_(random) {
+    low_ = random_->between(0.0, 1.0);
+    high_ = random_->between(0.0, 1.0);
+    slope_ = random_->between(-1.0, 1.0);
+    // Some are close to each other, some as far away as can be.
+    const double range = random_->between(0.0, 3.0);
+    if (range < 1.0) high_ = low_ + 0.1 * (high_ - low_);
+    if (range > 2.0) {
+      low_ = 0.0;
+      high_ = 1.0;
+    }
+  }
+
+  double at(double x, double y) {
+    return std::clamp(low_ + (high_ - low_) * share(x, y), 0.0, 1.0);
+  }
+
+ private:
+  double share(double x, double y) {
+    const double along = 0.5 + (x - 0.5) + slope_ * (y - 0.5);
+    switch (kind_) {
+      case 0:
+        return 0.0;
+      case 1:
+        return along;
+      case 2:
+        return along * along;
+      case 3:
+        return along < 0.5 ? 0.0 : 1.0;
+      case 4:
+        return static_cast<int>(8.0 * x) % 2 == static_cast<int>(8.0 * y) % 2 ? along : 1.0 - along;
+      case 5:
+        return random_->between(0.0, 1.0);
+      default:
+        return along + random_->between(-0.1, 0.1);
+    }
+  }
+
+  int kind_;
+  Random* random_;
+  double low_;
+  double high_;
+  double slope_;
+};
+
 }  // namespace
 
 double Random::between(double low, double high) {
@@ -54,6 +104,56 @@ Image picture(int width, int height, int channels) {
     }
   }
   return image;
+}
+
+Image tiles(int size) {
+  constexpr int kSide = 16;
+  Image image(size, size, 4);
+  Random random(29);
+  for (int tile = 0; tile < (size / kSide) * (size / kSide); ++tile) {
+    const int kind = tile % Pattern::kCount;
+    // Of one kind, and of one color of gray every fifth time.
+    const bool is_gray = tile % 5 == 0;
+    std::vector<Pattern> channels(3, Pattern(kind, &random));
+    if (!is_gray) {
+      for (Pattern& channel : channels) channel = Pattern(kind, &random);
+    }
+    const int alpha_kind = tile / Pattern::kCount % (Pattern::kCount + 2);
+    Pattern alpha(alpha_kind, &random);
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const int x = tile % (size / kSide) * kSide + i % kSide;
+      const int y = tile / (size / kSide) * kSide + i / kSide;
+      const double across = (i % kSide) / (kSide - 1.0);
+      const double down = (i / kSide) / (kSide - 1.0);
+      float* texel = image.texel(x, y);
+      for (int c = 0; c < 3; ++c) {
+        texel[c] = is_gray && c > 0
+                       ? texel[0]
+                       : static_cast<float>(channels[static_cast<std::size_t>(c)].at(across, down));
+      }
+      if (alpha_kind < Pattern::kCount) {
+        texel[3] = static_cast<float>(alpha.at(across, down));
+      } else {
+        texel[3] = alpha_kind == Pattern::kCount ? 1.0F : 0.0F;
+      }
+    }
+  }
+  return image;
+}
+
+std::vector<std::uint16_t> half_tiles(int size) {
+  constexpr int kGreatest = 0x7BFF;
+  constexpr int kOne = 0x3C00;
+  const Image image = tiles(size);
+  std::vector<std::uint16_t> halves;
+  for (std::size_t i = 0; i < image.data.size(); ++i) {
+    const bool is_alpha = i % 4 == 3;
+    const double bits = static_cast<double>(image.data[i]) * (is_alpha ? kOne : kGreatest);
+    halves.push_back(static_cast<std::uint16_t>(bits));
+    const bool is_negative = !is_alpha && i / 4 % 97 == 0;
+    if (is_negative) halves.back() |= 0x8000U;
+  }
+  return halves;
 }
 
 Image normal_map(int width, int height) {

@@ -31,6 +31,14 @@ class Random {
 /// Ramps, edges and noise in [0, 1]; the last of four channels is coverage.
 Image picture(int width, int height, int channels);
 
+/// Tiles for encoders of blocks, RGBA: of one color, ramps, two colors, steps, gray, and noise of
+/// any size, each with an alpha that is full, none, or any of these; in [0, 1], also the ends.
+Image tiles(int size);
+
+/// The same of half floats that are finite: from the least to the greatest, and negative ones; an
+/// alpha in [0, 1].
+std::vector<std::uint16_t> half_tiles(int size);
+
 /// Unit vectors, each component c stored as (c + 1) / 2.
 Image normal_map(int width, int height);
 
