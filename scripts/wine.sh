@@ -40,6 +40,19 @@ under_wine() {
   )
 }
 
+# make_python3_dll FOLDER TAG: makes the library that modules for all Pythons 3 are linked with, beside that of one Python,
+# which it passes all calls on to.
+make_python3_dll() {
+  local library=python${2#cp}
+  ensure_zig
+  {
+    # shellcheck disable=SC2016
+    printf '%s\n' '.globl _DllMainCRTStartup' '_DllMainCRTStartup: mov $1, %eax' ret '.section .drectve, "yn"'
+    objdump -p "$1/$library.dll" | sed -n "s/^\t\[ *[0-9]*\].* \([A-Za-z_0-9]*\)\$/.ascii \" -export:\1=$library.\1\"/p"
+  } >"$1/python3.s"
+  "$zig_dir/bin/zig-cc" --target=x86_64-windows-gnu -shared -nostdlib -o "$1/python3.dll" "$1/python3.s"
+}
+
 # ensure_wine_python TAG: fetches CPython for Windows and the packages of scripts/wine.txt; sets wine_python, the folder
 # of both.
 ensure_wine_python() {
@@ -58,6 +71,7 @@ ensure_wine_python() {
     cp -a "$cache_dir/python-windows-3.${1#cp3}"/org/bytedeco/cpython/windows-x86_64 "$new/python"
     # Wine does not answer what it asks the system.
     rm -f "$new/python/lib/_wmi.pyd"
+    make_python3_dll "$new/python" "$1"
     mv "$new" "$wine_python"
   fi
   unlock "$cache_dir/.wine.lock"
