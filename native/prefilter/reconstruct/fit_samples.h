@@ -24,11 +24,12 @@ struct LocalSurface {
 };
 
 /// None where there are no samples, or their normals cancel each other, or with a `normal_trust` of
-/// 0 the means of their cells are on a line. With weights w = (1 - r^2)^2 for samples r cells away,
-/// the distance is the mean of that from the plane through the mean sample, across the mean normal,
-/// and that from the samples' own planes. Where the surface curves, the first is too large by as
-/// much as the second is too small. Less `normal_trust` than 1 takes the normal more and more from
-/// the plane that fits the samples' positions, and the distance from that plane alone.
+/// 0 the means of their cells are nearly on a line. With weights w = (1 - r^2)^2 for samples r
+/// cells away, the distance is the mean of that from the plane through the mean sample, across the
+/// mean normal, and that from the samples' own planes. Where the surface curves, the first is too
+/// large by as much as the second is too small. Less `normal_trust` than 1 takes the normal more
+/// and more from the plane that fits the samples' positions, and the distance from that plane
+/// alone.
 std::optional<LocalSurface> local_surface(const SampleIndex& index, const Vector3& point,
                                           double normal_trust);
 

@@ -108,6 +108,7 @@ TEST(LocalSurface, OfASphereIsNearIt) {
   constexpr int kCount = 200;
   double sum = 0.0;
   double sum_of_positions = 0.0;
+  int found = 0;
   for (int i = 0; i < kCount; ++i) {
     const Vector3 n = random_direction(&random);
     const double distance = 0.25 * ((i % 3) - 1);
@@ -118,11 +119,16 @@ TEST(LocalSurface, OfASphereIsNearIt) {
     EXPECT_NEAR(surface->distance, distance, 0.02);
     EXPECT_GT(dot(surface->normal, n), 0.999);
     sum += surface->distance - distance;
-    sum_of_positions += local_surface(index, point, 0.0)->distance - distance;
+    // Few cells are as near, and their means may be on a line.
+    const auto of_positions = local_surface(index, point, 0.0);
+    if (!of_positions) continue;
+    sum_of_positions += of_positions->distance - distance;
+    ++found;
   }
+  EXPECT_GT(found, kCount * 3 / 4);
   // The plane through the samples' mean, which is inside of the sphere, is off by more.
-  EXPECT_LT(std::abs(sum), 0.75 * std::abs(sum_of_positions)) << sum / kCount;
-  EXPECT_NEAR(sum_of_positions / kCount, 1.0 / (8.0 * kRadius), 0.01);
+  EXPECT_LT(std::abs(sum / kCount), 0.75 * std::abs(sum_of_positions / found)) << sum / kCount;
+  EXPECT_NEAR(sum_of_positions / found, 1.0 / (8.0 * kRadius), 0.01);
 }
 
 TEST(LocalSurface, IsNoneWithoutSamplesOrASide) {
