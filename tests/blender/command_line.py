@@ -4,6 +4,7 @@
 
 import contextlib
 import importlib
+import logging
 import os
 import subprocess
 import sys
@@ -25,6 +26,8 @@ IMPORTERS = {
     ".gltf": "import_scene.gltf",
     ".fbx": "import_scene.fbx",
 }
+LOGGERS = ("glTFImporter", "glTFImporter_errors")
+"""Where an import that fails leaves handlers, which go on to write to the files that it wrote to."""
 
 
 def run(*arguments: object, cwd: Path | None = None) -> Result:
@@ -49,6 +52,7 @@ def _printing_to(out: IO[str], err: IO[str]) -> Iterator[None]:
     sys.stdout.flush()
     sys.stderr.flush()
     kept = [os.dup(stream) for stream in (1, 2)]
+    handlers = {name: list(logging.getLogger(name).handlers) for name in LOGGERS}
     os.dup2(out.fileno(), 1)
     os.dup2(err.fileno(), 2)
     try:
@@ -60,6 +64,8 @@ def _printing_to(out: IO[str], err: IO[str]) -> Iterator[None]:
         for stream, old in enumerate(kept, start=1):
             os.dup2(old, stream)
             os.close(old)
+        for name, before in handlers.items():
+            logging.getLogger(name).handlers[:] = before
 
 
 def run_blender(*arguments: object, cwd: Path | None = None) -> Result:
