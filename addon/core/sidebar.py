@@ -2,9 +2,15 @@
 
 """The add-on's tab in the sidebars of the 3D view and the Image editor, and what panels share."""
 
+import textwrap
+
 import bpy
 
 from . import running
+
+_LETTER_WIDTH = 6.5
+_AROUND_TEXT = 76
+"""What margins, tabs and an icon take of a sidebar's width; both at a scale of 1."""
 
 
 class SidebarPanel:
@@ -52,6 +58,14 @@ def button(
 ) -> bpy.types.UILayout | None:
     """Returns where another button goes, as `main_button` does."""
     return None if running.draw(layout, context, operator.bl_idname) else layout
+
+
+def note(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
+    """Draws a text of any length, in as many lines as the region needs."""
+    room = context.region.width / context.preferences.system.ui_scale - _AROUND_TEXT
+    column = layout.column(align=True)
+    for i, line in enumerate(textwrap.wrap(text, max(12, int(room / _LETTER_WIDTH)))):
+        column.label(text=line, icon="BLANK1" if i else icon)
 
 
 def subpanel(

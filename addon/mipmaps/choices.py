@@ -38,7 +38,7 @@ def _kernel_choice(name: str) -> Choice:
     label = re.sub(r"(?<=[a-z])(?=\d)", " ", kernel).replace("bspline", "B-spline").title()
     if name == kernel:
         return Choice(label, f"{label} over all texels, whether a face uses them or not")
-    return Choice(f"{label}, Covered Texels", f"{label} over the texels that a face touches")
+    return Choice(f"{label}, Covered", f"{label} over the texels that a face touches")
 
 
 _FITS = _PAM | _LEAST_SQUARES
@@ -371,8 +371,8 @@ class Settings:
     )
     supercompression: str = one_of(
         "none",
-        "Supercompression",
-        "Compression of KTX 2 files on top of the texture format",
+        "Compression",
+        "Supercompression: KTX 2 files are compressed once more, on top of the texture format",
         SUPERCOMPRESSIONS,
         metavar="SCHEME",
     )

@@ -128,9 +128,9 @@ class BakeProperties:
 
     def _draw_file(self, layout: bpy.types.UILayout) -> None:
         layout.prop(self, "file_format")
-        layout.prop(self, "filepath", placeholder="Beside the .blend file")
+        layout.prop(self, "filepath", placeholder="Beside .blend file")
         if self._shows_roughness() and self.roughness:
-            layout.prop(self, "roughness_filepath", placeholder="Beside the .blend file")
+            layout.prop(self, "roughness_filepath", placeholder="Beside .blend file")
         _draw_compression(self, layout)
 
 

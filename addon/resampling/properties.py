@@ -2,6 +2,8 @@
 
 """The settings as properties, of operators and of the scene."""
 
+from typing import Any
+
 import bpy
 from bpy.props import PointerProperty
 
@@ -108,6 +110,26 @@ class TableProperties:
         column.prop(self, "use_certify")
         layout.prop(self, "language")
         layout.prop(self, "filepath")
+
+    def draw_narrow(self, layout: bpy.types.UILayout) -> None:
+        """Draws the settings where labels do not fit beside the values."""
+        _draw_below_label(self, layout, "table")
+        column = layout.column()
+        column.active = not self.table
+        _draw_below_label(self, column, "filter")
+        parts = column.column(align=True)
+        for name in ("texels", "grid", "slices", "degree"):
+            parts.prop(self, name)
+        _draw_below_label(self, column, "ramp_weight")
+        column.prop(self, "use_certify")
+        _draw_below_label(self, layout, "language")
+        _draw_below_label(self, layout, "filepath")
+
+
+def _draw_below_label(settings: Any, layout: bpy.types.UILayout, name: str) -> None:
+    column = layout.column(align=True)
+    column.label(text=settings.bl_rna.properties[name].name)
+    column.prop(settings, name, text="")
 
 
 class PREFILTER_PG_resize(ResizeProperties, bpy.types.PropertyGroup):

@@ -95,7 +95,7 @@ class VoxelSettings:
     )
     thickness: float = number(
         1.5,
-        "Minimum Thickness",
+        "Min Thickness",
         "Sheets and parts too thin for any cell get this thickness, in cells. If 0, they are lost",
         low=0.0,
         high=100.0,

@@ -7,7 +7,7 @@ from bpy.props import PointerProperty
 
 from ..core import presets
 from ..core.properties import properties, values
-from ..core.sidebar import subpanel
+from ..core.sidebar import note, subpanel
 from .choices import BooleanSettings, VoxelizeSettings
 
 VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, ())])
@@ -91,7 +91,7 @@ class VoxelizeProperties(VoxelProperties):
         if volumes.is_available():
             layout.prop(self, "filepath")
         else:
-            layout.label(text=volumes.NEEDED, icon="ERROR")
+            note(layout, bpy.context, volumes.NEEDED, "ERROR")
 
 
 class BooleanProperties(VoxelProperties):

@@ -6,7 +6,7 @@ import bpy
 
 from ...core.menus import PREFILTER_MT_image
 from ...core.properties import copy
-from ...core.sidebar import ImagePanel, main_button
+from ...core.sidebar import ImagePanel, main_button, note
 from ..choices import ResampleSettings
 from ..operators.resample_image import PREFILTER_OT_resample_image
 
@@ -25,7 +25,7 @@ class PREFILTER_PT_resample(ImagePanel, bpy.types.Panel):
             _draw_resample(place, context)
         image = context.space_data.image
         if image is not None and all(image.size):
-            self.layout.label(**_what_comes_out(settings.to_settings(), *image.size))
+            note(self.layout, context, *_what_comes_out(settings.to_settings(), *image.size))
         settings.draw_in(self.layout)
 
 
@@ -56,12 +56,12 @@ def _draw_resample(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
     copy(context.scene.prefilter_resample, operator, ResampleSettings)
 
 
-def _what_comes_out(settings: ResampleSettings, width: int, height: int) -> dict[str, str]:
-    """Returns the size of the result, or what is wrong, as arguments of a label."""
+def _what_comes_out(settings: ResampleSettings, width: int, height: int) -> tuple[str, str]:
+    """Returns the size of the result, or what is wrong, and an icon."""
     from ..placement import placement
 
     try:
         placed = placement(settings, width, height)
     except ValueError as error:
-        return {"text": str(error), "icon": "ERROR"}
-    return {"text": f"{width} x {height} to {placed.width} x {placed.height}", "icon": "INFO"}
+        return str(error), "ERROR"
+    return f"{width} x {height} to {placed.width} x {placed.height}", "INFO"

@@ -23,8 +23,8 @@ class PREFILTER_PT_sampling_table(bpy.types.Panel):
         """Draws the panel."""
         place = main_button(self.layout, context, PREFILTER_OT_sampling_table)
         if place:
-            _draw_make(place, context)
-        context.scene.prefilter_sampling_table.draw_in(self.layout)
+            _draw_make(place, context, "Make Table")
+        context.scene.prefilter_sampling_table.draw_narrow(self.layout)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
@@ -46,9 +46,9 @@ def unregister() -> None:
 
 def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
-    _draw_make(menu.layout, context)
+    _draw_make(menu.layout, context, PREFILTER_OT_sampling_table.bl_label)
 
 
-def _draw_make(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    operator = layout.operator(PREFILTER_OT_sampling_table.bl_idname, icon="TEXTURE")
+def _draw_make(layout: bpy.types.UILayout, context: bpy.types.Context, text: str) -> None:
+    operator = layout.operator(PREFILTER_OT_sampling_table.bl_idname, text=text, icon="TEXTURE")
     copy(context.scene.prefilter_sampling_table, operator, TableSettings)

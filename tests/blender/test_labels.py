@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Labels and what menus show fit into a sidebar of the width that Blender gives it at first."""
+
+import dataclasses
+
+import blf
+import pytest
+
+SUBJECTS = ("mipmaps", "resampling", "scans", "shapes", "voxels")
+POINTS = 11
+"""The size of Blender's letters at a scale of 1."""
+LABEL_ROOM, CHOICE_ROOM = 90, 112
+"""Pixels beside and in a menu of a sidebar that is 266 wide, measured on photographs."""
+
+
+@pytest.fixture
+def options(addon):
+    """Returns all options that a user sees, with the names of their fields."""
+    declared, found = addon("core.options").declared, []
+    for subject in SUBJECTS:
+        choices = addon(f"{subject}.choices")
+        for settings in vars(choices).values():
+            if dataclasses.is_dataclass(settings) and any(
+                "option" in field.metadata for field in dataclasses.fields(settings)
+            ):
+                found += [(name, default, one) for name, default, one in declared(settings)]
+    assert len(found) > 100
+    return [one for one in found if one[2].label]
+
+
+def width(text):
+    blf.size(0, POINTS)
+    return blf.dimensions(0, text)[0]
+
+
+def test_labels_beside_values_fit(options):
+    # Switches have theirs where others have their values, and colors take a whole row.
+    beside = {
+        one.label
+        for _, default, one in options
+        if not isinstance(default, bool) and one.subtype != "COLOR"
+    }
+    assert not {label for label in beside if width(label) > LABEL_ROOM}
+
+
+def test_what_menus_show_fits(options):
+    labels = {choice.label for _, _, one in options for choice in one.choices.values()}
+    assert not {label for label in labels if width(label) > CHOICE_ROOM}
+
+
+def test_a_label_that_is_cut_is_known():
+    assert width("Minimum Thickness") > LABEL_ROOM
+    assert width("Lanczos 3, Covered Texels") > CHOICE_ROOM
