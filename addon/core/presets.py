@@ -206,6 +206,17 @@ def add_flag(parser: "argparse.ArgumentParser") -> None:
     )
 
 
+def values_named(options: "argparse.Namespace", kind: Kind) -> dict[str, Any]:
+    """Returns what the preset sets that `--preset` names; nothing without one."""
+    if not options.preset:
+        return {}
+    try:
+        return kind.values(options.preset)
+    except ValueError as error:
+        options.usage_error(f"--preset: {error}")
+        raise
+
+
 def settings_given(
     options: "argparse.Namespace", kind: Kind, settings: type[Settings], **more: Any
 ) -> Settings:
@@ -219,14 +230,9 @@ def settings_given(
     """
     from . import flags
 
-    if not options.preset:
-        return flags.settings_given(options, settings, **more)
-    try:
-        values = kind.values(options.preset)
-    except ValueError as error:
-        options.usage_error(f"--preset: {error}")
     names = {name for name, _, _ in declared(settings)}
-    found = {name: value for name, value in values.items() if name in names}
+    named = values_named(options, kind).items()
+    found = {name: value for name, value in named if name in names}
     return flags.settings_given(options, settings, **found | flags.given(options, settings) | more)
 
 

@@ -7,8 +7,12 @@ from typing import Any
 import bpy
 from bpy.props import PointerProperty
 
+from ..core import presets
 from ..core.properties import properties, values
 from .choices import CORNERS, ResampleSettings, ResizeSettings, TableSettings
+
+RESIZE = presets.Kind("resize", "prefilter_resize", [(ResizeSettings, ())])
+RESAMPLE = presets.Kind("resample", "prefilter_resample", [(ResampleSettings, ())])
 
 
 class ResizeProperties:
@@ -149,6 +153,9 @@ _GROUPS = {
     "prefilter_resample": PREFILTER_PG_resample,
     "prefilter_sampling_table": PREFILTER_PG_sampling_table,
 }
+_register_presets, _unregister_presets = bpy.utils.register_classes_factory(
+    (presets.panel(RESIZE), presets.panel(RESAMPLE))
+)
 
 
 def register() -> None:
@@ -156,10 +163,12 @@ def register() -> None:
     for name, group in _GROUPS.items():
         bpy.utils.register_class(group)
         setattr(bpy.types.Scene, name, PointerProperty(type=group))
+    _register_presets()
 
 
 def unregister() -> None:
     """Removes the settings from the scene."""
+    _unregister_presets()
     for name, group in reversed(_GROUPS.items()):
         delattr(bpy.types.Scene, name)
         bpy.utils.unregister_class(group)

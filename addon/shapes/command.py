@@ -3,7 +3,6 @@
 """The command `rasterize`."""
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +11,12 @@ import bpy
 from ..bridge.curves import is_curve
 from ..bridge.files import pictures, scenes, staging
 from ..bridge.uv_layouts import has_uv_map
-from ..core import command
-from ..core.flags import add_flags, given, settings_given, tables
+from ..core import command, presets
+from ..core.flags import add_flags, given, tables
 from ..core.wording import either
 from .choices import RasterizeSettings
 from .memory import Request
+from .properties import RASTERIZE
 from .rasterization import Rasterization
 
 _HELP = "make an image of curves and texts, of an SVG file, or of a UV map"
@@ -52,6 +52,7 @@ def add(commands: Any) -> None:
         "curves and texts)",
     )
     parser.add_argument("--uv", action="store_true", help="make a mask of the UV map of a mesh")
+    presets.add_flag(parser)
     add_flags(parser, RasterizeSettings)
     parser.set_defaults(execute=_rasterize, usage_error=parser.error)
 
@@ -89,11 +90,13 @@ def _is_wanted(is_kind: Any) -> Any:
 def _settings(options: argparse.Namespace) -> RasterizeSettings:
     """Returns the settings that were given, with what follows from them."""
     found = given(options, RasterizeSettings)
-    settings = settings_given(options, RasterizeSettings)
-    if "density" in found:
-        if "width" in found or "height" in found:
+    more = {}
+    if "width" in found or "height" in found:
+        if "density" in found:
             options.usage_error("--density: not allowed with --width and --height")
-        settings = replace(settings, resolution="density")
+        more["resolution"] = "size"
+    if "density" in found:
+        more["resolution"] = "density"
     if "background_color" in found:
-        settings = replace(settings, background="color")
-    return settings
+        more["background"] = "color"
+    return presets.settings_given(options, RASTERIZE, RasterizeSettings, **more)

@@ -5,12 +5,14 @@
 import bpy
 
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
+from ..core.presets import PresetsPanel
 from ..core.properties import copy
 from ..core.sidebar import ImagePanel, SidebarPanel, main_button
 from .choices import RasterizeSettings
 from .operators.rasterize import PREFILTER_OT_rasterize
 from .operators.rasterize_svg import PREFILTER_OT_rasterize_svg
 from .operators.update_drawn import PREFILTER_OT_update_drawn
+from .properties import RASTERIZE
 
 
 class _CurvesPanel(SidebarPanel):
@@ -22,10 +24,11 @@ class _CurvesPanel(SidebarPanel):
         return is_curve(obj)
 
 
-class PREFILTER_PT_rasterize(_CurvesPanel, bpy.types.Panel):
+class PREFILTER_PT_rasterize(_CurvesPanel, PresetsPanel, bpy.types.Panel):
     """Button and settings for curves and texts."""
 
     bl_label = "Rasterize"
+    presets = RASTERIZE
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
@@ -62,10 +65,11 @@ class PREFILTER_PT_drawn(ImagePanel, bpy.types.Panel):
         drawn.draw_in(layout, drawn.source)
 
 
-class PREFILTER_PT_shapes(ImagePanel, bpy.types.Panel):
+class PREFILTER_PT_shapes(ImagePanel, PresetsPanel, bpy.types.Panel):
     """SVG files, and the UV map of the active mesh as a mask."""
 
     bl_label = "Rasterize"
+    presets = RASTERIZE
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

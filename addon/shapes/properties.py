@@ -5,9 +5,14 @@
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, PointerProperty
 
+from ..core import presets
 from ..core.properties import properties, values
 from ..core.sidebar import subpanel
 from .choices import RasterizeSettings
+
+RASTERIZE = presets.Kind(
+    "rasterize", "prefilter_rasterize", [(RasterizeSettings, ("source", "tile"))]
+)
 
 
 class RasterizeProperties:
@@ -90,7 +95,12 @@ class PREFILTER_PG_drawn(RasterizeProperties, bpy.types.PropertyGroup):
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (PREFILTER_PG_rasterize, PREFILTER_PG_drawn_object, PREFILTER_PG_drawn)
+    (
+        PREFILTER_PG_rasterize,
+        PREFILTER_PG_drawn_object,
+        PREFILTER_PG_drawn,
+        presets.panel(RASTERIZE),
+    )
 )
 
 

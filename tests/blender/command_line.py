@@ -27,7 +27,7 @@ IMPORTERS = {
     ".fbx": "import_scene.fbx",
 }
 LOGGERS = ("glTFImporter", "glTFImporter_errors")
-"""Where an import that fails leaves handlers, which go on to write to the files that it wrote to."""
+"""Where an import that fails leaves handlers, which go on to write to where it wrote."""
 
 
 def run(*arguments: object, cwd: Path | None = None) -> Result:

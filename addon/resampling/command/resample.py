@@ -9,12 +9,13 @@ import numpy as np
 
 from ...bridge import images
 from ...bridge.files import pictures, staging
-from ...core import command
-from ...core.flags import add_flags, given, settings_given, tables
+from ...core import command, presets
+from ...core.flags import add_flags, given, tables
 from ...core.options import check
 from ...core.wording import either
 from ..choices import CORNERS, ResampleSettings
 from ..new_picture import read
+from ..properties import RESAMPLE
 from ..resampling import Resampling
 
 _HELP = "scale, rotate, or warp a picture between corners"
@@ -72,6 +73,7 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--scale", type=float, metavar="FACTOR", help="the factor along both x and y"
     )
+    presets.add_flag(parser)
     add_flags(parser, ResampleSettings, without_default=_WITHOUT_DEFAULT)
     parser.set_defaults(execute=_resample, usage_error=parser.error)
 
@@ -108,12 +110,14 @@ def _settings(options: argparse.Namespace) -> ResampleSettings:
         )
     if "max_probes" in found and found.get("filter") != "gaussian":
         options.usage_error("--max-probes: not allowed without --filter gaussian")
+    if moves:
+        found["warp"] = "affine"
     if options.scale is not None:
         found = {"scale_x": options.scale, "scale_y": options.scale, **found}
     for name in warps:
         corners = np.reshape(getattr(options, name), (4, 2)).tolist()
         found |= {"warp": name, **dict(zip(CORNERS, map(tuple, corners), strict=True))}
-    settings = settings_given(options, ResampleSettings, **found)
+    settings = presets.settings_given(options, RESAMPLE, ResampleSettings, **found)
     try:
         check(settings)
     except ValueError as error:

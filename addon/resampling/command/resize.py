@@ -7,11 +7,12 @@ from typing import Any
 
 from ...bridge import images
 from ...bridge.files import pictures, staging
-from ...core import command
-from ...core.flags import add_flags, given, settings_given, tables
+from ...core import command, presets
+from ...core.flags import add_flags, given, tables
 from ...core.wording import either
 from ..choices import ResizeSettings
 from ..new_picture import read
+from ..properties import RESIZE
 from ..resizing import Resizing
 
 _HELP = "make a picture larger or smaller"
@@ -39,6 +40,7 @@ def add(commands: Any) -> None:
         action="store_true",
         help="filter values as they are stored, each channel by itself: roughness, masks, normals",
     )
+    presets.add_flag(parser)
     add_flags(parser, ResizeSettings, without_default=_SIZES)
     parser.set_defaults(execute=_resize, usage_error=parser.error)
 
@@ -47,7 +49,7 @@ def _resize(options: argparse.Namespace) -> None:
     command.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
     found = given(options, ResizeSettings)
     sizes = [name for name in _SIZES if name in found]
-    if not sizes:
+    if not sizes and "size" not in presets.values_named(options, RESIZE):
         options.usage_error("no size: give --percent, --width or --height")
     if "percent" in sizes and len(sizes) > 1:
         options.usage_error("--percent: not allowed with --width and --height")
@@ -57,11 +59,10 @@ def _resize(options: argparse.Namespace) -> None:
         height, width = picture.shape[:2]
         found["width"] = max(1, round(width * found["height"] / height))
     more = {"width": found["width"]} if "width" in found else {}
-    settings = settings_given(
-        options,
-        ResizeSettings,
-        **more,
-        size="percent" if sizes == ["percent"] else "pixels",
-        use_aspect=sizes == ["width"],
-    )
+    if sizes:
+        more |= {
+            "size": "percent" if sizes == ["percent"] else "pixels",
+            "use_aspect": sizes == ["width"],
+        }
+    settings = presets.settings_given(options, RESIZE, ResizeSettings, **more)
     command.tell(command.done(Resizing(picture, settings, target=target)))

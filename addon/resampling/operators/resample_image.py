@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..properties import ResampleProperties
+from ...core.presets import PresetsOperator
+from ..properties import RESAMPLE, ResampleProperties
 from .image_operator import NewImageOperator
 
 if TYPE_CHECKING:
@@ -14,7 +15,9 @@ if TYPE_CHECKING:
     from ..resampling import Resampling
 
 
-class PREFILTER_OT_resample_image(ResampleProperties, NewImageOperator, bpy.types.Operator):
+class PREFILTER_OT_resample_image(
+    ResampleProperties, PresetsOperator, NewImageOperator, bpy.types.Operator
+):
     """Resamples an image."""
 
     bl_idname = "prefilter.resample_image"
@@ -24,6 +27,7 @@ class PREFILTER_OT_resample_image(ResampleProperties, NewImageOperator, bpy.type
         "perspective, filtered in linear light, with colors weighted by alpha"
     )
     bl_options = {"REGISTER", "UNDO"}
+    presets = RESAMPLE
     doing = "Resampling"
 
     def work_on(self, picture: "Picture") -> "Resampling":

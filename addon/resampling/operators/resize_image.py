@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..properties import ResizeProperties
+from ...core.presets import PresetsOperator
+from ..properties import RESIZE, ResizeProperties
 from .image_operator import NewImageOperator
 
 if TYPE_CHECKING:
@@ -14,7 +15,9 @@ if TYPE_CHECKING:
     from ..resizing import Resizing
 
 
-class PREFILTER_OT_resize_image(ResizeProperties, NewImageOperator, bpy.types.Operator):
+class PREFILTER_OT_resize_image(
+    ResizeProperties, PresetsOperator, NewImageOperator, bpy.types.Operator
+):
     """Resizes an image."""
 
     bl_idname = "prefilter.resize_image"
@@ -24,6 +27,7 @@ class PREFILTER_OT_resize_image(ResizeProperties, NewImageOperator, bpy.types.Op
         "weighted by alpha"
     )
     bl_options = {"REGISTER", "UNDO"}
+    presets = RESIZE
     doing = "Resizing"
 
     def work_on(self, picture: "Picture") -> "Resizing":

@@ -5,16 +5,19 @@
 import bpy
 
 from ...core.menus import PREFILTER_MT_image
+from ...core.presets import PresetsPanel
 from ...core.properties import copy
 from ...core.sidebar import ImagePanel, main_button, note
 from ..choices import ResampleSettings
 from ..operators.resample_image import PREFILTER_OT_resample_image
+from ..properties import RESAMPLE
 
 
-class PREFILTER_PT_resample(ImagePanel, bpy.types.Panel):
+class PREFILTER_PT_resample(ImagePanel, PresetsPanel, bpy.types.Panel):
     """Button and settings."""
 
     bl_label = "Resample"
+    presets = RESAMPLE
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -5,16 +5,19 @@
 import bpy
 
 from ...core.menus import PREFILTER_MT_image
+from ...core.presets import PresetsPanel
 from ...core.properties import copy
 from ...core.sidebar import ImagePanel, main_button
 from ..choices import ResizeSettings
 from ..operators.resize_image import PREFILTER_OT_resize_image
+from ..properties import RESIZE
 
 
-class PREFILTER_PT_resize(ImagePanel, bpy.types.Panel):
+class PREFILTER_PT_resize(ImagePanel, PresetsPanel, bpy.types.Panel):
     """Button and settings."""
 
     bl_label = "Resize"
+    presets = RESIZE
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

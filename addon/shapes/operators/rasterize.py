@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..properties import RasterizeProperties
+from ...core.presets import PresetsOperator
+from ..properties import RASTERIZE, RasterizeProperties
 from .shape_operator import ShapeOperator
 
 if TYPE_CHECKING:
@@ -19,7 +20,9 @@ _NEEDED = {
 }
 
 
-class PREFILTER_OT_rasterize(RasterizeProperties, ShapeOperator, bpy.types.Operator):
+class PREFILTER_OT_rasterize(
+    RasterizeProperties, PresetsOperator, ShapeOperator, bpy.types.Operator
+):
     """Rasterizes the selected curves and texts, or the UV map of the active mesh."""
 
     bl_idname = "prefilter.rasterize"
@@ -29,6 +32,7 @@ class PREFILTER_OT_rasterize(RasterizeProperties, ShapeOperator, bpy.types.Opera
         "what the faces of the active mesh cover in its UV map"
     )
     bl_options = {"REGISTER", "UNDO"}
+    presets = RASTERIZE
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

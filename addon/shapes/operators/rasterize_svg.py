@@ -7,20 +7,24 @@ from typing import TYPE_CHECKING
 import bpy
 from bpy.props import StringProperty
 
-from ..properties import RasterizeProperties
+from ...core.presets import PresetsOperator
+from ..properties import RASTERIZE, RasterizeProperties
 from .shape_operator import ShapeOperator
 
 if TYPE_CHECKING:
     from ..rasterization import Rasterization
 
 
-class PREFILTER_OT_rasterize_svg(RasterizeProperties, ShapeOperator, bpy.types.Operator):
+class PREFILTER_OT_rasterize_svg(
+    RasterizeProperties, PresetsOperator, ShapeOperator, bpy.types.Operator
+):
     """Lets a user choose an SVG file, and rasterizes it."""
 
     bl_idname = "prefilter.rasterize_svg"
     bl_label = "Rasterize SVG"
     bl_description = "Make a crisp image of an SVG file, of any size"
     bl_options = {"REGISTER", "UNDO"}
+    presets = RASTERIZE
     source_drawn = "svg"
 
     filter_glob: StringProperty(default="*.svg", options={"HIDDEN"})

@@ -22,6 +22,9 @@ KINDS = {
     "voxelize": "voxels.properties.VOXELIZE",
     "boolean": "voxels.properties.BOOLEAN",
     "reconstruct": "scans.properties.RECONSTRUCT",
+    "rasterize": "shapes.properties.RASTERIZE",
+    "resize": "resampling.properties.RESIZE",
+    "resample": "resampling.properties.RESAMPLE",
 }
 FOLDER = Path(__file__).parents[3] / "addon/presets/prefilter"
 ZSTANDARD, UASTC = (
@@ -245,6 +248,64 @@ def test_what_does_not_go_with_the_file_is_left_out(model, tmp_path):
     more = ("--image", "color.png", "--output", target, "--preset", "Game asset")
     assert run("bake", model, *more).returncode == 0
     assert target.exists()
+
+
+def pixels(path):
+    return oiio.ImageBuf(str(path)).get_pixels("uint8")
+
+
+def test_tiled_texture(model, tmp_path):
+    """Edges are filtered with what lies beyond them, and the size is the caller's."""
+    picture = model.parent / "color.png"
+    shrink = ["resize", picture, tmp_path / "a.png"]
+    assert_fails(run(*shrink, "--preset", "Tiled texture"), "no size", status=2)
+    assert run(*shrink, "--percent", "50", "--preset", "Tiled texture").returncode == 0
+    plain = ["resize", picture, tmp_path / "b.png", "--percent", "50", "--wrap"]
+    assert run(*plain, "repeat").returncode == 0
+    np.testing.assert_array_equal(pixels(tmp_path / "a.png"), pixels(tmp_path / "b.png"))
+    assert run(*plain, "clamp").returncode == 0
+    assert np.any(pixels(tmp_path / "a.png") != pixels(tmp_path / "b.png"))
+
+
+def test_sizes_of_a_preset(kind, model, tmp_path, monkeypatch):
+    """A size that is given stands for one of another kind that the preset sets."""
+    paths = bpy.utils.preset_paths
+    monkeypatch.setattr(bpy.utils, "preset_paths", lambda sub: [*paths(sub), str(tmp_path)])
+    (tmp_path / "Small.py").write_text("settings.size = 'pixels'\nsettings.width = 6\n")
+    picture, target = model.parent / "color.png", tmp_path / "out.png"
+    for more, size in (([], 6), (["--percent", "25"], 4), (["--height", "5"], 5)):
+        assert run("resize", picture, target, "--preset", "small", *more).returncode == 0
+        assert pixels(target).shape[:2] == (size, size)
+    (tmp_path / "Small.py").write_text("settings.warp = 'corners'\nsettings.size = 'image'\n")
+    more = ("--rotate", "90", "--preset", "Small")
+    assert run("resample", picture, target, *more).returncode == 0
+    np.testing.assert_array_equal(pixels(target)[..., :3], np.rot90(pixels(picture))[..., :3])
+
+
+def test_mask(tmp_path):
+    """White on black without alpha; a size goes before a density."""
+    drawing, target = tmp_path / "drawing.svg", tmp_path / "out.png"
+    drawing.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="4" height="4"><path d="M0 0H4V4H0Z" '
+        'fill="red"/></svg>'
+    )
+    size = ("--width", "8", "--height", "8", "--margin", "2")
+    result = run("rasterize", drawing, target, *size, "--preset", "Mask")
+    assert result.returncode == 0, result.stderr
+    found = pixels(target)
+    assert found.shape[:2] == (8, 8)
+    assert (found[2:6, 2:6, 0] == 255).all()
+    assert (found[0] == found[0, 0]).all()
+    assert found[0, 0, 0] == 0
+
+
+def test_operators_of_images_take_presets():
+    image = bpy.data.images.new("Noise", 8, 8)
+    bpy.ops.prefilter.resize_image(image="Noise", preset="tiled texture")
+    bpy.ops.prefilter.resample_image(image="Noise", preset="tiled texture", rotation=0.5)
+    assert len(bpy.data.images) == 3
+    with pytest.raises(RuntimeError, match="found no preset named 'Fast'; there are 'Tiled"):
+        bpy.ops.prefilter.resize_image(image=image.name, preset="Fast")
 
 
 def test_unknown_names(model, tmp_path):
