@@ -41,7 +41,11 @@ def command_table(name: str) -> str:
     rows = ["| Argument | Meaning |", "|---|---|"]
     for action in commands.choices[name]._actions:
         if action.dest != "help":
-            shown = " ".join([*action.option_strings[:1], action.metavar or ""]).strip()
+            # Of a switch, the flag for each direction.
+            names = action.option_strings if action.nargs == 0 else action.option_strings[:1]
+            shown = "`, `".join(names) or action.metavar
+            if names and action.metavar:
+                shown += f" {action.metavar}"
             rows.append(f"| `{shown}` | {(action.help or '').replace('%%', '%')} |")
     return "\n".join(rows)
 

@@ -37,7 +37,8 @@ def add_flags(
         description = found.flag_description or found.description
         text = description[:1].lower() + description[1:]
         if isinstance(default, bool):
-            more["action"] = "store_false" if default else "store_true"
+            more["action"] = argparse.BooleanOptionalAction
+            text += f" (default: {'on' if default else 'off'})"
         else:
             more |= {"type": partial(_read, default, found), "metavar": found.metavar}
             if isinstance(default, tuple) and found.choices:
@@ -86,8 +87,6 @@ def _flags(settings: type, names: tuple[str, ...]) -> Iterator[tuple[str, Any, s
         if found.flag == "" or (names and name not in names):
             continue
         flag = name.removeprefix("use_").replace("_", "-")
-        if default is True:
-            flag = f"no-{flag}"
         yield name, default, found.flag or f"--{flag}", found
 
 

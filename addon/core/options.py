@@ -125,7 +125,7 @@ def numbers(default: tuple[float, ...], label: str, description: str, **more: An
 
 
 def switch(default: bool, label: str, description: str, **more: Any) -> Any:
-    """Declares an option that is on or off; the flag turns it into what it is not by default."""
+    """Declares an option that is on or off; commands have --NAME and --no-NAME."""
     return _declared(default, Option(label, description, **more))
 
 

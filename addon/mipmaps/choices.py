@@ -327,7 +327,6 @@ class Settings:
         "Subdivision Limit",
         "Treat objects whose last modifier is a Catmull-Clark subdivision as the smooth limit of "
         "infinite subdivision",
-        flag_description="Use Catmull-Clark modifiers as they are, not their limit surface",
     )
     use_frames: bool = switch(
         False,

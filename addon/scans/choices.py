@@ -69,13 +69,11 @@ class ScanSettings:
         True,
         "Smoothing",
         "Smooth what is inside and outside before the surface is taken: fewer bumps from noise",
-        flag_description="Do not smooth what is inside and outside: more detail, and more noise",
     )
     use_fit: bool = switch(
         True,
         "Fit to Points",
         "Move the vertices onto planes through the nearest points: details finer than a cell",
-        flag_description="Do not move the vertices onto planes through the nearest points",
     )
     trim: float = number(
         0.0,
@@ -110,7 +108,6 @@ class ScanSettings:
         True,
         "Smooth Shading",
         "Shade the result smooth",
-        flag_description="Shade the result flat",
     )
     memory_limit: int = number(
         0,

@@ -158,7 +158,6 @@ class RasterizeSettings:
         "Bleed",
         "Let colors flow outward where alpha is 0, so that lookups between pixels do not darken "
         "edges. For straight alpha",
-        flag_description="Leave pixels black where alpha is 0",
     )
     image_name: str = text(
         "",

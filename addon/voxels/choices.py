@@ -116,38 +116,32 @@ class VoxelSettings:
         True,
         "Close Holes",
         "Close the holes of the mesh first. If off, the surface ends in steps there",
-        flag_description="Leave holes open; the surface ends in steps there",
     )
     holes: str = one_of("smooth", "Holes", "What holes are closed with", HOLES, metavar="NAME")
     use_cleanup: bool = switch(
         True,
         "Clean Up",
         "Remove narrow triangles, which shade badly: about a quarter fewer triangles",
-        flag_description="Keep all triangles, including narrow ones",
     )
     use_materials: bool = switch(
         True,
         "Materials",
         "Triangles get the material of the face that they come from",
-        flag_description="Do not keep materials",
     )
     use_uv_maps: bool = switch(
         True,
         "UV Maps",
         "Corners get UVs of the surface. No triangle crosses a seam",
-        flag_description="Do not keep UV maps",
     )
     use_colors: bool = switch(
         True,
         "Color Attributes",
         "Keep color attributes, up to the edges where objects or charts meet",
-        flag_description="Do not keep color attributes",
     )
     use_attributes: bool = switch(
         True,
         "Other Attributes",
         "Keep vertex groups, custom normals and other attributes of the surface",
-        flag_description="Do not keep vertex groups, custom normals and other attributes",
     )
     use_smooth: bool = switch(True, "Smooth Shading", "Shade the result smooth", flag="")
     smooth_angle: float = number(

@@ -26,7 +26,7 @@ def settings(addon):
         bend: float = options.number(
             math.radians(30), "Bend", "How far", low=0.0, high=math.pi, subtype="ANGLE"
         )
-        use_it: bool = options.switch(True, "It", "Use it", flag_description="Leave it")
+        use_it: bool = options.switch(True, "It", "Use it")
         use_more: bool = options.switch(False, "More", "Use more")
         name: str = options.text("", "Name", "What it is called", flag="--called", metavar="NAME")
         hidden: int = options.number(7, "Hidden", "No flag", flag="")
@@ -73,6 +73,8 @@ def test_flags(read, settings):
         name="x",
         threads=2,
     )
+    assert read("--no-it", "--it").use_it
+    assert not read("--more", "--no-more").use_more
     assert read("--share", "1").share == 1.0
     half = ((0x80 / 255 + 0.055) / 1.055) ** 2.4
     assert read("--ink", "#0080ff").ink == pytest.approx((0, half, 1, 1))
@@ -137,7 +139,8 @@ def test_help(addon, settings):
     assert "--count N how many (1 to 12; default: 3)" in text
     assert "100% at most (above 0, up to 1; default: 0.5)" in text
     assert "how far (0 to 180; default: 30)" in text
-    assert "--no-it leave it" in text
+    assert "--it, --no-it use it (default: on)" in text
+    assert "--more, --no-more use more (default: off)" in text
     assert "--ink COLOR its color --place N N where (-9 to 9; default: 0 1) --threads" in text
     assert flags.tables(settings, "kind") == [
         "--kind:\n  a                 Round\n  b-c               Long"

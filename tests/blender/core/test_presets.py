@@ -242,6 +242,17 @@ def test_flags_go_first(model, tmp_path):
     assert read_ktx2(tmp_path / "out/color.ktx2").format == "BC3_SRGB"
 
 
+def test_flags_turn_on_what_a_preset_turns_off(addon):
+    """The preset Preview leaves UV maps out; what is neither named nor set is as declared."""
+    presets, voxels = addon("core.presets"), addon("voxels.choices")
+    parser = addon("commands").Commands(["voxels"]).parser()
+    kind = addon("voxels.properties").VOXELIZE
+    for flags, expected in (([], False), (["--uv-maps"], True), (["--no-uv-maps"], False)):
+        options = parser.parse_args(["voxelize", "a.ply", "b.ply", "--preset", "Preview", *flags])
+        found = presets.settings_given(options, kind, voxels.VoxelizeSettings)
+        assert (found.use_uv_maps, found.use_colors, found.depth) == (expected, False, 6)
+
+
 def test_what_does_not_go_with_the_file_is_left_out(model, tmp_path):
     """The preset is for DDS; what the user asks for is a TIFF file."""
     target = tmp_path / "color.tif"
