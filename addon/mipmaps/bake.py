@@ -103,6 +103,11 @@ class Bake:
         return self._wrap
 
     @property
+    def threads(self) -> int:
+        """How many threads to use; 0 for all."""
+        return self._settings.threads
+
+    @property
     def staged_files(self) -> Sequence[StagedFile]:
         """The finished files, beside their targets."""
         return self._staged

@@ -68,7 +68,13 @@ def _fill(source: "Bake", progress: Progress) -> "FloatArray":
 
     linear = source.linear(progress)
     with source.naming_objects():
-        filled = prefilter.fill_unused(linear, source.surfaces, wrap=source.wrap, progress=progress)
+        filled = prefilter.fill_unused(
+            linear,
+            source.surfaces,
+            wrap=source.wrap,
+            progress=progress,
+            threads=source.threads,
+        )
     stored = images.encoded(source.picture, filled)
     kept = np.all((filled == linear) | (np.isnan(filled) & np.isnan(linear)), axis=2)
     return np.where(kept[..., None], source.picture.stored, stored)

@@ -83,6 +83,11 @@ def _weigh(source: "Bake", progress: Progress) -> "weights.Weights":
     height, width = source.picture.shape[:2]
     with source.naming_objects():
         found = prefilter.texel_weights(
-            source.surfaces, width, height, wrap=source.wrap, progress=progress
+            source.surfaces,
+            width,
+            height,
+            wrap=source.wrap,
+            progress=progress,
+            threads=source.threads,
         )
     return weights.Weights(weights.picture(found), float((found > 0).mean()))

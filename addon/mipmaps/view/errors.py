@@ -105,6 +105,7 @@ def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCu
                     wrap=source.wrap,
                     reader=source.reader,
                     progress=share(part, _FILTERING, 1.0),
+                    threads=source.threads,
                 )
             )
     return ErrorCurves(source.image_name, tuple(filters), mip_values, np.array(errors))

@@ -6,6 +6,7 @@ import bpy
 
 from ...bridge import editors
 from ...core.operator import BackgroundOperator, Compute
+from ...core.preferences import preference
 from ...core.properties import single_property
 from ..choices import PlaneSettings
 from ..view import kept
@@ -33,7 +34,8 @@ class PREFILTER_OT_preview_plane(ImageOperator, BackgroundOperator, bpy.types.Op
         image = self.chosen_image(context)
         self._name = image.name
         picture, uid, filter_name = read(image), image.session_uid, self.filter
-        return lambda progress: kept.compute(picture, uid, filter_name, progress)
+        threads = preference("threads", 0)
+        return lambda progress: kept.compute(picture, uid, filter_name, progress, threads)
 
     def finish(self, context: bpy.types.Context, result: kept.Plane) -> str:
         """Has the editors draw the plane."""

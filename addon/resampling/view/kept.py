@@ -67,7 +67,9 @@ keep, find, drop = _planes.keep, _planes.find, _planes.drop
 register, unregister = _planes.register, _planes.unregister
 
 
-def compute(picture: "Picture", image_uid: int, filter: str, progress: Progress) -> Plane:
+def compute(
+    picture: "Picture", image_uid: int, filter: str, progress: Progress, threads: int = 0
+) -> Plane:
     """Computes the levels of an image that tiles the plane.
 
     Args:
@@ -75,6 +77,7 @@ def compute(picture: "Picture", image_uid: int, filter: str, progress: Progress)
         image_uid: The session_uid of the image.
         filter: A key of `choices.TABLE_FILTERS`.
         progress: Called with the fraction done.
+        threads: How many threads to use; 0 for all.
 
     Raises:
         prefilter.Cancelled: `progress` returned False.
@@ -97,6 +100,7 @@ def compute(picture: "Picture", image_uid: int, filter: str, progress: Progress)
             wrap="repeat",
             premultiplied=True,
             progress=share(progress, _DECODED, _RESIZED),
+            threads=threads,
         )
     levels = prefilter.sampling_levels(
         linear,
@@ -104,6 +108,7 @@ def compute(picture: "Picture", image_uid: int, filter: str, progress: Progress)
         wrap="repeat",
         premultiplied=True,
         progress=share(progress, _RESIZED, _FILTERED),
+        threads=threads,
     )
     atlas = packed(levels)
     go_on(progress, 1.0)

@@ -76,6 +76,23 @@ def test_operators_follow(preferences, told):
     assert [call["memory_limit"] for call in calls] == [200 * MIB, None]
 
 
+def test_looks_at_images_follow(preferences, told):
+    """Whatever measures, shows or fills texels has the threads of the preferences."""
+    image = scenes.image("Paint", scenes.noise(16, 16))
+    scenes.textured_quad(image)
+    names = ("mipmap_error", "texel_weights", "fill_unused", "sampling_levels", "mipmaps")
+    calls = {name: told(name) for name in names}
+    preferences.threads = 1
+    operators = bpy.ops.prefilter
+    operators.plot_error(image="Paint", filters={"box"})
+    operators.show_weights(image="Paint")
+    operators.fill_unused(image="Paint")
+    operators.preview_plane(image="Paint")
+    for name in names:
+        assert calls[name], name
+        assert all(call["threads"] == 1 for call in calls[name]), name
+
+
 def test_commands_follow(preferences, told, tmp_path):
     calls = told("reconstruct")
     preferences.threads, preferences.memory_limit = 1, 1
