@@ -34,7 +34,7 @@ def _collector_paused() -> Iterator[None]:
 
 
 with _collector_paused():
-    from . import preferences
+    from . import manual, preferences
     from .commands import Commands
     from .core import menus, presets, running
     from .core.registration import registration
@@ -42,5 +42,5 @@ with _collector_paused():
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 
 register, unregister = registration(
-    preferences, presets, running, menus, *_packages, Commands(SUBJECTS)
+    preferences, presets, running, menus, *_packages, Commands(SUBJECTS), manual
 )

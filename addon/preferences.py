@@ -3,11 +3,10 @@
 """The preferences of the add-on: what its operators and commands do where a user says nothing."""
 
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 
 import bpy
 
+from . import manual
 from .core.choices import Choice
 from .core.options import number, one_of
 from .core.preferences import PACKAGE
@@ -90,16 +89,7 @@ class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
         layout.prop(self, "file_format")
         row = layout.row()
         row.alignment = "RIGHT"
-        row.operator("wm.url_open", text="Manual", icon="HELP").url = website()
-
-
-@cache
-def website() -> str:
-    """Returns the address of the manual."""
-    import tomllib
-
-    manifest = Path(__file__).with_name("blender_manifest.toml").read_text(encoding="utf-8")
-    return tomllib.loads(manifest)["website"]
+        row.operator("wm.url_open", text="Manual", icon="HELP").url = manual.page()
 
 
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_AP_preferences,))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from packager import blender as blenders
+from packager import manual
 from packager.licenses import license_texts
 from packager.platforms import PLATFORMS, here
 from packager.project import (
@@ -57,7 +58,7 @@ def fingerprint(tags: Sequence[str], parts: Parts) -> str:
     """Returns a hash of everything that goes into the extension of this machine."""
     written = ("blender_manifest.toml", "pyproject.toml", "README.md", "docs/python.md")
     files = [SOURCE / name for name in written]
-    files += [*license_texts(parts.linked, here()).values(), *parts.bundled]
+    files += [*license_texts(parts.linked, here()).values(), *parts.bundled, *manual.sources()]
     for folder in (Path(__file__).parent, SOURCE / "addon", *map(built_package, tags)):
         files += files_in(folder)
     whole = hashlib.sha256()
@@ -81,6 +82,7 @@ def stage_extension(
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(SOURCE / "addon", folder, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(SOURCE / "LICENSE", folder)
+    manual.write(folder / "manual")
     (folder / "wheels").mkdir()
     listed = [Path(shutil.copy(wheel, folder / "wheels")) for wheel in (*wheels, *parts.bundled)]
     manifest = (SOURCE / "blender_manifest.toml").read_text()

@@ -2,6 +2,10 @@
 
 """What the preferences of the add-on say holds until a user says otherwise."""
 
+from pathlib import Path
+from urllib.parse import urlparse
+from urllib.request import url2pathname
+
 import bodies
 import bpy
 import clouds
@@ -152,5 +156,35 @@ def test_what_needs_more_memory_is_refused(preferences):
 
 
 def test_manual(addon):
-    """The button leads where the manifest does."""
-    assert addon("preferences").website().startswith("https://")
+    """The button opens the manual that comes along."""
+    first = local_file(addon("manual").page())
+    assert first.name == "README.html"
+    assert "Bake mipmaps in Blender" in first.read_text(encoding="utf-8")
+
+
+def test_without_a_manual(addon, monkeypatch, tmp_path):
+    monkeypatch.setattr(addon("manual"), "FOLDER", tmp_path / "none")
+    assert addon("manual").page().startswith("https://")
+    assert addon("manual").pages() == ("", ())
+
+
+def test_context_menus_open_the_page():
+    """Of every operator and every setting of a panel, as of Blender's own."""
+    find = bpy.types.WM_OT_doc_view_manual._lookup_rna_url
+    for name in dir(bpy.ops.prefilter):
+        assert local_file(find(f"bpy.ops.prefilter.{name}", verbose=False)).exists(), name
+    groups = [name for name in dir(bpy.types.Scene) if name.startswith("prefilter_")]
+    assert len(groups) > 5
+    for name in groups:
+        group = type(getattr(bpy.context.scene, name))
+        for key in group.__annotations__:
+            found = find(f"bpy.types.{group.__name__}.{key}", verbose=False)
+            assert local_file(found).exists(), key
+    assert "shapes.html" in find("bpy.ops.prefilter.rasterize", verbose=False)
+    assert "docs.blender.org" in find("bpy.ops.object.voxel_remesh", verbose=False)
+
+
+def local_file(address):
+    parts = urlparse(address)
+    assert parts.scheme == "file"
+    return Path(url2pathname(parts.path))
