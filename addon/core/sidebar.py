@@ -2,6 +2,7 @@
 
 """The add-on's tab in the sidebars of the 3D view and the Image editor, and what panels share."""
 
+import math
 import textwrap
 
 import bpy
@@ -11,6 +12,7 @@ from . import running
 _LETTER_WIDTH = 6.5
 _AROUND_TEXT = 76
 """What margins, tabs and an icon take of a sidebar's width; both at a scale of 1."""
+_FEWEST_LETTERS = 12
 
 
 class SidebarPanel:
@@ -62,9 +64,11 @@ def button(
 
 def note(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:
     """Draws a text of any length, in as many lines as the region needs."""
-    room = context.region.width / context.preferences.system.ui_scale - _AROUND_TEXT
+    scale = context.preferences.system.ui_scale  # 0 without a window.
+    room = context.region.width / scale - _AROUND_TEXT if scale else math.inf
+    letters = min(len(text), max(_FEWEST_LETTERS, room / _LETTER_WIDTH))
     column = layout.column(align=True)
-    for i, line in enumerate(textwrap.wrap(text, max(12, int(room / _LETTER_WIDTH)))):
+    for i, line in enumerate(textwrap.wrap(text, int(letters))):
         column.label(text=line, icon="BLANK1" if i else icon)
 
 
