@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from ._border.input import open_file
 from .point_reader import POINTS_AT_ONCE, PointChunk, damage_of, find_module
 
 _COLORS_LOOKED_AT = 1_000_000
@@ -101,7 +102,7 @@ def _check_header(path: str) -> None:
 
     See the public header block in the specification of LAS 1.4.
     """
-    with open(path, "rb") as file:
+    with open_file(path) as file:
         size = file.seek(0, os.SEEK_END)
         file.seek(0)
         header = file.read(255)

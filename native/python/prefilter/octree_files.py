@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._border.input import open_file
 from ._border.output import as_path, as_target, replace_file
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def write_octree(path: str | os.PathLike[str], octree: _native.Octree) -> None:
 def read_octree(path: str | os.PathLike[str]) -> _native.Octree:
     """Reads an octree that `write_octree` has written; see `Octree.load`."""
     source = as_path(path)
-    with open(source, "rb") as file:
+    with open_file(source) as file:
         try:
             return _native.make_octree(*_contents(file))
         except MemoryError:
@@ -55,7 +56,7 @@ def read_octree(path: str | os.PathLike[str]) -> _native.Octree:
         except Exception as error:  # Damage can make zipfile and zlib raise almost anything.
             if isinstance(error, OSError) and error.errno not in _NO_FAULT_OF_THE_DISK:
                 raise OSError(error.errno, error.strerror, source) from error
-            raise ValueError(f"path: {source!r} holds no octree: {error}") from error
+            raise ValueError(f"path: '{source}' holds no octree: {error}") from error
 
 
 def _contents(

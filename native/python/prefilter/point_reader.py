@@ -12,6 +12,8 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from ._border.input import open_file
+
 POINTS_AT_ONCE = 1 << 16
 
 # Of some points: positions (n, 3), normals (n, 3), weights (n,), viewpoints (n, 3), and attributes
@@ -51,7 +53,7 @@ class PointReader(Protocol):
 def find_module(name: str, path: str, files: str, package: str) -> ModuleType:
     """Imports the module that reads some files. Raises ValueError where it cannot be imported."""
     # What cannot be opened is no fault of the module.
-    with open(path, "rb"):
+    with open_file(path):
         pass
     try:
         return importlib.import_module(name)

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _native
 from ._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
 from ._border.arrays import as_threads
+from ._border.input import open_file
 from ._border.output import as_path, as_target, replace_file
 from ._shaders import gpu, osl
 from .filtered_levels import SAMPLING_FILTERS
@@ -156,12 +157,12 @@ class SamplingTable:
             OSError: The file cannot be read.
         """
         source = as_path(path)
-        with open(source, "rb") as file:
+        with open_file(source) as file:
             data = file.read()
         try:
             return cls(_parsed(data))
         except ValueError as error:
-            raise ValueError(f"path: {source!r} holds no sampling table: {error}") from error
+            raise ValueError(f"path: '{source}' holds no sampling table: {error}") from error
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the table as a JSON file, in place of one that may be there.

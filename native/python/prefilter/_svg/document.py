@@ -9,6 +9,7 @@ from typing import Any
 from xml.etree.ElementTree import Element
 from xml.parsers import expat
 
+from .._border.input import open_file
 from .._border.output import as_path
 
 SVG = "http://www.w3.org/2000/svg"
@@ -144,7 +145,7 @@ def read_document(
         except ValueError as error:
             raise ValueError(f"source{str(error).removeprefix('path')}") from None
         name = f"'{path}'"
-        with open(path, "rb") as file:
+        with open_file(path) as file:
             data = file.read()
     else:
         raise ValueError(f"source: {source!r}; a path, markup, or bytes are needed")
