@@ -275,6 +275,7 @@ def _decoded_by_openimageio(data: bytes, name: str, width: int, height: int) -> 
         if image is None:
             pytest.skip("OpenImageIO is too old for BC6H and BC7")
         texels = image.read_image("float" if name.startswith("BC6H") else "uint8")
+        image.close()
     texels = np.asarray(texels).astype(float).reshape(height, width, -1)
     assert texels.shape[2] == channels
     return texels
