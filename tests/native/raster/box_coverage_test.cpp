@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -225,7 +226,7 @@ TEST(BoxCoverage, AFillRuleAndThreadsServeAnyOutline) {
   Outline star;  // its middle winds twice
   star.move_to({300.0, 650.0});
   for (const int corner : {2, 4, 1, 3}) {
-    const double angle = 2.0 * M_PI * corner / 5;
+    const double angle = 2.0 * std::numbers::pi * corner / 5;
     star.line_to({300.0 - 300.0 * std::sin(angle), 350.0 + 300.0 * std::cos(angle)});
   }
   star.close();

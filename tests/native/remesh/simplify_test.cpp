@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <random>
 
 #include "contour/mesh_checks.h"
@@ -266,7 +267,7 @@ TEST(Simplify, KeepsCreasesAlongCurves) {
   constexpr double kTolerance = 0.05;
   FacetedMesh before;
   for (int i = 0; i < kAround; ++i) {
-    const double angle = 2.0 * M_PI * i / kAround;
+    const double angle = 2.0 * std::numbers::pi * i / kAround;
     for (const double z : {0.0, 30.0}) {
       before.positions.push_back({kRadius * std::cos(angle), kRadius * std::sin(angle), z});
     }
