@@ -24,7 +24,8 @@ FUNCTIONS = (
 _CALL = re.compile(rf"(?<![\w.>])(?:(\w*)::)?((?:{FUNCTIONS})[fl]?)\s*\(")
 _COMMENT_OR_TEXT = re.compile(r"//[^\n]*|/\*.*?\*/|\"(?:[^\"\\\n]|\\.)*\"", re.DOTALL)
 _OTHERS = re.compile(
-    r"\blong double\b|std::\w+_distribution\b|std::(?:shuffle|sample|hash|reduce)\b|\bqsort\b"
+    r"\blong double\b|\bfma[fl]?(?=\s*\()"
+    r"|std::\w+_distribution\b|std::(?:shuffle|sample|hash|reduce)\b|\bqsort\b"
 )
 # Of Python's math and NumPy; products of matrices are BLAS's, whose order of sums differs.
 _PYTHON = re.compile(rf"{FUNCTIONS}|arc(?:sin|cos|tan)h?|arctan2|power|float_power|dist|sumprod")
@@ -86,6 +87,7 @@ def test_python_calls_elementary_functions_of_its_own() -> None:
         ("a = sin(x);", ["sin("]),
         ("a = powf(x, 2.0F);", ["powf("]),
         ("a = elementary::sin(x) + sink(x) + table.log(x) + std::sqrt(x); // std::sin(x)", []),
+        ("a = std::fma(x, y, z);", ["fma"]),
         ("std::uniform_real_distribution<double> u;", ["std::uniform_real_distribution"]),
     ],
 )
