@@ -206,7 +206,8 @@ def _read_descriptor(data: bytes, name: str) -> tuple[str, list[dict]]:
     assert (vendor_and_type, version, size) == (0, 2, total - 4)
     model, primaries, transfer, flags = data[12:16]
     _, _, _, dtype, unit, srgb = FORMATS[name]
-    assert primaries == 1
+    # glTF's KHR_texture_basisu: "KHR_DF_PRIMARIES_UNSPECIFIED" (0) for UASTC that is no color.
+    assert primaries == (0 if name == "UASTC_UNORM" else 1)
     assert transfer == (2 if srgb else 1)
     last = block_side(name) - 1 if dtype is None else 0
     assert list(data[16:20]) == [last, last, 0, 0]

@@ -15,7 +15,7 @@ _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 _HEADER_BYTES, _LEVEL_INDEX_BYTES = 80, 24
 _BASIC_FORMAT_VERSION = 2
 _MODEL_RGBSDA = 1
-_PRIMARIES_BT709 = 1
+_PRIMARIES_UNSPECIFIED, _PRIMARIES_BT709 = 0, 1
 _TRANSFER_LINEAR, _TRANSFER_SRGB = 1, 2
 _FLAG_PREMULTIPLIED = 1
 _RED, _GREEN, _BLUE, _ALPHA = 0, 1, 2, 15
@@ -88,7 +88,7 @@ def _descriptor(texture: Texture) -> bytes:
         + struct.pack(
             "<4B",
             model,
-            _PRIMARIES_BT709,
+            _primaries(texture),
             _TRANSFER_SRGB if texture.is_srgb else _TRANSFER_LINEAR,
             _FLAG_PREMULTIPLIED if texture.alpha == "premultiplied" else 0,
         )
@@ -96,6 +96,12 @@ def _descriptor(texture: Texture) -> bytes:
         + struct.pack("<8B", texel_format.unit_bytes, *(0,) * 7)
         + samples
     )
+
+
+def _primaries(texture: Texture) -> int:
+    # KHR_texture_basisu of glTF: of what is no color, UASTC has none.
+    is_data = texture.texel_format.name == "uastc" and not texture.is_srgb
+    return _PRIMARIES_UNSPECIFIED if is_data else _PRIMARIES_BT709
 
 
 def _model_and_channels(texture: Texture) -> tuple[int, tuple[int, ...]]:
