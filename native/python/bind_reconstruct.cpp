@@ -15,9 +15,10 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
+#include "prefilter/mesh/array_sink.h"
+#include "prefilter/mesh/ply_mesh_writer.h"
 #include "prefilter/reconstruct/reconstruct.h"
-#include "prefilter/scan/arrays.h"
-#include "prefilter/scan/ply_mesh_writer.h"
+#include "prefilter/scan/array_source.h"
 
 namespace py = pybind11;
 

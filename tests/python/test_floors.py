@@ -11,9 +11,9 @@ import pytest
 LIBRARY = Path(__file__).resolve().parents[2] / "native/prefilter"
 FLOORS = (
     {"base"},
-    {"blocks", "color", "exr", "filters", "moments", "outline", "solve", "spatial", "surface"},
-    {"remesh", "scan", "tables", "texels", "wavelet"},
-    {"contour", "mipmap", "raster", "resize", "sampling", "voxel"},
+    {"blocks", "color", "exr", "filters", "io", "moments", "outline", "solve", "spatial", "surface"},
+    {"mesh", "remesh", "scan", "tables", "texels", "wavelet"},
+    {"contour", "mipmap", "normals", "raster", "resize", "sampling", "voxel"},
     {"reconstruct", "solid"},
 )
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "prefilter/scan/local_plane.h"
+#include "prefilter/normals/local_plane.h"
 
 namespace prefilter {
 namespace {

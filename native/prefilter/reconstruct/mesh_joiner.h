@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "prefilter/contour/tree_contour.h"
+#include "prefilter/mesh/mesh_sink.h"
 #include "prefilter/reconstruct/sample_grid.h"
-#include "prefilter/scan/point_source.h"
 
 namespace prefilter {
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "prefilter/base/progress.h"
+#include "prefilter/mesh/mesh_sink.h"
 #include "prefilter/scan/point_source.h"
 
 namespace prefilter {

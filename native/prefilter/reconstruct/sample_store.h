@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "prefilter/io/temporary_file.h"
 #include "prefilter/reconstruct/sample_cell.h"
-#include "prefilter/scan/temporary_file.h"
 
 namespace prefilter {
 

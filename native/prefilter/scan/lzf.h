@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
-#include "prefilter/scan/byte_reader.h"
-#include "prefilter/scan/temporary_file.h"
+#include "prefilter/io/byte_reader.h"
+#include "prefilter/io/temporary_file.h"
 
 namespace prefilter {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "prefilter/base/error.h"
-#include "prefilter/scan/path_text.h"
+#include "prefilter/io/path_text.h"
 #include "prefilter/scan/pcd_points.h"
 #include "prefilter/scan/ply_points.h"
 #include "prefilter/scan/text_points.h"

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "prefilter/base/error.h"
+#include "prefilter/io/text_reader.h"
 #include "prefilter/scan/lzf.h"
 #include "prefilter/scan/point_fields.h"
-#include "prefilter/scan/text_reader.h"
 
 namespace prefilter {
 namespace {

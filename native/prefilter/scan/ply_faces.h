@@ -10,17 +10,9 @@
 #include <vector>
 
 #include "prefilter/base/progress.h"
+#include "prefilter/scan/range_grid.h"
 
 namespace prefilter {
-
-/// The points of a range scan as its scanner saw them. Those of neighbouring places are neighbours
-/// on the surface, or on both sides of an edge that hides one from the other.
-struct RangeGrid {
-  std::int64_t rows = 0;
-  std::int64_t columns = 0;
-  /// Row by row the index of a point, or -1 where the scanner saw nothing.
-  std::vector<std::int64_t> points;
-};
 
 /// The element "range_grid" of a PLY file, with the size that lines "obj_info num_rows" and
 /// "num_cols" tell; none where it has none. Throws Error for what is no PLY file or is damaged,

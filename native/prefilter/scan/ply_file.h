@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "prefilter/base/progress.h"
+#include "prefilter/io/text_reader.h"
 #include "prefilter/scan/point_fields.h"
-#include "prefilter/scan/text_reader.h"
 
 namespace prefilter {
 

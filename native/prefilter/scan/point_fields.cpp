@@ -8,7 +8,7 @@
 #include <set>
 
 #include "prefilter/base/error.h"
-#include "prefilter/scan/text_reader.h"
+#include "prefilter/io/text_reader.h"
 
 namespace prefilter {
 namespace {

@@ -6,18 +6,12 @@
 #include <array>
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/base/point_attribute.h"
 
 namespace prefilter {
-
-/// A value that points carry besides their normals; a colour is three of these.
-struct PointAttribute {
-  std::string name;      // of the PLY property: "red", "intensity"
-  bool is_byte = false;  // stored as a byte, 0 to 255: rounded and clamped where it is written
-};
 
 /// Some points, with what is known of them.
 struct PointBatch {
@@ -63,18 +57,6 @@ class PointSource {
   /// Values that are not finite are passed on as they are. Throws Error where a file is damaged or
   /// cannot be read; the message names it, and where in it.
   virtual bool read(std::size_t most, PointBatch* batch) = 0;
-};
-
-/// Takes a mesh in pieces. Triangles name vertices by their place among all that were added.
-class MeshSink {
- public:
-  virtual ~MeshSink() = default;
-
-  /// Attributes: for each vertex one value for each attribute of the points; none where the points
-  /// have none.
-  virtual void add_vertices(std::vector<Vector3> positions, std::vector<float> attributes) = 0;
-  /// Triangles of vertices that were added before.
-  virtual void add_triangles(std::vector<std::array<std::int64_t, 3>> triangles) = 0;
 };
 
 }  // namespace prefilter

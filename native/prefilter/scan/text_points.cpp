@@ -9,8 +9,8 @@
 
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
+#include "prefilter/io/text_reader.h"
 #include "prefilter/scan/point_fields.h"
-#include "prefilter/scan/text_reader.h"
 
 namespace prefilter {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "contour/mesh_checks.h"
-#include "prefilter/scan/arrays.h"
+#include "prefilter/mesh/array_sink.h"
 #include "wavelet/random_tree.h"
 
 namespace prefilter {

@@ -10,7 +10,8 @@
 
 #include "contour/mesh_checks.h"
 #include "prefilter/base/error.h"
-#include "prefilter/scan/arrays.h"
+#include "prefilter/mesh/array_sink.h"
+#include "prefilter/scan/array_source.h"
 
 namespace prefilter {
 namespace {

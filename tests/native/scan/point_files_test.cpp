@@ -6,10 +6,10 @@
 #include <fstream>
 #include <random>
 
+#include "io/files.h"
 #include "prefilter/base/error.h"
 #include "prefilter/scan/open_points.h"
 #include "prefilter/scan/ply_faces.h"
-#include "scan/files.h"
 
 namespace prefilter {
 namespace {

@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "prefilter/base/point_attribute.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/scan/point_source.h"
-#include "prefilter/scan/staged_file.h"
-#include "prefilter/scan/temporary_file.h"
+#include "prefilter/io/staged_file.h"
+#include "prefilter/io/temporary_file.h"
+#include "prefilter/mesh/mesh_sink.h"
 
 namespace prefilter {
 

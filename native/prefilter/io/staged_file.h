@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "prefilter/scan/file.h"
+#include "prefilter/io/file.h"
 
 namespace prefilter {
 

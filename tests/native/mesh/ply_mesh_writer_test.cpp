@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/ply_mesh_writer.h"
+#include "prefilter/mesh/ply_mesh_writer.h"
 
 #include <gtest/gtest.h>
 #ifndef _WIN32
@@ -15,9 +15,9 @@
 #include <limits>
 #include <sstream>
 
+#include "io/files.h"
 #include "prefilter/base/error.h"
 #include "prefilter/scan/open_points.h"
-#include "scan/files.h"
 
 namespace prefilter {
 namespace {

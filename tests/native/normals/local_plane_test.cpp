@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/local_plane.h"
+#include "prefilter/normals/local_plane.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/staged_file.h"
+#include "prefilter/io/staged_file.h"
 
 #include <system_error>
 
 #include "prefilter/base/error.h"
-#include "prefilter/scan/path_text.h"
+#include "prefilter/io/path_text.h"
 
 namespace prefilter {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/temporary_file.h"
+#include "prefilter/io/temporary_file.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <vector>
 
+#include "io/files.h"
 #include "prefilter/base/error.h"
-#include "scan/files.h"
 
 namespace prefilter {
 namespace {

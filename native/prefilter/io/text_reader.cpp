@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/text_reader.h"
+#include "prefilter/io/text_reader.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/normals.h"
+#include "prefilter/normals/normals.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +9,8 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/scan/local_plane.h"
-#include "prefilter/scan/orientation.h"
+#include "prefilter/normals/local_plane.h"
+#include "prefilter/normals/orientation.h"
 #include "prefilter/spatial/nearest_neighbours.h"
 
 namespace prefilter {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/file.h"
+#include "prefilter/io/file.h"
 
 #include <random>
 #include <utility>

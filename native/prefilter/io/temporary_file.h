@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "prefilter/scan/file.h"
+#include "prefilter/io/file.h"
 
 namespace prefilter {
 

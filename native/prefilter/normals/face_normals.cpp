@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/face_normals.h"
+#include "prefilter/normals/face_normals.h"
 
 #include <algorithm>
 #include <array>

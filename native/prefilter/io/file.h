@@ -10,7 +10,7 @@
 #include <string>
 #include <utility>
 
-#include "prefilter/scan/system_file.h"
+#include "prefilter/io/system_file.h"
 
 namespace prefilter {
 

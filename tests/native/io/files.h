@@ -14,7 +14,7 @@
 #include <random>
 #include <string>
 
-#include "prefilter/scan/path_text.h"
+#include "prefilter/io/path_text.h"
 
 namespace prefilter {
 

@@ -11,9 +11,9 @@
 #include <system_error>
 #include <vector>
 
-#include "prefilter/scan/file.h"
-#include "prefilter/scan/path_text.h"
-#include "prefilter/scan/system_file.h"
+#include "prefilter/io/file.h"
+#include "prefilter/io/path_text.h"
+#include "prefilter/io/system_file.h"
 
 namespace prefilter::system_file {
 namespace {

@@ -3,7 +3,7 @@
 // Propagation of directions as in Hoppe et al., Surface Reconstruction from Unorganized Points
 // (1992), by patches instead of points: near points whose normals leave no doubt are joined first,
 // and then patch by patch, by the sum of what all pairs along their common border say.
-#include "prefilter/scan/orientation.h"
+#include "prefilter/normals/orientation.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "prefilter/scan/byte_reader.h"
+#include "prefilter/io/byte_reader.h"
 
 namespace prefilter {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/ply_mesh_writer.h"
+#include "prefilter/mesh/ply_mesh_writer.h"
 
 #include <algorithm>
 #include <bit>

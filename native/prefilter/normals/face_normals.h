@@ -10,7 +10,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/scan/ply_faces.h"
+#include "prefilter/scan/range_grid.h"
 
 namespace prefilter {
 

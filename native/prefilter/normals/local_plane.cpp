@@ -3,7 +3,7 @@
 // Eberly, A Robust Eigensolver for 3 x 3 Symmetric Matrices (2014): without iterations. The
 // eigenvalue that is farther from the other two gives its eigenvector as a cross product of rows;
 // the others are found across it.
-#include "prefilter/scan/local_plane.h"
+#include "prefilter/normals/local_plane.h"
 
 #include <algorithm>
 #include <cmath>

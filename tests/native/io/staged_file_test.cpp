@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/staged_file.h"
+#include "prefilter/io/staged_file.h"
 
 #include <gtest/gtest.h>
 #ifdef _WIN32
@@ -9,8 +9,8 @@
 
 #include <string>
 
+#include "io/files.h"
 #include "prefilter/base/error.h"
-#include "scan/files.h"
 
 namespace prefilter {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/normals.h"
+#include "prefilter/normals/normals.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "prefilter/base/error.h"
-#include "prefilter/scan/face_normals.h"
+#include "prefilter/normals/face_normals.h"
 
 namespace prefilter {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/temporary_file.h"
+#include "prefilter/io/temporary_file.h"
 
 #include "prefilter/base/error.h"
-#include "prefilter/scan/path_text.h"
+#include "prefilter/io/path_text.h"
 
 namespace prefilter {
 namespace {

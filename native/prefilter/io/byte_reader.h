@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "prefilter/scan/file.h"
+#include "prefilter/io/file.h"
 
 namespace prefilter {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/scan/byte_reader.h"
+#include "prefilter/io/byte_reader.h"
 
 #include <algorithm>
 #include <cstring>
