@@ -2,14 +2,14 @@
 
 """Makes the sampling tables that come with the package: run it where `prefilter` can be imported.
 
-usage: sampling_tables.py FOLDER    (native/python/prefilter/tables)
+usage: sampling_tables.py FOLDER    (native/python/prefilter/sampling/tables)
 """
 
 import sys
 from pathlib import Path
 
 from prefilter import SAMPLING_FILTERS, SamplingTable
-from prefilter.sampling_tables import STANDARD_TEXELS
+from prefilter.sampling.sampling_table import STANDARD_TEXELS
 
 
 def main(folder: Path) -> None:

@@ -29,7 +29,7 @@ from pathlib import Path
 
 import numpy as np
 import prefilter
-import prefilter.mipmap
+import prefilter.images.mipmaps
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -165,7 +165,7 @@ def parse() -> argparse.Namespace:
 def settings(options: argparse.Namespace) -> str:
     """Returns what results depend on besides model and filter: the build, and what is drawn."""
     hashed = hashlib.sha256(Path(prefilter._native.__file__).read_bytes())
-    for module in (prefilter.mipmap, opengl_renderer):
+    for module in (prefilter.images.mipmaps, opengl_renderer):
         hashed.update(inspect.getsource(module).encode())
     hashed.update(repr((options.views, options.sizes, options.modes)).encode())
     return hashed.hexdigest()[:16]

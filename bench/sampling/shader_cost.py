@@ -19,7 +19,7 @@ from collections import Counter
 from pathlib import Path
 
 import prefilter
-from prefilter.sampling_tables import STANDARD_TEXELS
+from prefilter.sampling.sampling_table import STANDARD_TEXELS
 
 from bench.report import Report
 

@@ -122,12 +122,15 @@ PYBIND11_MODULE(_native, m) {
   using prefilter::Error;
   using prefilter::ErrorCode;
   m.attr("VERSION") = PREFILTER_VERSION;
-  m.def("available_memory", [] {
-    const std::uint64_t bytes = prefilter::available_memory();
-    return bytes == std::numeric_limits<std::uint64_t>::max()
-               ? std::numeric_limits<double>::infinity()
-               : static_cast<double>(bytes);
-  });
+  m.def(
+      "available_memory",
+      [] {
+        const std::uint64_t bytes = prefilter::available_memory();
+        return bytes == std::numeric_limits<std::uint64_t>::max()
+                   ? std::numeric_limits<double>::infinity()
+                   : static_cast<double>(bytes);
+      },
+      "Returns the bytes that can be had without driving others out; infinity where unknown.");
   // Never destroyed: at exit there may be no interpreter left to destroy it with.
   static auto* const cancelled = new py::exception<Error>(m, "Cancelled");
   cancelled->attr("__module__") = "prefilter";

@@ -22,8 +22,8 @@ AT_ENABLING = re.compile(
 WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
 # Of the package: what options take their limits and choices from.
 OF_PACKAGE = re.compile(
-    r"prefilter(\.(_native|version|mipmap|memory|surface|voxel|filtered_levels|color"
-    r"|scan_files|_border(\..*)?))?"
+    r"prefilter(\.(_native|_border(\..*)?|images(\.(mipmaps|color))?|meshes(\.surface)?"
+    r"|points(\.scan_files)?|sampling(\.levels)?|voxels(\.octree)?))?"
 )
 SLOW = {"argparse", "concurrent.futures", "logging", "tempfile", "zipfile", "OpenImageIO"}
 PROGRAM = f"""

@@ -6,7 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 import solids
-from prefilter.scan_files import read_points, read_range_grid
+from prefilter.points.scan_files import read_points, read_range_grid
 
 SCANS = solids.DATA.parent / "points" / "bunny"
 

@@ -9,7 +9,7 @@ import prefilter
 import pytest
 
 # Of these Python loads the slow ones of others, too.
-ALWAYS = {"prefilter", "prefilter._native", "prefilter.version"}
+ALWAYS = {"prefilter", "prefilter._native"}
 SLOW = {"argparse", "concurrent.futures", "json", "logging", "tempfile", "zipfile", "tinycss2"}
 
 

@@ -5,7 +5,7 @@
 import numpy as np
 import prefilter
 import pytest
-from prefilter.sampling_tables import STANDARD_TEXELS
+from prefilter.sampling.sampling_table import STANDARD_TEXELS
 
 SMALL = {"texels": 4, "subdomains": (2, 2, 1)}
 

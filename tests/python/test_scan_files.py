@@ -11,7 +11,7 @@ import numpy as np
 import prefilter
 import pytest
 from prefilter import _native
-from prefilter.scan_files import read_faces, read_range_grid
+from prefilter.points.scan_files import read_faces, read_range_grid
 from scan_writers import FORMATS, TYPES, garbled_are_refused, ply, random_rows, write
 
 SHARED = Path(__file__).resolve().parents[3] / "shared" / "data" / "points"

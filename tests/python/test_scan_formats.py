@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import prefilter
-import prefilter.scan_files
+import prefilter.points.scan_files
 import pytest
 from scan_writers import garbled_are_refused, pcd, write
 
@@ -90,7 +90,7 @@ def test_large_coordinates_are_doubles(tmp_path):
         ("456789.123 5123456.789 100.25\n", True),
     ]:
         path = write(tmp_path, "cloud.xyz", text.encode())
-        assert prefilter.scan_files.open_points(path).is_double == expected
+        assert prefilter.points.scan_files.open_points(path).is_double == expected
 
 
 @pytest.mark.parametrize(

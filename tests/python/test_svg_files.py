@@ -201,7 +201,7 @@ def test_a_file_that_is_refused_is_named(tmp_path):
 
 
 def test_what_is_large_when_unpacked_is_stopped(monkeypatch):
-    from prefilter._svg import document
+    from prefilter.shapes._svg import document
 
     monkeypatch.setattr(document, "MOST_UNPACKED", 1 << 20)
     large = gzip.compress(svg(" " * (1 << 20)).encode())
@@ -210,7 +210,7 @@ def test_what_is_large_when_unpacked_is_stopped(monkeypatch):
 
 
 def test_repeated_uses_are_limited(monkeypatch):
-    from prefilter._svg import drawing
+    from prefilter.shapes._svg import drawing
 
     monkeypatch.setattr(drawing, "MOST_USED", 1000)
     with pytest.raises(ValueError, match="<use> repeats more than 1000 elements"):

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._border.arguments import ProgressCallback
-from .point_reader import PointReader
+from .points.reader import PointReader
 
 VERSION: Final[str]
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..version import VERSION
+from .._native import VERSION
 from .texel_formats import FORMATS, Container, Texture
 
 _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"

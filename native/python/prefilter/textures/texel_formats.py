@@ -12,7 +12,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback
 from .._border.arrays import as_image, as_texels
-from ..color import to_linear
+from ..images.color import to_linear
 
 Codes = tuple[int | None, int | None]
 """What a container calls a format with linear and with sRGB colours; None where it has no word."""

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+# Every public name and its module, once: type checkers read this, and `__init__.py` too.
+from ._native import Cancelled as Cancelled
+from ._native import available_memory as available_memory
+from .images.color import to_linear as to_linear
+from .images.color import to_srgb as to_srgb
+from .images.cutouts import keep_coverage as keep_coverage
+from .images.mipmaps import MIPMAP_FILTERS as MIPMAP_FILTERS
+from .images.mipmaps import MipmapFilter as MipmapFilter
+from .images.mipmaps import coarser_levels as coarser_levels
+from .images.mipmaps import mipmap_error as mipmap_error
+from .images.mipmaps import mipmaps as mipmaps
+from .images.mipmaps import seam_contrast as seam_contrast
+from .images.normal_maps import normal_mipmaps as normal_mipmaps
+from .images.resizing import RESIZE_FILTERS as RESIZE_FILTERS
+from .images.resizing import resize as resize
+from .images.texture_use import fill_transparent as fill_transparent
+from .images.texture_use import fill_unused as fill_unused
+from .images.texture_use import texel_weights as texel_weights
+from .meshes.charts import uv_charts as uv_charts
+from .meshes.holes import ClosedMesh as ClosedMesh
+from .meshes.holes import close_holes as close_holes
+from .meshes.measures import MeshMeasures as MeshMeasures
+from .meshes.measures import measure_mesh as measure_mesh
+from .meshes.nearest import CornerPoints as CornerPoints
+from .meshes.nearest import NearestPoints as NearestPoints
+from .meshes.nearest import corner_points as corner_points
+from .meshes.nearest import nearest_points as nearest_points
+from .meshes.solids import SolidMesh as SolidMesh
+from .meshes.solids import as_solid as as_solid
+from .meshes.surface import Surface as Surface
+from .points.normals import estimate_normals as estimate_normals
+from .points.normals import grid_normals as grid_normals
+from .points.normals import mesh_normals as mesh_normals
+from .points.reconstruction import ReconstructionReport as ReconstructionReport
+from .points.reconstruction import file_normals as file_normals
+from .points.reconstruction import reconstruct as reconstruct
+from .points.reconstruction import reconstruct_file as reconstruct_file
+from .points.scan_files import POINT_EXTENSIONS as POINT_EXTENSIONS
+from .points.scan_files import ScanPoints as ScanPoints
+from .points.scan_files import read_points as read_points
+from .sampling.anisotropic import sample_anisotropic as sample_anisotropic
+from .sampling.exact import sample_ewa as sample_ewa
+from .sampling.exact import sample_exact as sample_exact
+from .sampling.levels import SAMPLING_FILTERS as SAMPLING_FILTERS
+from .sampling.levels import FilteredLevels as FilteredLevels
+from .sampling.levels import sampling_levels as sampling_levels
+from .sampling.resampling import resample as resample
+from .sampling.samples import sample as sample
+from .sampling.sampling_table import SamplingTable as SamplingTable
+from .sampling.sampling_table import TableSection as TableSection
+from .sampling.stochastic import PickedTexels as PickedTexels
+from .sampling.stochastic import pick_texels as pick_texels
+from .sampling.stochastic import sample_stochastic as sample_stochastic
+from .shapes._svg.warnings import SvgWarning as SvgWarning
+from .shapes.rasterization import RASTER_FILTERS as RASTER_FILTERS
+from .shapes.rasterization import Shape as Shape
+from .shapes.rasterization import rasterize as rasterize
+from .shapes.svg import SvgDrawing as SvgDrawing
+from .shapes.svg import read_svg as read_svg
+from .textures.exr import write_exr as write_exr
+from .textures.texture_files import write_dds as write_dds
+from .textures.texture_files import write_ktx2 as write_ktx2
+from .voxels.contours import contour as contour
+from .voxels.octree import MAX_DEPTH as MAX_DEPTH
+from .voxels.octree import Octree as Octree
+from .voxels.octree import TracedContour as TracedContour
+from .voxels.octree import cube_around as cube_around
+from .voxels.octree import voxelize as voxelize
+
+__version__: str
+__all__: list[str]

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Alpha-tested cut-outs: levels that keep as much of the surface as the image does."""
+
+from collections.abc import Sequence
+
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, Wrap, as_number, as_progress, as_wrap
+from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
+from ..meshes.surface import Surface, as_surfaces
+
+
+def keep_coverage(
+    levels: Sequence[npt.ArrayLike],
+    surface: Surface | Sequence[Surface] | None = None,
+    *,
+    threshold: float = 0.5,
+    wrap: Wrap = "clamp",
+    premultiplied: bool = False,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> list[FloatArray]:
+    """Levels whose alpha test keeps the share of the surface that level 0's keeps.
+
+    A cut-out shows where a lookup's alpha is at least a threshold. Filtered alpha drifts to its
+    mean, so that leaves and fences get thinner or thicker level by level. Here the alpha of each
+    level is mapped by a curve that rises, of two straight pieces: 0 and 1 stay, and some value goes
+    to the threshold: that which gives the coverage of level 0. Where even the smallest such value
+    shows too little, as with thresholds near 1, alpha of 0 rises too, but not to the threshold.
+
+    Coverage is the share of the surface's area, or of the image where there is no surface, where a
+    bilinear lookup's alpha is at least the threshold. A level that has it within 0.001 stays as it
+    is; others get it as closely as they can: one of few texels may have to show all or nothing.
+
+    Args:
+        levels: Level 0 first, as `mipmaps` returns them: (height, width, 4) with alpha as the
+            fourth channel, or (height, width, 1) or (height, width), which is alpha. Bytes (uint8)
+            stand for a 255th each, uint16 for a 65535th.
+        surface: One surface, or several that share the image.
+        threshold: The alpha that is still shown; above 0, at most 1.
+        wrap: As for `mipmaps`.
+        premultiplied: Whether colours are multiplied by alpha; then they change along with it.
+        progress: As for `mipmaps`.
+        threads: As for `mipmaps`.
+
+    Returns:
+        The levels, float32; level 0 is a copy.
+
+    Raises:
+        ValueError: An argument is out of range, or alpha is not finite in a level above 0.
+        Cancelled: The progress callback returned False.
+    """
+    if not isinstance(levels, Sequence):
+        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
+    images = [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)]
+    kept = _native.keep_coverage(
+        images,
+        as_surfaces(surface),
+        as_number("threshold", threshold),
+        as_wrap(wrap),
+        bool(premultiplied),
+        as_progress(progress),
+        as_threads(threads),
+    )
+    made = [images[0].copy(), *kept]
+    return [in_form_of(level, image) for level, image in zip(levels, made, strict=True)]

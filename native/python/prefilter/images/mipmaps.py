@@ -1,0 +1,358 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Mipmaps of a texture on a surface (chapter 7)."""
+
+from collections.abc import Sequence
+from typing import Any, Literal, NamedTuple, overload
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import (
+    Bounds,
+    ProgressCallback,
+    Wrap,
+    as_bounds,
+    as_level_count,
+    as_name,
+    as_number,
+    as_progress,
+    as_wrap,
+    is_srgb,
+)
+from .._border.arrays import as_image, as_texels, as_threads, in_form_of
+from ..meshes.surface import Surface, as_surfaces
+from ..sampling.levels import FilteredLevels
+from .color import to_linear, to_srgb
+
+
+class MipmapFilter(NamedTuple):
+    """A filter that `mipmaps` has.
+
+    Attributes:
+        name: What it is called: "tent", "tent-covered" or "pam-bilinear".
+        needs_surface: Whether it is made over the surface, or the texels that the surface touches.
+        is_fit: Whether it is a least-squares fit: the only ones that `seam_budget` changes.
+    """
+
+    name: str
+    needs_surface: bool
+    is_fit: bool
+
+
+MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters())
+"""All filters: each kernel, each with "-covered" behind, least squares, and those over the surface.
+"""
+
+
+@overload
+def mipmaps(
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = ...,
+    *,
+    filter: str = ...,
+    wrap: Wrap = ...,
+    bounds: Bounds | None = ...,
+    levels: int | None = ...,
+    premultiplied: bool = ...,
+    reader: str = ...,
+    encoding: Literal["linear"] = ...,
+    seam_budget: float = ...,
+    footprint: float = ...,
+    progress: ProgressCallback | None = ...,
+    threads: int = ...,
+) -> FilteredLevels[np.float32]: ...
+@overload
+def mipmaps(
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = ...,
+    *,
+    filter: str = ...,
+    wrap: Wrap = ...,
+    bounds: Bounds | None = ...,
+    levels: int | None = ...,
+    premultiplied: bool = ...,
+    reader: str = ...,
+    encoding: str = ...,
+    seam_budget: float = ...,
+    footprint: float = ...,
+    progress: ProgressCallback | None = ...,
+    threads: int = ...,
+) -> FilteredLevels[np.float32] | FilteredLevels[np.uint16] | FilteredLevels[np.uint8]: ...
+def mipmaps(
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = None,
+    *,
+    filter: str = "pam-bilinear",
+    wrap: Wrap = "clamp",
+    bounds: Bounds | None = (0.0, 1.0),
+    levels: int | None = None,
+    premultiplied: bool = False,
+    reader: str = "linear",
+    encoding: str = "linear",
+    seam_budget: float = 0.0,
+    footprint: float = 0.0,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> FilteredLevels[np.float32] | FilteredLevels[np.uint16] | FilteredLevels[np.uint8]:
+    """The levels of an image's mipmap, each fitted to the surface that uses it.
+
+    "pam-bilinear" minimises, level by level, the integral over the surface of the squared
+    difference between a bilinear lookup of the level and one of the image (section 7.3), within
+    the bounds. "pam-trilinear" does the same for all levels together and trilinear lookups,
+    averaged over all mip values; level 0 is the image and the last level, of 1 x 1 texel, its mean
+    over the surface. "ls-bilinear" is "pam-bilinear" for the unit square: for tiled textures, and
+    those that meshes to come will share. "pam-box" takes means over the surface (equation 7.1).
+    The other filters work in texture space: kernels, "box", "tent" or "lanczos3", over all texels,
+    and with "-covered" behind their names over texels that some triangle touches. `MIPMAP_FILTERS`
+    has all names.
+    Texels that the surface does not read have no influence on the "pam-" and "-covered" filters;
+    they are filled from what is around them (push-pull).
+
+    Args:
+        image: (height, width, 1 to 4 channels) or (height, width), scene-linear, row 0 at v = 0.
+            Any sides. Bytes (uint8) stand for a 255th each, uint16 for a 65535th; see `encoding`.
+        surface: One surface, or several that share the image. Not needed for plain kernels.
+        filter: A name of `MIPMAP_FILTERS`.
+        wrap: What lookups read outside of the image: "clamp", "repeat" or "border" (zero, and
+            surface outside of the unit square weighs nothing), or a pair of these for u and v.
+        bounds: (low, high) that texels of the levels may take; either may be None, and None stands
+            for both. "pam-bilinear" and "pam-trilinear" solve under them, the others are clipped.
+        levels: How many levels to return, level 0 included; None = down to 1 x 1.
+        premultiplied: Whether the colours of a 4-channel image are multiplied by alpha already, or
+            its fourth channel is no coverage: then every channel is filtered as it stands.
+            Otherwise they are multiplied for filtering and divided afterwards.
+        reader: What will look up the levels, for "pam-bilinear": "linear" decodes texels, then
+            filters (GPUs, and float textures everywhere); "srgb-after" filters sRGB-encoded texels,
+            then decodes (Cycles on 8-bit sRGB images). The image and the levels are scene-linear in
+            both cases, and what the image shows is defined by the reader too. The second is a
+            bounded Gauss-Newton fit, started from the first.
+        encoding: Of an image of uint8 or uint16, and of its levels: with "srgb" its colours are
+            decoded to be filtered, and encoded again. The fourth of four channels is alpha, and
+            linear.
+        seam_budget: By how much, as a share, the error of each level may rise to hide UV seams, for
+            least-squares filters: 0.01 is 1 %. The two sides of the seams then agree as well as
+            that allows. The error is the root mean square over the surface, as `mipmap_error` has
+            it for the level and its reader; with a footprint, against the image averaged over it.
+            Seams along which the image itself differs, by more than a tenth of its standard
+            deviation, are left alone; 0 leaves all alone.
+        footprint: Texels of a level that a pixel of the reader covers, 0 to 2, for least squares
+            and the linear reader. 0: levels are fitted to the image itself, which is right where
+            a pixel is the mean of many lookups (film, and all that is supersampled). 1: a pixel is
+            one lookup (games); levels are fitted to the image averaged over what a pixel covers,
+            by kernels of the variance of a box of that width. 1.5: one lookup with anisotropic
+            filtering, which reads finer levels than the pixel's shorter side asks for.
+        progress: Called with the fraction done, in [0, 1]; may return False to stop.
+        threads: How many to use; 0 = all processors. Results do not depend on it.
+
+    Returns:
+        The levels, with as many axes as the image, level 0 first; it is a copy of the image. They
+            are uint8 or uint16 where the image is, else float32, in a list that knows its filter.
+        Each has half the sides of the one before, rounded down, never less than 1.
+
+    Raises:
+        ValueError: An argument is out of range, or a texel that counts is not finite.
+        Cancelled: The progress callback returned False.
+    """
+    arguments = _native_arguments(
+        *(surface, filter, wrap, bounds, levels, premultiplied),
+        *(reader, seam_budget, footprint, progress, threads),
+    )
+    stored, srgb = as_texels("image", image), is_srgb(encoding)
+    made: list[npt.NDArray[Any]]
+    if stored.dtype == np.uint8:
+        made = _native.coarser_byte_levels(stored, srgb, *arguments)
+    else:
+        made = _native.coarser_levels(_as_light(stored, srgb, as_threads(threads)), *arguments)
+        if stored.dtype == np.uint16:
+            made = [_as_words(level, srgb, as_threads(threads)) for level in made]
+    # Copied once the memory for filtering is free again.
+    return FilteredLevels([in_form_of(image, level) for level in (stored.copy(), *made)], filter)
+
+
+def coarser_levels(
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = None,
+    *,
+    filter: str = "pam-bilinear",
+    wrap: Wrap = "clamp",
+    bounds: Bounds | None = (0.0, 1.0),
+    levels: int | None = None,
+    premultiplied: bool = False,
+    reader: str = "linear",
+    encoding: str = "linear",
+    seam_budget: float = 0.0,
+    footprint: float = 0.0,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> FilteredLevels[np.float32]:
+    """The levels of `mipmaps` from level 1 on, in floats whatever the image holds.
+
+    It takes less memory: there is no copy of the image, and "pam-bilinear", "pam-trilinear" and
+    "pam-box" read bytes as they are, where alpha plays no part. All arguments are those of
+    `mipmaps`; `levels` counts level 0.
+
+    Returns:
+        Levels 1, 2, ..., float32 and scene-linear; of an image of bytes too.
+
+    Raises:
+        ValueError: As `mipmaps`.
+        Cancelled: The progress callback returned False.
+    """
+    arguments = _native_arguments(
+        *(surface, filter, wrap, bounds, levels, premultiplied),
+        *(reader, seam_budget, footprint, progress, threads),
+    )
+    stored, srgb = as_texels("image", image), is_srgb(encoding)
+    if stored.dtype == np.uint8:
+        made = _native.coarser_float_levels_of_bytes(stored, srgb, *arguments)
+    else:
+        made = _native.coarser_levels(_as_light(stored, srgb, as_threads(threads)), *arguments)
+    return FilteredLevels((in_form_of(image, level) for level in made), filter)
+
+
+def _native_arguments(
+    surface: Surface | Sequence[Surface] | None,
+    filter: str,
+    wrap: Wrap,
+    bounds: Bounds | None,
+    levels: int | None,
+    premultiplied: bool,
+    reader: str,
+    seam_budget: float,
+    footprint: float,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[Any, ...]:
+    """What the library's functions take beside the image, checked, in their order."""
+    low, high = as_bounds(bounds)
+    return (
+        as_surfaces(surface),
+        as_name("filter", filter),
+        as_wrap(wrap),
+        low,
+        high,
+        as_level_count(levels),
+        bool(premultiplied),
+        as_name("reader", reader),
+        as_number("seam_budget", seam_budget),
+        as_number("footprint", footprint),
+        as_progress(progress),
+        as_threads(threads),
+    )
+
+
+def _as_light(stored: np.ndarray, srgb: bool, threads: int) -> npt.NDArray[np.float32]:
+    """An image of floats, or of uint16 that stand for a 65535th each."""
+    floats = as_image("image", stored)
+    if not srgb:
+        return floats
+    if stored.dtype != np.uint16:
+        raise ValueError(
+            "encoding: 'srgb' goes with images of uint8 or uint16; decode others with to_linear"
+        )
+    return to_linear(floats, threads=threads)
+
+
+def _as_words(level: npt.NDArray[np.float32], srgb: bool, threads: int) -> npt.NDArray[np.uint16]:
+    """A level in steps of a 65535th, rounded to the nearest."""
+    if srgb:
+        level = to_srgb(level, threads=threads)
+    full = np.float32(np.iinfo(np.uint16).max)
+    words: npt.NDArray[np.uint16] = np.rint(np.clip(level, 0, 1) * full).astype(np.uint16)
+    return words
+
+
+def mipmap_error(
+    levels: Sequence[npt.ArrayLike],
+    image: npt.ArrayLike,
+    surface: Surface | Sequence[Surface],
+    mip_values: npt.ArrayLike,
+    *,
+    wrap: Wrap = "clamp",
+    reader: str = "linear",
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> npt.NDArray[np.float64]:
+    """How far a mipmap is from its image over the surface, at any mip value (figure 7.7).
+
+    The root mean square, over the surface's area and the channels, of the difference between a
+    trilinear lookup of the levels and a bilinear lookup of the image. It is exact: the integrals
+    come from moments, not from samples.
+
+    Args:
+        levels: Level 0 first, sizes as `mipmaps` returns them; coarse ones may be left out.
+        image: The image that they stand for.
+        surface: One surface, or several that share the image.
+        mip_values: Numbers of any shape; 0 is the first level. Those below 0 or past the last level
+            read the nearest one, as on a GPU.
+        wrap: As for `mipmaps`.
+        reader: As for `mipmaps`: with "srgb-after" each bilinear lookup, also of the image, is of
+            encoded texels and decoded afterwards; the integrals are by quadrature in the cells of
+            the image then.
+        progress: As for `mipmaps`.
+        threads: As for `mipmaps`.
+
+    Returns:
+        The error at each mip value, float64, in the shape of `mip_values`.
+
+    Raises:
+        ValueError: An argument is out of range, or a texel that the surface reads is not finite.
+        Cancelled: The progress callback returned False.
+    """
+    try:
+        values = np.asarray(mip_values, np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"mip_values: numbers are needed: {error}") from error
+    if not isinstance(levels, Sequence):
+        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
+    errors = _native.mipmap_error(
+        [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)],
+        as_image("image", image),
+        as_surfaces(surface),
+        values.ravel().tolist(),
+        as_wrap(wrap),
+        as_name("reader", reader),
+        as_progress(progress),
+        as_threads(threads),
+    )
+    return np.array(errors).reshape(values.shape)
+
+
+def seam_contrast(
+    levels: Sequence[npt.ArrayLike],
+    surface: Surface | Sequence[Surface],
+    *,
+    wrap: Wrap = "clamp",
+    progress: ProgressCallback | None = None,
+) -> npt.NDArray[np.float64]:
+    """How far the two sides of UV seams differ in each level: what `seam_budget` brings down.
+
+    A seam is an edge whose two triangles have it at different places of the texture; vertices at
+    the same position are one, and edges of more than two triangles are none.
+
+    Args:
+        levels: Arrays (height, width, channels) or (height, width), of any sizes.
+        surface: One surface, or several that share the image.
+        wrap: As for `mipmaps`.
+        progress: As for `mipmaps`.
+
+    Returns:
+        For each level, the root mean square, over the length of the seams and the channels, of the
+        difference between the bilinear lookups on their two sides; 0 where there is no seam.
+
+    Raises:
+        ValueError: An argument is out of range, or a texel that a seam reads is not finite.
+        Cancelled: The progress callback returned False.
+    """
+    if not isinstance(levels, Sequence):
+        raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
+    return np.array(
+        _native.seam_contrast(
+            [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)],
+            as_surfaces(surface),
+            as_wrap(wrap),
+            as_progress(progress),
+        )
+    )

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Mipmaps of normal maps, and the roughness that takes what averaging normals loses."""
+
+from collections.abc import Sequence
+from typing import overload
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import (
+    ProgressCallback,
+    Wrap,
+    as_level_count,
+    as_name,
+    as_number,
+    as_progress,
+    as_wrap,
+)
+from .._border.arrays import FloatArray, as_array, as_image, as_threads, check_shape, in_form_of
+from ..meshes.surface import Surface, as_surfaces
+
+
+@overload
+def normal_mipmaps(
+    normals: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = None,
+    *,
+    roughness: None = None,
+    filter: str = "pam-bilinear",
+    wrap: Wrap = "clamp",
+    footprint: float = 0.0,
+    encoded: bool = True,
+    levels: int | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> list[FloatArray]: ...
+@overload
+def normal_mipmaps(
+    normals: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = None,
+    *,
+    roughness: npt.ArrayLike,
+    filter: str = "pam-bilinear",
+    wrap: Wrap = "clamp",
+    footprint: float = 0.0,
+    encoded: bool = True,
+    levels: int | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> tuple[list[FloatArray], list[FloatArray]]: ...
+def normal_mipmaps(
+    normals: npt.ArrayLike,
+    surface: Surface | Sequence[Surface] | None = None,
+    *,
+    roughness: npt.ArrayLike | None = None,
+    filter: str = "pam-bilinear",
+    wrap: Wrap = "clamp",
+    footprint: float = 0.0,
+    encoded: bool = True,
+    levels: int | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> list[FloatArray] | tuple[list[FloatArray], list[FloatArray]]:
+    """The levels of a normal map: filtered as vectors, and of length 1 again.
+
+    Where the normals under a texel differ, their mean is shorter than 1, and the surface looks
+    rougher from afar. With a roughness, that goes into its levels: if L is the length of the mean
+    of the normals in a texel, the texel gets
+
+        alpha^2 = (mean of alpha^2) + 2 (1 - L),    alpha = roughness^2,    at most 1.
+
+    The normals are taken for a von Mises-Fisher distribution. Its mean has the length
+    L = coth k - 1 / k, so its concentration k is 1 / (1 - L) but for e^(-2 k), and it spreads as
+    much as a lobe with alpha^2 = 2 / k. Squares of widths add up, as in LEAN mapping.
+
+    The convention, OpenGL or DirectX, does not matter: levels have that of the map.
+
+    Args:
+        normals: (height, width, 3). Tangent or object space. Bytes (uint8) stand for a 255th each,
+            uint16 for a 65535th. Lengths count for nothing; a vector that is shorter than 0.02 has
+            no direction, and is taken for (0, 0, 1).
+        surface: As for `mipmaps`.
+        roughness: None, a number, or (height, width, 1) or (height, width) of the size of the
+            normals, as the Principled BSDF takes it; clamped to [0, 1].
+        filter: As for `mipmaps`, for the normals. The means for the roughness are over a texel's
+            surface ("pam-box") for the "pam-" filters, and else those of "box" or "box-covered".
+        wrap: As for `mipmaps`.
+        footprint: As for `mipmaps`, for the normals.
+        encoded: Whether a component c is stored as (c + 1) / 2, in the map and in the levels.
+        levels: As for `mipmaps`.
+        progress: As for `mipmaps`.
+        threads: As for `mipmaps`.
+
+    Returns:
+        The levels of the normals, level 0 as it was given; with a roughness, a pair of them and the
+        levels of the roughness.
+
+    Raises:
+        ValueError: An argument is out of range, or a texel that counts is not finite.
+        Cancelled: The progress callback returned False.
+    """
+    given = as_array("normals", normals)
+    check_shape("normals", given, ("height", "width", 3))
+    image = as_image("normals", normals)
+    rough = None if roughness is None else _as_roughness(roughness, image.shape[:2])
+    made, rougher = _native.normal_mipmaps(
+        image,
+        rough,
+        as_surfaces(surface),
+        as_name("filter", filter),
+        as_wrap(wrap),
+        as_number("footprint", footprint),
+        bool(encoded),
+        as_level_count(levels),
+        as_progress(progress),
+        as_threads(threads),
+    )
+    directions = [image.copy(), *made]
+    if roughness is None or rough is None:
+        return directions
+    return directions, [in_form_of(roughness, level) for level in (rough.copy(), *rougher)]
+
+
+def _as_roughness(roughness: npt.ArrayLike, size: tuple[int, int]) -> FloatArray:
+    if np.ndim(roughness) == 0:
+        number = np.asarray(roughness)
+        if number.dtype.kind not in "fiu" or not 0 <= number <= 1:
+            raise ValueError(f"roughness: {roughness!r}; a number in [0, 1] or an image is needed")
+        return np.full((*size, 1), number, np.float32)
+    given = as_array("roughness", roughness)
+    check_shape("roughness", given, size if given.ndim == 2 else (*size, 1))
+    return as_image("roughness", roughness)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Images of other sizes (chapter 1)."""
+
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, Wrap, as_name, as_progress, as_size, as_wrap
+from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
+
+RESIZE_FILTERS = tuple(_native.resize_filters())
+"""All filters of `resize`."""
+
+
+def resize(
+    image: npt.ArrayLike,
+    width: int,
+    height: int,
+    *,
+    filter: str = "lanczos3",
+    constrained: bool = False,
+    wrap: Wrap = "clamp",
+    premultiplied: bool = False,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> FloatArray:
+    """The image with another number of pixels, larger or smaller.
+
+    Kernels ("box", "tent", "bspline2", "mitchell", "lanczos2", "lanczos3", "gaussian") filter along
+    x and along y. Along each axis they are as wide as the old pixels or the new ones, whichever are
+    wider, and an axis whose size stays is left alone. "box" is the mean of the old pixels, as
+    squares, over the square of the new one; enlarged, they stay squares.
+
+    "radial2" and "radial3" weigh pixels by their distance r with jinc(r) sinc(r / radius), where
+    jinc(r) = J1(pi r) / (pi r) and sinc(x) = sin(pi x) / (pi x), up to the radius (section 1.1).
+    They cut off detail that is too fine equally in all directions. They are not separable, and take
+    longer.
+
+    "least-squares" gives the pixels that come closest to the image once they are enlarged
+    bilinearly: they minimise the integral, over the image, of the squared difference between the
+    old pixels, as squares, and the new ones, interpolated (figures 1.8 and 7.3).
+
+    An image of the same size stays as it is, whatever the filter. So does a constant one at any
+    size, but for "border" next to its edges.
+
+    Args:
+        image: (height, width, 1 to 4 channels) or (height, width), scene-linear, row 0 at the
+            bottom; encoded colours are decoded first (`to_linear`). Bytes (uint8) stand for a 255th
+            each, uint16 for a 65535th.
+        width: Of the result, in pixels, 1 to 2^20.
+        height: Of the result.
+        filter: A name of `RESIZE_FILTERS`.
+        constrained: Whether values stay in [0, 1]. "least-squares" is solved within these bounds;
+            the results of the others are clipped to them.
+        wrap: What lies outside of the image: "clamp" (its nearest pixel), "repeat" or "border"
+            (zero), or a pair of these for x and y.
+        premultiplied: Whether the colours of an image of 2 or 4 channels are multiplied by alpha
+            already, or its last channel is no alpha: then every channel is filtered as it stands.
+            Otherwise they are multiplied for filtering and divided afterwards; where alpha is not
+            1 everywhere, colours stay within the range that those of visible pixels have, and alpha
+            within [0, 1].
+        progress: Called with the fraction done, in [0, 1]; may return False to stop.
+        threads: How many to use; 0 = all processors. Results do not depend on it.
+
+    Returns:
+        A new float32 array, (height, width, channels), or (height, width) for such an image.
+
+    Raises:
+        ValueError: An argument is out of range, or a pixel is not finite or beyond 1e30.
+        MemoryError: The result does not fit into memory.
+        Cancelled: The progress callback returned False.
+    """
+    made = _native.resize(
+        as_image("image", image),
+        as_size("width", width),
+        as_size("height", height),
+        as_name("filter", filter),
+        bool(constrained),
+        as_wrap(wrap),
+        bool(premultiplied),
+        as_progress(progress),
+        as_threads(threads),
+    )
+    return in_form_of(image, made)

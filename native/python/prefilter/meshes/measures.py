@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The extent of meshes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, as_progress
+from .._border.arrays import as_mesh, as_threads
+
+
+@dataclass(frozen=True)
+class MeshMeasures:
+    """How large a mesh is.
+
+    Attributes:
+        box: (low corner, high corner) of the triangles; other vertices do not count.
+        area: Of the triangles.
+        volume: What the mesh encloses; negative if it is inside out. Of an open mesh, as seen from
+            one of its corners.
+    """
+
+    box: tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
+    area: float
+    volume: float
+
+
+def measure_mesh(
+    positions: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    *,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> MeshMeasures:
+    """The box, the area and the volume of a mesh, in one pass.
+
+    Args:
+        positions: (vertices, 3), in any unit of length.
+        triangles: (triangles, 3) integer indices of vertices, counter-clockwise from outside.
+        progress: Called with the fraction done; returning False stops the work.
+        threads: 0 means all processors. The result does not depend on it.
+
+    Raises:
+        ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, or a
+            value is not finite.
+        Cancelled: `progress` returned False.
+    """
+    (low, high), area, volume = _native.measure_mesh(
+        *as_mesh(positions, triangles), as_progress(progress), as_threads(threads)
+    )
+    return MeshMeasures((np.array(low), np.array(high)), area, volume)

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Any mesh as one that has an inside."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, as_number, as_progress
+from .._border.arrays import as_mesh, as_threads
+
+
+@dataclass(frozen=True)
+class SolidMesh:
+    """A mesh that `voxelize` makes a good solid of, and what was done for it.
+
+    Attributes:
+        positions: (vertices, 3) float64, or what was passed if the mesh is as it was.
+        triangles: (triangles, 3) int64, likewise.
+        origins: (triangles,) int64: the triangle of the mesh that each came from, or -1 for those
+            that fill what the outside does not reach. None if the mesh is as it was.
+        parts: Patches of the mesh: faces that hang together by edges with two of them.
+        welded_vertices: Vertices that count as another one.
+        duplicate_faces: Faces that were there before, and were dropped.
+        turned_faces: Faces that were turned against others of their part.
+        turned_parts: Parts that were turned as a whole.
+        thickened_parts: Sheets and parts that were too thin for any cell.
+        filled_parts: Parts whose inside is what the outside does not reach.
+        lost_parts: Parts that have no voxels all the same.
+    """
+
+    positions: npt.NDArray[np.floating]
+    triangles: npt.NDArray[np.integer]
+    origins: npt.NDArray[np.int64] | None
+    parts: int
+    welded_vertices: int
+    duplicate_faces: int
+    turned_faces: int
+    turned_parts: int
+    thickened_parts: int
+    filled_parts: int
+    lost_parts: int
+
+    @property
+    def is_unchanged(self) -> bool:
+        """Whether the mesh is as it was."""
+        return self.origins is None
+
+
+def as_solid(
+    positions: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    *,
+    cell: float,
+    weld: float = 0.05,
+    gap: float = 2.0,
+    thickness: float = 1.5,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> SolidMesh:
+    """A mesh that `voxelize` makes a good solid of, from any triangles.
+
+    A mesh that is closed, consistently oriented and not too thin is unchanged. In others, vertices
+    along open edges that are close to each other are welded, faces that are there twice count once,
+    faces are turned to go with their neighbors, and parts to have their outside where it is seen
+    from outside. Where the mesh winds around nothing, inside is what the outside does not reach.
+    Sheets and thin parts get a thickness.
+
+    Args:
+        positions: (vertices, 3), in any unit of length.
+        triangles: (triangles, 3) integer indices of vertices.
+        cell: The side of the cells that it is going to be voxelized in, in the mesh's unit.
+        weld: In cells: vertices along open edges count as one up to this distance. 0 welds those
+            alone that are at one place.
+        gap: In cells: the outside does not get through gaps up to this width.
+        thickness: In cells: what sheets and thin parts get. 0 leaves them as they are.
+        progress: Called with the fraction done; returning False stops the work.
+        threads: 0 means all processors. The result does not depend on it.
+
+    Raises:
+        ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, a
+            value is not finite, `cell` is not above 0, or another length is negative.
+        MemoryError: The work would not fit into memory.
+        Cancelled: `progress` returned False.
+    """
+    points, indices = as_mesh(positions, triangles)
+    mesh, report = _native.as_solid(
+        points,
+        indices,
+        as_number("cell", cell),
+        as_number("weld", weld),
+        as_number("gap", gap),
+        as_number("thickness", thickness),
+        as_progress(progress),
+        as_threads(threads),
+    )
+    found, corners, origins = mesh or (points, indices, None)
+    return SolidMesh(found, corners, origins, *report)

@@ -1,0 +1,302 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Surfaces: triangles in space with texture coordinates."""
+
+from collections.abc import Iterable, Sequence
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, as_int, as_name, as_progress
+from .._border.arrays import as_array, as_corner_uvs, as_floats, as_indices, check_shape, is_real
+
+Sharp = tuple[npt.ArrayLike, npt.ArrayLike]
+
+
+class Surface(_native.Surface):
+    """A textured triangle mesh.
+
+    Triangles of zero area, in space or in the texture, are welcome, as are charts that overlap, are
+    mirrored, or leave the unit square.
+
+    Args:
+        positions: (vertices, 3), in any unit of length.
+        triangles: (triangles, 3) integer indices of vertices.
+        uvs: (triangles, 3, 2) texture coordinates of each triangle's corners, or (vertices, 2) of
+            each vertex; the image spans [0, 1], with v = 0 at row 0.
+        weights: Importance, 0 and up: a triangle's area counts times its weight. (vertices,), or
+            (triangles,) or (triangles, 1), or (triangles, 3) for its corners; where there are as
+            many triangles as vertices, one axis means vertices. A triangle's weight is the mean of
+            its corners': inside of it weights do not vary.
+
+    Attributes:
+        triangle_count: The number of triangles.
+        area: Their area in space times their weights, squared units of length.
+        positions: (vertices, 3) float64, a copy; so are the others.
+        triangles: (triangles, 3) int32.
+        uvs: (triangles, 3, 2) float64.
+        areas: (triangles,) float64; of each triangle, times its weight.
+
+    Raises:
+        ValueError: A shape or type is wrong, there is no triangle, an index names no vertex, a
+            value is not finite, or a weight is negative.
+    """
+
+    def __init__(
+        self,
+        positions: npt.ArrayLike,
+        triangles: npt.ArrayLike,
+        uvs: npt.ArrayLike,
+        *,
+        weights: npt.ArrayLike | None = None,
+    ) -> None:
+        points = as_floats("positions", positions, ("vertices", 3), np.float64)
+        indices = as_indices("triangles", triangles, ("triangles", 3))
+        corners = as_corner_uvs("uvs", uvs, indices, len(points), np.float64)
+        importance, kind = _weights(weights, len(points), len(indices), "triangles", corners=3)
+        super().__init__(points, indices, corners, importance, kind)
+
+    @classmethod
+    def from_subdivision(
+        cls,
+        positions: npt.ArrayLike,
+        face_sizes: npt.ArrayLike,
+        face_vertices: npt.ArrayLike,
+        face_uvs: npt.ArrayLike,
+        *,
+        level: int = 3,
+        creases: Sharp | None = None,
+        corners: Sharp | None = None,
+        scheme: str = "catmull-clark",
+        boundary: str = "edge-and-corner",
+        uv_smooth: str = "preserve-boundaries",
+        weights: npt.ArrayLike | None = None,
+        faces: npt.ArrayLike | None = None,
+        progress: ProgressCallback | None = None,
+    ) -> Self:
+        """The limit surface of a subdivision mesh, in triangles.
+
+        Faces are refined `level` times, and the vertices then moved to where infinitely many times
+        would take them, texture coordinates too. Areas approach those of the limit with the square
+        of the triangles' size.
+
+        Edges of more than two faces, and vertices where sheets meet, are infinitely sharp. Vertices
+        of no face are dropped.
+
+        Args:
+            positions: (vertices, 3).
+            face_sizes: (faces,) numbers of corners, 3 and up.
+            face_vertices: (corners,) indices of vertices, face by face.
+            face_uvs: (corners, 2) texture coordinates. Corners of a vertex with equal ones are
+                joined; others make a seam.
+            level: How often faces are refined, 1 to 10. A face of n corners becomes 2 n 4^(level
+                - 1) triangles ("loop": 4^level), of which 2^25 are allowed in all.
+            creases: Semi-sharp edges, ((creases, 2) vertices, (creases,) sharpness). 0 is smooth,
+                10 and up infinitely sharp; what is sharper than `level` counts as that, too.
+            corners: Sharp vertices, ((corners,) vertices, (corners,) sharpness).
+            scheme: "catmull-clark", "loop" (triangles only) or "bilinear".
+            boundary: "edge-only": boundaries of the mesh are smooth curves. "edge-and-corner": the
+                same, but vertices of one face stay where they are.
+            uv_smooth: Where texture coordinates stay linear: "smooth-all" nowhere,
+                "preserve-corners", "preserve-corners-and-junctions",
+                "preserve-corners-junctions-and-concave", "preserve-boundaries" along all borders of
+                charts, "none" everywhere.
+            weights: As for a `Surface`; (vertices,), interpolated linearly, or (faces,) or
+                (faces, 1).
+            faces: (faces,) booleans: which faces the surface has. The others still shape it.
+            progress: Called with the fraction done, in [0, 1]; may return False to stop.
+
+        Raises:
+            ValueError: An argument is out of range, a face names a vertex twice, or a crease is no
+                edge of a face.
+            Cancelled: The progress callback returned False.
+        """
+        points = as_floats("positions", positions, ("vertices", 3), np.float64)
+        sizes = as_indices("face_sizes", face_sizes, ("faces",))
+        vertices = as_indices("face_vertices", face_vertices, ("corners",))
+        uvs = as_floats("face_uvs", face_uvs, ("corners", 2), np.float64)
+        check_shape("face_uvs", uvs, (len(vertices), 2))
+        crease_edges, crease_sharpness = _sharp("creases", creases, ("creases", 2))
+        corner_vertices, corner_sharpness = _sharp("corners", corners, ("corners",))
+        importance, kind = _weights(weights, len(points), len(sizes), "faces", corners=None)
+        return cls._take(
+            _native.subdivide(
+                points,
+                sizes,
+                vertices,
+                uvs,
+                crease_edges,
+                crease_sharpness,
+                corner_vertices,
+                corner_sharpness,
+                importance,
+                kind,
+                _mask("faces", faces, len(sizes)),
+                as_name("scheme", scheme),
+                as_name("boundary", boundary),
+                as_name("uv_smooth", uv_smooth),
+                as_int("level", level, "a whole number from 1 to 10 is needed"),
+                as_progress(progress),
+            )
+        )
+
+    def placed(self, matrices: npt.ArrayLike) -> Self:
+        """The surface placed in space, once or several times.
+
+        Args:
+            matrices: (4, 4) or (instances, 4, 4), or with the first three rows only: affine maps
+                that take (x, y, z, 1) to a point. Scales may differ by axis and be negative or
+                zero.
+
+        Returns:
+            A surface whose triangles have the areas of all of their images together. Its positions
+            are those of the first matrix.
+
+        Raises:
+            ValueError: There is no matrix, or one is no affine map.
+        """
+        try:
+            maps = np.asarray(matrices, np.float64)
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"matrices: found no array of numbers: {error}") from error
+        if maps.ndim == 2:
+            maps = maps[None]
+        if maps.ndim != 3 or maps.shape[1] not in (3, 4) or maps.shape[2] != 4:
+            raise ValueError(
+                f"matrices: shape {np.shape(matrices)}; (4, 4), (3, 4) or several of them is needed"
+            )
+        if maps.shape[1] == 4:
+            for i, last in enumerate(maps[:, 3].tolist()):
+                if last != [0.0, 0.0, 0.0, 1.0]:
+                    raise ValueError(
+                        f"matrices: the last row of matrix {i} is {last}; 0, 0, 0, 1 is needed"
+                    )
+        return self._take(super().placed(np.ascontiguousarray(maps[:, :3])))
+
+    def udim_tile(self, number: int) -> Self | None:
+        """The part of the surface in a UDIM tile, moved to the unit square.
+
+        Triangles are cut exactly at the tile's edges; a part has its share of the area.
+
+        Args:
+            number: 1001 + column + 10 * row, up to 9999: the tile where u is from column to
+                column + 1 and v from row to row + 1.
+
+        Returns:
+            The part, or None where nothing of the surface lies in the tile.
+
+        Raises:
+            ValueError: That is no tile's number.
+        """
+        part = super().udim_tile(
+            as_int("number", number, "a UDIM tile has a whole number from 1001 to 9999")
+        )
+        return None if part is None else self._take(part)
+
+    @classmethod
+    def merged(cls, surfaces: Iterable["Surface"]) -> list["Surface"]:
+        """Joins surfaces that differ in space only, such as the poses of an animated mesh.
+
+        Surfaces with the same triangles and texture coordinates become one that has the areas of
+        all of them, and the positions of the first. To a filter that is the same as the list, since
+        their weights add up: for the frames of an animation it is the average of equation 7.1's
+        weights that section 7.5 suggests. It takes less time and memory.
+
+        Args:
+            surfaces: Any surfaces; those that are alone in their kind are returned as they are.
+
+        Returns:
+            The surfaces in the order of the first of each kind.
+
+        Raises:
+            ValueError: Something is no Surface.
+        """
+        if not isinstance(surfaces, Iterable):
+            raise ValueError(f"surfaces: a {type(surfaces).__name__}; a list of Surface is needed")
+        kept: list[Surface] = []
+        for surface in surfaces:
+            if not isinstance(surface, Surface):
+                raise ValueError(f"surfaces: holds a {type(surface).__name__}; a Surface is needed")
+            for i, other in enumerate(kept):
+                joined = other.with_areas_of(surface)
+                if joined is not None:
+                    kept[i] = cls._take(joined)
+                    break
+            else:
+                kept.append(surface)
+        return kept
+
+    @classmethod
+    def _take(cls, native: _native.Surface) -> Self:
+        """Makes one of what the native module has made."""
+        surface = cls.__new__(cls)
+        _native.Surface.__init__(surface, native)
+        return surface
+
+    def __repr__(self) -> str:
+        return f"<prefilter.Surface of {self.triangle_count} triangles, area {self.area:g}>"
+
+
+def as_surfaces(surface: Surface | Sequence[Surface] | None) -> list[Surface]:
+    if surface is None:
+        return []
+    surfaces = [surface] if isinstance(surface, _native.Surface) else surface
+    if not isinstance(surfaces, Sequence):
+        raise ValueError(f"surface: a {type(surface).__name__}; a Surface or a list is needed")
+    for found in surfaces:
+        if not isinstance(found, _native.Surface):
+            raise ValueError(f"surface: holds a {type(found).__name__}; a Surface is needed")
+    return list(surfaces)
+
+
+def _weights(
+    weights: npt.ArrayLike | None, vertices: int, parts: int, noun: str, *, corners: int | None
+) -> tuple[np.ndarray | None, str]:
+    """Returns weights and what they belong to: vertices, triangles (or faces), or corners."""
+    if weights is None:
+        return None, ""
+    found = as_array("weights", weights)
+    if is_real(found):
+        found = np.ascontiguousarray(found, np.float64)
+        if found.shape == (vertices,):
+            return found, "vertices"
+        if found.shape in {(parts,), (parts, 1)}:
+            return found.reshape(-1), "triangles"
+        if corners is not None and found.shape == (parts, corners):
+            return found, "corners"
+    allowed = [f"({vertices},) for vertices", f"({parts},) or ({parts}, 1) for {noun}"]
+    if corners is not None:
+        allowed.append(f"({parts}, {corners}) for corners")
+    raise ValueError(
+        f"weights: shape {found.shape} of {found.dtype}; real numbers of the shape "
+        f"{', '.join(allowed)} are needed"
+    )
+
+
+def _sharp(
+    name: str, sharp: Sharp | None, shape: Sequence[int | str]
+) -> tuple[np.ndarray, np.ndarray]:
+    if sharp is None:
+        sharp = (np.empty([0, *shape[1:]], np.int64), np.empty(0))
+    if not isinstance(sharp, tuple | list) or len(sharp) != 2:
+        raise ValueError(f"{name}: {type(sharp).__name__}; a pair (vertices, sharpness) is needed")
+    vertices = as_indices(f"{name}: vertices", sharp[0], shape)
+    try:
+        sharpness = np.ascontiguousarray(sharp[1], np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: sharpness: found no numbers: {error}") from error
+    check_shape(f"{name}: sharpness", sharpness, (len(vertices),))
+    return vertices, sharpness
+
+
+def _mask(name: str, mask: npt.ArrayLike | None, length: int) -> np.ndarray | None:
+    if mask is None:
+        return None
+    found = np.asarray(mask)
+    if found.dtype != np.bool_ or found.shape != (length,):
+        raise ValueError(
+            f"{name}: shape {found.shape} of {found.dtype}; ({length},) of bool is needed"
+        )
+    return np.ascontiguousarray(found)

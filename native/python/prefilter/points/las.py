@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Points of LAS and LAZ files, read by laspy."""
+
+import os
+import re
+import struct
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from .._border.input import open_file
+from .reader import POINTS_AT_ONCE, PointChunk, damage_of, find_module
+
+_COLORS_LOOKED_AT = 1_000_000
+_COLORS = ("red", "green", "blue")
+
+
+class LasReader:
+    """Reads a LAS file, or with one of laspy's backends a LAZ file, piece by piece.
+
+    Attributes are intensity, classification, colors as bytes, and what extra dimensions there are;
+    three of these named like normals (nx, NormalX, normal_x) are the normals.
+    """
+
+    viewpoint = None
+
+    def __init__(self, path: str) -> None:
+        self._path = path
+        self._laspy = find_module("laspy", path, "LAS and LAZ files", "laspy[lazrs]")
+        _check_header(path)
+        with self._opened() as file:
+            header = file.header
+            self.count: int | None = int(header.point_count)
+            names = set(header.point_format.dimension_names)
+            extra = list(header.point_format.extra_dimension_names)
+            room = os.path.getsize(path) - header.offset_to_point_data
+            least = 0 if header.are_points_compressed else header.point_format.size
+            if self.count * least > room:
+                raise ValueError(
+                    f"'{path}': too short for the {self.count} points in its header: {room} bytes "
+                    "follow it"
+                )
+            scalars = [name for name in extra if header.point_format[name].num_elements == 1]
+        self._normals = _normals_among(scalars)
+        self._has_colors = set(_COLORS) <= names
+        plain = [name for name in scalars if name not in self._normals]
+        self._names = ["intensity", *plain]
+        self.has_normals = bool(self._normals)
+        self.attributes = [(name, False) for name in self._names]
+        self.attributes.append(("classification", True))
+        if self._has_colors:
+            self.attributes += [(name, True) for name in _COLORS]
+            self._color_scale = self._find_color_scale()
+
+    def chunks(self) -> Iterator[PointChunk]:
+        found = 0
+        for points in self._pieces():
+            found += len(points)
+            positions = np.stack([points.x, points.y, points.z], axis=1).astype(np.float64)
+            normals = _columns(points, self._normals) if self._normals else None
+            columns = [_columns(points, [*self._names, "classification"])]
+            if self._has_colors:
+                columns.append(np.round(_columns(points, _COLORS) * self._color_scale))
+            yield positions, normals, None, None, np.concatenate(columns, axis=1)
+        if found != self.count:
+            raise ValueError(
+                f"'{self._path}': ends after {found} of the {self.count} points in its header"
+            )
+
+    def _find_color_scale(self) -> np.float32:
+        # Colors have 16 bits, of which some programs fill only the lower 8. Many that are not black
+        # tell which.
+        colored = 0
+        for points in self._pieces():
+            colors = _columns(points, _COLORS)
+            if colors.max(initial=0) > 255:
+                return np.float32(255 / 65535)
+            colored += int(np.count_nonzero(colors.any(axis=1)))
+            if colored > _COLORS_LOOKED_AT:
+                break
+        return np.float32(1)
+
+    def _opened(self) -> Any:
+        with damage_of(self._path, "a LAS file"):
+            return self._laspy.open(self._path)
+
+    def _pieces(self) -> Iterator[Any]:
+        with self._opened() as file:
+            pieces = file.chunk_iterator(POINTS_AT_ONCE)
+            while True:
+                with damage_of(self._path, "a LAS file"):
+                    points = next(pieces, None)
+                if points is None or len(points) == 0:
+                    return
+                yield points
+
+
+def _check_header(path: str) -> None:
+    """Refuses counts that the file has no room for: laspy would go on for hours, or need them all.
+
+    See the public header block in the specification of LAS 1.4.
+    """
+    with open_file(path) as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(0)
+        header = file.read(255)
+    if header[:4] != b"LASF" or len(header) < 227:
+        raise ValueError(f"'{path}' is no LAS file: it begins with {header[:4]!r}")
+    records = struct.unpack_from("<I", header, 100)[0] * 54
+    if header[25] >= 4 and len(header) >= 247:
+        records += struct.unpack_from("<I", header, 243)[0] * 60
+    if records > size:
+        raise ValueError(f"'{path}': too short for the records that its header announces")
+
+
+def _columns(points: Any, names: tuple[str, ...] | list[str]) -> np.ndarray:
+    return np.stack([np.asarray(points[name], np.float32) for name in names], axis=1)
+
+
+def _normals_among(names: list[str]) -> list[str]:
+    """The names of three dimensions that hold normals; none where one is missing."""
+    short = {re.sub("[^a-z]", "", name.lower()).replace("normal", "n"): name for name in names}
+    axes = [short.get(axis) for axis in ("nx", "ny", "nz")]
+    return [name for name in axes if name is not None] if all(axes) else []

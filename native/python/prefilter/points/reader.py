@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What the native module needs of Python code that reads points."""
+
+import contextlib
+import importlib
+import sys
+from collections.abc import Iterator
+from types import ModuleType
+from typing import Protocol, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .._border.input import open_file
+
+POINTS_AT_ONCE = 1 << 16
+
+# Of some points: positions (n, 3), normals (n, 3), weights (n,), viewpoints (n, 3), and attributes
+# (n, attributes).
+PointChunk: TypeAlias = tuple[
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float32] | None,
+    npt.NDArray[np.float32] | None,
+    npt.NDArray[np.float64] | None,
+    npt.NDArray[np.float32],
+]
+
+
+class PointReader(Protocol):
+    """Reads a file of points from its first to its last, as often as is needed."""
+
+    @property
+    def count(self) -> int | None:
+        """How many points there are, where that is known."""
+
+    @property
+    def has_normals(self) -> bool: ...
+
+    @property
+    def attributes(self) -> list[tuple[str, bool]]:
+        """The names of the columns, and whether these hold bytes."""
+
+    @property
+    def viewpoint(self) -> tuple[float, float, float] | None:
+        """Where the scanner stood, in the coordinates of the points; None where
+        that differs among them, or is not known."""
+
+    def chunks(self) -> Iterator[PointChunk]:
+        """Yields points, some at a time, anew from the first."""
+
+
+def find_module(name: str, path: str, files: str, package: str) -> ModuleType:
+    """Imports the module that reads some files. Raises ValueError where it cannot be imported."""
+    # What cannot be opened is no fault of the module.
+    with open_file(path):
+        pass
+    try:
+        return importlib.import_module(name)
+    except ImportError as error:
+        raise ValueError(
+            f"'{path}': {files} need the Python module {name}, which {sys.executable} cannot "
+            f"import: {error}. Install the package {package}, or convert the file to PLY"
+        ) from error
+
+
+@contextlib.contextmanager
+def damage_of(path: str, kind: str) -> Iterator[None]:
+    """Makes a ValueError that names the file of whatever a module makes of its damage."""
+    try:
+        yield
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise ValueError(f"'{path}' cannot be read as {kind}: {error}") from error

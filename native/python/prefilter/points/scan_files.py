@@ -1,0 +1,137 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Files of points, as scanners and their programs write them."""
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, as_progress
+from .._border.output import as_path
+from .e57 import E57Reader
+from .las import LasReader
+from .reader import PointReader
+
+_READERS: dict[str, Callable[[str], PointReader]] = {
+    ".las": LasReader,
+    ".laz": LasReader,
+    ".e57": E57Reader,
+}
+POINT_EXTENSIONS = (*_native.POINT_EXTENSIONS, *_READERS)
+"""What the names of files of points end in."""
+
+AttributeArray: TypeAlias = npt.NDArray[np.uint8 | np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class ScanPoints:
+    """Points of a scan, with what is known of them.
+
+    Attributes:
+        positions: (n, 3). A value that is not finite in the file is not finite here.
+        normals: (n, 3), of any length; None where the file has none.
+        weights: (n,), how much each point counts (a scanner's confidence); None: all the same.
+        attributes: An (n,) array for each other value that the points have, by its name in the
+            file: uint8 where the file has bytes, else float32.
+        viewpoint: Where the scanner stood, (3,), in the coordinates of the points; or for each
+            point, (n, 3), where these were seen from several places; None where the file does not
+            say.
+    """
+
+    positions: npt.NDArray[np.float64]
+    normals: npt.NDArray[np.float32] | None = None
+    weights: npt.NDArray[np.float32] | None = None
+    attributes: dict[str, AttributeArray] = field(default_factory=dict)
+    viewpoint: npt.NDArray[np.float64] | None = None
+
+    @property
+    def colors(self) -> AttributeArray | None:
+        """(n, 3), of the attributes red, green and blue; None where one is missing."""
+        names = ("red", "green", "blue")
+        if not all(name in self.attributes for name in names):
+            return None
+        return np.stack([self.attributes[name] for name in names], axis=1)
+
+
+def read_points(
+    path: str | os.PathLike[str], *, progress: ProgressCallback | None = None
+) -> ScanPoints:
+    """Reads all points of a file; its ending says of which format it is.
+
+    .ply, .pcd: nx, ny, nz (or normal_x and so on) are normals, confidence is the weight; all other
+    numbers are attributes. VIEWPOINT of a .pcd file is the viewpoint, except for the origin in a
+    cloud that is no image: it stands there, too, where nothing is known.
+    .xyz, .xyzn, .pts, .asc, .txt: lines of x y z, and then a normal, a color, an intensity; which
+    of these the columns are is told from the first thousands of lines.
+    .las, .laz: need the Python package laspy; .laz also lazrs or laszip.
+    .e57: needs the Python package pye57. All scans are read, in the file's coordinates; the places
+    of their poses are the viewpoint.
+
+    Args:
+        path: Of the file.
+        progress: Called with the fraction done; returning False stops the work.
+
+    Raises:
+        ValueError: The extension is another, a package is missing, or the file is damaged; the
+            message names the line or the point.
+        OSError: The file cannot be read.
+        MemoryError: The points would not fit into memory.
+        Cancelled: `progress` returned False.
+    """
+    source = open_points(path)
+    positions, normals, weights, viewpoint, attributes = _native.read_points(
+        source, as_progress(progress)
+    )
+    if viewpoint is None and source.viewpoint is not None:
+        viewpoint = np.array(source.viewpoint)
+    return ScanPoints(positions, normals, weights, attributes, viewpoint)
+
+
+def open_points(path: str | os.PathLike[str]) -> _native.PointSource:
+    """Opens a file for functions of the native module that read it piece by piece."""
+    name = as_path(path)
+    ending = os.path.splitext(name)[1].lower()
+    if ending in _READERS:
+        return _native.PointSource(_READERS[ending](name))
+    if ending not in POINT_EXTENSIONS:
+        raise ValueError(
+            f"'{name}': unsupported extension '{ending}'; use {', '.join(POINT_EXTENSIONS)}"
+        )
+    return _native.open_points(os.fsencode(name))
+
+
+def read_range_grid(
+    path: str | os.PathLike[str], *, progress: ProgressCallback | None = None
+) -> npt.NDArray[np.int64] | None:
+    """Reads the grid in which a scanner saw the points of a PLY file, its element "range_grid".
+
+    Returns:
+        (rows, columns) indices of points, -1 where the scanner saw nothing; None where the file has
+        no grid.
+
+    Raises:
+        ValueError: This is no PLY file, or it is damaged.
+        OSError: The file cannot be read.
+        Cancelled: `progress` returned False.
+    """
+    return _native.read_range_grid(os.fsencode(as_path(path)), as_progress(progress))
+
+
+def read_faces(
+    path: str | os.PathLike[str], *, progress: ProgressCallback | None = None
+) -> npt.NDArray[np.int64]:
+    """Reads the faces of a PLY file as (triangles, 3) indices of its points.
+
+    Polygons become fans around their first corner; (0, 3) where there are no faces.
+
+    Raises:
+        ValueError: This is no PLY file, or it is damaged.
+        OSError: The file cannot be read.
+        Cancelled: `progress` returned False.
+    """
+    return _native.read_faces(os.fsencode(as_path(path)), as_progress(progress))

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Levels of a mipmap that know which filter made them (section 6.2)."""
+
+from collections.abc import Iterable
+from typing import Generic, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import (
+    ProgressCallback,
+    Wrap,
+    as_level_count,
+    as_name,
+    as_wrap,
+)
+from .._border.arrays import as_image, as_threads, in_form_of
+from .._border.channels import in_channel_groups
+
+SAMPLING_FILTERS = tuple(_native.sampling_filters())
+"""The kernels that sampling tables and `sampling_levels` are made for."""
+
+Value = TypeVar("Value", bound=np.generic)
+
+
+class FilteredLevels(list[npt.NDArray[Value]], Generic[Value]):
+    """A list of arrays (height, width, channels) or (height, width), level 0 first.
+
+    Attributes:
+        filter: The name of the filter that made them; None where it is not known.
+    """
+
+    def __init__(self, levels: Iterable[npt.NDArray[Value]] = (), filter: str | None = None):
+        super().__init__(levels)
+        self.filter = filter
+
+
+def sampling_levels(
+    image: npt.ArrayLike,
+    filter: str = "lanczos2",
+    *,
+    wrap: Wrap = "clamp",
+    levels: int | None = None,
+    premultiplied: bool = False,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> FilteredLevels[np.float32]:
+    """The levels that a sampling table of the same filter fits.
+
+    Level k is the image under the kernel with its unit as wide as a texel of the level, which is
+    2^k texels of the image: what the exact filter gives at the texels' centres. Level 0 is the
+    image itself where the kernel interpolates ("box", "tent", "lanczos2", "lanczos3"); the others
+    blur it. Nothing is clipped: kernels with negative lobes leave the range of the image.
+
+    Args:
+        image: (height, width, channels) of any number, or (height, width), scene-linear, row 0 at
+            v = 0. Bytes (uint8) stand for a 255th each, uint16 for a 65535th.
+        filter: A name of `SAMPLING_FILTERS`.
+        wrap: What lies outside of the image: "clamp", "repeat" or "border" (zero), or a pair of
+            these for u and v.
+        levels: How many to return, level 0 included; None = down to 1 x 1.
+        premultiplied: Whether the colors of an image of 2 or 4 channels are multiplied by alpha
+            already, or its last channel is no alpha: then every channel is filtered as it stands.
+            Otherwise alpha is clipped to [0, 1] and the colors are multiplied by it, and they stay
+            so in all levels: samples are weighted sums, which are right only of multiplied colors.
+            Divide samples by their alpha.
+        progress: Called with the fraction done, in [0, 1]; may return False to stop.
+        threads: How many to use; 0 = all processors. Results do not depend on it.
+
+    Returns:
+        The levels, float32, with as many axes as the image, down to 1 x 1. Each has half the sides
+        of the one before, rounded up: texels nest, and where sides are no powers of two the last
+        ones reach beyond the image. (Those of `mipmaps`, as graphics cards have them, are rounded
+        down; they do not nest, and tables lose by that what they gain.)
+
+    Raises:
+        ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.
+        MemoryError: The levels do not fit into memory.
+        Cancelled: The progress callback returned False.
+    """
+    found = in_channel_groups(
+        as_image("image", image),
+        bool(premultiplied),
+        lambda part, multiplied, reports: _native.sampling_levels(
+            part,
+            as_name("filter", filter),
+            as_wrap(wrap),
+            as_level_count(levels),
+            multiplied,
+            reports,
+            as_threads(threads),
+        ),
+        progress,
+    )
+    joined = [
+        level[0] if len(level) == 1 else np.concatenate(level, axis=2)
+        for level in zip(*found, strict=True)
+    ]
+    return FilteredLevels((in_form_of(image, level) for level in joined), filter)

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Images moved by affine and projective maps (section 6.3)."""
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, Wrap, as_name, as_size, as_wrap
+from .._border.arrays import FloatArray, as_array, as_image, as_threads, in_form_of
+from .._border.channels import in_channel_groups
+from .._border.samples import as_probe_count
+from .samples import native_table
+from .sampling_table import SamplingTable
+
+_STANDARD_TEXELS = 8
+
+
+def resample(
+    image: npt.ArrayLike,
+    transform: npt.ArrayLike,
+    width: int,
+    height: int,
+    *,
+    table: SamplingTable | str | None = None,
+    filter: str = "lanczos2",
+    exact: bool = False,
+    max_probes: int = 1,
+    wrap: Wrap = "clamp",
+    premultiplied: bool = False,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> FloatArray:
+    """The image scaled, rotated, sheared or seen in perspective.
+
+    Each pixel of the result is a sample of the image: where the transform carries the pixel's
+    center, with a filter as wide as the larger singular value of its Jacobian there. A table reads
+    few texels of a mipmap, which is made on the way; "trilinear" interpolates in it; `exact` reads
+    all texels under the filter, and can take long where they are many. Filters are never narrower
+    than a pixel of the image, nor, but for `exact`, wider than one of the coarsest level.
+
+    With more than one probe the filter is an ellipse where the transform makes one of a pixel: see
+    `sample_anisotropic`. It is made for "gaussian", which with `exact` is `sample_ewa`.
+
+    Args:
+        image: (height, width, channels) of any number, or (height, width), scene-linear, row 0 at
+            the bottom. Bytes (uint8) stand for a 255th each, uint16 for a 65535th.
+        transform: (3, 3), carries (x, y, 1) of the result to (x w, y w, w) of the image, both in
+            pixels of their own; pixel i spans [i, i + 1). Or (2, 3): an affine map to (x, y).
+            Pixels of the result whose w is not above 0 look beyond the horizon: they are 0 in all
+            channels.
+        width: Of the result, in pixels, 1 to 2^20.
+        height: Of the result.
+        table: What to sample with; the mipmap is made with its filter. None: the standard one of
+            `filter` with 8 texels. "trilinear": for comparison.
+        filter: A name of `SAMPLING_FILTERS`, where no table brings its own.
+        exact: Whether to use the filter itself. No table can be given then.
+        max_probes: How many isotropic samples a pixel may be made of, 1 to 256.
+        wrap: What lies outside of the image: "clamp" (its nearest pixel), "repeat" or "border"
+            (zero), or a pair of these for x and y.
+        premultiplied: As for `resize`. With the wrap mode "border" images of 2 or 4 channels become
+            transparent outside.
+        progress: Called with the fraction done, in [0, 1]; may return False to stop.
+        threads: How many to use; 0 = all processors. Results do not depend on it.
+
+    Returns:
+        A new float32 array, (height, width, channels), or (height, width) for such an image.
+
+    Raises:
+        ValueError: An argument is out of range, or a pixel is not finite or beyond 1e30.
+        MemoryError: The result does not fit into memory.
+        Cancelled: The progress callback returned False.
+    """
+    stored = as_image("image", image)
+    kernel = as_name("filter", filter)
+    if exact and table is not None:
+        raise ValueError(f"table: {table!r} with exact=True; None is needed, as no table is used")
+    if isinstance(table, SamplingTable):
+        kernel = table.filter
+    elif table is None and not exact:
+        table = SamplingTable.standard(kernel, _STANDARD_TEXELS)
+    sampler = None if table is None else native_table(table, [])
+    homography = _as_homography(transform)
+    found = in_channel_groups(
+        stored,
+        bool(premultiplied),
+        lambda part, multiplied, reports: _native.resample(
+            part,
+            homography,
+            as_size("width", width),
+            as_size("height", height),
+            sampler,
+            kernel,
+            bool(exact),
+            as_probe_count(max_probes),
+            as_wrap(wrap),
+            multiplied,
+            reports,
+            as_threads(threads),
+        ),
+        progress,
+    )
+    return in_form_of(image, found[0] if len(found) == 1 else np.concatenate(found, axis=2))
+
+
+def _as_homography(transform: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    found = as_array("transform", transform)
+    if found.dtype.kind not in "iuf":
+        raise ValueError(f"transform: dtype {found.dtype}; numbers are needed")
+    if found.shape not in ((3, 3), (2, 3)):
+        raise ValueError(f"transform: shape {found.shape}; (3, 3) or (2, 3) is needed")
+    if len(found) == 2:
+        found = np.vstack([found, (0, 0, 1)])
+    return np.ascontiguousarray(found, np.float64)

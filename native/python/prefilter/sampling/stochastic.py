@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Samples of a single texel each, right on average, for renderers that take many."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
+from .._border.arrays import FloatArray, as_floats, as_threads
+from .._border.samples import as_coordinates, as_pyramid, as_samples, as_scales
+from .samples import native_table
+from .sampling_table import SamplingTable
+
+
+class PickedTexels(NamedTuple):
+    """A texel of each sample.
+
+    Attributes:
+        texels: (n, 3), whole numbers: level, column and row. Column or row are -1 outside of the
+            image with the wrap mode "border", where texels are zero.
+        weights: (n,): what the texel's value is to be multiplied by; negative for some texels of
+            filters with negative lobes.
+    """
+
+    texels: npt.NDArray[np.int32]
+    weights: npt.NDArray[np.float64]
+
+
+def sample_stochastic(
+    levels: Sequence[npt.ArrayLike],
+    table: SamplingTable | str,
+    coordinates: npt.ArrayLike,
+    scales: npt.ArrayLike,
+    numbers: npt.ArrayLike,
+    *,
+    wrap: Wrap = "clamp",
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> FloatArray:
+    """Samples of a mipmap that read one texel each, whose mean is what `sample` returns.
+
+    Of the texels that a table has for a place and a scale, one is picked with a probability
+    proportional to the magnitude of its weight, and multiplied by the sum of all magnitudes, with
+    the sign of its weight. Negative weights make for noise in proportion to the values: subtract
+    something near their mean from the levels, the same everywhere, and add it to the samples.
+
+    Args:
+        levels: As for `sample`.
+        table: As for `sample`; also "bilinear": interpolation in the level next to the scale.
+        coordinates: As for `sample`.
+        scales: As for `sample`.
+        numbers: (n,), random numbers in [0, 1), one a sample. Evenly spread ones, such as
+            stratified ones, make for less noise.
+        wrap: As for `sample`.
+        progress: As for `sample`.
+        threads: As for `sample`.
+
+    Returns:
+        The samples, float32 (n, channels), or (n,) of levels (height, width).
+
+    Raises:
+        ValueError: An argument is out of range, or the levels are known to have another filter.
+        Cancelled: The progress callback returned False.
+    """
+    found = _native.sample_stochastic(
+        *_arguments(levels, table, coordinates, scales, numbers, wrap, progress, threads)
+    )
+    return as_samples(levels, found)
+
+
+def pick_texels(
+    levels: Sequence[npt.ArrayLike],
+    table: SamplingTable | str,
+    coordinates: npt.ArrayLike,
+    scales: npt.ArrayLike,
+    numbers: npt.ArrayLike,
+    *,
+    wrap: Wrap = "clamp",
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> PickedTexels:
+    """The texels that `sample_stochastic` reads, for renderers that filter after shading.
+
+    Such a renderer shades with the texel as it is, and multiplies the result by the weight.
+
+    Args:
+        levels: As for `sample_stochastic`; only their sizes count.
+        table: As for `sample_stochastic`.
+        coordinates: As for `sample_stochastic`.
+        scales: As for `sample_stochastic`.
+        numbers: As for `sample_stochastic`.
+        wrap: As for `sample_stochastic`.
+        progress: As for `sample_stochastic`.
+        threads: As for `sample_stochastic`.
+
+    Raises:
+        ValueError: An argument is out of range, or the levels are known to have another filter.
+        Cancelled: The progress callback returned False.
+    """
+    return PickedTexels(
+        *_native.pick_texels(
+            *_arguments(levels, table, coordinates, scales, numbers, wrap, progress, threads)
+        )
+    )
+
+
+_Arguments = tuple[
+    list[np.ndarray],
+    _native.SamplingTable | None,
+    bool,
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    tuple[str, str],
+    ProgressCallback | None,
+    int,
+]
+
+
+def _arguments(
+    levels: Sequence[npt.ArrayLike],
+    table: SamplingTable | str,
+    coordinates: npt.ArrayLike,
+    scales: npt.ArrayLike,
+    numbers: npt.ArrayLike,
+    wrap: Wrap,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> _Arguments:
+    """As the native functions take them."""
+    pyramid = as_pyramid(levels)
+    places = as_coordinates(coordinates)
+    bilinear = isinstance(table, str) and table == "bilinear"
+    return (
+        pyramid,
+        None if bilinear else native_table(table, levels),
+        bilinear,
+        places,
+        as_scales(scales, len(places)).reshape(-1),
+        as_floats("numbers", numbers, (len(places),), np.float64),
+        as_wrap(wrap),
+        as_progress(progress),
+        as_threads(threads),
+    )

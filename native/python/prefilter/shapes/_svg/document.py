@@ -1,0 +1,169 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The XML of a drawing, read by expat, within limits that no honest file meets."""
+
+import os
+import zlib
+from collections.abc import Callable
+from typing import Any
+from xml.etree.ElementTree import Element
+from xml.parsers import expat
+
+from ..._border.input import open_file
+from ..._border.output import as_path
+
+SVG = "http://www.w3.org/2000/svg"
+XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
+
+MOST_DEPTH = 256
+MOST_UNPACKED = 1 << 28
+# What entities may add to a file: expat's own limit came with 2.4.
+_MOST_EXPANDED = 1 << 24
+_TOLD_EVERY = 1000
+
+
+class _RefusedError(Exception):
+    """What is well-formed, and refused; the message says where."""
+
+
+class SvgElement(Element):
+    """An element that knows where it stands. Its tag is without SVG's namespace."""
+
+    line = 0
+    parent: "SvgElement | None" = None
+
+    @property
+    def href(self) -> str:
+        """The id that it refers to, in this file; empty where there is none."""
+        target = self.get("href", self.get(XLINK_HREF, "")).strip()
+        return target[1:] if target.startswith("#") else ""
+
+
+class Document:
+    """The elements of a file.
+
+    Attributes:
+        name: What messages call the file.
+        root: The outermost `svg`.
+        ids: Elements by their id, the first of each.
+        count: How many there are.
+        foreign_style: The line of a reference to a style sheet in another file; 0 without.
+    """
+
+    def __init__(self, data: bytes, name: str, encoding: str | None, tell: Callable[[float], None]):
+        self.name = name
+        self.ids: dict[str, SvgElement] = {}
+        self.count = 0
+        self.foreign_style = 0
+        self._open: list[SvgElement] = []
+        self._root: SvgElement | None = None
+        self._references = data.count(b"&")
+        self._size = max(len(data), 1)
+        self._tell = tell
+        parser = expat.ParserCreate(encoding, "}")
+        self._parser = parser
+        parser.buffer_text = True
+        parser.StartElementHandler = self._start
+        parser.EndElementHandler = self._end
+        parser.CharacterDataHandler = self._text
+        parser.EntityDeclHandler = self._entity
+        parser.ProcessingInstructionHandler = self._instruction
+        try:
+            parser.Parse(data, True)
+        except expat.ExpatError as error:
+            what = expat.ErrorString(error.code)
+            raise ValueError(
+                f"{name}, line {error.lineno}, column {error.offset + 1}: {what}"
+            ) from None
+        except _RefusedError as error:
+            raise ValueError(str(error)) from None
+        except (LookupError, ValueError) as error:
+            raise ValueError(f"{name}: its encoding cannot be read: {error}") from None
+        if self._root is None or self._root.tag != "svg":
+            tag = "nothing" if self._root is None else f"<{self._root.tag}>"
+            raise ValueError(f"{name}: no SVG drawing: found {tag} for the outermost element")
+        self.root: SvgElement = self._root
+
+    def _start(self, name: str, attributes: dict[str, str]) -> None:
+        line = self._parser.CurrentLineNumber
+        if len(self._open) >= MOST_DEPTH:
+            raise _RefusedError(
+                f"{self.name}, line {line}: elements are nested more than {MOST_DEPTH} deep"
+            )
+        space, _, local = name.rpartition("}")
+        tag = local if space in ("", SVG) else "{" + name
+        element = SvgElement(
+            tag, {("{" + key if "}" in key else key): value for key, value in attributes.items()}
+        )
+        element.line = line
+        if self._open:
+            element.parent = self._open[-1]
+            self._open[-1].append(element)
+        else:
+            self._root = element
+        self._open.append(element)
+        if "id" in element.attrib:
+            self.ids.setdefault(element.attrib["id"], element)
+        self.count += 1
+        if self.count % _TOLD_EVERY == 0:
+            self._tell(self._parser.CurrentByteIndex / self._size)
+
+    def _end(self, name: str) -> None:
+        self._open.pop()
+
+    def _text(self, text: str) -> None:
+        if self._open and self._open[-1].tag == "style":
+            self._open[-1].text = (self._open[-1].text or "") + text
+
+    def _entity(self, name: str, parameter: bool, value: str | None, *rest: Any) -> None:
+        if value is None:
+            return  # It stands in another file, and stays empty.
+        if "&" in value or "%" in value or len(value) * self._references > _MOST_EXPANDED:
+            raise _RefusedError(
+                f"{self.name}, line {self._parser.CurrentLineNumber}: the entity '{name}' would "
+                "make the file too large"
+            )
+
+    def _instruction(self, target: str, data: str) -> None:
+        if target == "xml-stylesheet":
+            self.foreign_style = self._parser.CurrentLineNumber
+
+
+def read_document(
+    source: str | os.PathLike[str] | bytes, tell: Callable[[float], None]
+) -> Document:
+    """Reads a file, plain or compressed, or markup. See `prefilter.read_svg`."""
+    encoding = None
+    if isinstance(source, str) and source.lstrip("\ufeff \t\r\n").startswith("<"):
+        # What the markup says of its encoding was true of its bytes.
+        data, name, encoding = source.lstrip("\ufeff").encode("utf-8", "replace"), "source", "utf-8"
+    elif isinstance(source, bytes | bytearray | memoryview):
+        data, name = bytes(source), "source"
+    elif isinstance(source, str | os.PathLike):
+        try:
+            path = as_path(source)
+        except ValueError as error:
+            raise ValueError(f"source{str(error).removeprefix('path')}") from None
+        name = f"'{path}'"
+        with open_file(path) as file:
+            data = file.read()
+    else:
+        raise ValueError(f"source: {source!r}; a path, markup, or bytes are needed")
+    if data[:2] == b"\x1f\x8b":
+        data = _unpacked(data, name)
+    if not data.strip():
+        raise ValueError(f"{name} is empty")
+    return Document(data, name, encoding, tell)
+
+
+def _unpacked(data: bytes, name: str) -> bytes:
+    unpacker = zlib.decompressobj(wbits=31)
+    try:
+        unpacked = unpacker.decompress(data, MOST_UNPACKED)
+    except zlib.error as error:
+        raise ValueError(f"{name}: compressed, and damaged: {error}") from None
+    if unpacker.unconsumed_tail:
+        raise ValueError(f"{name}: more than {MOST_UNPACKED >> 20} MiB when unpacked")
+    if not unpacker.eof:
+        raise ValueError(f"{name}: compressed, and ends early")
+    return unpacked

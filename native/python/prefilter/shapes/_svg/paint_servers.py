@@ -1,0 +1,257 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Gradients: what their attributes say, directly and by reference, as gradients of shapes."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ... import _native
+from ..rasterization import Shape
+from .document import Document, SvgElement
+from .lengths import Units, read_length
+from .styles import StyleSheets
+from .values import (
+    IDENTITY,
+    Color,
+    Length,
+    Matrix,
+    as_number,
+    as_transform,
+    determinant,
+    multiplied,
+)
+from .warnings import Warnings
+
+GRADIENTS = ("linearGradient", "radialGradient")
+_COMMON = ("gradientUnits", "gradientTransform", "spreadMethod")
+_GEOMETRY = {
+    "linearGradient": ("x1", "y1", "x2", "y2"),
+    "radialGradient": ("cx", "cy", "r", "fx", "fy", "fr"),
+}
+_DEFAULTS = {
+    "x1": Length(0.0),
+    "y1": Length(0.0),
+    "x2": Length(100.0, "%"),
+    "y2": Length(0.0),
+    "cx": Length(50.0, "%"),
+    "cy": Length(50.0, "%"),
+    "r": Length(50.0, "%"),
+    "fr": Length(0.0),
+}
+# The share of the radius at which a focus outside of the circle is put.
+_FOCUS_LIMIT = 1.0 - 1e-6
+# How far straight lines between stops may be off, in shares of white as it is encoded.
+_TOLERANCE = 1.0 / 1020.0
+
+
+class Colors:
+    """Colors as shapes have them.
+
+    Attributes:
+        is_linear: Whether red, green and blue are decoded to scene-linear values.
+    """
+
+    def __init__(self, is_linear: bool) -> None:
+        self.is_linear = is_linear
+
+    def premultiplied(self, colors: np.ndarray) -> list[tuple[float, ...]]:
+        """Colors (n, 4) of a file, multiplied by their alpha."""
+        values = np.asarray(colors, np.float64)
+        rgb = values[:, :3]
+        if self.is_linear:
+            image = np.ascontiguousarray(rgb[None], np.float32)
+            rgb = _native.decode_srgb(image, 1)[0].astype(np.float64)
+        rows = np.concatenate([rgb * values[:, 3:], values[:, 3:]], axis=1)
+        return [tuple(row) for row in rows.tolist()]
+
+    def between(self, first: Color, last: Color) -> np.ndarray:
+        """Colors from one stop to the next, so close that straight lines between them will do.
+
+        A file has the colors change in a straight line as they are encoded, and not multiplied by
+        alpha. Either makes a curve of it: (n, 4), at equal distances, both ends included.
+        """
+        ends = np.array([first, last])
+        change = np.abs(ends[1] - ends[0])
+        # A curve is off from a chord by an eighth of its second derivative. That of the product is
+        # twice the product of the slopes. That of the decoded color, as seen when encoded again,
+        # is largest where its power begins: 1.4 / (0.04045 + 0.055).
+        squares = change[:3].max() * change[3] / 4.0
+        if self.is_linear:
+            squares = 2.4 * squares + change[:3].max() * change[:3].max() * (1.4 / 0.09545) / 8.0
+        count = max(1, math.ceil(math.sqrt(squares / _TOLERANCE)))
+        shares = np.linspace(0.0, 1.0, count + 1)[:, None]
+        colors: np.ndarray = ends[0] * (1.0 - shares) + ends[1] * shares
+        return colors
+
+
+@dataclass(frozen=True)
+class Gradient:
+    """A gradient of the colors that shapes have, in the units of what it paints."""
+
+    is_radial: bool
+    numbers: tuple[float, ...]
+    stops: list[tuple[float, tuple[float, ...]]]
+    spread: str
+    matrix: Matrix
+
+    def apply(self, shape: Shape, matrix: Matrix) -> None:
+        """Paints a shape which `matrix` has carried to where it is."""
+        a, b, c, d, e, f = multiplied(matrix, self.matrix)
+        transform = np.array([[a, c, e], [b, d, f]])
+        if self.is_radial:
+            cx, cy, r, fx, fy, fr = self.numbers
+            shape.radial_gradient(
+                (cx, cy),
+                r,
+                self.stops,
+                focus=(fx, fy),
+                focus_radius=fr,
+                spread=self.spread,
+                transform=transform,
+            )
+        else:
+            x1, y1, x2, y2 = self.numbers
+            shape.linear_gradient(
+                (x1, y1), (x2, y2), self.stops, spread=self.spread, transform=transform
+            )
+
+
+@dataclass(frozen=True)
+class Stop:
+    offset: float
+    color: Color
+
+
+class PaintServers:
+    """The gradients of a document."""
+
+    def __init__(
+        self, document: Document, sheets: StyleSheets, colors: Colors, warnings: Warnings
+    ) -> None:
+        self._document = document
+        self._sheets = sheets
+        self._colors = colors
+        self._warnings = warnings
+        self._known: dict[SvgElement, tuple[dict[str, str], list[Stop]]] = {}
+
+    def resolve(
+        self,
+        element: SvgElement,
+        opacity: float,
+        units: Units,
+        bounds: tuple[float, float, float, float] | None,
+    ) -> Gradient | Color | None:
+        """What a gradient paints.
+
+        Args:
+            element: The gradient.
+            opacity: Of the paint, in [0, 1].
+            units: Where it is used.
+            bounds: Of the outline to paint: left, top, right, bottom.
+
+        Returns:
+            A single color where it comes to that; None where it cannot be used.
+        """
+        attributes, stops = self._chain(element)
+        if not stops:
+            return None
+        stops = [Stop(stop.offset, (*stop.color[:3], stop.color[3] * opacity)) for stop in stops]
+        if len(stops) == 1:
+            return stops[0].color
+        matrix = IDENTITY
+        if attributes.get("gradientUnits") != "userSpaceOnUse":
+            if bounds is None:
+                return None
+            left, top, right, bottom = bounds
+            if right <= left or bottom <= top:
+                return None
+            matrix = (right - left, 0.0, 0.0, bottom - top, left, top)
+            units = Units(1.0, 1.0, units.font_size)
+        own = as_transform(attributes.get("gradientTransform", ""))
+        if own is None or determinant(own) == 0.0:
+            self._warnings.broken("gradientTransform", "ignored", element.line)
+            own = IDENTITY
+        matrix = multiplied(matrix, own)
+        numbers = self._numbers(element, attributes, units)
+        is_radial = element.tag == "radialGradient"
+        if is_radial:
+            if numbers[2] <= 0.0:
+                return stops[-1].color
+            numbers = _with_focus_inside(numbers)
+        elif numbers[:2] == numbers[2:]:
+            return stops[-1].color
+        spread = attributes.get("spreadMethod", "pad")
+        if spread not in ("pad", "reflect", "repeat"):
+            self._warnings.broken("spreadMethod", "ignored", element.line)
+            spread = "pad"
+        return Gradient(is_radial, numbers, list(self._pieces(stops)), spread, matrix)
+
+    def _pieces(self, stops: list[Stop]) -> Iterator[tuple[float, tuple[float, ...]]]:
+        for index, stop in enumerate(stops):
+            following = stops[index + 1] if index + 1 < len(stops) else stop
+            colors = np.array([stop.color])
+            if following.offset > stop.offset:
+                colors = self._colors.between(stop.color, following.color)[:-1]
+            for k, color in enumerate(self._colors.premultiplied(colors)):
+                yield stop.offset + (following.offset - stop.offset) * k / len(colors), color
+
+    def _chain(self, element: SvgElement) -> tuple[dict[str, str], list[Stop]]:
+        """The attributes and stops of a gradient, and of those that it refers to."""
+        if element not in self._known:
+            attributes: dict[str, str] = {}
+            stops: list[Stop] = []
+            seen: set[SvgElement] = set()
+            at: SvgElement | None = element
+            while at is not None and at.tag in GRADIENTS:
+                if at in seen:
+                    self._warnings.broken(at.tag, "refers to itself", at.line)
+                    break
+                seen.add(at)
+                names = _COMMON + (_GEOMETRY[at.tag] if at.tag == element.tag else ())
+                declared = self._sheets.declared(at)
+                for name in names:
+                    if name in declared:
+                        attributes.setdefault(name, declared[name])
+                stops = stops or list(self._stops(at))
+                at = self._document.ids.get(at.href)
+            self._known[element] = attributes, stops
+        return self._known[element]
+
+    def _stops(self, gradient: SvgElement) -> Iterator[Stop]:
+        offset = 0.0
+        for child in gradient:
+            if child.tag != "stop":
+                continue
+            assert isinstance(child, SvgElement)
+            style = self._sheets.style(child)
+            given = as_number(self._sheets.declared(child).get("offset", "0"))
+            offset = max(offset, min(max(given or 0.0, 0.0), 1.0))
+            color = style.color if isinstance(style.stop_color, str) else style.stop_color
+            yield Stop(offset, (*color[:3], color[3] * style.stop_opacity))
+
+    def _numbers(
+        self,
+        element: SvgElement,
+        attributes: Mapping[str, str],
+        units: Units,
+    ) -> tuple[float, ...]:
+        found: dict[str, float] = {}
+        for name in _GEOMETRY[element.tag]:
+            length = read_length(element, attributes, name, self._warnings) or _DEFAULTS.get(name)
+            # A focus is in the center, where nothing is said of it.
+            found[name] = found["c" + name[1]] if length is None else units.pixels(length, name)
+        return tuple(found.values())
+
+
+def _with_focus_inside(numbers: tuple[float, ...]) -> tuple[float, ...]:
+    cx, cy, r, fx, fy, fr = numbers
+    fr = min(max(fr, 0.0), r * _FOCUS_LIMIT)
+    # The circle around the focus lies within the other one.
+    room = (r - fr) * _FOCUS_LIMIT
+    distance = _native.hypot(fx - cx, fy - cy)
+    if distance > room:
+        fx, fy = cx + (fx - cx) * room / distance, cy + (fy - cy) * room / distance
+    return cx, cy, r, fx, fy, fr

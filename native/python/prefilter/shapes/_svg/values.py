@@ -1,0 +1,287 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What attributes and properties hold: numbers, lengths, colors, paints, transforms."""
+
+import math
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, TypeAlias
+
+import tinycss2
+import tinycss2.color4
+
+from ... import _native
+
+Matrix: TypeAlias = tuple[float, float, float, float, float, float]
+"""a, b, c, d, e, f: (x, y) goes to (a x + c y + e, b x + d y + f)."""
+Color: TypeAlias = tuple[float, float, float, float]
+"""Red, green, blue, alpha in [0, 1]; sRGB, not multiplied by alpha."""
+
+IDENTITY: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+BLACK: Color = (0.0, 0.0, 0.0, 1.0)
+
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_NUMBER = re.compile(NUMBER, re.ASCII)
+_LENGTH = re.compile(rf"\s*({NUMBER})([a-zA-Z]*|%)\s*", re.ASCII)
+_SEPARATOR = re.compile(r"\s*,?\s*", re.ASCII)
+# CSS pixels; em and ex are multiples of the font's size.
+_UNITS = {
+    "": 1.0,
+    "px": 1.0,
+    "in": 96.0,
+    "cm": 96.0 / 2.54,
+    "mm": 96.0 / 25.4,
+    "pt": 96.0 / 72.0,
+    "pc": 16.0,
+}
+_FONT_UNITS = {"em": 1.0, "ex": 0.5}
+_OTHER_UNITS = frozenset(
+    ["ch", "rem", "cap", "ic", "lh", "rlh", "vw", "vh", "vi", "vb", "vmin", "vmax", "q"]
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Length:
+    """A number with its unit; "%" and the units of fonts need to know what they are relative to."""
+
+    value: float
+    unit: str = ""
+
+    def pixels(self, whole: float, font_size: float) -> float:
+        """In pixels; `whole` is 100 %."""
+        if self.unit == "%":
+            return self.value * whole / 100.0
+        if self.unit in _FONT_UNITS:
+            return self.value * _FONT_UNITS[self.unit] * font_size
+        return self.value * _UNITS[self.unit]
+
+
+class UnknownUnitError(ValueError):
+    """A length in a unit that CSS has, and that is not supported here."""
+
+
+def as_length(text: str) -> Length | None:
+    """The length that a text is; None where it is none. Raises UnknownUnitError."""
+    match = _LENGTH.fullmatch(text)
+    if not match:
+        return None
+    value, unit = float(match[1]), match[2].lower()
+    if not math.isfinite(value):
+        return None
+    if unit == "%" or unit in _UNITS or unit in _FONT_UNITS:
+        return Length(value, unit)
+    if unit in _OTHER_UNITS:
+        raise UnknownUnitError(unit)
+    return None
+
+
+def as_lengths(text: str) -> tuple[Length, ...] | None:
+    found = [as_length(part) for part in re.split(r"\s*,\s*|\s+", text.strip())]
+    return tuple(each for each in found if each is not None) if None not in found else None
+
+
+def as_number(text: str) -> float | None:
+    """A number, or a percentage as its hundredth."""
+    match = _LENGTH.fullmatch(text)
+    if not match or match[2] not in ("", "%"):
+        return None
+    value = float(match[1]) * (0.01 if match[2] else 1.0)
+    return value if math.isfinite(value) else None
+
+
+def leading_numbers(text: str) -> tuple[list[float], bool]:
+    """The numbers that a text begins with, and whether it holds nothing else."""
+    numbers: list[float] = []
+    position = len(text) - len(text.lstrip())
+    while match := _NUMBER.match(text, position):
+        value = float(match[0])
+        if not math.isfinite(value):
+            return numbers, False
+        numbers.append(value)
+        position = _SEPARATOR.match(text, match.end()).end()  # type: ignore[union-attr]
+    return numbers, position >= len(text)
+
+
+@dataclass(frozen=True, slots=True)
+class Paint:
+    """What an outline is filled or stroked with.
+
+    Attributes:
+        color: None paints nothing; "current" stands for the property `color`.
+        server: What url() refers to: # and the id of a gradient, usually. The color is for where
+            there is none.
+    """
+
+    color: Color | str | None
+    server: str = ""
+
+
+@lru_cache(maxsize=4096)
+def as_color(text: str) -> Color | str | None:
+    """A color, or "current"; None for what is none."""
+    try:
+        return _color_of(tinycss2.parse_one_component_value(text, skip_comments=True))
+    except ValueError:
+        return None
+
+
+@lru_cache(maxsize=4096)
+def as_paint(text: str) -> Paint | None:
+    tokens = _tokens(text)
+    if not tokens:
+        return None
+    server = _url_of(tokens[0])
+    if server is None:
+        return _plain_paint(tokens)
+    fallback = _plain_paint(tokens[1:]) if tokens[1:] else Paint(None)
+    return Paint(fallback.color, server) if fallback else None
+
+
+def _plain_paint(tokens: Sequence[Any]) -> Paint | None:
+    if len(tokens) != 1:
+        return None
+    if tokens[0].type == "ident" and tokens[0].lower_value == "none":
+        return Paint(None)
+    color = _color_of(tokens[0])
+    return Paint(color) if color is not None else None
+
+
+def _url_of(token: Any) -> str | None:
+    if token.type == "url":
+        url = token.value
+    elif token.type == "function" and token.lower_name == "url":
+        url = "".join(each.value for each in token.arguments if each.type == "string")
+    else:
+        return None
+    return str(url).strip()
+
+
+def _color_of(token: Any) -> Color | str | None:
+    try:
+        found = tinycss2.color4.parse_color(token)
+    except (AttributeError, IndexError, TypeError, ValueError, OverflowError):
+        return None  # Of arguments that it does not expect.
+    if found is None:
+        return None
+    if found == "currentcolor":
+        return "current"
+    if found.space not in ("srgb", "hsl", "hwb"):
+        return None
+    if found.space != "srgb":
+        hue, *rest = (value or 0.0 for value in found.coordinates)
+        limited = (hue, *(min(max(value, 0.0), 100.0) for value in rest))
+        found = tinycss2.color4.Color(found.space, limited, found.alpha).to("srgb")
+    values = [min(max(value or 0.0, 0.0), 1.0) for value in (*found.coordinates, found.alpha)]
+    if not all(map(math.isfinite, values)):
+        return None
+    return (values[0], values[1], values[2], values[3])
+
+
+def _tokens(text: str) -> list[Any]:
+    tokens = tinycss2.parse_component_value_list(text, skip_comments=True)
+    return [token for token in tokens if token.type != "whitespace"]
+
+
+def multiplied(outer: Matrix, inner: Matrix) -> Matrix:
+    """What applies the inner matrix, then the outer one."""
+    a, b, c, d, e, f = outer
+    g, h, i, j, k, m = inner
+    return (
+        a * g + c * h,
+        b * g + d * h,
+        a * i + c * j,
+        b * i + d * j,
+        a * k + c * m + e,
+        b * k + d * m + f,
+    )
+
+
+def determinant(matrix: Matrix) -> float:
+    return matrix[0] * matrix[3] - matrix[1] * matrix[2]
+
+
+@lru_cache(maxsize=4096)
+def as_transform(text: str) -> Matrix | None:
+    """The product of a list of transforms; None where one of them is none."""
+    if text.strip().lower() in ("", "none"):
+        return IDENTITY
+    matrix = IDENTITY
+    for name, arguments in _functions(text):
+        one = _transform(name, arguments)
+        if one is None:
+            return None
+        matrix = multiplied(matrix, one)
+    return matrix if all(map(math.isfinite, matrix)) else None
+
+
+def _functions(text: str) -> Iterator[tuple[str, list[float] | None]]:
+    name = ""
+    for token in _tokens(text):
+        if token.type == "ident" and not name:
+            name = token.lower_value  # A blank stands before its parenthesis.
+        elif token.type == "() block" and name:
+            yield name, _numbers_in(token.content)
+            name = ""
+        elif token.type == "function" and not name:
+            yield token.lower_name, _numbers_in(token.arguments)
+        elif token != "," or name:
+            yield "", None
+    if name:
+        yield "", None
+
+
+def _numbers_in(tokens: Sequence[Any]) -> list[float] | None:
+    """Numbers, pixels, and angles in degrees."""
+    degrees = {"deg": 1.0, "grad": 0.9, "rad": 180.0 / math.pi, "turn": 360.0, "px": 1.0}
+    found: list[float] = []
+    for token in tokens:
+        if token.type == "number":
+            found.append(token.value)
+        elif token.type == "dimension" and token.lower_unit in degrees:
+            found.append(token.value * degrees[token.lower_unit])
+        elif token.type not in ("whitespace", "comment") and token != ",":
+            return None
+    return found if all(map(math.isfinite, found)) else None
+
+
+def _transform(name: str, numbers: list[float] | None) -> Matrix | None:
+    match name, numbers:
+        case "matrix", [a, b, c, d, e, f]:
+            return (a, b, c, d, e, f)
+        case "translate", [x]:
+            return (1.0, 0.0, 0.0, 1.0, x, 0.0)
+        case "translate", [x, y]:
+            return (1.0, 0.0, 0.0, 1.0, x, y)
+        case "translatex", [x]:
+            return (1.0, 0.0, 0.0, 1.0, x, 0.0)
+        case "translatey", [y]:
+            return (1.0, 0.0, 0.0, 1.0, 0.0, y)
+        case "scale", [s]:
+            return (s, 0.0, 0.0, s, 0.0, 0.0)
+        case "scale", [x, y]:
+            return (x, 0.0, 0.0, y, 0.0, 0.0)
+        case "scalex", [x]:
+            return (x, 0.0, 0.0, 1.0, 0.0, 0.0)
+        case "scaley", [y]:
+            return (1.0, 0.0, 0.0, y, 0.0, 0.0)
+        case "rotate", [angle]:
+            return _rotation(angle)
+        case "rotate", [angle, x, y]:
+            there, back = (1.0, 0.0, 0.0, 1.0, x, y), (1.0, 0.0, 0.0, 1.0, -x, -y)
+            return multiplied(multiplied(there, _rotation(angle)), back)
+        case "skewx", [angle]:
+            return (1.0, 0.0, _native.tan(math.radians(angle)), 1.0, 0.0, 0.0)
+        case "skewy", [angle]:
+            return (1.0, _native.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0)
+    return None
+
+
+def _rotation(angle: float) -> Matrix:
+    # Quarters of a turn are exact, so that upright edges stay upright.
+    quarters, rest = divmod(angle, 90.0)
+    cos, sin = _native.cos(math.radians(angle)), _native.sin(math.radians(angle))
+    if rest == 0.0:
+        cos, sin = ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[int(quarters) % 4]
+    return (cos, sin, -sin, cos, 0.0, 0.0)

@@ -1,0 +1,144 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""SVG drawings as shapes."""
+
+import os
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from .._border.arguments import ProgressCallback, as_progress
+from .._native import Cancelled
+from ._svg.warnings import SvgWarning, Warnings
+from .rasterization import Shape
+
+if TYPE_CHECKING:
+    from ._svg.drawing import Drawing
+
+# How far the outline of a stroke may be off, in pixels: 8-bit images do not show it.
+_STROKE_TOLERANCE = 1.0 / 1024.0
+
+
+class SvgDrawing:
+    """What a drawing shows, in any size. `read_svg` makes it.
+
+    The shapes are in pixels, with y upwards, as `rasterize` takes them; those that come first are
+    below, so that they want `overlap="cover"`. Their colors have red, green, blue and alpha, the
+    first three multiplied by alpha.
+    """
+
+    def __init__(self, drawing: "Drawing", light: str, warnings: tuple[SvgWarning, ...]) -> None:
+        self._drawing = drawing
+        self._light = light
+        self._warnings = warnings
+        self._shapes: list[Shape] | None = None
+
+    @property
+    def width(self) -> float:
+        """What the file says of its width, in pixels; from its view box, or 300, if nothing."""
+        return self._drawing.width
+
+    @property
+    def height(self) -> float:
+        """What the file says of its height, in pixels; from its view box, or 150, if nothing."""
+        return self._drawing.height
+
+    @property
+    def light(self) -> str:
+        """What the colors are: "linear" or "srgb"."""
+        return self._light
+
+    @property
+    def warnings(self) -> tuple[SvgWarning, ...]:
+        """What was found in the file and is not in the shapes, in the order of the file."""
+        return self._warnings
+
+    @property
+    def shapes(self) -> list[Shape]:
+        """The shapes at `width` x `height`, as a new list."""
+        if self._shapes is None:
+            self._shapes = self.shapes_for(self.width, self.height)
+        return list(self._shapes)
+
+    def shapes_for(
+        self, width: float, height: float, *, progress: ProgressCallback | None = None
+    ) -> list[Shape]:
+        """The shapes for an image of another size.
+
+        The drawing fills it as its preserveAspectRatio says: usually as large as fits, in the
+        middle. Strokes are made for the size.
+
+        Args:
+            width: In pixels, positive.
+            height: In pixels, positive.
+            progress: Called with the share that is done; False stops.
+
+        Raises:
+            ValueError: A side is not positive.
+            Cancelled: `progress` returned False.
+        """
+        for name, side in (("width", width), ("height", height)):
+            if isinstance(side, bool) or not 0.0 < side < 1e7:
+                raise ValueError(f"{name}: {side!r}; a positive number of pixels is needed")
+        tell = _teller(as_progress(progress))
+        to_pixels = self._drawing.placement(float(width), float(height))
+        shapes = []
+        for index, painted in enumerate(self._drawing.painted):
+            if index % 20 == 0:
+                tell(index / len(self._drawing.painted))
+            shapes.append(painted.shape(to_pixels, _STROKE_TOLERANCE))
+        return shapes
+
+
+def read_svg(
+    source: str | os.PathLike[str] | bytes,
+    *,
+    light: str = "linear",
+    progress: ProgressCallback | None = None,
+) -> SvgDrawing:
+    """Reads a drawing: its paths and basic shapes, with solid colors, gradients and strokes.
+
+    Text, images and patterns are left out, markers, filters, masks and clip paths ignored; the
+    `warnings` of the result tell of them. Arcs, circles and ellipses stay exact.
+
+    Args:
+        source: The path of a file, plain (.svg) or compressed (.svgz); or markup, as text that
+            begins with "<", or as bytes.
+        light: SVG blends colors as they are encoded for display. "linear": they are decoded, and
+            gradients look as in a browser; what is translucent blends as light does. "srgb": they
+            stay encoded, so that all looks as in a browser; so is an image of them.
+        progress: Called with the share that is done; False stops.
+
+    Returns:
+        The drawing. Where the file is wrong in places, what is right, with a warning for the rest.
+
+    Raises:
+        ValueError: There is no drawing in the source, or XML that is broken, or what would take no
+            end of memory; the message names the file and the line.
+        OSError: The file cannot be read.
+        Cancelled: `progress` returned False.
+    """
+    if light not in ("linear", "srgb"):
+        raise ValueError(f"light: {light!r} is not one of linear, srgb")
+    # Style sheets take modules that those who read no drawings need not wait for.
+    from ._svg.document import read_document
+    from ._svg.drawing import Drawing
+    from ._svg.paint_servers import Colors
+
+    tell = _teller(as_progress(progress))
+    document = read_document(source, lambda share: tell(0.3 * share))
+    warnings = Warnings()
+    try:
+        drawing = Drawing(
+            document, Colors(light == "linear"), warnings, lambda share: tell(0.3 + 0.7 * share)
+        )
+    except RecursionError:
+        raise ValueError(f"{document.name}: values or styles are nested too deeply") from None
+    return SvgDrawing(drawing, light, warnings.all())
+
+
+def _teller(progress: ProgressCallback | None) -> Callable[[float], None]:
+    def tell(share: float) -> None:
+        if progress is not None and progress(share) is False:
+            raise Cancelled("cancelled by the progress callback")
+
+    return tell

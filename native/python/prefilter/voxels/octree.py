@@ -1,0 +1,395 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Voxels: how much of each cell of a grid is inside of a shape."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
+from .._border.arrays import as_floats, as_labels, as_mesh, as_threads
+
+Corner = Sequence[float] | npt.NDArray[np.floating]
+Box = tuple[Corner, Corner]
+Source = tuple[npt.ArrayLike, npt.ArrayLike] | tuple[npt.ArrayLike, npt.ArrayLike, npt.ArrayLike]
+"""A mesh: positions, triangles and maybe a group, a whole number, for each triangle."""
+
+MAX_DEPTH = _native.MAX_DEPTH
+
+
+class Octree(_native.Octree):
+    """The occupancies of the cells of a box, finely along the surface of a shape.
+
+    Cells of depth k are the 2^k x 2^k x 2^k parts of the box; a leaf's value is the share of it
+    that is inside of the shape, from 0 to 1. Made by `voxelize`, `load`, and the set operations.
+
+    Attributes:
+        depth: 2^depth cells along an axis are the finest that there may be.
+        bounds: (low corner, high corner) of the box.
+        volume: Of the shape, in cubed units of length.
+        node_count: Cells of all depths, the root included.
+        nbytes: What the octree takes in memory.
+    """
+
+    def __init__(self, octree: _native.Octree) -> None:
+        """Another name for an octree: both share the cells, which never change."""
+        if not isinstance(octree, _native.Octree):
+            raise ValueError(f"octree: a {type(octree).__name__}; an Octree is needed")
+        super().__init__(octree)
+
+    def dense(
+        self,
+        depth: int | None = None,
+        *,
+        progress: ProgressCallback | None = None,
+        threads: int = 0,
+    ) -> npt.NDArray[np.float32]:
+        """The occupancies of all cells of a depth.
+
+        Args:
+            depth: 0 to 12; None stands for the octree's own. Means where the tree is finer, and the
+                leaf's value where it is coarser.
+            progress: Called with the fraction done; returning False stops the work.
+            threads: 0 means all processors.
+
+        Returns:
+            (n, n, n) float32, n = 2^depth, indexed [x, y, z].
+
+        Raises:
+            ValueError: `depth` is out of range.
+            MemoryError: The grid would not fit into memory.
+            Cancelled: `progress` returned False.
+        """
+        wanted = self.depth if depth is None else _as_depth(depth, 0)
+        return _native.dense_values(self, wanted, as_progress(progress), as_threads(threads))
+
+    def values(self, points: npt.ArrayLike, *, threads: int = 0) -> npt.NDArray[np.float32]:
+        """The occupancies of the leaves that hold the points; 0 outside of the bounds.
+
+        Args:
+            points: (points, 3).
+            threads: 0 means all processors.
+        """
+        return _native.values_at(self, _as_points(points), as_threads(threads))
+
+    def classify(
+        self, points: npt.ArrayLike, *, tolerance: float = 1e-5, threads: int = 0
+    ) -> npt.NDArray[np.int8]:
+        """Whether points are inside (1), outside (-1) or near the surface (0).
+
+        Near is where a leaf's occupancy is further than `tolerance` from both 0 and 1: the surface
+        passes through it, or the mesh is open close by.
+
+        Args:
+            points: (points, 3).
+            tolerance: From 0 up to, but not including, 0.5.
+            threads: 0 means all processors.
+        """
+        limit = as_number("tolerance", tolerance)
+        if not 0.0 <= limit < 0.5:
+            raise ValueError(f"tolerance: {tolerance!r}; a number from 0 to below 0.5 is needed")
+        return _native.classify(self, _as_points(points), limit, as_threads(threads))
+
+    def box_occupancy(self, low: Corner, high: Corner) -> float:
+        """The share of a box that is inside of the shape: the exact integral over the cells.
+
+        Args:
+            low: The low corner, (3,).
+            high: The high corner, above it along each axis. The box may leave the bounds; nothing
+                is inside there.
+        """
+        return _native.box_occupancy(self, _as_box("box", (low, high)))
+
+    def union(
+        self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
+    ) -> "Octree":
+        """What is inside of either: max(a, b), cell by cell.
+
+        Depths and bounds may differ. Where bounds do, the other's cells are carried over to this
+        one's, exactly where the two grids have corners in common and as means elsewhere, and the
+        box is doubled until it holds both.
+
+        Raises:
+            ValueError: `other` is no Octree, or the box would need a depth of more than 12.
+            Cancelled: `progress` returned False.
+        """
+        return self._combined(other, "union", progress, threads)
+
+    def intersection(
+        self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
+    ) -> "Octree":
+        """What is inside of both: min(a, b), cell by cell, in this one's bounds. See `union`."""
+        return self._combined(other, "intersection", progress, threads)
+
+    def difference(
+        self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
+    ) -> "Octree":
+        """What is inside of this one alone: min(a, 1 - b), in this one's bounds. See `union`."""
+        return self._combined(other, "difference", progress, threads)
+
+    def contour(
+        self,
+        *,
+        interpolant: str = "occupancy",
+        isovalue: float = 0.5,
+        sources: Sequence[Source] | None = None,
+        cleanup: bool = True,
+        adaptivity: float = 0.0,
+        progress: ProgressCallback | None = None,
+        threads: int = 0,
+    ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]:
+        """The surface of the shape: marching cubes on the dual grid of the leaves (chapter 5).
+
+        The mesh is closed and two-manifold whatever the octree, and leaves of different sizes leave
+        no cracks. What is outside of the bounds is empty.
+
+        Args:
+            interpolant: Where a vertex lies between the centres of two leaves. "occupancy" leaves
+                each of the two its share of a half-space (section 5.2); "plane" fits the surface to
+                the leaves around, and reproduces planes; "linear" is marching cubes; "sharp" is
+                "plane", with the edges and corners of the shape.
+            isovalue: Above 0 and up to 1. Leaves of at least that are inside. For other values than
+                0.5, interpolation is linear.
+            sources: The meshes that the shape was made of, each (positions, triangles) or
+                (positions, triangles, groups), for "sharp": vertices are placed on their edges and
+                corners, and where one meets another; no triangle runs across an edge, or from one
+                group, (triangles,) whole numbers, to another. Without them edges are those that the
+                occupancies fix by themselves: where flat or gently curved faces of a few cells
+                meet.
+            cleanup: Remove narrow triangles; there are fewer then.
+            adaptivity: How far from the full contour the surface may be, in cells of the finest
+                depth, where larger triangles take its place: on flat and gently curved parts. 0.1
+                is hardly seen, and leaves a fifth of the triangles of a statue, and a twentieth of
+                those of a machine part. 0 is the full contour.
+            progress: Called with the fraction done; returning False stops the work.
+            threads: 0 means all processors. The result does not depend on it.
+
+        Returns:
+            Positions (vertices, 3) float64, in the units of the bounds, and triangles
+            (triangles, 3) int32, counter-clockwise seen from outside. Before positions are rounded
+            to float32, subtract a point of the bounds: far from the origin float32 cannot tell
+            vertices apart.
+
+        Raises:
+            ValueError: `interpolant` is no such name, or `isovalue` or `adaptivity` is out of
+                range.
+            MemoryError: The surface would not fit into memory.
+            Cancelled: `progress` returned False.
+        """
+        level = as_number("isovalue", isovalue)
+        if not 0.0 < level <= 1.0:
+            raise ValueError(f"isovalue: {isovalue!r}; a number above 0 and up to 1 is needed")
+        return _native.contour_octree(
+            self,
+            as_name("interpolant", interpolant),
+            level,
+            _as_sources(sources),
+            bool(cleanup),
+            as_number("adaptivity", adaptivity),
+            as_progress(progress),
+            as_threads(threads),
+        )
+
+    def traced_contour(
+        self,
+        sources: Sequence[Source],
+        *,
+        cleanup: bool = True,
+        adaptivity: float = 0.0,
+        progress: ProgressCallback | None = None,
+        threads: int = 0,
+    ) -> "TracedContour":
+        """The contour by "sharp", and which part of the sources each of its triangles shows.
+
+        What surfaces carry, such as materials and UV maps, can so be carried over without running
+        across an edge, a rim or a seam. See `contour`.
+
+        Args:
+            sources: As for `contour`, at least one.
+            cleanup: As for `contour`.
+            adaptivity: As for `contour`.
+            progress: Called with the fraction done; returning False stops the work.
+            threads: 0 means all processors. The result does not depend on it.
+
+        Raises:
+            ValueError: There is no source, one is no mesh, or `adaptivity` is out of range.
+            MemoryError: The surface would not fit into memory.
+            Cancelled: `progress` returned False.
+        """
+        return TracedContour(
+            *_native.traced_contour(
+                self,
+                _as_sources(sources),
+                bool(cleanup),
+                as_number("adaptivity", adaptivity),
+                as_progress(progress),
+                as_threads(threads),
+            )
+        )
+
+    def coarsened(self, depth: int) -> "Octree":
+        """The octree down to a depth of 0 to 12: means of what was finer."""
+        return Octree(_native.coarsened(self, _as_depth(depth, 0)))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the octree as a compressed NumPy archive (.npz).
+
+        It is written beside `path` and renamed, so a failure leaves what was there. A symbolic link
+        stays; the file that it leads to is replaced.
+
+        Raises:
+            ValueError: `path` is no path.
+            OSError: The file can't be written, or is a device or a pipe.
+        """
+        from .octree_files import write_octree
+
+        write_octree(path, self)
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """Reads what `save` wrote.
+
+        Raises:
+            OSError: The file can't be read.
+            ValueError: It is no octree, or a damaged one.
+            MemoryError: The octree would not fit into memory.
+        """
+        from .octree_files import read_octree
+
+        return cls(read_octree(path))
+
+    def _combined(
+        self,
+        other: "Octree",
+        operation: str,
+        progress: ProgressCallback | None,
+        threads: int,
+    ) -> "Octree":
+        if not isinstance(other, _native.Octree):
+            raise ValueError(f"other: a {type(other).__name__}; an Octree is needed")
+        return Octree(
+            _native.combine(self, other, operation, as_progress(progress), as_threads(threads))
+        )
+
+
+@dataclass(frozen=True)
+class TracedContour:
+    """A contour, and where its triangles come from.
+
+    Attributes:
+        positions: (vertices, 3) float64.
+        triangles: (triangles, 3) int32, counter-clockwise seen from outside.
+        origins: (triangles,) int64: for each a triangle of the sources, numbered through all of
+            them, of the same source, group and smooth region. It need not be the nearest one.
+    """
+
+    positions: npt.NDArray[np.float64]
+    triangles: npt.NDArray[np.int32]
+    origins: npt.NDArray[np.int64]
+
+
+def voxelize(
+    positions: npt.ArrayLike,
+    triangles: npt.ArrayLike,
+    *,
+    depth: int = 8,
+    bounds: Box | None = None,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> Octree:
+    """The occupancy of every cell of a grid: how much of it is inside of a mesh.
+
+    Values are exact (Haar wavelet coefficients by integrals over the surface, section 3.2.3), in
+    memory and time proportional to the surface. The mesh may be anything: open, leaky, intersecting
+    itself; inside is where it winds around at least once. A hole disturbs the cells around it
+    alone. A mesh that is inside out encloses nothing.
+
+    Args:
+        positions: (vertices, 3), in any unit of length.
+        triangles: (triangles, 3) integer indices of vertices, counter-clockwise from outside.
+        depth: 1 to 12; the grid has 2^depth cells along each axis.
+        bounds: (low corner, high corner) of the grid; its cells need not be cubes. What is outside
+            of it is cut off. None stands for `cube_around` the mesh.
+        progress: Called with the fraction done; returning False stops the work.
+        threads: 0 means all processors. The result does not depend on it.
+
+    Raises:
+        ValueError: A shape or type is wrong, `depth` is out of range, there is no triangle or none
+            with an area, an index names no vertex, a value is not finite, or `bounds` have no
+            volume.
+        MemoryError: The octree would not fit into memory.
+        Cancelled: `progress` returned False.
+    """
+    points, indices = as_mesh(positions, triangles)
+    box = None if bounds is None else _as_box("bounds", bounds)
+    return Octree(
+        _native.voxelize(
+            points, indices, _as_depth(depth, 1), box, as_progress(progress), as_threads(threads)
+        )
+    )
+
+
+def cube_around(bounds: Box, *, depth: int = 8) -> tuple[np.ndarray, np.ndarray]:
+    """The cube that `voxelize` takes for a mesh in a box: (low corner, high corner).
+
+    It leaves two cells on all sides of the box where that is longest, or an eighth of the cells
+    where they are fewer than 16 along an axis.
+
+    Args:
+        bounds: (low corner, high corner) of the box.
+        depth: 1 to 12; the cube has 2^depth cells along each axis.
+
+    Raises:
+        ValueError: A shape or type is wrong, or `depth` is out of range.
+    """
+    low, high = _native.cube_around(_as_box("bounds", bounds), _as_depth(depth, 1))
+    return np.array(low), np.array(high)
+
+
+def _as_sources(
+    sources: Sequence[Source] | None,
+) -> list[tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]]:
+    if sources is None:
+        return []
+    checked = []
+    for i, source in enumerate(sources):
+        if not isinstance(source, (tuple, list)) or len(source) not in (2, 3):
+            raise ValueError(
+                f"sources: item {i} is a {type(source).__name__}; (positions, triangles) or "
+                "(positions, triangles, groups) is needed"
+            )
+        mesh = as_mesh(
+            source[0], source[1], names=(f"sources[{i}] positions", f"sources[{i}] triangles")
+        )
+        groups = np.empty(0, np.int32)
+        if len(source) == 3:
+            groups = as_labels(f"sources[{i}] groups", source[2], len(mesh[1]), "triangles")
+        checked.append((*mesh, groups))
+    return checked
+
+
+def _as_depth(depth: int, lowest: int) -> int:
+    return as_int("depth", depth, f"a whole number from {lowest} to {MAX_DEPTH} is needed")
+
+
+def _as_points(points: npt.ArrayLike) -> np.ndarray:
+    found = as_floats("points", points, ("points", 3), np.float64)
+    if not np.isfinite(found).all():
+        row = int(np.argmin(np.isfinite(found).all(axis=1)))
+        raise ValueError(f"points: row {row} is {found[row]}; all values must be finite")
+    return found
+
+
+def _as_box(name: str, box: Box) -> tuple[list[float], list[float]]:
+    try:
+        corners = np.asarray(box, np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: {box!r}; two corners of 3 numbers are needed") from error
+    if corners.shape != (2, 3):
+        raise ValueError(f"{name}: shape {corners.shape}; two corners, (2, 3), are needed")
+    return corners[0].tolist(), corners[1].tolist()
