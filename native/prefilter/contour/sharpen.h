@@ -4,38 +4,15 @@
 // 2001), on loops of any dual grid.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <vector>
 
 #include "prefilter/base/progress.h"
 #include "prefilter/contour/feature_surface.h"
+#include "prefilter/contour/looped_mesh.h"
 #include "prefilter/contour/sharp_vertices.h"
 #include "prefilter/remesh/faceted_mesh.h"
 
 namespace prefilter {
-
-/// A loop of a contour whose vertices are on different sides of an edge.
-struct SharpLoop {
-  std::array<std::int32_t, 12> corners;
-  int count = 0;
-  // Its triangles without the edge, among those of all sharp loops.
-  std::size_t first = 0;
-  std::size_t end = 0;
-};
-
-/// A contour of which some loops have yet to become triangles.
-struct LoopedMesh {
-  std::vector<Vector3> positions;
-  // Of all other loops.
-  std::vector<std::array<std::int32_t, 3>> triangles;
-  std::vector<SharpLoop> loops;
-  std::vector<std::array<std::int32_t, 3>> loop_triangles;
-};
-
-/// Whether there is an edge between two vertices.
-bool are_divided(const FeatureSurface& surface, const VertexSamples& samples, std::int32_t a,
-                 std::int32_t b);
 
 /// Puts a vertex into each sharp loop, where the surfaces of its vertices meet, and joins those of
 /// loops that are side by side: the mesh edges between them are flipped. So each triangle is on one

@@ -14,6 +14,7 @@
 #include "prefilter/base/text.h"
 #include "prefilter/contour/dual_cells.h"
 #include "prefilter/contour/fit_vertices.h"
+#include "prefilter/contour/linked_loops.h"
 #include "prefilter/contour/marching_table.h"
 #include "prefilter/contour/occupancy_surface.h"
 #include "prefilter/contour/part_sides.h"
