@@ -55,26 +55,30 @@ WorkMesh work_mesh(const InputMesh& mesh) {
 std::size_t turn_closed_patches(const Patches& patches, WorkMesh* mesh, const Progress& progress,
                                 int threads) {
   std::vector<ClosedPart> parts;
-  std::vector<std::size_t> part_of(patches.patches.size());
+  std::vector<std::uint32_t> part_of_patch(patches.patches.size());
   std::vector<std::size_t> first(patches.patches.size(), mesh->triangles.size());
   for (std::size_t t = mesh->triangles.size(); t-- > 0;) first[patches.patch_of[t]] = t;
   const auto is_part = [](const Patch& patch) { return patch.is_closed(); };
-  const auto count = static_cast<std::size_t>(
+  const auto count = static_cast<std::uint32_t>(
       std::count_if(patches.patches.begin(), patches.patches.end(), is_part));
   for (std::size_t p = 0; p < patches.patches.size(); ++p) {
     const Patch& patch = patches.patches[p];
-    part_of[p] = is_part(patch) ? parts.size() : count;
+    part_of_patch[p] = is_part(patch) ? static_cast<std::uint32_t>(parts.size()) : count;
     if (is_part(patch)) {
       parts.push_back({patch.volume, patch.area, patch.triangles, 0, first[p],
                        patch.turned_area > kMixed * patch.area, patch.box});
     }
   }
-  const std::vector<bool> is_turned = parts_to_turn(
-      mesh->view(), std::span<const ClosedPart>(parts),
-      [&](std::size_t t) { return part_of[patches.patch_of[t]]; }, progress, threads);
+  std::vector<std::uint32_t> part_of(mesh->triangles.size());
+  for (std::size_t t = 0; t < part_of.size(); ++t) {
+    part_of[t] = part_of_patch[patches.patch_of[t]];
+  }
+  const std::vector<bool> is_turned =
+      parts_to_turn({mesh->positions, mesh->triangles}, parts, part_of, progress, threads);
   for (std::size_t t = 0; t < mesh->triangles.size(); ++t) {
-    const std::size_t part = part_of[patches.patch_of[t]];
-    if (part < count && is_turned[part]) std::swap(mesh->triangles[t][1], mesh->triangles[t][2]);
+    if (part_of[t] < count && is_turned[part_of[t]]) {
+      std::swap(mesh->triangles[t][1], mesh->triangles[t][2]);
+    }
   }
   return static_cast<std::size_t>(std::count(is_turned.begin(), is_turned.end(), true));
 }

@@ -118,6 +118,7 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
   std::vector<ClosedPart> parts;
   std::vector<std::uint32_t> numbers(mesh.positions.size(), 0);  // at the first vertex of each part
   std::vector<bool> is_seen(mesh.positions.size(), false);
+  std::vector<std::uint32_t> number_of(mesh.triangles.size());
   const Progress summing = progress.part(0.6, 0.8);
   Pulse pulse(summing);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -128,7 +129,8 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
       parts.emplace_back();
       parts.back().first_triangle = t;
     }
-    ClosedPart& part = parts[numbers[root]];
+    number_of[t] = numbers[root];
+    ClosedPart& part = parts[number_of[t]];
     const std::array<Vector3, 3> p = mesh.corners(t);
     const Vector3 origin = mesh.corners(part.first_triangle)[0];
     part.volume += dot(p[0] - origin, cross(p[1] - origin, p[2] - origin)) / 6.0;
@@ -151,12 +153,8 @@ bool is_solid(const InputMesh& mesh, double thickness, const Progress& progress,
     if (part.vertices * 3 < part.triangles) return false;
   }
   if (has_thin_part(parts, thickness) || has_copies(parts)) return false;
-  const std::vector<bool> is_turned = parts_to_turn(
-      mesh, std::span<const ClosedPart>(parts),
-      [&](std::size_t t) {
-        return numbers[part_of[static_cast<std::size_t>(mesh.triangles[t][0])]];
-      },
-      progress.part(0.8, 1.0), threads);
+  const std::vector<bool> is_turned =
+      parts_to_turn(mesh, parts, number_of, progress.part(0.8, 1.0), threads);
   return std::find(is_turned.begin(), is_turned.end(), true) == is_turned.end();
 }
 
