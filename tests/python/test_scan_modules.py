@@ -2,6 +2,8 @@
 
 """Points of LAS and E57 files, where the Python modules that read these can be imported."""
 
+import os
+import subprocess
 import sys
 
 import numpy as np
@@ -95,6 +97,15 @@ def test_las_colors_of_eight_bits(laspy, tmp_path):
     np.testing.assert_array_equal(prefilter.read_points(path).colors, color)
 
 
+def with_long_record(laspy, path):
+    """Returns a file with an extended record of almost 2^63 bytes."""
+    las_file(laspy, path, version=7, positions=random_points(count=50))
+    contents = path.read_bytes()
+    record = bytes(20) + (2**63 - 1).to_bytes(8, "little") + bytes(32)
+    place = len(contents).to_bytes(8, "little") + (1).to_bytes(4, "little")
+    return contents[:235] + place + contents[247:] + record
+
+
 def test_damaged_las_files(laspy, tmp_path):
     path = tmp_path / "cloud.las"
     las_file(laspy, path, positions=random_points(count=50))
@@ -108,9 +119,96 @@ def test_damaged_las_files(laspy, tmp_path):
         (contents[:-100], r"too short for the 50 points in its header: \d+ bytes follow it"),
         (records, "too short for the records that its header announces"),
         (contents[:104] + b"\x7f" + contents[105:], "cannot be read as a LAS file"),
+        (with_long_record(laspy, path), "too short for the records that its header announces"),
     ]:
         path.write_bytes(damaged)
         with pytest.raises(ValueError, match=f"cloud.las'.*{message}"):
+            prefilter.read_points(path)
+
+
+# What a damaged file makes lazrs do may end the process, so another one reads.
+_READ_DAMAGED = """
+import resource, sys
+import prefilter
+
+resource.setrlimit(resource.RLIMIT_AS, (4 << 30, 4 << 30))
+for path in sys.argv[1:]:
+    try:
+        prefilter.read_points(path)
+    except ValueError as error:
+        assert path in str(error), error
+print("read", len(sys.argv) - 1)
+"""
+
+
+def damaged(contents: bytes, random: np.random.Generator) -> bytes:
+    """Returns a file with a bit flipped, a byte replaced, or a number that is far too large."""
+    found = bytearray(contents)
+    for _ in range(random.integers(1, 4)):
+        place = int(random.integers(0, len(found) - 8))
+        kind = random.integers(0, 4)
+        if kind == 0:
+            found[place] ^= 1 << int(random.integers(0, 8))
+        elif kind == 1:
+            found[place] = random.integers(0, 256)
+        elif kind == 2:
+            found[place : place + 4] = int(random.choice([0, 1 << 30, (1 << 32) - 1])).to_bytes(
+                4, "little"
+            )
+        else:
+            found[place : place + 8] = int(random.choice([1 << 40, (1 << 63) - 1])).to_bytes(
+                8, "little"
+            )
+    return bytes(found)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has no limit of memory for a process")
+@pytest.mark.parametrize("point_format", [3, 6])
+def test_damaged_laz_files_end_no_process(laspy, tmp_path, point_format):
+    pytest.importorskip("lazrs", reason="lazrs cannot be imported")
+    random = np.random.default_rng(point_format)
+    whole = tmp_path / "whole.laz"
+    las = laspy.create(point_format=point_format)
+    las.x, las.y, las.z = random.normal(size=(3, 25))
+    las.write(whole)
+    contents = whole.read_bytes()
+    paths = [tmp_path / f"{number}.laz" for number in range(250)]
+    for path in paths:
+        path.write_bytes(damaged(contents, random))
+    read = subprocess.run(
+        [sys.executable, "-c", _READ_DAMAGED, whole, *paths],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
+        capture_output=True,
+        text=True,
+        timeout=100,
+        check=False,
+    )
+    assert read.stdout == f"read {len(paths) + 1}\n", read.stderr[-2000:]
+
+
+def test_laz_files_whose_chunks_do_not_agree(laspy, tmp_path):
+    pytest.importorskip("lazrs", reason="lazrs cannot be imported")
+    path = tmp_path / "cloud.laz"
+    las_file(laspy, path, positions=random_points(count=COUNT))
+    contents = path.read_bytes()
+    assert len(prefilter.read_points(path).positions) == COUNT
+    begin = int.from_bytes(contents[96:100], "little")
+    table = int.from_bytes(contents[begin : begin + 8], "little")
+    record = contents.index(b"laszip encoded") - 2 + 54
+
+    def with_number(place: int, number: int, size: int) -> bytes:
+        return contents[:place] + number.to_bytes(size, "little") + contents[place + size :]
+
+    for broken, message in [
+        (with_number(table + 4, 0xFFFFFFFF, 4), "too short for the 4294967295 chunks of its table"),
+        (with_number(begin, len(contents), 8), f"their table at {len(contents)}, and it has"),
+        (with_number(record + 12, 1 << 30, 4), "a chunk of 1073741824 points; at most 16777216"),
+        (with_number(record + 12, COUNT // 2, 4), f"points for the {COUNT} in its header"),
+        (with_number(record, 1, 2), "compressor 1 is not one of 2, 3"),
+        (with_number(record + 32, 0, 2), "its compressed points have 0 bytes"),
+    ]:
+        path.write_bytes(broken)
+        with pytest.raises(ValueError, match=f"cloud.laz'.*{message}"):
             prefilter.read_points(path)
 
 

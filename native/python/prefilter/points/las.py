@@ -2,15 +2,17 @@
 
 """Points of LAS and LAZ files, read by laspy."""
 
+import importlib
 import os
 import re
 import struct
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
 from .._border.input import open_file
+from .laz_chunks import check_chunks
 from .reader import POINTS_AT_ONCE, PointChunk, damage_of, find_module
 
 _COLORS_LOOKED_AT = 1_000_000
@@ -42,6 +44,8 @@ class LasReader:
                     f"'{path}': too short for the {self.count} points in its header: {room} bytes "
                     "follow it"
                 )
+            if header.are_points_compressed:
+                self._check_chunks(header)
             scalars = [name for name in extra if header.point_format[name].num_elements == 1]
         self._normals = _normals_among(scalars)
         self._has_colors = set(_COLORS) <= names
@@ -68,6 +72,12 @@ class LasReader:
             raise ValueError(
                 f"'{self._path}': ends after {found} of the {self.count} points in its header"
             )
+
+    def _check_chunks(self, header: Any) -> None:
+        backends = self._laspy.LazBackend.detect_available()
+        if any(backend.name.startswith("Lazrs") for backend in backends):
+            with damage_of(self._path, "a LAZ file"):
+                check_chunks(self._path, header, importlib.import_module("lazrs"))
 
     def _find_color_scale(self) -> np.float32:
         # Colors have 16 bits, of which some programs fill only the lower 8. Many that are not black
@@ -106,13 +116,26 @@ def _check_header(path: str) -> None:
         size = file.seek(0, os.SEEK_END)
         file.seek(0)
         header = file.read(255)
+        end = _end_of_records(file, header, size)
     if header[:4] != b"LASF" or len(header) < 227:
         raise ValueError(f"'{path}' is no LAS file: it begins with {header[:4]!r}")
     records = struct.unpack_from("<I", header, 100)[0] * 54
-    if header[25] >= 4 and len(header) >= 247:
-        records += struct.unpack_from("<I", header, 243)[0] * 60
-    if records > size:
+    if max(records, end) > size:
         raise ValueError(f"'{path}': too short for the records that its header announces")
+
+
+def _end_of_records(file: BinaryIO, header: bytes, size: int) -> int:
+    """Where the extended records of LAS 1.4 end, or the first of them that the file cuts off."""
+    if len(header) < 247 or header[25] < 4:
+        return 0
+    begin, count = struct.unpack_from("<QI", header, 235)
+    end: int = begin if count else 0
+    for _ in range(count):
+        if end + 60 > size:
+            return end + 60
+        file.seek(end + 20)
+        end += 60 + struct.unpack("<Q", file.read(8))[0]
+    return end
 
 
 def _columns(points: Any, names: tuple[str, ...] | list[str]) -> np.ndarray:

@@ -66,10 +66,15 @@ def find_module(name: str, path: str, files: str, package: str) -> ModuleType:
 
 @contextlib.contextmanager
 def damage_of(path: str, kind: str) -> Iterator[None]:
-    """Makes a ValueError that names the file of whatever a module makes of its damage."""
+    """Makes a ValueError that names the file of whatever a module makes of its damage.
+
+    Modules written in Rust raise a BaseException of their own where they panic.
+    """
     try:
         yield
-    except MemoryError:
+    except (MemoryError, KeyboardInterrupt, SystemExit, GeneratorExit):
         raise
-    except Exception as error:
+    except BaseException as error:
+        if isinstance(error, ValueError) and str(error).startswith(f"'{path}'"):
+            raise
         raise ValueError(f"'{path}' cannot be read as {kind}: {error}") from error
