@@ -12,7 +12,6 @@
 #include "instances.h"
 #include "prefilter/base/error.h"
 #include "prefilter/outline/stroke.h"
-#include "prefilter/raster/cell_filter.h"
 #include "prefilter/raster/rasterize.h"
 
 namespace py = pybind11;

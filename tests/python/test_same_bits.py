@@ -17,7 +17,7 @@ import pytest
 from prefilter import _native
 
 NATIVE = Path(__file__).resolve().parents[2] / "native"
-OURS = NATIVE / "prefilter/base/elementary.h"
+OURS = NATIVE / "include/prefilter/base/elementary.h"
 FUNCTIONS = (
     "a?(?:sin|cos|tan)h?|atan2|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot|erfc?|[lt]gamma"
 )
@@ -66,7 +66,8 @@ def test_the_module_asks_the_c_library_for_none() -> None:
 
 
 def test_cpp_calls_elementary_functions_of_its_own() -> None:
-    paths = [*NATIVE.glob("prefilter/**/*"), *NATIVE.glob("python/*")]
+    folders = ("include/**/*", "prefilter/**/*", "python/*")
+    paths = [path for folder in folders for path in NATIVE.glob(folder)]
     sources = sorted(path for path in paths if path.suffix in (".h", ".cpp") and path != OURS)
     found = [f"{path}: {call}" for path in sources for call in _calls_in_cpp(path.read_text())]
     assert sources

@@ -12,6 +12,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/contour/contour_slab.h"
 #include "prefilter/contour/dual_cells.h"
 #include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/linked_loops.h"

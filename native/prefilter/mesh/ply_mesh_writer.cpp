@@ -9,9 +9,12 @@
 #include <cstring>
 #include <limits>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "prefilter/base/error.h"
+#include "prefilter/io/staged_file.h"
+#include "prefilter/io/temporary_file.h"
 
 namespace prefilter {
 namespace {
@@ -52,8 +55,37 @@ std::span<const std::byte> bytes_of(const std::string& text) {
 
 }  // namespace
 
-PlyMeshWriter::PlyMeshWriter(const std::string& path, std::vector<PointAttribute> attributes,
-                             bool is_double)
+/// The file beside its target and the triangles' temporary one.
+class PlyMeshWriter::Files {
+ public:
+  Files(const std::string& path, std::vector<PointAttribute> attributes, bool is_double);
+
+  void add_vertices(std::span<const Vector3> positions, std::span<const float> attributes);
+  void add_triangles(std::span<const std::array<std::int64_t, 3>> triangles);
+  std::size_t vertex_count() const { return vertex_count_; }
+  std::size_t triangle_count() const { return triangle_count_; }
+  void finish(const Progress& progress);
+
+ private:
+  std::string header(std::size_t size) const;
+  void write_vertices();
+  void write_triangles();
+
+  StagedFile staged_;
+  TemporaryFile triangles_;
+  std::vector<PointAttribute> attributes_;
+  bool is_double_;
+  std::size_t header_size_;
+  std::uint64_t vertices_end_;  // in the file
+  std::size_t vertex_count_ = 0;
+  std::size_t triangle_count_ = 0;
+  // Not written yet.
+  std::vector<std::byte> vertex_buffer_;
+  std::vector<std::byte> triangle_buffer_;
+};
+
+PlyMeshWriter::Files::Files(const std::string& path, std::vector<PointAttribute> attributes,
+                            bool is_double)
     : staged_(path),
       triangles_(staged_.folder()),
       attributes_(as_properties(std::move(attributes))),
@@ -62,7 +94,7 @@ PlyMeshWriter::PlyMeshWriter(const std::string& path, std::vector<PointAttribute
       vertices_end_(header_size_) {}
 
 // Of that size where it can be: a comment fills the room that is left for longer counts.
-std::string PlyMeshWriter::header(std::size_t size) const {
+std::string PlyMeshWriter::Files::header(std::size_t size) const {
   const char* const type = is_double_ ? "double" : "float";
   std::string rest = "element vertex " + std::to_string(vertex_count_) + "\n";
   for (const char* axis : {"x", "y", "z"}) {
@@ -79,7 +111,8 @@ std::string PlyMeshWriter::header(std::size_t size) const {
   return start + std::string(size > least ? size - least : 0, ' ') + "\n" + rest;
 }
 
-void PlyMeshWriter::add_vertices(std::vector<Vector3> positions, std::vector<float> attributes) {
+void PlyMeshWriter::Files::add_vertices(std::span<const Vector3> positions,
+                                        std::span<const float> attributes) {
   const std::size_t count = positions.size();
   const std::size_t width = attributes_.size();
   assert(attributes.size() == count * width);
@@ -106,7 +139,7 @@ void PlyMeshWriter::add_vertices(std::vector<Vector3> positions, std::vector<flo
   if (vertex_buffer_.size() >= kBufferSize) write_vertices();
 }
 
-void PlyMeshWriter::add_triangles(std::vector<std::array<std::int64_t, 3>> triangles) {
+void PlyMeshWriter::Files::add_triangles(std::span<const std::array<std::int64_t, 3>> triangles) {
   const std::size_t before = triangle_buffer_.size();
   triangle_buffer_.resize(before + triangles.size() * kTriangleSize);
   std::byte* to = triangle_buffer_.data() + before;
@@ -121,18 +154,18 @@ void PlyMeshWriter::add_triangles(std::vector<std::array<std::int64_t, 3>> trian
   if (triangle_buffer_.size() >= kBufferSize) write_triangles();
 }
 
-void PlyMeshWriter::write_vertices() {
+void PlyMeshWriter::Files::write_vertices() {
   staged_.file().write_at(vertices_end_, vertex_buffer_);
   vertices_end_ += vertex_buffer_.size();
   vertex_buffer_.clear();
 }
 
-void PlyMeshWriter::write_triangles() {
+void PlyMeshWriter::Files::write_triangles() {
   triangles_.write(triangle_buffer_);
   triangle_buffer_.clear();
 }
 
-void PlyMeshWriter::finish(const Progress& progress) {
+void PlyMeshWriter::Files::finish(const Progress& progress) {
   write_vertices();
   write_triangles();
   std::vector<std::byte> block(kBufferSize);
@@ -149,5 +182,24 @@ void PlyMeshWriter::finish(const Progress& progress) {
   progress.report(1.0);
   staged_.commit();
 }
+
+PlyMeshWriter::PlyMeshWriter(const std::string& path, std::vector<PointAttribute> attributes,
+                             bool is_double)
+    : files_(std::make_unique<Files>(path, std::move(attributes), is_double)) {}
+
+PlyMeshWriter::~PlyMeshWriter() = default;
+
+void PlyMeshWriter::add_vertices(std::vector<Vector3> positions, std::vector<float> attributes) {
+  files_->add_vertices(positions, attributes);
+}
+
+void PlyMeshWriter::add_triangles(std::vector<std::array<std::int64_t, 3>> triangles) {
+  files_->add_triangles(triangles);
+}
+
+std::size_t PlyMeshWriter::vertex_count() const { return files_->vertex_count(); }
+std::size_t PlyMeshWriter::triangle_count() const { return files_->triangle_count(); }
+
+void PlyMeshWriter::finish(const Progress& progress) { files_->finish(progress); }
 
 }  // namespace prefilter

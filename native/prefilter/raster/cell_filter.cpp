@@ -9,6 +9,7 @@
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/gauss_rule.h"
 #include "prefilter/filters/windowed_jinc.h"
+#include "prefilter/raster/rasterize.h"
 
 namespace prefilter {
 namespace {

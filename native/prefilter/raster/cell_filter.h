@@ -3,7 +3,6 @@
 // A filter as polynomials on the cells of a grid, the way its moments are weighed.
 #pragma once
 
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -40,9 +39,6 @@ struct CellFilter {
                       : -((cells_per_pixel - 1 - cells) / cells_per_pixel);
   }
 };
-
-/// The names of all filters of shapes.
-std::span<const std::string_view> raster_filters();
 
 /// The filter of a name, or none.
 const CellFilter* find_cell_filter(std::string_view name);

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "prefilter/contour/tree_contour.h"
+#include "prefilter/contour/contour_slab.h"
 #include "prefilter/mesh/mesh_sink.h"
 #include "prefilter/reconstruct/sample_grid.h"
 

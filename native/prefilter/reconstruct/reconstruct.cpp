@@ -16,7 +16,7 @@
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
-#include "prefilter/contour/tree_contour.h"
+#include "prefilter/contour/contour_slab.h"
 #include "prefilter/reconstruct/assemble.h"
 #include "prefilter/reconstruct/d4_function.h"
 #include "prefilter/reconstruct/fit_samples.h"

@@ -21,6 +21,7 @@
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
+#include "prefilter/sampling/probes.h"
 
 namespace prefilter {
 namespace {

@@ -16,10 +16,10 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
 #include "prefilter/filters/filtered_image.h"
-#include "prefilter/sampling/anisotropic.h"
 #include "prefilter/sampling/elliptical.h"
 #include "prefilter/sampling/exact.h"
 #include "prefilter/sampling/footprint.h"
+#include "prefilter/sampling/probes.h"
 #include "prefilter/sampling/pyramid_sampler.h"
 #include "prefilter/sampling/sampling_levels.h"
 

@@ -12,6 +12,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/sampling/weigh_texels.h"
 
 namespace prefilter {
 namespace {

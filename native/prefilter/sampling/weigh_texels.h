@@ -25,13 +25,6 @@ MipPlace place_between_levels(double scale, int levels);
 /// texels of any level: for kRepeat in [0, 1], else in [-1024, 1025].
 double wrap_coordinate(double coordinate, Wrap mode);
 
-struct WeightedTexel {
-  int level;
-  int x;  // texels; -1 outside of the level, with Wrap::kBorder: its value is zero
-  int y;
-  double weight;
-};
-
 struct WeightedTexels {
   int count = 0;
   std::array<WeightedTexel, kMostTexels> texels;

@@ -15,6 +15,7 @@
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/sort.h"
+#include "prefilter/spatial/box_tree.h"
 #include "prefilter/spatial/curve_order.h"
 #include "prefilter/spatial/triangle_point.h"
 
@@ -86,9 +87,8 @@ void drop_copies(const InputMesh& mesh, std::span<const std::int32_t> labels,
   }
   places->resize(kept);
 }
-}  // namespace
 
-struct NearestPoints::Best {
+struct Best {
   double squared = std::numeric_limits<double>::infinity();
   std::size_t place = 0;
   std::uint32_t index = 0;
@@ -100,11 +100,41 @@ struct NearestPoints::Best {
   }
 };
 
-NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, int threads)
-    : NearestPoints(mesh, {}, progress, threads) {}
+}  // namespace
 
-NearestPoints::NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels,
-                             const Progress& progress, int threads) {
+/// The tree, and a copy of the mesh.
+class NearestPoints::Tree {
+ public:
+  Tree(const InputMesh& mesh, std::span<const std::int32_t> labels, const Progress& progress,
+       int threads);
+
+  std::vector<SurfacePoint> find(std::span<const Vector3> points, const Progress& progress,
+                                 int threads) const;
+  std::vector<SurfacePoint> find_on(std::span<const Vector3> points,
+                                    std::span<const std::int32_t> origins, const Progress& progress,
+                                    int threads) const;
+
+ private:
+  // Returns where the triangles are along the curve.
+  std::vector<std::uint64_t> sort_triangles(const InputMesh& mesh,
+                                            std::span<const std::int32_t> labels,
+                                            const Progress& progress, int threads);
+  Box box_of(std::size_t place) const;
+  void try_triangle(std::size_t place, const Vector3& point, Best* best) const;
+  void search(const Vector3& point, std::optional<std::int32_t> label, Best* best) const;
+
+  std::vector<Vector3> positions_;
+  // Along the Morton curve through their middles, each once; and their indices in the mesh.
+  std::vector<std::array<std::int32_t, 3>> triangles_;
+  std::vector<std::uint32_t> indices_;
+  std::vector<std::int32_t> labels_;   // as the triangles; empty for none
+  std::vector<std::uint32_t> places_;  // of each of the mesh's triangles, or its first copy
+  BoxTree boxes_;
+  std::vector<std::uint32_t> lowest_indices_;  // for each node of the tree
+};
+
+NearestPoints::Tree::Tree(const InputMesh& mesh, std::span<const std::int32_t> labels,
+                          const Progress& progress, int threads) {
   check_mesh(mesh, kLargest);
   if (!labels.empty() && labels.size() != mesh.triangles.size()) {
     throw_invalid("labels: found " + std::to_string(labels.size()) + " for " +
@@ -113,10 +143,10 @@ NearestPoints::NearestPoints(const InputMesh& mesh, std::span<const std::int32_t
   const std::vector<std::uint64_t> keys =
       sort_triangles(mesh, labels, progress.part(0.0, 0.8), threads);
   const auto box = [&](std::size_t place) { return box_of(place); };
-  tree_ = BoxTree(keys, kLeafTriangles, box, progress.part(0.8, 1.0));
-  lowest_indices_.resize(tree_.nodes().size());
+  boxes_ = BoxTree(keys, kLeafTriangles, box, progress.part(0.8, 1.0));
+  lowest_indices_.resize(boxes_.nodes().size());
   for (std::size_t n = lowest_indices_.size(); n-- > 0;) {
-    const BoxTree::Node& node = tree_.nodes()[n];
+    const BoxTree::Node& node = boxes_.nodes()[n];
     lowest_indices_[n] =
         node.right == 0
             ? *std::min_element(indices_.begin() + node.begin, indices_.begin() + node.end)
@@ -124,9 +154,10 @@ NearestPoints::NearestPoints(const InputMesh& mesh, std::span<const std::int32_t
   }
 }
 
-std::vector<std::uint64_t> NearestPoints::sort_triangles(const InputMesh& mesh,
-                                                         std::span<const std::int32_t> labels,
-                                                         const Progress& progress, int threads) {
+std::vector<std::uint64_t> NearestPoints::Tree::sort_triangles(const InputMesh& mesh,
+                                                               std::span<const std::int32_t> labels,
+                                                               const Progress& progress,
+                                                               int threads) {
   positions_.reserve(mesh.positions.size());
   for (const Vector3& position : mesh.positions) positions_.push_back(position);
   const auto middle = [&](std::size_t triangle) {
@@ -158,7 +189,7 @@ std::vector<std::uint64_t> NearestPoints::sort_triangles(const InputMesh& mesh,
   return keys;
 }
 
-Box NearestPoints::box_of(std::size_t place) const {
+Box NearestPoints::Tree::box_of(std::size_t place) const {
   Box box = kEmptyBox;
   for (const std::int32_t vertex : triangles_[place]) {
     box.include(positions_[static_cast<std::size_t>(vertex)]);
@@ -166,7 +197,7 @@ Box NearestPoints::box_of(std::size_t place) const {
   return box;
 }
 
-void NearestPoints::try_triangle(std::size_t place, const Vector3& point, Best* best) const {
+void NearestPoints::Tree::try_triangle(std::size_t place, const Vector3& point, Best* best) const {
   const auto& [i, j, k] = triangles_[place];
   const Vector3& a = positions_[static_cast<std::size_t>(i)];
   const Vector3& b = positions_[static_cast<std::size_t>(j)];
@@ -185,22 +216,22 @@ void NearestPoints::try_triangle(std::size_t place, const Vector3& point, Best* 
   if (best->may_be(squared, indices_[place])) *best = {squared, place, indices_[place], weights};
 }
 
-void NearestPoints::search(const Vector3& point, std::optional<std::int32_t> label,
-                           Best* best) const {
-  tree_.search(
+void NearestPoints::Tree::search(const Vector3& point, std::optional<std::int32_t> label,
+                                 Best* best) const {
+  boxes_.search(
       point,
       [&](double squared, std::size_t node) {
         return best->may_be(squared, lowest_indices_[node]);
       },
       [&](std::size_t node) {
-        for (std::size_t i = tree_.nodes()[node].begin; i < tree_.nodes()[node].end; ++i) {
+        for (std::size_t i = boxes_.nodes()[node].begin; i < boxes_.nodes()[node].end; ++i) {
           if (!label || labels_[i] == *label) try_triangle(i, point, best);
         }
       });
 }
 
-std::vector<SurfacePoint> NearestPoints::find(std::span<const Vector3> points,
-                                              const Progress& progress, int threads) const {
+std::vector<SurfacePoint> NearestPoints::Tree::find(std::span<const Vector3> points,
+                                                    const Progress& progress, int threads) const {
   check_points(points, "points: row", kLargest);
   // Along the curve a point's neighbours come before it: the triangle nearest to them is a good
   // first guess, and what was read for them is at hand.
@@ -223,9 +254,10 @@ std::vector<SurfacePoint> NearestPoints::find(std::span<const Vector3> points,
   return found;
 }
 
-std::vector<SurfacePoint> NearestPoints::find_on(std::span<const Vector3> points,
-                                                 std::span<const std::int32_t> origins,
-                                                 const Progress& progress, int threads) const {
+std::vector<SurfacePoint> NearestPoints::Tree::find_on(std::span<const Vector3> points,
+                                                       std::span<const std::int32_t> origins,
+                                                       const Progress& progress,
+                                                       int threads) const {
   check_points(points, "points: row", kLargest);
   if (origins.size() != points.size()) {
     throw_invalid("origins: found " + std::to_string(origins.size()) + " for " +
@@ -250,6 +282,26 @@ std::vector<SurfacePoint> NearestPoints::find_on(std::span<const Vector3> points
   parallel_ranges(static_cast<std::int64_t>(points.size()), kPointsPerTask, threads, progress,
                   find_some);
   return found;
+}
+
+NearestPoints::NearestPoints(const InputMesh& mesh, const Progress& progress, int threads)
+    : NearestPoints(mesh, {}, progress, threads) {}
+
+NearestPoints::NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels,
+                             const Progress& progress, int threads)
+    : tree_(std::make_unique<const Tree>(mesh, labels, progress, threads)) {}
+
+NearestPoints::~NearestPoints() = default;
+
+std::vector<SurfacePoint> NearestPoints::find(std::span<const Vector3> points,
+                                              const Progress& progress, int threads) const {
+  return tree_->find(points, progress, threads);
+}
+
+std::vector<SurfacePoint> NearestPoints::find_on(std::span<const Vector3> points,
+                                                 std::span<const std::int32_t> origins,
+                                                 const Progress& progress, int threads) const {
+  return tree_->find_on(points, origins, progress, threads);
 }
 
 std::vector<SurfacePoint> nearest_points(std::span<const Vector3> points, const InputMesh& mesh,

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "contour/mesh_checks.h"
+#include "prefilter/contour/tree_contour.h"
 #include "prefilter/mesh/array_sink.h"
 #include "wavelet/random_tree.h"
 

@@ -10,6 +10,8 @@
 #include <numbers>
 #include <vector>
 
+#include "prefilter/sampling/probes.h"
+
 namespace prefilter {
 namespace {
 

@@ -7,9 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/sampling/pyramid.h"
 #include "prefilter/sampling/sample.h"
 #include "prefilter/sampling/sample_places.h"
-#include "prefilter/sampling/weigh_texels.h"
+#include "prefilter/tables/sampling_table.h"
 
 namespace prefilter {
 

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Anisotropic samples of a pyramid: isotropic ones in a row (section 6.3, figure 6.12).
+// Ellipses as isotropic probes in a row (figure 6.12).
 #pragma once
 
 #include <span>
 
+#include "prefilter/sampling/anisotropic.h"
 #include "prefilter/sampling/footprint.h"
 #include "prefilter/sampling/pyramid_sampler.h"
-#include "prefilter/sampling/sample.h"
+#include "prefilter/sampling/sample_places.h"
 
 namespace prefilter {
-
-inline constexpr int kMostProbes = 256;
 
 /// Isotropic Gaussians along the major axis of an ellipse, centred on it, whose weighted sum comes
 /// close to the elliptical one. Probe k lies (k - (count - 1) / 2) * spacing from the centre and
@@ -44,18 +43,5 @@ struct ProbedPyramid {
   void sample(std::span<const TexturePlace> coordinates, std::span<const TextureJacobian> jacobians,
               float* result) const;
 };
-
-struct AnisotropicOptions : SampleOptions {
-  int max_probes = 16;
-};
-
-/// As `sample`, with the Jacobian of each sample in the place of its scale.
-///
-/// Throws Error as `sample` does, for Jacobians that check_jacobians refuses, and for max_probes
-/// out of range.
-void sample_anisotropically(const Pyramid& pyramid, const SamplingTable* table,
-                            std::span<const TexturePlace> coordinates,
-                            std::span<const TextureJacobian> jacobians,
-                            const AnisotropicOptions& options, std::span<float> result);
 
 }  // namespace prefilter

@@ -50,4 +50,12 @@ struct Pyramid {
   bool bytes;  // whether texels are bytes, which stand for a 255th each, and not floats
 };
 
+/// A texel of a pyramid, and how much it counts in a sample.
+struct WeightedTexel {
+  int level;
+  int x;  // texels; -1 outside of the level, with Wrap::kBorder: its value is zero
+  int y;
+  double weight;
+};
+
 }  // namespace prefilter

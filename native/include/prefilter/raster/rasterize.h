@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "prefilter/base/image.h"
@@ -40,6 +41,9 @@ enum class Overlap : std::uint8_t {
   kAdd,    // their values are added
   kCover,  // a later one covers those before it, as far as it is opaque
 };
+
+/// The names of all filters of shapes.
+std::span<const std::string_view> raster_filters();
 
 struct RasterOptions {
   int width = 0;   // pixels

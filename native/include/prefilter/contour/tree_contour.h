@@ -3,10 +3,11 @@
 // Occupancy octrees to closed meshes (chapter 5).
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "prefilter/base/geometry.h"
 #include "prefilter/contour/contour_options.h"
-#include "prefilter/contour/height_range.h"
-#include "prefilter/contour/surface_vertices.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
@@ -40,18 +41,5 @@ struct TracedMesh {
 
 /// The same with origins, for kSharp with sources. Throws Error, too, where there are none.
 TracedMesh contour_traced(const CellTree& cells, const Box& root, const ContourOptions& options);
-
-/// The part of a contour that is made of the dual cells at some heights. Parts at heights that
-/// follow each other have vertices in common, and together are the whole.
-struct ContourSlab {
-  TriangleMesh mesh;  // in a root that is the unit cube; all vertices have triangles
-  // Of the first vertices, which lie between two leaves. The others are of this part alone.
-  std::vector<VertexPlace> places;
-};
-
-/// Of a tree that has levels, and is complete where dual cells at these heights have corners. Runs
-/// on the calling thread.
-ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant interpolant,
-                         const HeightRange& heights);
 
 }  // namespace prefilter

@@ -5,13 +5,12 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
-#include "prefilter/spatial/box_tree.h"
 
 namespace prefilter {
 
@@ -34,6 +33,7 @@ class NearestPoints {
   /// where there are not as many.
   NearestPoints(const InputMesh& mesh, std::span<const std::int32_t> labels,
                 const Progress& progress, int threads);
+  ~NearestPoints();
 
   /// The points of the triangles nearest to these; of several triangles at the same distance, the
   /// one with the lowest index. A search takes longer the more triangles there are whose boxes are
@@ -50,23 +50,8 @@ class NearestPoints {
                                     int threads) const;
 
  private:
-  struct Best;
-  // Returns where the triangles are along the curve.
-  std::vector<std::uint64_t> sort_triangles(const InputMesh& mesh,
-                                            std::span<const std::int32_t> labels,
-                                            const Progress& progress, int threads);
-  Box box_of(std::size_t place) const;
-  void try_triangle(std::size_t place, const Vector3& point, Best* best) const;
-  void search(const Vector3& point, std::optional<std::int32_t> label, Best* best) const;
-
-  std::vector<Vector3> positions_;
-  // Along the Morton curve through their middles, each once; and their indices in the mesh.
-  std::vector<std::array<std::int32_t, 3>> triangles_;
-  std::vector<std::uint32_t> indices_;
-  std::vector<std::int32_t> labels_;   // as the triangles; empty for none
-  std::vector<std::uint32_t> places_;  // of each of the mesh's triangles, or its first copy
-  BoxTree tree_;
-  std::vector<std::uint32_t> lowest_indices_;  // for each node of the tree
+  class Tree;
+  std::unique_ptr<const Tree> tree_;
 };
 
 /// The same in one step, for a mesh that is asked once.
