@@ -9,6 +9,7 @@ from importlib import import_module
 
 SUBJECTS = (
     "mipmaps",
+    "texture_cache",
     "resampling",
     "scans",
     "shapes",
@@ -36,11 +37,11 @@ def _collector_paused() -> Iterator[None]:
 with _collector_paused():
     from . import manual, preferences
     from .commands import Commands
-    from .core import menus, presets, running
+    from .core import menus, presets, remembered, running
     from .core.registration import registration
 
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 
 register, unregister = registration(
-    preferences, presets, running, menus, *_packages, Commands(SUBJECTS), manual
+    preferences, presets, running, remembered, menus, *_packages, Commands(SUBJECTS), manual
 )

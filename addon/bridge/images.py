@@ -414,6 +414,13 @@ def encoded(picture: Picture, linear: FloatArray, check: Check = lambda: None) -
     return _convert(picture, linear, check, decode=False)
 
 
+def automatic_bounds(linear: FloatArray, *, is_integer: bool) -> tuple[float, float | None]:
+    """Returns the range of light: 0 to 1 for integers, else 0 and up; wider where the image is."""
+    finite = np.isfinite(linear)
+    low = float(linear.min(where=finite, initial=0.0))
+    return low, float(linear.max(where=finite, initial=1.0)) if is_integer else None
+
+
 def _why_empty(image: bpy.types.Image) -> str:
     if not image.filepath:
         return "found no pixels"

@@ -389,7 +389,7 @@ class Bake:
             return _LIMITS[self._settings.bounds]
         if texels.dtype == np.uint8:
             return _LIMITS["unit"]
-        return contents.automatic_bounds(texels, is_integer=self._picture.is_integer)
+        return images.automatic_bounds(texels, is_integer=self._picture.is_integer)
 
     def _summary(self, names: Sequence[str]) -> str:
         baked = f"Baked '{self.image_name}'"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import prefilter
 
-from ..bridge.images import Encoding, FloatArray, Picture, Texels
+from ..bridge.images import Encoding, FloatArray, Picture, Texels, automatic_bounds
 from ..core.jobs import Progress, share
 from .choices import TEXTURE_SPACE_FILTERS
 
@@ -74,13 +74,6 @@ def check_roughness(picture: Picture, roughness: Picture) -> None:
             f"roughness: '{roughness.name}' has {wide} x {high} texels; the {width} x {height} of "
             f"'{picture.name}' are needed"
         )
-
-
-def automatic_bounds(linear: FloatArray, *, is_integer: bool) -> tuple[float, float | None]:
-    """Returns the range of light: 0 to 1 for integers, else 0 and up; wider where the image is."""
-    finite = np.isfinite(linear)
-    low = float(linear.min(where=finite, initial=0.0))
-    return low, float(linear.max(where=finite, initial=1.0)) if is_integer else None
 
 
 def plain_levels(

@@ -9,7 +9,6 @@ from ..core.properties import copy
 from .choices import NOT_OF_MODELS, ModelSettings, ResultSettings, Settings
 from .operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from .operators.bake_model import PREFILTER_OT_bake_model
-from .operators.bake_texture_cache import PREFILTER_OT_bake_texture_cache
 from .operators.fill_unused import PREFILTER_OT_fill_unused
 from .operators.plot_error import PREFILTER_OT_plot_error
 from .operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
@@ -52,7 +51,6 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     layout, view = menu.layout, context.window_manager.prefilter_view
     draw_bake(layout, context)
     draw_bake_model(layout, context)
-    layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon="TEXTURE")
     layout.separator()
     preview = layout.operator(PREFILTER_OT_preview_levels.bl_idname, icon="FILE_REFRESH")
     preview.compare = view.compare
@@ -69,7 +67,6 @@ def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
     draw_bake(menu.layout, context)
     draw_bake_model(menu.layout, context)
-    menu.layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon="TEXTURE")
 
 
 def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -9,9 +9,9 @@ import bpy
 
 from ..bridge import level_images
 from ..bridge.files import tx
+from ..core import remembered
 from ..core.outcome import Outcome
 from ..core.wording import counted
-from . import cache_states
 from .view import preview
 
 
@@ -60,7 +60,7 @@ def _removed_from_cache(image: bpy.types.Image) -> list[str]:
     removed: list[str] = []
     # An image without a file has none in the cache.
     with suppress(ValueError):
-        for source in cache_states.sources(image).values():
+        for source in tx.sources(image).values():
             removed += [str(path) for path in tx.remove_baked(source)]
-    cache_states.look_again()
+    remembered.forget_all()
     return removed

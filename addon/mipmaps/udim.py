@@ -1,25 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""UDIM images: which part of the surface lies in each tile, and the bakes of all tiles as one."""
+"""UDIM images: a bake a tile, and all of them as one."""
 
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-import prefilter
-from numpy.typing import NDArray
-
 from ..bridge import meshes
 from ..bridge.images import Picture
+from ..bridge.tile_surfaces import TileSurfaces
 from ..core.jobs import Progress, parts
 from ..core.outcome import Outcome
 from ..core.wording import listed
 from .bake import Bake, write_all
 from .choices import TEXTURE_SPACE_FILTERS, Settings
-
-FloatArray = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -97,39 +92,6 @@ class TiledBake:
             one.discard()
 
 
-class Parts:
-    """The parts of surfaces that lie in tiles; each is cut out once, whatever uses it."""
-
-    def __init__(self) -> None:
-        """Starts without any."""
-        # With the surface, which keeps its identity from becoming another's.
-        self._bounds: dict[int, tuple[prefilter.Surface, FloatArray, FloatArray]] = {}
-        self._parts: dict[tuple[int, int], prefilter.Surface | None] = {}
-
-    def inside(self, found: meshes.ImageSurfaces, number: int) -> meshes.ImageSurfaces:
-        """Returns what lies in a tile, with the names of its objects, in the unit square."""
-        inside = meshes.ImageSurfaces()
-        for surface, name in zip(found.surfaces, found.objects, strict=True):
-            part = self._part(surface, number)
-            if part is not None:
-                inside.surfaces.append(part)
-                inside.objects.append(name)
-        return inside
-
-    def _part(self, surface: prefilter.Surface, number: int) -> prefilter.Surface | None:
-        if id(surface) not in self._bounds:
-            uvs = surface.uvs
-            self._bounds[id(surface)] = surface, uvs.min(axis=(0, 1)), uvs.max(axis=(0, 1))
-        _, low, high = self._bounds[id(surface)]
-        corner = np.array(((number - 1001) % 10, (number - 1001) // 10))
-        if np.any(high < corner) or np.any(low > corner + 1):
-            return None
-        key = id(surface), number
-        if key not in self._parts:
-            self._parts[key] = surface.udim_tile(number)
-        return self._parts[key]
-
-
 def tiles(
     image_name: str,
     pictures: Sequence[Picture],
@@ -152,9 +114,9 @@ def tiles(
         ValueError: The surface lies in none of the tiles.
     """
     chosen, warnings = [], list(found.problems)
-    parts = Parts()
+    surfaces = TileSurfaces()
     for index, (picture, number) in enumerate(zip(pictures, numbers, strict=True)):
-        inside = parts.inside(found, number)
+        inside = surfaces.inside(found, number)
         # A lookup past the edge of a tile is one in the next.
         inside.extensions = ["EXTEND"]
         area = sum(part.area for part in inside.surfaces)

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import bpy
 
 from ..bridge import users
+from ..core.remembered import Remembered
 from ..core.wording import counted, listed
 from .choices import TEXTURE_SPACE_FILTERS
-from .remembered import Remembered
 
 
 def _names_of_users(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> dict[int, list[str]]:

@@ -3,11 +3,12 @@
 """Labels and what menus show fit into a sidebar of the width that Blender gives it at first."""
 
 import dataclasses
+import importlib
 
 import blf
 import pytest
+from conftest import PACKAGE
 
-SUBJECTS = ("mipmaps", "resampling", "scans", "shapes", "voxels")
 POINTS = 11
 """The size of Blender's letters at a scale of 1."""
 LABEL_ROOM, CHOICE_ROOM = 90, 112
@@ -18,7 +19,7 @@ LABEL_ROOM, CHOICE_ROOM = 90, 112
 def options(addon):
     """Returns all options that a user sees, with the names of their fields."""
     declared, found = addon("core.options").declared, []
-    for subject in SUBJECTS:
+    for subject in importlib.import_module(PACKAGE).SUBJECTS:
         choices = addon(f"{subject}.choices")
         for settings in vars(choices).values():
             if dataclasses.is_dataclass(settings) and any(

@@ -24,7 +24,7 @@ from typing import Any
 import bpy
 import numpy as np
 
-from .. import openimageio
+from .. import images, openimageio
 from ..images import FloatArray
 from ..openimageio import Check
 from . import staging
@@ -97,6 +97,16 @@ def is_available() -> bool:
     """Returns whether this Blender's Cycles makes texture caches."""
     settings = bpy.types.RenderSettings.bl_rna.properties
     return "use_texture_cache" in settings and _maker() is not None
+
+
+def sources(image: bpy.types.Image) -> dict[int | None, Source]:
+    """Returns what the cache files of an image are made from, by tile; see `images.files_of`."""
+    space = image.colorspace_settings
+    folder = bpy.context.preferences.filepaths.texture_cache_directory
+    return {
+        number: Source(path, space.name, space.is_data, image.alpha_mode, folder)
+        for number, path in images.files_of(image).items()
+    }
 
 
 def state(source: Source) -> str:

@@ -4,11 +4,10 @@
 
 from typing import Any
 
-from . import bake, bake_cache, plot
+from . import bake, plot
 
 
 def add(commands: Any) -> None:
     """Adds the commands."""
     bake.add(commands)
     plot.add(commands)
-    bake_cache.add(commands)

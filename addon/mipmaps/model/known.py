@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import bpy
 
-from ..remembered import Remembered
+from ...core.remembered import Remembered
 from .plan import Item, Plan, plan
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Where a user finds mipmaps: the Image and UV editors, the 3D view, Cycles' properties."""
+"""Where a user finds mipmaps: the Image and UV editors, the 3D view."""
 
 from ...core.registration import registration
-from . import image_editor, model, seeing, texture_cache
+from . import image_editor, model, seeing
 
-register, unregister = registration(image_editor, model, seeing, texture_cache)
+register, unregister = registration(image_editor, model, seeing)

@@ -114,7 +114,7 @@ def panel(addon):
 def test_the_panel_says_what_is_read(pair, panel, addon, monkeypatch):
     image, left, right = pair
     text, reason = panel
-    monkeypatch.setattr(addon("mipmaps.remembered"), "SHARE_OF_TIME", 1e9)
+    monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e9)
     assert text(image) == "2 objects, 4 x 4"
     assert text(image, "selected") == "1 object, 4 x 4"
     assert text(image, filters=["box"]) == "4 x 4"
@@ -137,7 +137,7 @@ def test_the_panel_looks_again_only_after_a_change(pair, panel, addon, monkeypat
     monkeypatch.setattr(
         module.users, "shown_images", lambda graph: looks.append(graph) or original(graph)
     )
-    monkeypatch.setattr(addon("mipmaps.remembered"), "SHARE_OF_TIME", 1e9)
+    monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e9)
     for _ in range(3):
         assert text(image) == "2 objects, 4 x 4"
     assert len(looks) == 1
@@ -145,7 +145,7 @@ def test_the_panel_looks_again_only_after_a_change(pair, panel, addon, monkeypat
     for _ in range(3):
         assert text(image) == "1 object, 4 x 4"
     assert len(looks) == 2
-    monkeypatch.setattr(addon("mipmaps.remembered"), "SHARE_OF_TIME", 1e-9)
+    monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e-9)
     left.hide_set(False)
     assert text(image) == "2 objects, 4 x 4"
     left.hide_set(True)

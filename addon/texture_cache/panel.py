@@ -4,14 +4,15 @@
 
 import bpy
 
-from ...core.sidebar import button
-from ..operators.bake_texture_cache import PREFILTER_OT_bake_texture_cache
-from ..operators.remove_levels import PREFILTER_OT_remove_levels
+from ..core.sidebar import button
+from .operator import PREFILTER_OT_bake_texture_cache
 
 _ICON = "TEXTURE"
 _ICONS = {"stale": "FILE_REFRESH", "missing": "X", "packed": "PACKAGE", "unfit": "ERROR"}
 _MOST_IMAGES = 8
 _PARENT = "CYCLES_RENDER_PT_performance_texture_cache"
+# Of another subject, which also removes other levels: operators are known by their names.
+_REMOVE_LEVELS = "prefilter.remove_levels"
 
 
 class PREFILTER_PT_texture_cache(bpy.types.Panel):
@@ -32,10 +33,10 @@ class PREFILTER_PT_texture_cache(bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        from .. import cache_states
+        from . import states
 
         column = self.layout.column()
-        found = cache_states.states(context)
+        found = states.states(context)
         place = button(column, context, PREFILTER_OT_bake_texture_cache)
         if place:
             place.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)
@@ -46,16 +47,14 @@ class PREFILTER_PT_texture_cache(bpy.types.Panel):
             operator.use_unpack = True
         if any(one.state in {"baked", "stale"} for one in found):
             operator = column.operator(
-                PREFILTER_OT_remove_levels.bl_idname, text="Remove from Texture Cache", icon="TRASH"
+                _REMOVE_LEVELS, text="Remove from Texture Cache", icon="TRASH"
             )
             operator.kinds, operator.use_all = {"cache"}, True
         if found:
-            column.label(text=f"Images: {cache_states.summary(found)}")
+            column.label(text=f"Images: {states.summary(found)}")
         others = [one for one in found if one.state != "baked"]
         for one in others[:_MOST_IMAGES]:
-            column.label(
-                text=f"{one.name}: {cache_states.WORDS[one.state]}", icon=_ICONS[one.state]
-            )
+            column.label(text=f"{one.name}: {states.WORDS[one.state]}", icon=_ICONS[one.state])
         if len(others) > _MOST_IMAGES:
             column.label(text=f"and {len(others) - _MOST_IMAGES} more", icon="BLANK1")
         column.label(text="Overwrites the cache files", icon="INFO")

@@ -17,9 +17,9 @@ HAS_CACHE = "use_texture_cache" in bpy.types.RenderSettings.bl_rna.properties
 @pytest.mark.skipif(not HAS_CACHE, reason="Blender 5.2 or later is needed")
 def test_what_the_panel_says_of_images(tmp_path, addon, monkeypatch):
     cycles.set_up(bpy.context.scene)
-    module = addon("mipmaps.cache_states")
+    module = addon("texture_cache.states")
     monkeypatch.setattr(module, "_SECONDS", -1.0)
-    monkeypatch.setattr(addon("mipmaps.remembered"), "SHARE_OF_TIME", 1e9)
+    monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e9)
     cycles.shown_on(cycles.write_picture(tmp_path / "a.png", smooth(64, 64, 3), "uint8"), name="A")
     cycles.shown_on(cycles.write_picture(tmp_path / "b.exr", smooth(64, 64, 3), "half"), name="B")
     flat = np.full((64, 64, 3), 0.5, np.float32)

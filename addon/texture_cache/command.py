@@ -9,14 +9,13 @@ from typing import Any
 
 import bpy
 
-from ...bridge import meshes
-from ...bridge.files import scenes, staging
-from ...core import command
-from ...core.flags import add_flags, settings_given
-from ...core.wording import listed
-from .. import texture_cache
-from ..choices import Settings
-from .source import WANTED
+from ..bridge import meshes
+from ..bridge.files import scenes, staging
+from ..core import command
+from ..core.flags import add_flags, settings_given
+from ..core.wording import listed
+from .bake import CacheBake
+from .choices import CacheSettings
 
 _HELP = "bake PAM into Cycles' texture cache, for every image of a scene"
 _NOTES = """\
@@ -41,7 +40,7 @@ def add(commands: Any) -> None:
         help="write packed images to the folder textures beside FILE first, and bake these; FILE "
         "uses them if it is saved",
     )
-    add_flags(parser, Settings, "threads")
+    add_flags(parser, CacheSettings)
     parser.add_argument(
         "--save", action="store_true", help="save FILE with the scene's texture cache turned on"
     )
@@ -51,7 +50,7 @@ def add(commands: Any) -> None:
 def _bake_cache(options: argparse.Namespace) -> None:
     command.check_ending(options, "FILE", options.file, [".blend"])
     path = os.path.abspath(options.file)
-    scenes.load([path], meshes.may_show_image, WANTED)
+    scenes.load([path], meshes.may_show_image, "mesh object")
     if options.save:
         staging.check_writable(Path(path))
     scene = bpy.context.scene if options.scene is None else bpy.data.scenes.get(options.scene)
@@ -60,8 +59,11 @@ def _bake_cache(options: argparse.Namespace) -> None:
         raise ValueError(f"--scene: found no scene named '{options.scene}'; the file has {known}")
     bpy.context.window.scene = scene
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    work = texture_cache.CacheBake.read(
-        scene, depsgraph, unpack=options.unpack, threads=settings_given(options, Settings).threads
+    work = CacheBake.read(
+        scene,
+        depsgraph,
+        unpack=options.unpack,
+        threads=settings_given(options, CacheSettings).threads,
     )
     outcome = command.done(work)
     if options.save:

@@ -18,13 +18,13 @@ import prefilter
 from ..bridge import materials, meshes, openimageio, packed, rendered
 from ..bridge.files import tx
 from ..bridge.files.staging import StagedFile, commit_all
-from ..bridge.images import FloatArray
+from ..bridge.images import FloatArray, automatic_bounds
+from ..bridge.tile_surfaces import TileSurfaces
 from ..core.alpha import associated, at_most_opaque, unassociated
 from ..core.jobs import Progress, at_once, go_on, share
 from ..core.outcome import Outcome
 from ..core.wording import counted, listed
-from . import cache_states, udim
-from .contents import automatic_bounds
+from . import states
 
 NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
 
@@ -126,12 +126,12 @@ class CacheBake:
                 if unpack and image.packed_files:
                     names = listed(path.name for path in packed.unpack(image))
                     notes.append(f"image '{image.name}': unpacked into {names}")
-                files[image] = cache_states.sources(image)
+                files[image] = tx.sources(image)
             except (ValueError, OSError) as error:
                 warnings.append(str(error))
         users = {image: viewers[image].objects for image in files if not viewers[image].others}
         found = meshes.surfaces_of_images(users, depsgraph)
-        parts = udim.Parts()
+        parts = TileSurfaces()
         worn: list[_Worn] = []
         for image, sources in files.items():
             surfaces = found.get(image, meshes.ImageSurfaces())
@@ -180,7 +180,7 @@ class CacheBake:
         scene = bpy.data.scenes.get(self._scene)
         if scene is not None:
             scene.render.use_texture_cache = True
-        cache_states.look_again()
+        states.look_again()
         return Outcome(self._summary(), files=written, warnings=self.warnings, notes=self.notes)
 
     def discard(self) -> None:
@@ -268,7 +268,7 @@ def _on_surfaces(
     sources: dict[int | None, tx.Source],
     seen: rendered.Viewers,
     found: meshes.ImageSurfaces,
-    parts: udim.Parts,
+    parts: TileSurfaces,
 ) -> list[_Worn]:
     """Returns the files of an image with their surfaces; an image with an obstacle has none."""
     obstacle = "; ".join(seen.others)

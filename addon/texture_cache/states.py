@@ -10,7 +10,7 @@ import bpy
 
 from ..bridge import images, rendered
 from ..bridge.files import tx
-from .remembered import Remembered
+from ..core.remembered import Remembered
 
 WORDS = {
     "baked": "baked",
@@ -81,21 +81,11 @@ def _look(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> _Known:
             found = "packed"
         else:
             try:
-                found = list(sources(image).values())
+                found = list(tx.sources(image).values())
             except ValueError:
                 found = "unfit"
         files.append((image.name, found))
     return _Known(files, [])
-
-
-def sources(image: bpy.types.Image) -> dict[int | None, tx.Source]:
-    """Returns what the cache files of an image are made from, by tile; see `images.files_of`."""
-    space = image.colorspace_settings
-    folder = bpy.context.preferences.filepaths.texture_cache_directory
-    return {
-        number: tx.Source(path, space.name, space.is_data, image.alpha_mode, folder)
-        for number, path in images.files_of(image).items()
-    }
 
 
 _images = Remembered(_look)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import bpy
 from bpy.props import BoolProperty
 
-from ...core.operator import WorkOperator
-from ...core.preferences import preference
+from ..core.operator import WorkOperator
+from ..core.preferences import preference
 
 if TYPE_CHECKING:
-    from .. import texture_cache
+    from .bake import CacheBake
 
 
 class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
@@ -39,22 +39,25 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether this Blender has a texture cache, and there is an image to bake."""
-        from ...bridge.files import tx
-        from .. import texture_cache
+        from ..bridge.files import tx
+        from .bake import NEEDED
 
         if not tx.is_available():
-            cls.poll_message_set(texture_cache.NEEDED)
+            cls.poll_message_set(NEEDED)
             return False
         if context.scene is None or not bpy.data.images:
             cls.poll_message_set("There is no image in this file")
             return False
         return True
 
-    def read_work(self, context: bpy.types.Context) -> "texture_cache.CacheBake":
+    def read_work(self, context: bpy.types.Context) -> "CacheBake":
         """Copies the surfaces of the scene."""
-        from .. import texture_cache
+        from .bake import CacheBake
 
         depsgraph = context.evaluated_depsgraph_get()
-        return texture_cache.CacheBake.read(
+        return CacheBake.read(
             context.scene, depsgraph, unpack=self.use_unpack, threads=preference("threads", 0)
         )
+
+
+register, unregister = bpy.utils.register_classes_factory((PREFILTER_OT_bake_texture_cache,))

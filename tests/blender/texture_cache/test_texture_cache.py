@@ -455,7 +455,7 @@ def test_cancelling_leaves_the_cache(scene, tmp_path, addon):
         cycles.shown_on(cycles.write_picture(tmp_path / name, pixels, "uint8"), name=name)
     generate()
     before = contents(tmp_path)
-    module = addon("mipmaps.texture_cache")
+    module = addon("texture_cache.bake")
     for most in (0.0, 0.3, 0.7, 0.999):
         job = module.CacheBake.read(scene, scenes.depsgraph())
         with pytest.raises(prefilter.Cancelled):
@@ -729,7 +729,7 @@ def test_the_command(tmp_path, scene):
 @needs_cache
 def test_results_do_not_depend_on_threads(scene, tmp_path, addon):
     cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(128, 64, 4), "uint8"))
-    module = addon("mipmaps.texture_cache")
+    module = addon("texture_cache.bake")
     found = []
     for threads in (1, 2, 5):
         job = module.CacheBake.read(scene, scenes.depsgraph(), threads=threads)

@@ -64,17 +64,18 @@ def _mark_stale(*_: object) -> None:
 
 
 @persistent
-def _forget(*_: object) -> None:
+def forget_all(*_: object) -> None:
+    """Lets everything be looked up again before panels say anything, as after files changed."""
     for one in _all:
         one.forget()
 
 
 _HANDLERS = (
     ("depsgraph_update_post", _mark_stale),
-    ("undo_post", _forget),
-    ("redo_post", _forget),
-    ("load_pre", _forget),
-    ("load_post", _forget),
+    ("undo_post", forget_all),
+    ("redo_post", forget_all),
+    ("load_pre", forget_all),
+    ("load_post", forget_all),
 )
 
 
@@ -88,4 +89,4 @@ def unregister() -> None:
     """Removes the handlers."""
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).remove(handler)
-    _forget()
+    forget_all()

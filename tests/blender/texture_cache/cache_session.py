@@ -16,7 +16,7 @@ from pathlib import Path
 import addon_utils
 import bpy
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import cycles_scenes as cycles
 import scenes
