@@ -18,7 +18,18 @@ INTERNAL = NATIVE / "prefilter"
 PUBLIC = NATIVE / "include/prefilter"
 FLOORS = (
     {"base"},
-    {"blocks", "color", "exr", "filters", "io", "moments", "outline", "solve", "spatial", "surface"},
+    {
+        "blocks",
+        "color",
+        "exr",
+        "filters",
+        "io",
+        "moments",
+        "outline",
+        "solve",
+        "spatial",
+        "surface",
+    },
     {"mesh", "remesh", "scan", "tables", "texels", "wavelet"},
     {"contour", "mipmap", "normals", "raster", "resize", "sampling", "voxel"},
     {"reconstruct", "solid"},

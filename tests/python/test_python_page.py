@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""docs/python.md: its signatures are the package's, it names all that is public, and samples run."""
+
+import inspect
+import re
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import prefilter
+import pytest
+from scan_writers import ply
+from scenes import random_image
+from solids import box, sphere
+
+PAGE = (Path(__file__).resolve().parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
+# What stands before the dot of a method in the tables.
+INSTANCES = {
+    "surface": prefilter.Surface,
+    "octree": prefilter.Octree,
+    "shape": prefilter.Shape,
+    "table": prefilter.SamplingTable,
+}
+CALL = re.compile(r"([\w.]+)\((.*)\)")
+
+
+def spans() -> list[str]:
+    """What the first columns of the tables hold as code."""
+    rows = re.findall(r"(?m)^\| (`.*?) \| ", PAGE)
+    return [span for row in rows for span in re.findall(r"`([^`]+)`", row)]
+
+
+def owner_of(path: str) -> tuple[object, str]:
+    *before, name = path.split(".")
+    if not before:
+        return prefilter, name
+    return INSTANCES.get(before[0]) or getattr(prefilter, before[0]), name
+
+
+def parameters(function: Callable[..., object], *, is_method: bool) -> list[str]:
+    """The names of the parameters, with the star that those after it are given by name."""
+    found = list(inspect.signature(function).parameters.values())[1 if is_method else 0 :]
+    names: list[str] = []
+    for each in found:
+        if each.kind is each.KEYWORD_ONLY and not any(name.startswith("*") for name in names):
+            names.append("*")
+        names.append("*" * (each.kind is each.VAR_POSITIONAL) + each.name)
+    return names
+
+
+def of_the_package(path: str) -> list[str]:
+    owner, name = owner_of(path)
+    if path == "available_memory":  # takes nothing; a builtin, which tells no signature
+        return []
+    is_method = inspect.isclass(owner) and inspect.isfunction(inspect.getattr_static(owner, name))
+    return parameters(getattr(owner, name), is_method=is_method)
+
+
+def wrong_signatures(told: list[str]) -> list[str]:
+    """Those that differ from the package's; "..." stands for parameters of the one before."""
+    wrong = []
+    before: set[str] = set()
+    for path, listed in (match.groups() for match in map(CALL.fullmatch, told) if match):
+        names = listed.split(", ") if listed else []
+        expected = of_the_package(path)
+        if "..." in names:
+            is_right = {*names} - {"..."} <= {*expected} <= {*names} | before
+        else:
+            is_right = names == expected
+        if not is_right:
+            wrong.append(f"{path}({', '.join(expected)})")
+        before = {*expected}
+    return wrong
+
+
+def public_members(name: str) -> set[str]:
+    owner = getattr(prefilter, name)
+    if not inspect.isclass(owner) or issubclass(owner, Exception):
+        return set()
+    return {member for member in vars(owner) if not member.startswith("_")}
+
+
+def test_signatures_are_those_of_the_package():
+    assert len(spans()) > 60
+    assert not wrong_signatures(spans())
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        ["texel_weights(surface, width, height, *, wrap, progress)"],
+        ["texel_weights(surface, width, height, wrap, progress, threads)"],
+        ["octree.coarsened(depth, *, threads)"],
+        ["to_linear(image, *, threads)", "write_ktx2(..., alpha)"],
+    ],
+)
+def test_wrong_signatures_are_found(told):
+    assert len(wrong_signatures(told)) == 1
+
+
+def test_every_public_name_is_there():
+    code = [*samples(), *re.findall(r"`([^`\n]+)`", PAGE)]
+    words = {word for text in code for word in re.findall(r"\w+", text)}
+    members = {f"{name}.{member}" for name in prefilter.__all__ for member in public_members(name)}
+    assert {name for name in prefilter.__all__ if name not in words} == set()
+    assert {name for name in members if name.partition(".")[2] not in words} == set()
+
+
+def samples() -> list[str]:
+    return re.findall(r"(?ms)^```python\n(.*?)^```$", PAGE)
+
+
+def given(folder: Path) -> dict[str, object]:
+    """What the samples have beside what they make: small meshes, images and files."""
+    ball, other = sphere(rounds=2), box((-0.2, -0.3, -2.0), (0.2, 0.3, 2.0))
+    corner = 0.5 + 0.45 * ball.positions[ball.triangles][..., :2]
+    data = np.rint(random_image(1, 16, 16, 3) * 255).astype(np.uint8)
+    random = np.random.default_rng(2)
+    points = random.normal(size=(3000, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    kinds = [("float", name) for name in ("x", "y", "z", "nx", "ny", "nz")]
+    rows = [tuple(row) for row in np.hstack([points, points])]
+    for name in ("scan.ply", "city.ply"):
+        (folder / name).write_bytes(ply("binary_little_endian", [("vertex", kinds, rows)]))
+    (folder / "drawing.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><circle r="4"/></svg>'
+    )
+    opened = (data[..., 0].astype(np.uint16) << 8) + 1
+    return {
+        "positions": ball.positions,
+        "triangles": ball.triangles,
+        "uvs": corner,
+        "pixels": data,
+        "PIL": SimpleNamespace(Image=SimpleNamespace(open=lambda _: opened)),
+        "face_sizes": [4] * 6,
+        "face_vertices": np.array(
+            [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]
+        ),
+        "face_uvs": np.tile([[0.0, 0.0], [1, 0], [1, 1], [0, 1]], (6, 1)),
+        "frames": [ball.positions, 1.5 * ball.positions],
+        "tiles": {1001: data, 1002: data},
+        "points": random.uniform(-2, 2, (20, 3)),
+        "one": (ball.positions, ball.triangles),
+        "other": (other.positions, other.triangles),
+    }
+
+
+def test_samples_run_one_after_another(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scope = given(tmp_path)
+    levels = {}
+    for sample in samples():
+        exec(compile(sample, f"docs/python.md: {sample[:40]!r}", "exec"), scope)
+        levels[sample] = scope.get("levels")
+    assert len(levels) >= 8
+    assert len(scope["error"]) == 100
+    assert scope["image"].shape == (1024, 1024, 4)
+    assert len(scope["octree"].classify(scope["points"])) == len(scope["points"])
+    assert scope["report"].dropped == 0
+    assert (tmp_path / "surface.ply").stat().st_size > 1000
