@@ -7,6 +7,7 @@ import sys
 from collections.abc import Mapping, Sequence
 
 from bench.peers import Measurement, Peer
+from bench.report import Report
 
 
 def measure(
@@ -28,10 +29,14 @@ def named(*peers: Peer) -> dict[str, Peer]:
     return {peer.name: peer for peer in peers}
 
 
-def print_table(results: dict[str, list[Measurement]], reference: str) -> None:
-    """Prints a markdown table; pairs are runs of the same round."""
-    print("\n| program | median s | min - max s | of medians | of pairs (min - max) | peak MiB |")
-    print("| :--- | ---: | ---: | ---: | ---: | ---: |")
+HEAD = ("program", "median s", "min - max s", "of medians", "of pairs (min - max)", "peak MiB")
+
+
+def add_table(
+    report: Report, title: str, results: dict[str, list[Measurement]], reference: str, name: str
+) -> None:
+    """Adds a table of times; pairs are runs of the same round."""
+    rows = []
     for name, runs in results.items():
         seconds = [run.seconds for run in runs]
         pairs = [a.seconds / b.seconds for a, b in zip(runs, results[reference], strict=True)]
@@ -44,8 +49,8 @@ def print_table(results: dict[str, list[Measurement]], reference: str) -> None:
             f"{statistics.median(pairs):.2f} ({min(pairs):.2f} - {max(pairs):.2f})",
             f"{peak:.0f}" + (f" ({start:.0f} before)" if start else ""),
         ]
-        print(f"| {' | '.join(cells)} |")
-    print()
+        rows.append(cells)
+    report.table(title, HEAD, rows, name)
 
 
 def medians_ratio(runs: Sequence[Measurement], others: Sequence[Measurement]) -> float:

@@ -10,6 +10,7 @@ texels of level 0.
 """
 
 import argparse
+import sys
 import tempfile
 import time
 from pathlib import Path
@@ -18,6 +19,9 @@ import numpy as np
 import OpenImageIO as oiio
 import prefilter
 from numpy.typing import NDArray
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.report import Report, add_json_option
 
 Bytes = NDArray[np.uint8]
 
@@ -58,17 +62,16 @@ def as_read(levels: list[Bytes], texture_format: str) -> tuple[list[Bytes], int,
 
 
 def main() -> None:
-    """Prints a row for each filter and format."""
+    """Measures each filter and format."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("model", type=Path)
     parser.add_argument("texture", type=Path)
+    add_json_option(parser)
     options = parser.parse_args()
     surface = read_obj(options.model)
     texture = oiio.ImageBuf(str(options.texture)).get_pixels("uint8")[::-1, :, :3].copy()
     linear = prefilter.to_linear(texture / np.float32(255))
-    print("| filter | format | size, KiB | written in, s | level 0, 8-bit steps |", end="")
-    print("".join(f" level {level} |" for level in LEVELS))
-    print("| :--- | :--- |" + " ---: |" * (3 + len(LEVELS)))
+    rows = []
     for name in ("box", "lanczos3", "pam-bilinear"):
         levels = prefilter.mipmaps(texture, surface, filter=name, encoding="srgb")
         for texture_format in FORMATS:
@@ -76,11 +79,12 @@ def main() -> None:
             steps = np.sqrt(np.mean((found[0].astype(float) - levels[0]) ** 2))
             values = [prefilter.to_linear(level / np.float32(255)) for level in found]
             errors = prefilter.mipmap_error(values, linear, surface, list(LEVELS))
-            print(
-                f"| {name} | {texture_format} | {size // 1024} | {seconds:.2f} | {steps:.2f} |",
-                end="",
-            )
-            print("".join(f" {error:.4f} |" for error in errors))
+            cells = [name, texture_format, f"{size // 1024}", f"{seconds:.2f}", f"{steps:.2f}"]
+            rows.append([*cells, *(f"{error:.4f}" for error in errors)])
+    head = ["filter", "format", "KiB", "s", "steps", *(f"level {level}" for level in LEVELS)]
+    report = Report()
+    report.table(f"{options.model.stem} in block formats", head, rows, "errors")
+    report.write(options.json)
 
 
 if __name__ == "__main__":

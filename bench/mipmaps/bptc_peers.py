@@ -15,6 +15,7 @@ Times are those of one thread, the least of five in turns.
 import argparse
 import os
 import struct
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -27,6 +28,9 @@ import OpenImageIO as oiio
 import prefilter
 from numpy.typing import NDArray
 from prefilter.textures.texel_formats import FORMATS
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.report import Report, add_json_option
 
 Pixels = NDArray[Any]
 
@@ -102,8 +106,8 @@ def middle(path: Path) -> Pixels:
     return cut
 
 
-def measure(image: Pixels, folder: Path) -> None:
-    """Prints a row for each encoder."""
+def measure(image: Pixels, folder: Path) -> list[list[str]]:
+    """Returns a row for each encoder."""
     encoders: dict[str, tuple[str, Callable[[Pixels], bytes]]]
     if image.dtype == np.uint8:
         encoders = {"bc1": ("bc1", ours("bc1", folder)), "bc7": ("bc7", ours("bc7", folder))}
@@ -120,29 +124,34 @@ def measure(image: Pixels, folder: Path) -> None:
             began = time.process_time()
             blocks[name] = encode(image)
             least[name] = min(least[name], time.process_time() - began)
+    rows = []
     for name, (texture_format, _) in encoders.items():
         found = decoded(blocks[name], texture_format, image.shape, folder)
         speed = image.shape[0] * image.shape[1] / 1e6 / least[name]
         values = errors(found, image)
-        shown = f"{values[0]:.2f}" if len(values) == 1 else f"{values[0]:.4f} | {values[1]:.2%}"
-        print(f"| {name} | {shown} | {speed:.2f} |", flush=True)
+        is_bytes = len(values) == 1
+        shown = [f"{values[0]:.2f}"] if is_bytes else [f"{values[0]:.4f}", f"{values[1]:.2%}"]
+        rows.append([name, *shown, f"{speed:.2f}"])
+    return rows
 
 
 def main() -> None:
     """Prints a table for each image."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("images", type=Path, nargs="+", metavar="IMAGE")
+    add_json_option(parser)
     options = parser.parse_args()
+    report = Report()
     os.nice(5)
     for path in options.images:
         image = middle(path)
         is_bytes = image.dtype == np.uint8
-        print(f"\n{path.name}, {image.shape[1]} x {image.shape[0]}\n")
-        head = "PSNR, dB" if is_bytes else "log2, RMS | off by over 1/4"
-        print(f"| encoder | {head} | Mtexel a CPU s |")
-        print("| :--- | ---: |" + (" ---: |" if is_bytes else " ---: | ---: |"))
+        measures = ["PSNR, dB"] if is_bytes else ["log2, RMS", "off by over 1/4"]
         with tempfile.TemporaryDirectory() as folder:
-            measure(image, Path(folder))
+            rows = measure(image, Path(folder))
+        title = f"{path.name}, {image.shape[1]} x {image.shape[0]}"
+        report.table(title, ("encoder", *measures, "Mtexel a CPU s"), rows, path.stem)
+    report.write(options.json)
 
 
 if __name__ == "__main__":

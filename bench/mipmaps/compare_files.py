@@ -23,7 +23,8 @@ from bench.mipmaps.compare_maketx import HERE, SPOT
 from bench.peers import run
 from bench.peers.file_to_file import IN_CPP, FileToFile
 from bench.peers.maketx import Maketx
-from bench.turns import measure, medians_ratio, named, print_table
+from bench.report import Report, add_json_option
+from bench.turns import add_table, measure, medians_ratio, named
 
 LIMITS = (
     ("pam-box", "box", 1.0),
@@ -39,6 +40,7 @@ def main() -> None:
     parser.add_argument("--size", type=int, default=1024, help="texels (default: %(default)s)")
     parser.add_argument("--rounds", type=int, default=5, help="how often (default: %(default)s)")
     parser.add_argument("--threads", type=int, default=2, help="of each (default: %(default)s)")
+    add_json_option(parser)
     options = parser.parse_args()
     if not IN_CPP.exists():
         parser.error(f"there is no '{IN_CPP}'; build the target prefilter_bake_file first")
@@ -65,22 +67,17 @@ def main() -> None:
             for key in ("box", "lanczos3")
         }
         results = measure(named(*theirs.values(), *ours.values(), *in_python), options.rounds)
-    print(f"{'spot' if spot else 'generated'}, {size} RGBA, {options.threads} threads each")
-    print_table(results, theirs["lanczos3"].name)
-    failed = False
+    report = Report()
+    title = f"{'spot' if spot else 'generated'}, {size} RGBA, {options.threads} threads each"
+    add_table(report, title, results, theirs["lanczos3"].name, "times")
     for key, other, limit in LIMITS:
         ratio = medians_ratio(results[ours[key].name], results[theirs[other].name])
-        failed = failed or ratio > limit
-        print(
-            f"{'holds' if ratio <= limit else 'DOES NOT HOLD'}: {key} takes {ratio:.2f} of the "
-            f"wall time of maketx's {other}; at most {limit} is asked for"
-        )
+        claim = f"{key} takes {ratio:.2f} of the wall time of maketx's {other}"
+        report.verdict(ratio <= limit, f"{claim}; at most {limit} is asked for")
     peak = max(found.peak_mib for found in results[ours["pam-bilinear"].name])
     if options.size == 4096:
-        failed = failed or peak > LARGEST_MIB
-        print(f"{'holds' if peak <= LARGEST_MIB else 'DOES NOT HOLD'}: its peak is {peak:.0f} MiB")
-    if failed:
-        raise SystemExit(1)
+        report.verdict(peak <= LARGEST_MIB, f"its peak is {peak:.0f} MiB")
+    report.finish(options.json)
 
 
 if __name__ == "__main__":

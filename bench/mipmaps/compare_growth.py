@@ -21,21 +21,23 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.mipmaps.compare_maketx import HERE
 from bench.peers import run
 from bench.peers.file_to_file import IN_CPP, FileToFile
-from bench.turns import measure, medians_ratio, named, print_table
+from bench.report import Report, add_json_option
+from bench.turns import add_table, measure, medians_ratio, named
 
 
 @dataclass(frozen=True)
 class Growth:
     """A smaller and a larger case, as texels along a side and triangles."""
 
+    name: str
     small: tuple[int, int]
     large: tuple[int, int]
     limit: float
 
 
 CASES = (
-    Growth((4096, 10_000), (8192, 10_000), 4.4),
-    Growth((1024, 10_000), (1024, 1_000_000), 3.0),
+    Growth("size", (4096, 10_000), (8192, 10_000), 4.4),
+    Growth("triangles", (1024, 10_000), (1024, 1_000_000), 3.0),
 )
 
 
@@ -47,23 +49,20 @@ def main() -> None:
     parser.add_argument(
         "--filter", default="pam-bilinear", help="the filter (default: %(default)s)"
     )
+    add_json_option(parser)
     options = parser.parse_args()
     if not IN_CPP.exists():
         parser.error(f"there is no '{IN_CPP}'; build the target prefilter_bake_file first")
-    failed = False
+    report = Report()
     with tempfile.TemporaryDirectory() as name:
         for case in CASES:
             work = [prepared(Path(name), *sides, options) for sides in (case.small, case.large)]
             results = measure(named(*work), options.rounds)
-            print_table(results, work[0].name)
+            add_table(report, work[1].name, results, work[0].name, case.name)
             ratio = medians_ratio(results[work[1].name], results[work[0].name])
-            failed = failed or ratio > case.limit
-            print(
-                f"{'holds' if ratio <= case.limit else 'DOES NOT HOLD'}: {work[1].name} takes "
-                f"{ratio:.2f} times as long; at most {case.limit} is asked for"
-            )
-    if failed:
-        raise SystemExit(1)
+            claim = f"{work[1].name} takes {ratio:.2f} times as long"
+            report.verdict(ratio <= case.limit, f"{claim}; at most {case.limit} is asked for")
+    report.finish(options.json)
 
 
 def prepared(place: Path, size: int, triangles: int, options: argparse.Namespace) -> FileToFile:

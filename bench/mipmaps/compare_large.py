@@ -21,6 +21,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.peers import Measurement
 from bench.peers.clock import MARK
+from bench.report import Report, add_json_option
 
 HERE = Path(__file__).resolve()
 SCENE = HERE.with_name("large_scene.py")
@@ -34,6 +35,7 @@ def main() -> None:
     parser.add_argument("--cache", action="store_true", help="bake into the texture cache")
     parser.add_argument("--size", type=int, default=8192, help="(default: %(default)s)")
     parser.add_argument("--rounds", type=int, default=3, help="how often (default: %(default)s)")
+    add_json_option(parser)
     options = parser.parse_args()
     checkouts = {"before": options.before.resolve(), "now": HERE.parents[2]}
     suite = "sid" if options.cache else "trixie"
@@ -48,16 +50,17 @@ def main() -> None:
         for name, checkout in checkouts.items():
             found[name].append(clocked(blender(checkout, suite, work, str(folder))))
         print(f"round {count + 1} of {options.rounds}", file=sys.stderr, flush=True)
-    print("| checkout | CPU s, median | min - max | wall s, median | peak MiB |")
-    print("| :--- | ---: | ---: | ---: | ---: |")
+    rows = []
     for name, runs in found.items():
         cpu = [run.cpu_seconds for run in runs]
         wall = statistics.median(run.seconds for run in runs)
         peak = max(run.peak_mib for run in runs)
-        middle = statistics.median(cpu)
-        print(
-            f"| {name} | {middle:.1f} | {min(cpu):.1f} - {max(cpu):.1f} | {wall:.1f} | {peak:.0f} |"
-        )
+        around = f"{min(cpu):.1f} - {max(cpu):.1f}"
+        rows.append([name, f"{statistics.median(cpu):.1f}", around, f"{wall:.1f}", f"{peak:.0f}"])
+    report = Report()
+    head = ("checkout", "CPU s, median", "min - max", "wall s, median", "peak MiB")
+    report.table(f"{work}, {folder.name}", head, rows, "times")
+    report.write(options.json)
 
 
 def blender(checkout: Path, suite: str, *arguments: str) -> str:

@@ -19,7 +19,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.peers import run
 from bench.peers.in_memory import InMemory
 from bench.peers.maketx import Maketx
-from bench.turns import measure, medians_ratio, named, print_table
+from bench.report import Report, add_json_option
+from bench.turns import add_table, measure, medians_ratio, named
 
 HERE = Path(__file__).resolve().parent
 SPOT = HERE.parents[2] / "shared/data/textured/spot"
@@ -38,12 +39,13 @@ def main() -> None:
         help="the folder of the model; where there is none, a picture and a mesh of like size are "
         "made (default: %(default)s)",
     )
+    add_json_option(parser)
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         spot = ["--spot", str(options.spot)] if options.spot.is_dir() else []
         _, _, told = run([sys.executable, str(HERE / "scene.py"), name, *spot])
-        print(f"{'spot' if spot else 'generated'}, {told.strip()}, {options.threads} threads each")
+        subject = f"{'spot' if spot else 'generated'}, {told.strip()}"
         ours = InMemory("prefilter", folder, filter="pam-bilinear", threads=options.threads)
         theirs = Maketx(folder / "picture.png", folder, filter="lanczos3", threads=options.threads)
         others = [
@@ -60,14 +62,13 @@ def main() -> None:
             InMemory("prefilter", folder, filter="ls-bilinear", threads=options.threads),
         ]
         results = measure(named(theirs, ours, *others), options.rounds)
-    print_table(results, theirs.name)
+    report = Report()
+    title = f"{subject}, {options.threads} threads each"
+    add_table(report, title, results, theirs.name, "times")
     ratio = medians_ratio(results[ours.name], results[theirs.name])
-    print(
-        f"{'holds' if ratio <= LIMIT else 'DOES NOT HOLD'}: '{ours.name}' takes {ratio:.2f} of the "
-        f"wall time of '{theirs.name}'; at most {LIMIT} is asked for"
-    )
-    if ratio > LIMIT:
-        raise SystemExit(1)
+    claim = f"'{ours.name}' takes {ratio:.2f} of the wall time of '{theirs.name}'"
+    report.verdict(ratio <= LIMIT, f"{claim}; at most {LIMIT} is asked for")
+    report.finish(options.json)
 
 
 if __name__ == "__main__":

@@ -9,7 +9,7 @@ Each model gets an emission shader with its base colour, and is rendered from fo
 orthographic camera with a box pixel filter: without the cache (the reference), with Blender's, and
 with that of `prefilter.bake_texture_cache`. The figure is the RMSE against the reference, in
 scene-linear values, over the pixels that the model covers fully in it. Ends with status 1 if a
-criterion of docs/benchmarks.md does not hold.
+criterion of docs/benchmarks/renders.md does not hold.
 """
 
 import argparse
@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.mipmaps import subjects
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 Texels = NDArray[np.float32]
 
@@ -62,9 +62,8 @@ def main() -> None:
                     errors = measure(options, model, kind, Path(folder), painted=painted)
                 rows.extend(judge(report, model, kind, errors, painted=painted))
     head = ["model", "texels nobody reads", "image", "pixels", *CACHES, "PAM / box"]
-    report.table(f"RMSE of renders, {options.samples} samples", head, rows)
-    if options.markdown is not None:
-        options.markdown.write_text("\n".join(report.markdown))
+    report.table(f"RMSE of renders, {options.samples} samples", head, rows, "error")
+    report.write(options.json)
     if report.failures:
         raise SystemExit("\n".join(report.failures))
 
@@ -83,7 +82,7 @@ def parse() -> argparse.Namespace:
     parser.add_argument("--sizes", type=int, nargs="+", default=[128, 48], metavar="PIXELS")
     parser.add_argument("--samples", type=int, default=512)
     parser.add_argument("--reference", type=int, default=1024, help="samples of the reference")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args(arguments)
     for model in options.models:
         if not (options.data / model).is_dir():

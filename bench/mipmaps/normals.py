@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.mipmaps import sampling, subjects
+from bench.report import Report, add_json_option
 
 FILTERS = ("box", "pam-bilinear")
 LEVELS = range(1, 7)
@@ -34,20 +35,19 @@ def main() -> None:
     parser.add_argument("models", nargs="*", default=models)
     data = Path(__file__).resolve().parents[3] / "shared" / "data" / "textured"
     parser.add_argument("--data", type=Path, default=data)
+    add_json_option(parser)
     options = parser.parse_args(sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else [])
-    holds = True
-    print(f"| model | filter | {' | '.join(f'level {level}' for level in LEVELS)} |")
-    print("| --- " * (len(LEVELS) + 2) + "|")
+    report, rows, holds = Report(), [], True
     for model in options.models:
         for subject in subjects.load(options.data / model, "auto"):
             errors = measured(subject)
             for name in FILTERS:
-                cells = " | ".join(f"{error:.2f}" for error in errors[name])
-                print(f"| {subject.name} | {name} | {cells} |", flush=True)
+                rows.append([subject.name, name, *(f"{error:.2f}" for error in errors[name])])
             holds &= bool((errors["pam-bilinear"] < errors["box"]).all())
-    print("holds" if holds else "DOES NOT HOLD")
-    if not holds:
-        raise SystemExit(1)
+    head = ("model", "filter", *(f"level {level}" for level in LEVELS))
+    report.table("Deviation from the full map, in degrees", head, rows, "angles")
+    report.verdict(holds, "pam-bilinear is closer than box at every level of every model")
+    report.finish(options.json)
 
 
 def measured(subject: subjects.Subject) -> dict[str, NDArray[np.float64]]:

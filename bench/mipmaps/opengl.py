@@ -35,7 +35,7 @@ from numpy.typing import NDArray
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.mipmaps import opengl_renderer
 from bench.mipmaps.opengl_renderer import Model, Renderer, Texels, averaged
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 FOLDER = Path(__file__).resolve().parents[2] / "build/opengl"
 MODELS = ("spot", "DamagedHelmet", "AntiqueCamera", "FlightHelmet", "BoomBox")
@@ -130,8 +130,7 @@ def main() -> None:
                 known.add(filter_, measure(renderer, model, filter_, truth, options))
         found[name] = {f: known.found[f] for f in options.filters}
     add_tables(report, found, options)
-    if options.markdown is not None:
-        options.markdown.write_text("\n".join(report.markdown))
+    report.write(options.json)
 
 
 def parse() -> argparse.Namespace:
@@ -152,7 +151,7 @@ def parse() -> argparse.Namespace:
         default=FOLDER,
         help="of the models; renders and results are kept there too (default: %(default)s)",
     )
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     if BASELINE not in options.filters:
         options.filters = [BASELINE, *options.filters]
@@ -333,6 +332,7 @@ def add_tables(
                     [name, *(pair(shares[name, mode].mean(axis=(0, 1))) for mode in options.modes)]
                     for name in options.filters
                 ],
+                f"means, {mask}",
             )
             report.table(
                 f"The worst model of each, {MASKS[mask]}",
@@ -347,6 +347,7 @@ def add_tables(
                     ]
                     for name in options.filters
                 ],
+                f"worst, {mask}",
             )
     others = [name for name in options.filters if name != BASELINE]
     for mask, mode in itertools.product(options.masks, options.modes):
@@ -358,7 +359,7 @@ def add_tables(
                 [model, str(size), base, *(pair(np.array(share(of, name, key))) for name in others)]
             )
         title = f"{mode}: {MODES[mode].about}; {MASKS[mask]}; shares of {BASELINE}"
-        report.table(title, ["model", "pixels", BASELINE, *others], rows)
+        report.table(title, ["model", "pixels", BASELINE, *others], rows, f"models, {mask}, {mode}")
 
 
 def share(by_filter: dict[str, Found], name: str, key: str) -> tuple[float, float]:

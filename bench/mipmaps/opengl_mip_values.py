@@ -21,7 +21,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.mipmaps import opengl_renderer
 from bench.mipmaps.opengl import FOLDER, MODELS, SIZES
 from bench.mipmaps.opengl_renderer import Model, Renderer
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 Floats = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES, metavar="PIXELS")
     parser.add_argument("--samples", type=int, default=1, help="along each side of a pixel")
     parser.add_argument("--folder", type=Path, default=FOLDER, help="(default: %(default)s)")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     report = Report()
     everything: dict[str, list[Floats]] = {way: [] for way in WAYS}
@@ -58,8 +58,7 @@ def main() -> None:
         add_fractions(report, way, options.models, found)
         add_levels(report, way, np.concatenate(found))
     add_ratios(report, ratios)
-    if options.markdown is not None:
-        options.markdown.write_text("\n".join(report.markdown))
+    report.write(options.json)
 
 
 def measured(renderer: Renderer, model: Model, size: int) -> tuple[dict[str, Floats], Floats]:
@@ -110,7 +109,8 @@ def add_fractions(report: Report, way: str, models: list[str], found: list[Float
     rows.append(["even", "", "0.333", "0.167", "0.333", *["1.00"] * BINS])
     edges = [f"s {k / BINS:.3f}" for k in range(BINS)]
     head = ["model", "above 0", "(1-s)^2", "s(1-s)", "s^2", *edges]
-    report.table(f"Fractions s of mip values, {way}: means, and density by eighths", head, rows)
+    title = f"Fractions s of mip values, {way}: means, and density by eighths"
+    report.table(title, head, rows, f"fractions, {way}")
 
 
 def add_levels(report: Report, way: str, values: Floats) -> None:
@@ -126,7 +126,7 @@ def add_levels(report: Report, way: str, values: Floats) -> None:
         rows.append([f"{level} to {level + 1}", *cells, *(f"{count:.2f}" for count in counts)])
     edges = [f"s {k / BINS:.3f}" for k in range(BINS)]
     head = ["mip values", "share", "(1-s)^2", "s(1-s)", "s^2", *edges]
-    report.table(f"Mip values, {way}, all models", head, rows)
+    report.table(f"Mip values, {way}, all models", head, rows, f"levels, {way}")
 
 
 def add_ratios(report: Report, ratios: list[tuple[str, int, Floats]]) -> None:
@@ -138,7 +138,7 @@ def add_ratios(report: Report, ratios: list[tuple[str, int, Floats]]) -> None:
     together = weighted([values for _, _, values in ratios])
     rows.append(["all", "", *(f"{q:.2f}" for q in np.quantile(together, RATIOS))])
     head = ["model", "pixels", *(f"{share:.0%} below" for share in RATIOS)]
-    report.table("Footprints: minor axis / major axis", head, rows)
+    report.table("Footprints: minor axis / major axis", head, rows, "footprints")
 
 
 if __name__ == "__main__":

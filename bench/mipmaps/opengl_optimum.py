@@ -25,7 +25,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.mipmaps import opengl, opengl_renderer
 from bench.mipmaps.opengl_renderer import Model, Renderer, Texels
 from bench.mipmaps.sampling import wrapped
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 Floats = NDArray[np.float64]
 Matrix = scipy.sparse.csr_array
@@ -63,6 +63,7 @@ def main() -> None:
     parser.add_argument("model", nargs="?", default="spot")
     parser.add_argument("--frames", type=int, default=500)
     parser.add_argument("--folder", type=Path, default=opengl.FOLDER, help="default: %(default)s")
+    add_json_option(parser)
     options = parser.parse_args()
     options.views, options.sizes = 2, (SIZE,)
     model = Model.read(options.folder / f"{options.model}.npz")
@@ -83,7 +84,9 @@ def main() -> None:
         levels = solved(made[START], still, moving, balance)
         rows.append([f"optimum, balance {balance}", opengl.pair(measured(levels) / base)])
     title = f"{options.model}, {SIZE} pixels, {opengl.MASKS['piece']}; error / flicker"
-    Report().table(f"{title}, of {opengl.BASELINE}'s", ["levels", "one"], rows)
+    report = Report()
+    report.table(f"{title}, of {opengl.BASELINE}'s", ["levels", "one"], rows, "levels")
+    report.write(options.json)
 
 
 def equations(

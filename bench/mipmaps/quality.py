@@ -7,7 +7,7 @@ Usage: blender --background --python-exit-code 1 --python bench/mipmaps/quality.
 
 Models are imported by Blender's own importers, and read through the add-on's bridge, so that what
 is measured is what a user gets: the extension has to be installed and enabled. Ends with status 1
-if a criterion of docs/benchmarks.md does not hold.
+if a criterion of docs/benchmarks/mipmaps.md does not hold.
 
 The error is the RMSE over the surface and the channels, in scene-linear values, between bilinear
 lookups of a level and of the image. All filters are compared by lookups with numpy at the same
@@ -111,7 +111,7 @@ def main() -> None:
             f"{SUBJECT} is at least {GAIN:.0%} below {REFERENCE} on average over the models "
             f"(found {1 - mean:.1%})",
         )
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def parse() -> argparse.Namespace:
@@ -331,7 +331,7 @@ def add_levels(
         f"RMSE over the surface{', levels in 8 bits' if rounded else ''}"
     )
     head = ["level", REFERENCE, "best other", "", "ls-bilinear", *PAM, "/ other", "/ ls"]
-    report.table(title, head, rows)
+    report.table(title, head, rows, subject.name)
 
 
 def measure_painted(
@@ -365,16 +365,19 @@ def add_summary(report: Report, summary: Summary) -> None:
             "without mesh",
         ],
         summary.sources,
+        "gain",
     )
     report.table(
         f"{SUBJECT} / the lowest of all others",
         ["model", *(f"level {level}" for level in LEVELS), "mean", "closest"],
         summary.gains,
+        "levels",
     )
     report.table(
         "RMSE over all mip values, trilinear lookups",
         ["model", "mip values", REFERENCE, "best other", "", "ls-bilinear", *PAM, "/ best"],
         summary.trilinear,
+        "trilinear",
     )
     rows = []
     for name in summary.shares:
@@ -386,6 +389,7 @@ def add_summary(report: Report, summary: Summary) -> None:
         "and the most of one",
         ["filter", "mean", "least", "most", "dilated: mean", "least", "most"],
         rows,
+        "filters",
     )
 
 

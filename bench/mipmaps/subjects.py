@@ -19,6 +19,7 @@ from bl_ext.user_default.prefilter.bridge import images, meshes
 from numpy.typing import NDArray
 
 from bench.mipmaps.sampling import Floats, Texels, areas_of, wrapped
+from bench.report import add_json_option
 
 DATA = Path(__file__).resolve().parents[3] / "shared/data/textured"
 MODELS = (
@@ -96,7 +97,7 @@ def argument_parser(program: str, description: str) -> argparse.ArgumentParser:
         default="auto",
         help="the wrap mode; auto: that of the materials, as the add-on does (default: auto)",
     )
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     return parser
 
 

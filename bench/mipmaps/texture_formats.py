@@ -17,6 +17,7 @@ import argparse
 import os
 import resource
 import subprocess
+import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -30,6 +31,9 @@ import prefilter
 import texture2ddecoder as decoders
 from numpy.typing import NDArray
 from prefilter.textures.texel_formats import FORMATS
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.report import Report, add_json_option
 
 Bytes = NDArray[np.uint8]
 Decoder = Callable[[bytes, int, int], bytes]
@@ -142,16 +146,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--astcenc", metavar="PROGRAM", help="Arm's program, as a peer")
     parser.add_argument("images", type=Path, nargs="+", metavar="IMAGE")
+    add_json_option(parser)
     options = parser.parse_args()
+    report = Report()
     os.nice(5)
     for path in options.images:
         pixels = oiio.ImageBuf(str(path)).get_pixels("uint8")
         top, left = (max(0, (side - SIDE) // 2) for side in pixels.shape[:2])
         image = np.ascontiguousarray(pixels[top : top + SIDE, left : left + SIDE, :3])
         count = image.shape[0] * image.shape[1]
-        print(f"\n{path.name}, {image.shape[1]} x {image.shape[0]}\n")
-        print("| format | bits a texel | PSNR, dB | Mtexel a CPU s | KiB | with zstd |")
-        print("| :--- | ---: | ---: | ---: | ---: | ---: |")
         runs: dict[str, Callable[[Path], tuple[float, float, int]]] = {}
         for name in FORMATS:
             if name in DECODERS or name == "uastc":
@@ -169,12 +172,16 @@ def main() -> None:
             packed = {
                 name: packed_size(image, name, Path(folder)) for name in runs if name in FORMATS
             }
+        rows = []
         for name, (decibels, seconds, size) in best.items():
-            print(
-                f"| {name} | {8 * size / count:.2f} | {decibels:.2f} | "
-                f"{count / 1e6 / seconds:.1f} | {size / 1024:.0f} | "
-                + (f"{packed[name] / 1024:.0f} |" if name in packed else "|")
-            )
+            speed, kib = f"{count / 1e6 / seconds:.1f}", f"{size / 1024:.0f}"
+            smaller = f"{packed[name] / 1024:.0f}" if name in packed else ""
+            bits = f"{8 * size / count:.2f}"
+            rows.append([name, bits, f"{decibels:.2f}", speed, kib, smaller])
+        head = ("format", "bits a texel", "PSNR, dB", "Mtexel a CPU s", "KiB", "with zstd")
+        title = f"{path.name}, {image.shape[1]} x {image.shape[0]}"
+        report.table(title, head, rows, path.stem)
+    report.write(options.json)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
 """Compares resized images with those of other libraries: time, accuracy, and what comes back.
 
-Usage: scripts/run python3 bench/resize/compare.py [--rounds N] [--side N] [--markdown FILE]
+Usage: scripts/run python3 bench/resize/compare.py [--rounds N] [--side N] [--json FILE]
 
 Other libraries are Pillow, OpenImageIO, libvips (pyvips) and OpenCV, as far as this Python can
 import them; all have one thread, and work on floats. Times are the least of rounds in turns, where
@@ -30,7 +30,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"
 from resize import drawn
 
 from bench.peers.resizers import Resize, found
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 ROOT = Path(__file__).resolve().parents[2]
 Array = NDArray[np.float32]
@@ -59,14 +59,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--rounds", type=int, default=15)
     parser.add_argument("--side", type=int, default=2048)
-    parser.add_argument("--markdown", type=Path)
+    add_json_option(parser)
     options = parser.parse_args()
     report = Report()
     libraries = found()
     time_all(report, libraries, options.side, options.rounds)
     accuracy(report, libraries)
     quality(report)
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def time_all(
@@ -94,7 +94,7 @@ def time_all(
                 if seconds is not None and name != "prefilter":
                     ratios[channels, factor, filter, name] = own / seconds
             rows.append((f"{channels} x {side}^2 to {target}^2, {filter}", *cells))
-    report.table("Least milliseconds of one thread", ("work", *libraries), rows)
+    report.table("Least milliseconds of one thread", ("work", *libraries), rows, "times")
     for name in libraries:
         shares = [ratio for key, ratio in ratios.items() if key[3] == name]
         if shares:
@@ -137,6 +137,7 @@ def accuracy(report: Report, libraries: dict[str, tuple[Resize, frozenset[str]]]
         "Largest difference from the filter's definition, away from the edges",
         ("work", *libraries),
         rows,
+        "differences",
     )
 
 
@@ -202,6 +203,7 @@ def quality(report: Report) -> None:
         "share of it; overshoot",
         ("picture", "box", *QUALITY),
         rows,
+        "pictures",
     )
     report.verdict(
         max(beaten) < 1.0,

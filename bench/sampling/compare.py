@@ -2,9 +2,9 @@
 
 """Compares samples by tables with trilinear ones in throughput, on one thread.
 
-Usage: python3 -m bench.sampling.compare [--rounds N] [--samples N] [--markdown FILE]
+Usage: python3 -m bench.sampling.compare [--rounds N] [--samples N] [--json FILE]
 
-Runs build/bench/sampling_bench, which docs/benchmarks.md says how to build. The criteria are of the
+Runs build/bench/sampling_bench, which docs/benchmarks/sampling.md says how to build. The criteria are of the
 medians at 8 texels: at least 3 times OpenImageIO's throughput, and half of what trilinear
 interpolation reaches that is written by hand. Ends with status 1 where one does not hold.
 """
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 PROGRAM = Path(__file__).resolve().parents[2] / "build" / "bench" / "sampling_bench"
 OURS, WRITTEN, OPENIMAGEIO = "8 texels", "trilinear, by hand", "OpenImageIO"
@@ -43,7 +43,7 @@ def main() -> None:
     parser.add_argument(
         "--samples", type=int, default=2**18, help="of a round (default: %(default)s)"
     )
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     words = [PROGRAM, "--rounds", str(options.rounds), "--samples", str(options.samples)]
     found = subprocess.run(words, stdout=subprocess.PIPE, text=True, check=True).stdout
@@ -54,7 +54,7 @@ def main() -> None:
         compare(report, f"{texels}, {places}", list(group))
     if not any(run.sampler == OPENIMAGEIO for run in runs):
         report.note("OpenImageIO is not measured: its library was not found")
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def compare(report: Report, title: str, runs: list[Run]) -> None:

@@ -2,7 +2,7 @@
 
 """Compares samples by tables with those of exact filters, and with trilinear interpolation.
 
-Usage: scripts/run python3 -m bench.sampling.figures [--markdown FILE]
+Usage: scripts/run python3 -m bench.sampling.figures [--json FILE]
 
 The figures are those of docs/sampling.md; the other images the base colors of models in
 ../shared/data/textured, without which it does with figure 6.1's. Every number but the steps is a
@@ -20,7 +20,7 @@ import prefilter
 from numpy.typing import NDArray
 from PIL import Image
 
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "pictures"))
@@ -50,14 +50,14 @@ RISE = 0.7, 0.3
 def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     report = Report()
     of_figures(report)
     of_images(report)
     of_scales(report)
     steps(report)
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def of_figures(report: Report) -> None:
@@ -114,7 +114,8 @@ def of_images(report: Report) -> None:
         )
         gains[title] = figure.psnr("8 texels") - figure.psnr("trilinear")
         rows.append((title, *(f"{figure.psnr(name):.1f}" for name in (*names, clipped))))
-    report.table("Images made smaller to 89/1024, lanczos2", ("image", *names, clipped), rows)
+    title = "Images made smaller to 89/1024, lanczos2"
+    report.table(title, ("image", *names, clipped), rows, "images")
     least = min(gains, key=gains.__getitem__)
     report.verdict(
         gains[least] >= LEAST_GAIN,
@@ -157,6 +158,7 @@ def of_scales(report: Report) -> None:
         f"Scales from {SCALES[0]:.2f} to {SCALES[-1]:.0f}, each at another angle",
         ("filter", *names, "gain of 8 texels, least to most"),
         rows,
+        "filters",
     )
     report.table(
         "The same by scale, lanczos2",
@@ -165,6 +167,7 @@ def of_scales(report: Report) -> None:
             (f"{scale:.2f}", *(f"{one:.1f}" for one in row))
             for scale, row in zip(SCALES, by_scale["lanczos2"], strict=True)
         ],
+        "scales",
     )
 
 
@@ -215,6 +218,7 @@ def steps(report: Report) -> None:
         f"Largest step of a slow pan / zoom ({SPACING:g} cells or levels a sample)",
         ("filter, image", "trilinear", *(f"{texels} texels" for texels in TEXELS)),
         rows,
+        "steps",
     )
     report.verdict(not exceeded, "no step is larger than the table says (largest_jumps)")
 

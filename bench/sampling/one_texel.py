@@ -2,7 +2,7 @@
 
 """Measures samples of one texel each: how far their means are from the exact filter.
 
-Usage: scripts/run python3 bench/sampling/one_texel.py [--pixels N] [--markdown FILE]
+Usage: scripts/run python3 bench/sampling/one_texel.py [--pixels N] [--json FILE]
 
 Each pixel is a mean of samples at its center, under Lanczos 2 of one scale, with stratified random
 numbers. Pictures are base colors of models in ../shared/data/textured, and figure 1.8 as in the
@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "pictures"))
 from resize import drawn
 
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 ROOT = Path(__file__).resolve().parents[2]
 Array = NDArray[np.float32]
@@ -56,7 +56,7 @@ def main() -> None:
     """Runs everything."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--pixels", type=int, default=20_000)
-    parser.add_argument("--markdown", type=Path)
+    add_json_option(parser)
     options = parser.parse_args()
     report = Report()
     pictures = {"figure 1.8": drawn()} | {
@@ -71,7 +71,7 @@ def main() -> None:
             at = COUNTS.index(count)
             ratios[table].append(errors[table][at] / errors["trilinear"][at])
     head = ("picture", "texels of", *(f"{n} a pixel" for n in COUNTS), "all of them")
-    report.table(f"RMSE to the exact {FILTER}, scale {SCALE:.1f}", head, rows)
+    report.table(f"RMSE to the exact {FILTER}, scale {SCALE:.1f}", head, rows, "errors")
     for table, count in BARS.items():
         claim = (
             f"{table}, {count} samples a pixel: {min(ratios[table]):.2f} to "
@@ -81,7 +81,7 @@ def main() -> None:
     for table in TABLES:
         if table != ABOUT_MEAN:
             report.note(f"{table}: weights have a magnitude of {magnitude(table):.2f} on average")
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def read(path: Path) -> Array:

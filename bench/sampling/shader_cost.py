@@ -2,7 +2,7 @@
 
 """Counts what a sample by a shader takes: texels read, and operations on single numbers.
 
-Usage: python3 -m bench.sampling.shader_cost [--markdown FILE]
+Usage: python3 -m bench.sampling.shader_cost [--json FILE]
 
 Counted is what SPIRV-Tools leave of glslang's code for the HLSL of the standard tables, with the
 wrap mode clamp. An operation on a vector counts once a component, moves do not count. What stands
@@ -21,7 +21,7 @@ from pathlib import Path
 import prefilter
 from prefilter.sampling.sampling_table import STANDARD_TEXELS
 
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 TABLE_MAIN = """
 Texture2D<float4> image;
@@ -113,7 +113,7 @@ def cost(source: str, texels: int) -> Counter[str]:
 def main() -> None:
     """Prints a table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--markdown", metavar="FILE", help="also write the table there")
+    add_json_option(parser)
     arguments = parser.parse_args()
     rows = [
         (
@@ -128,9 +128,9 @@ def main() -> None:
         "Operations a sample",
         ["", *KINDS],
         [[name, *(str(counts[kind]) for kind in KINDS)] for name, counts in rows],
+        "operations",
     )
-    if arguments.markdown is not None:
-        Path(arguments.markdown).write_text("\n".join(report.markdown))
+    report.write(arguments.json)
 
 
 if __name__ == "__main__":

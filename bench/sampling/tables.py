@@ -2,7 +2,7 @@
 
 """Measures sampling tables: errors, sizes, proofs, steps at borders, and how long they take.
 
-Usage: scripts/run python3 -m bench.sampling.tables [--certify] [--markdown FILE]
+Usage: scripts/run python3 -m bench.sampling.tables [--certify] [--json FILE]
 
 Errors are those of equation 6.3 over all places and scales, as shares of trilinear interpolation's
 of the same mipmap. Measured are the standard tables; what larger tables reach; the curves of figure
@@ -27,7 +27,7 @@ import sampling_oracle as oracle
 from resize import drawn
 from table_errors import CURVES, TEXELS, curve
 
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 FILTERS = prefilter.SAMPLING_FILTERS
 MOST = {"box": 0.586, "tent": 0.237, "gaussian": 0.220, "lanczos2": 0.253}
@@ -52,7 +52,7 @@ def main() -> None:
     """Measures and prints."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--certify", action="store_true", help="prove more than the tent's")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     report = Report()
     standard_tables(report)
@@ -60,7 +60,7 @@ def main() -> None:
     figure_curves(report)
     steps_at_borders(report)
     certificates(report, everything=options.certify)
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def standard_tables(report: Report) -> None:
@@ -92,7 +92,9 @@ def standard_tables(report: Report) -> None:
                 *(f"{eight.error_ratios[levels]:.3f}" for levels in (2, 1)),
             )
         )
-    report.table("Error of standard tables, as a share of trilinear interpolation's", head, rows)
+    report.table(
+        "Error of standard tables, as a share of trilinear interpolation's", head, rows, "standard"
+    )
     for name, most in MOST.items():
         ratio = tables[name, 8].error_ratio
         report.verdict(ratio <= most, f"{name}, 8 texels: {ratio:.4f}, at most {most}")
@@ -146,6 +148,7 @@ def larger_tables(report: Report) -> None:
         "Eight texels without ramps; bytes of the section for three levels",
         ("table", *MOST, "bytes", "s to build"),
         rows,
+        "larger",
     )
 
 
@@ -163,7 +166,7 @@ def figure_curves(report: Report) -> None:
         for index, texels in enumerate(TEXELS)
     ]
     head = ("texels", *(name for name, _, _ in CURVES))
-    report.table("Figure 6.6: error of tables for the tent", head, rows)
+    report.table("Figure 6.6: error of tables for the tent", head, rows, "figure-6.6")
 
 
 def steps_at_borders(report: Report) -> None:
@@ -184,7 +187,7 @@ def steps_at_borders(report: Report) -> None:
                 )
             )
     head = ("table", "three levels", "two levels", "one level", "RMS, 255ths", "RMS error")
-    report.table("Steps across borders of subdomains", head, rows)
+    report.table("Steps across borders of subdomains", head, rows, "steps")
 
 
 def picture_steps(table: prefilter.SamplingTable, levels: list[np.ndarray]) -> Iterator[np.ndarray]:
@@ -274,7 +277,7 @@ def certificates(report: Report, *, everything: bool) -> None:
         "table", "proven", "largest gap", "of fewer levels", "largest gap", "without, above by",
         "s",
     )  # fmt: skip
-    report.table("Sets that are proven to be the best", head, rows)
+    report.table("Sets that are proven to be the best", head, rows, "proofs")
 
 
 if __name__ == "__main__":

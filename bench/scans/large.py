@@ -17,7 +17,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.peers.wavelets import Wavelets
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 ROOT = Path(__file__).resolve().parents[2]
 SETS = {"igea_10m": 10, "igea_100m": 100}  # Millions of points.
@@ -33,7 +33,7 @@ def main() -> None:
     parser.add_argument("--depth", type=int, default=11, help="default: %(default)s")
     parser.add_argument("--limit", type=int, default=500_000_000, help="default: %(default)s")
     parser.add_argument("--threads", type=int, default=1, help="default: %(default)s")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     command = [sys.executable, "-m", "bench.scans.sets", str(options.folder), *SETS]
     subprocess.run(command, cwd=ROOT, check=True)
@@ -56,7 +56,7 @@ def main() -> None:
     report = Report()
     title = f"{options.wavelet} at depth {options.depth}, memory limit {options.limit / 1e6:.0f} MB"
     head = ["set", "CPU s", "wall s", "CPU ms / million points", "peak MiB", "surface MB"]
-    report.table(title, head, rows)
+    report.table(title, head, rows, "clouds")
     report.verdict(
         run.peak_mib * 2**20 < MOST_BYTES,
         f"100 M points take {run.peak_mib * 2**20 / 1e6:.0f} MB, the whole process; less than "
@@ -68,7 +68,7 @@ def main() -> None:
         f"their time is {share:.2f} of ten times that of a tenth; at most {LINEAR_BAR} is asked "
         "for",
     )
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 """Compares normals of points with the true ones: which side they are on, their angle, the time.
 
 Usage: scripts/run python3 bench/scans/normals.py [MODEL...] [--points N] [--neighbors N]
-                                                  [--noise CELLS...] [--rounds N] [--markdown FILE]
+                                                  [--noise CELLS...] [--rounds N] [--json FILE]
 
 Points are drawn evenly from meshes, and moved by noise in cells of an octree of depth 9 around
 them, normally distributed along each axis. Without names it is all models but fandisk.
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.peers.point_normals import LIBRARIES, PointNormals
-from bench.report import Report
+from bench.report import Report, add_json_option
 from bench.scans.sets import DEPTH, Model, cell_of
 from bench.turns import measure, named
 from bench.voxels.meshes import DATA
@@ -49,7 +49,7 @@ def main() -> None:
     parser.add_argument("--neighbors", type=int, default=16, help="default: %(default)s")
     parser.add_argument("--noise", type=float, nargs="+", default=[0.0, 0.5, 1.5])
     parser.add_argument("--rounds", type=int, default=1, help="default: %(default)s")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the table here too")
+    add_json_option(parser)
     options = parser.parse_args()
     for name in options.models:
         if name not in MODELS:
@@ -72,8 +72,8 @@ def main() -> None:
                 ).items():
                     rows.append([name, f"{noise:g}", library, *cells])
     title = f"{options.points} points, {options.neighbors} neighbors"
-    report.table(title, HEAD, rows)
-    report.finish(options.markdown)
+    report.table(title, HEAD, rows, "normals")
+    report.finish(options.json)
 
 
 def compare(

@@ -3,7 +3,7 @@
 """Compares reconstruct with screened Poisson: time, memory, and nearness to the true surface.
 
 Usage: scripts/run python3 bench/scans/reconstruct.py FOLDER [SET...] [--depth N] [--rounds N]
-                                                     [--programs NAME...] [--markdown FILE]
+                                                     [--programs NAME...] [--json FILE]
 
 FOLDER keeps the sets (see sets.py) and what every program made of them. Programs that are missing
 are named and left out; PREFILTER_POISSONRECON is the path of a built PoissonRecon, and
@@ -30,7 +30,7 @@ from bench.peers.meshlab_poisson import MeshLab
 from bench.peers.open3d_poisson import Open3d
 from bench.peers.poisson_recon import PoissonRecon
 from bench.peers.wavelets import Wavelets
-from bench.report import Report
+from bench.report import Report, add_json_option
 from bench.scans import sets
 from bench.turns import measure
 
@@ -80,7 +80,7 @@ def main() -> None:
     parser.add_argument("--depth", type=int, default=9, help="default: %(default)s")
     parser.add_argument("--rounds", type=int, default=3, help="default: %(default)s")
     parser.add_argument("--programs", nargs="+", default=[*OURS, *THEIRS], metavar="NAME")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     for name in options.programs:
         if name not in OURS and name not in THEIRS:
@@ -99,7 +99,7 @@ def main() -> None:
             python("bench.scans.sets", options.folder, name)
         rows = compare(name, points, programs, options)
         title = f"{name}, depth {options.depth}"
-        report.table(title, HEAD, [row(key, found) for key, found in rows.items()])
+        report.table(title, HEAD, [row(key, found) for key, found in rows.items()], name)
         judge(report, name, rows, options.depth)
         if name.endswith("tilted") and NOISY in rows:
             judge_tilt(report, name, options.folder / MADE, options.depth)
@@ -108,7 +108,7 @@ def main() -> None:
         if name.endswith("1m") and len(rows) > 1:
             sharp[name] = rows
     hausdorff(report, sharp)
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def compare(
@@ -244,6 +244,7 @@ def hausdorff(report: Report, results: dict[str, dict[str, Row]]) -> None:
             "Largest distance, normalized by row (table 4.3)",
             ("set", *programs, "worst, cells"),
             rows,
+            "largest",
         )
 
 

@@ -2,9 +2,9 @@
 
 """Compares rasterizers in time, memory and error, and Prefilter's filters with each other.
 
-Usage: python3 -m bench.shapes.compare [PATTERN...] [--rounds N] [--markdown FILE]
+Usage: python3 -m bench.shapes.compare [PATTERN...] [--rounds N] [--json FILE]
 
-Runs build/bench/shapes_bench, which docs/benchmarks.md says how to build. The criteria are of the
+Runs build/bench/shapes_bench, which docs/benchmarks/shapes.md says how to build. The criteria are of the
 box filter's shortest times: shares of AGG's, and less than any other rasterizer takes at the
 tolerance where its error is 1/255; of the other filters and the wavelets: multiples of the box.
 Ends with status 1 where one does not hold.
@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 PROGRAM = Path(__file__).resolve().parents[2] / "build" / "bench" / "shapes_bench"
 OURS, AGG = "Prefilter", "AGG"
@@ -56,7 +56,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("patterns", nargs="*", metavar="PATTERN", help=", ".join(AGG_BARS))
     parser.add_argument("--rounds", type=int, default=200, help="how often (default: %(default)s)")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     names = options.patterns or list(AGG_BARS)
     report = Report()
@@ -67,7 +67,7 @@ def main() -> None:
     words = ["--filters", "--rasterizers", "box;wavelet", *names]
     compare_wavelets(report, measured(words, options.rounds))
     compare_seams(report)
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def printed(words: Sequence[str]) -> list[list[str]]:
@@ -141,7 +141,7 @@ def compare_filters(report: Report, runs: Sequence[Run]) -> None:
         if run.rasterizer != "wavelet"
     ]  # fmt: skip
     head = ("filter", "shortest us", "median us", "box", AGG, "peak MiB")
-    report.table(f"filters on {box.pattern}", head, rows)
+    report.table(f"filters on {box.pattern}", head, rows, "filters")
     for run in runs:
         bar = FILTER_BARS.get(run.rasterizer)
         if bar is not None:
@@ -160,7 +160,8 @@ def compare_wavelets(report: Report, runs: Sequence[Run]) -> None:
          multiple(run, boxes[run.pattern]), f"{run.largest_error:.1e}")
         for run in waves
     ]  # fmt: skip
-    report.table("wavelets", ("pattern", "box us", "wavelet us", "box", "largest error"), rows)
+    head = ("pattern", "box us", "wavelet us", "box", "largest error")
+    report.table("wavelets", head, rows)
     for run in waves:
         claim = f"{run.pattern}: wavelets take {multiple(run, boxes[run.pattern])} times box"
         limit = WAVELET_BAR * boxes[run.pattern].shortest
@@ -175,7 +176,7 @@ def multiple(run: Run, other: Run) -> str:
 def compare_seams(report: Report) -> None:
     """The lowest value of abutting quads."""
     found = printed(["--seams"])
-    report.table("64 abutting quads", ("rasterizer", "lowest of 255"), found)
+    report.table("64 abutting quads", ("rasterizer", "lowest of 255"), found, "abutting")
     report.verdict(float(dict(found)[OURS]) == 255, "no seam of abutting quads is seen")
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 import prefilter
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 TIGER = Path(__file__).resolve().parents[3] / "shared" / "data" / "svg" / "Ghostscript_Tiger.svg"
 BAR = 1.0
@@ -32,7 +32,7 @@ def main() -> None:
     parser.add_argument("--size", type=int, default=4096, help="pixels (default: %(default)s)")
     parser.add_argument("--filter", default="mitchell", help="(default: %(default)s)")
     parser.add_argument("--rounds", type=int, default=5, help="how often (default: %(default)s)")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the table here too")
+    add_json_option(parser)
     options = parser.parse_args()
     report = Report()
     began = time.perf_counter()
@@ -52,10 +52,10 @@ def main() -> None:
         for threads, seconds in found.items()
     ]
     title = f"{options.drawing.name}, {options.size} x {options.size}, {options.filter}"
-    report.table(title, ("threads", "shortest s", "median s"), rows)
+    report.table(title, ("threads", "shortest s", "median s"), rows, "times")
     shortest = min(found[max(THREADS)])
     report.verdict(shortest < BAR, f"{shortest:.2f} s on {max(THREADS)} threads, less than {BAR}")
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 if __name__ == "__main__":

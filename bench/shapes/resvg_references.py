@@ -22,7 +22,7 @@ import prefilter
 from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.report import Report
+from bench.report import Report, add_json_option
 
 DATA = Path(__file__).resolve().parents[3] / "shared/data/svg/resvg"
 LIMIT = 2.0
@@ -91,7 +91,7 @@ def main() -> int:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("folder", type=Path, nargs="?", default=DATA)
-    parser.add_argument("--markdown", type=Path, help="write the tables to this file, too")
+    add_json_option(parser)
     parser.add_argument("--pictures", type=Path, help="keep pictures of what differs there")
     options = parser.parse_args()
     drawings = sorted(options.folder.rglob("*.svg"))
@@ -113,6 +113,7 @@ def main() -> int:
         "Supported features only, and further than 2/255 from the reference",
         ("file", "mean difference in 1/255"),
         [(name(each), f"{each.difference:.2f}") for each in differing],
+        "others",
     )
     report.table(
         "With features that are not supported",
@@ -132,7 +133,7 @@ def main() -> int:
     report.verdict(share >= SHARE, f"{share:.1%} agree within {LIMIT:g}/255 (at least {SHARE:.0%})")
     if options.pictures:
         keep_pictures(options.pictures, differing)
-    report.finish(options.markdown)
+    report.finish(options.json)
     return 0
 
 

@@ -2,18 +2,23 @@
 
 """The tables of section 5.4: contours of planes and spheres whose occupancies are exact.
 
-scripts/run python3 bench/voxels/contour_tables.py [--planes N] [--spheres N] [--markdown FILE]
+scripts/run python3 bench/voxels/contour_tables.py [--planes N] [--spheres N] [--json FILE]
 
 Occupancies come from closed forms and quadrature, not from the library. What a contour encloses of
 a cell is measured by voxelizing it; that voxelize is exact is the business of its own tests.
 """
 
 import argparse
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import prefilter
+
+from bench.report import Report, add_json_option
 
 INTERPOLANTS = ("linear", "occupancy", "plane")
 ON_SPHERE = "on the sphere"
@@ -173,19 +178,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--planes", type=int, default=5000)
     parser.add_argument("--spheres", type=int, default=20, help="places of each radius")
-    parser.add_argument("--markdown", type=Path)
+    add_json_option(parser)
     options = parser.parse_args()
-    lines = [
-        "| planes | mean absolute | standard deviation | largest |",
-        "| :--- | ---: | ---: | ---: |",
+    report = Report()
+    rows = [
+        [name, f"{plane.mean:.4%}", f"{plane.deviation:.4%}", f"{plane.largest:.4%}"]
+        for name, plane in plane_errors(options.planes).items()
     ]
-    for name, plane in plane_errors(options.planes).items():
-        lines.append(f"| {name} | {plane.mean:.4%} | {plane.deviation:.4%} | {plane.largest:.4%} |")
-    lines += [
-        "",
-        "| radius | " + " | ".join((*INTERPOLANTS, ON_SPHERE)) + " |",
-        "| ---: |" + " ---: |" * (len(INTERPOLANTS) + 1),
-    ]
+    head = ("planes", "mean absolute", "standard deviation", "largest")
+    report.table(f"{options.planes} random planes", head, rows, "planes")
+    rows = []
     for radius in (1, 2, 3, 5, 7, 10, 15, 20, 30):
         spheres = random_spheres(radius, options.spheres)
         cells = [
@@ -194,14 +196,16 @@ def main() -> None:
             else f"{s.mean_normal:.3f}"
             for name, s in spheres.items()
         ]
-        lines.append(f"| {radius} | " + " | ".join(cells) + " |")
-    lines += ["", "| 256^3 | radius, rms | normal, mean |", "| :--- | ---: | ---: |"]
-    for name, sphere in large_sphere().items():
-        lines.append(f"| {name} | {sphere.radius:.5f} | {sphere.mean_normal:.3f} |")
-    text = "\n".join(lines)
-    print(text)
-    if options.markdown:
-        options.markdown.write_text(text + "\n")
+        rows.append([str(radius), *cells])
+    title = "Angles on spheres, in degrees: mean, largest"
+    report.table(title, ("radius", *INTERPOLANTS, ON_SPHERE), rows, "spheres")
+    rows = [
+        [name, f"{sphere.radius:.5f}", f"{sphere.mean_normal:.3f}"]
+        for name, sphere in large_sphere().items()
+    ]
+    head = ("256^3", "radius, rms", "normal, mean")
+    report.table("A sphere of 115 cells", head, rows, "sphere")
+    report.write(options.json)
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.report import Report
+from bench.report import Report, add_json_option
 from bench.voxels import edges, meshes, sharp_shapes
 from bench.voxels.corpus import fitted
 from bench.voxels.sharp_shapes import Shape
@@ -57,7 +57,7 @@ def main() -> None:
     parser.add_argument("--depths", type=int, nargs="+", default=[7, 9])
     parser.add_argument("--rounds", type=int, default=5)
     parser.add_argument("--threads", type=int, default=2)
-    parser.add_argument("--markdown", type=Path)
+    add_json_option(parser)
     options = parser.parse_args()
     report, rows, ratios = Report(), [], []
     for shape in shapes():
@@ -92,12 +92,14 @@ def main() -> None:
             print(" ".join(rows[-1]), flush=True)
             ratios.append((shape.name, depth, ratio[0]))
     head = ("model", "cells", "plane s", "+ Clean Up", "sharp", "+ Clean Up", "wall", "CPU")
-    report.table(f"{options.threads} threads, seconds and sharp+clean / plane", head, rows)
+    report.table(
+        f"{options.threads} threads, seconds and sharp+clean / plane", head, rows, "seconds"
+    )
     for name, depth, ratio in ratios:
         report.verdict(
             ratio <= BAR, f"{name}, depth {depth}: {ratio:.2f} times plane; {BAR} is allowed"
         )
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 if __name__ == "__main__":

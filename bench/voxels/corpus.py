@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.report import Report
+from bench.report import Report, add_json_option
 from bench.voxels import booleans, edges, measures, meshes, sharp_shapes
 from bench.voxels.sharp_shapes import Shape
 
@@ -215,7 +215,7 @@ def main() -> None:
     parser.add_argument("--meshes", type=int, default=60)
     parser.add_argument("--booleans", type=int, default=60)
     parser.add_argument("--only", default="", help="part of the names")
-    parser.add_argument("--markdown", type=Path)
+    add_json_option(parser)
     options = parser.parse_args()
     report = Report()
     shapes = [*made(), *gathered()]
@@ -239,8 +239,8 @@ def main() -> None:
             wrong == 0, f"{how.name}: {wrong} of {compared} booleans have the wrong volume"
         )
     head = ("contour", "of", "results", "not manifold", "cut", "with flat", "s", "wrong volume")
-    report.table(f"{size} cells along an axis", head, rows)
-    report.finish(options.markdown)
+    report.table(f"{size} cells along an axis", head, rows, "results")
+    report.finish(options.json)
 
 
 def row_of(tally: Tally) -> list[str]:

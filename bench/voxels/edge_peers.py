@@ -84,7 +84,7 @@ def main() -> None:
                     rows.append([subject.name, name, *found.row])
                     print(" ".join(rows[-1]), flush=True)
             report.table(f"{size} cells along an axis", edges.HEAD, rows)
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 if __name__ == "__main__":

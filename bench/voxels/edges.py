@@ -30,7 +30,7 @@ from typing import Any
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from bench.report import Report
+from bench.report import Report, add_json_option
 from bench.voxels import booleans, measures, sharp_shapes
 from bench.voxels.sharp_shapes import Shape
 
@@ -227,7 +227,7 @@ def add_subjects(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--pairs", nargs="*", default=[], help=f"'all', or of {pairs}")
     parser.add_argument("--operations", nargs="+", default=list(booleans.OPERATORS))
     parser.add_argument("--sizes", type=int, nargs="+", default=[128])
-    parser.add_argument("--markdown", type=Path)
+    add_json_option(parser)
 
 
 def main() -> None:
@@ -259,7 +259,7 @@ def main() -> None:
         report.table(f"{size} cells along an axis", HEAD, rows)
         for name, found in judged:
             judge(report, f"{name}, {size}", found)
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def judge(report: Report, name: str, found: Result) -> None:

@@ -2,7 +2,7 @@
 
 """Measures what as_solid makes of hard meshes: how much of them is kept, and at what cost.
 
-Usage: scripts/run python3 bench/voxels/hard.py [NAME...] [--cells N] [--markdown FILE]
+Usage: scripts/run python3 bench/voxels/hard.py [NAME...] [--cells N] [--json FILE]
            [--alpha-wrap PROGRAM]
 
 Of each mesh: the share of its surface within 3 cells of the contour, before (as voxelize takes the
@@ -25,6 +25,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import prefilter
 
+from bench.report import Report, add_json_option
 from bench.voxels.hard_meshes import HardMesh, hard_meshes, read_meshes, volume_of
 
 NEAR = 3.0  # Cells.
@@ -143,13 +144,11 @@ def main() -> None:
     parser.add_argument("--cells", type=int, default=128, help="along the longest side")
     parser.add_argument("--alpha-wrap", type=Path, metavar="PROGRAM")
     parser.add_argument("--reports", action="store_true", help="what as_solid did, too")
-    parser.add_argument("--markdown", type=Path, metavar="FILE")
+    add_json_option(parser)
     options = parser.parse_args()
-    lines = [
-        "| mesh | triangles | kept before | kept | volume | CPU s | alpha wrap, kept | CPU s |",
-        "| :--- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |",
-    ]
-    print("\n".join(lines), flush=True)
+    head = ["mesh", "triangles", "before", "kept", "volume", "CPU s"]
+    head += ["alpha wrap, kept", "CPU s"] if options.alpha_wrap else []
+    rows = []
     for name, mesh in {**hard_meshes(), **dict(read_meshes())}.items():
         if options.names and name not in options.names:
             continue
@@ -170,10 +169,12 @@ def main() -> None:
         if options.alpha_wrap:
             peer = alpha_wrap(options.alpha_wrap, mesh, cell)
             columns += [f"{peer.kept:.2%}", f"{peer.seconds:.2f}"]
-        lines.append("| " + " | ".join(columns) + " |")
-        print(lines[-1] + ("  " + after.report if options.reports else ""), flush=True)
-    if options.markdown:
-        options.markdown.write_text("\n".join(lines) + "\n")
+        rows.append(columns)
+        if options.reports:
+            print(f"{name}: {after.report}", flush=True)
+    report = Report()
+    report.table(f"{options.cells} cells along the longest side", head, rows, "meshes")
+    report.write(options.json)
 
 
 if __name__ == "__main__":

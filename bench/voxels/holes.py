@@ -2,7 +2,7 @@
 
 """Measures patches over holes whose surface is known.
 
-Usage: scripts/run python3 bench/voxels/holes.py [--markdown FILE] [--fill-holes PROGRAM]
+Usage: scripts/run python3 bench/voxels/holes.py [--json FILE] [--fill-holes PROGRAM]
 
 Of each hole and method: how far the patch is from the surface that had been there, on average and
 at most; the angle between triangles on either side of the border, at the 95th percentile; the error
@@ -24,6 +24,8 @@ from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import prefilter
+
+from bench.report import Report, add_json_option
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -158,7 +160,7 @@ def border_angles(patch: Patch, first: int) -> Floats:
     return np.degrees(np.arccos(np.clip(cosines, -1, 1)))
 
 
-def row(hole: Hole, name: str, patch: Patch) -> str:
+def row(hole: Hole, name: str, patch: Patch) -> list[str]:
     """Returns a line of the table."""
     first = len(hole.triangles)
     caps = patch.positions[patch.triangles[first:]]
@@ -169,30 +171,27 @@ def row(hole: Hole, name: str, patch: Patch) -> str:
     away = hole.distance(points)
     angle = np.percentile(border_angles(patch, first), 95)
     error = 100 * (volume(patch.positions, patch.triangles) / hole.volume - 1)
-    return (
-        f"| {hole.name} | {name} | {away.mean():.4f} | {away.max():.4f} | {angle:.1f} "
-        f"| {error:+.2f} | {len(caps):,} | {patch.seconds:.3f} |"
-    )
+    distances = [f"{away.mean():.4f}", f"{away.max():.4f}", f"{angle:.1f}"]
+    cost = [f"{len(caps):,}", f"{patch.seconds:.3f}"]
+    return [hole.name, name, *distances, f"{error:+.2f}", *cost]
 
 
 def main() -> None:
     """Prints the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--markdown", type=Path)
+    add_json_option(parser)
     parser.add_argument("--fill-holes", type=Path)
     options = parser.parse_args()
-    lines = [
-        "| hole | method | mean distance | largest | angle at the border, &deg; | volume, % "
-        "| triangles | CPU s |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
+    head = ["hole", "method", "mean distance", "largest", "angle at the border, &deg;"]
+    head += ["volume, %", "triangles", "CPU s"]
+    rows = []
     for hole in holes():
-        lines += [row(hole, method, ours(hole, method)) for method in METHODS]
+        rows += [row(hole, method, ours(hole, method)) for method in METHODS]
         if options.fill_holes:
-            lines.append(row(hole, "CGAL", cgal(hole, options.fill_holes)))
-        print("\n".join(lines[-4 if options.fill_holes else -3 :]), flush=True)
-    if options.markdown:
-        options.markdown.write_text("\n".join(lines) + "\n")
+            rows.append(row(hole, "CGAL", cgal(hole, options.fill_holes)))
+    report = Report()
+    report.table("Patches over holes in known surfaces", head, rows, "patches")
+    report.write(options.json)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ from bench.peers import Measurement, Peer
 from bench.peers.octree import Octree
 from bench.peers.vdb import OpenVdb
 from bench.peers.voxel_remesh import VoxelRemesh
-from bench.report import Report
+from bench.report import Report, add_json_option
 from bench.turns import measure
 from bench.voxels import meshes
 
@@ -64,7 +64,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=5, help="how often (default: %(default)s)")
     parser.add_argument("--interpolant", default="occupancy")
     parser.add_argument("--no-deep", action="store_true", help="leave out depth 12")
-    parser.add_argument("--markdown", type=Path, metavar="FILE", help="write the tables here too")
+    add_json_option(parser)
     options = parser.parse_args()
     for name in options.models:
         if not (options.data / name).exists():
@@ -81,7 +81,7 @@ def main() -> None:
         if not options.no_deep:
             name, depth, limit = DEEPEST
             deepest(report, prepared(options.data / name, Path(folder), depth), limit)
-    report.finish(options.markdown)
+    report.finish(options.json)
 
 
 def prepared(path: Path, folder: Path, depth: int) -> Subject:

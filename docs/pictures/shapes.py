@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Makes the pictures of shapes for docs/benchmarks.md and docs/algorithms.md.
+"""Makes the pictures of shapes for docs/benchmarks/shapes.md and docs/algorithms.md.
 
 usage: python3 shapes.py FOLDER        (with the package prefilter importable)
 

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Writes the tables and commands of docs/ anew, from the results in bench/results/.
+
+A page has marks, and what stands up to the end mark follows from the result that they name:
+
+    <!-- result: NAME TABLE -->     a table of bench/results/NAME.json
+    <!-- commands: NAME -->         the commands that measure it, the date, and what it was run on
+    <!-- criteria: PAGE -->         what bench/results/verdicts.toml asks of a page's subject
+    <!-- verdicts -->               its short list of what was found, each with its command
+
+To keep the result of a program, give it `--json bench/results/NAME.json`, and run this.
+
+usage: python3 bench/pages.py
+"""
+
+import re
+import sys
+import tomllib
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from bench import report  # noqa: E402
+
+DOCS = ROOT / "docs"
+RESULTS = ROOT / "bench" / "results"
+MARK = re.compile(
+    r"(<!-- (result|commands|criteria|verdicts)(?:: ([^>]*?))? -->\n).*?(<!-- end of \2 -->)",
+    re.DOTALL,
+)
+
+
+def pages() -> list[Path]:
+    """Returns the pages that may have marks."""
+    return sorted(DOCS.rglob("*.md"))
+
+
+def rewritten(text: str) -> str:
+    """Returns a page with what follows from results as it ought to be."""
+
+    def made(found: re.Match[str]) -> str:
+        kind, name = found[2], found[3] or ""
+        lines = {"result": table, "commands": commands, "criteria": criteria, "verdicts": verdicts}
+        return f"{found[1]}{lines[kind](*name.split(maxsplit=1))}\n{found[4]}"
+
+    return MARK.sub(made, text)
+
+
+def result(name: str) -> dict:
+    """Returns a result."""
+    return report.decoded((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def table(name: str, table_name: str) -> str:
+    """Returns a table in Markdown; columns of numbers are aligned at the right."""
+    found = result(name)["tables"][table_name]
+    rows = [[cell or "" for cell in row] for row in found["rows"]]
+    ruler = [":---" if _is_text(column) else "---:" for column in zip(*rows, strict=True)]
+    return "\n".join(f"| {' | '.join(row)} |" for row in (found["columns"], ruler, *rows))
+
+
+def commands(name: str) -> str:
+    """Returns the commands of a result, and where and when it was measured."""
+    found = result(name)
+    lines = [f"    {line}" for line in found["command"]]
+    state = f", commit {found['commit']}" if found["commit"] else ""
+    words = [f"Recorded {found['date']}{state}.", f"Machine: {found['machine']}."]
+    words += [f"{note}." for note in found["notes"] if "earlier state" in note]
+    return "\n".join(["", *lines, "", f"*{' '.join(words)}*"])
+
+
+def criteria(page: str) -> str:
+    """Returns what is asked of a page's subject, and whether it holds."""
+    lines = ["| Criterion | Found | |", "| :--- | :--- | :--- |"]
+    for one in _verdicts()["criterion"]:
+        if one["page"] == page:
+            lines.append(f"| {one['text']} | {one['found']} | {one['verdict']} |")
+    return "\n".join(lines)
+
+
+def verdicts() -> str:
+    """Returns the short list, by subject."""
+    lines: list[str] = []
+    subject = None
+    for one in _verdicts()["verdict"]:
+        if one["subject"] != subject:
+            subject = one["subject"]
+            lines += ["", f"## {subject}", ""]
+        lines.append(f"- **{one['text']}** {one['found']} ([details]({one['link']}))")
+        typed = [line for name in one["results"] for line in result(name)["command"]]
+        lines += ["", *(f"      {line}" for line in typed), ""]
+    return re.sub(r"\n{3,}", "\n\n", "\n".join(lines))
+
+
+def _verdicts() -> dict:
+    return tomllib.loads((RESULTS / "verdicts.toml").read_text(encoding="utf-8"))
+
+
+def _is_text(column: tuple[str, ...]) -> bool:
+    return any(re.search(r"[^\W\d_]", cell) for cell in column)
+
+
+if __name__ == "__main__":
+    for path in pages():
+        before = path.read_text(encoding="utf-8")
+        after = rewritten(before)
+        if after != before:
+            path.write_text(after, encoding="utf-8")
+            print(f"{path}: written")
