@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Writes pictures as small PNG files of at most 256 colours.
+"""Writes pictures as small PNG files of at most 256 colors.
 
-usage: python3 shrink.py FOLDER PICTURE.png...
+usage: python3 shrink.py FOLDER PICTURE...
 """
 
 import sys
@@ -20,4 +20,4 @@ for name in sys.argv[2:]:
         picture = picture.resize((WIDTH, height), Image.Resampling.LANCZOS)
     # Pillow dithers with a given palette only.
     small = picture.quantize(palette=picture.quantize(256), dither=Image.Dither.FLOYDSTEINBERG)
-    small.save(folder / Path(name).name, optimize=True)
+    small.save(folder / Path(name).with_suffix(".png").name, optimize=True)

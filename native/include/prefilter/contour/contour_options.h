@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a contour is made by.
+// Options of contours: the interpolant, the iso-value, and what they keep the edges of.
 #pragma once
 
 #include <cstdint>

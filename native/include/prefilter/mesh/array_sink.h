@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A mesh into arrays.
+// A mesh kept in arrays.
 #pragma once
 
 #include <array>

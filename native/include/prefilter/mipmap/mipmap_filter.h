@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What the levels of a mipmap are made with.
+// Filters for the levels of mipmaps, and their names.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Normals of points that are known to be connected.
+// Normals of points whose triangles, or places in a scanner's grid, are known.
 #pragma once
 
 #include <cstdint>

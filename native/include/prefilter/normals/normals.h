@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Normals of points that have none.
+// Normals of points without any, estimated from their neighbors and turned outward.
 #pragma once
 
 #include <span>

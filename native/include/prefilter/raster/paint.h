@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What a shape is filled with.
+// Paints of shapes: constant values and gradients.
 #pragma once
 
 #include <array>

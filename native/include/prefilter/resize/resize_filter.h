@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What an image is resized with.
+// Filters for resizing images, and their names.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Levels as they are sampled.
+// A view of the levels of an image, for sampling.
 #pragma once
 
 #include <cstddef>

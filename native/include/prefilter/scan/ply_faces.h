@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How the points of PLY files are connected.
+// Triangles and range grids of PLY files: how their points are connected.
 #pragma once
 
 #include <array>

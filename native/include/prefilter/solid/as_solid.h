@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Any mesh as one that has an inside.
+// Any mesh as one that has an inside: welded, turned, filled, thickened.
 #pragma once
 
 #include <array>

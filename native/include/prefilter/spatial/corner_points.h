@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What the corners of a surface lie on, of the meshes that it was made of.
+// For each corner of a surface, the nearest point of the mesh that it was made of.
 #pragma once
 
 #include <array>

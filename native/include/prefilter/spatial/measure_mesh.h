@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The extent of a mesh.
+// The box, area and volume of a mesh.
 #pragma once
 
 #include "prefilter/base/geometry.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The points of a mesh nearest to others.
+// The point of a mesh nearest to each of many points.
 #pragma once
 
 #include <array>

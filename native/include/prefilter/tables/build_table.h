@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Building sampling tables (section 6.2).
+// Sampling tables built for a filter (section 6.2).
 #pragma once
 
 #include <vector>

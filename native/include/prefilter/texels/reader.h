@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How a renderer gets from stored texels to a colour.
+// How a renderer gets from stored texels to a color.
 #pragma once
 
 namespace prefilter {

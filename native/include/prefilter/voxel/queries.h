@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What an occupancy octree knows of points, boxes and the whole.
+// Queries of occupancy octrees: volume, values at points, the share of a box that is inside.
 #pragma once
 
 #include <cstdint>
