@@ -8,8 +8,8 @@ Usage: blender --background --python-exit-code 1 --python bench/mipmaps/seams.py
 Models are imported by Blender's own importers, and read through the add-on's bridge, as in
 quality.py. Per level and budget: prefilter.seam_contrast, the contrast of only those seams that the
 image hides, and prefilter.mipmap_error. The first is checked by lookups with numpy along the seams,
-which are found without the library. Ends with status 1 if a criterion of docs/benchmarks/mipmaps.md does
-not hold.
+which are found without the library. Ends with status 1 if a criterion of docs/benchmarks/mipmaps.md
+does not hold.
 """
 
 import argparse

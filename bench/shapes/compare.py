@@ -4,8 +4,8 @@
 
 Usage: python3 -m bench.shapes.compare [PATTERN...] [--rounds N] [--json FILE]
 
-Runs build/bench/shapes_bench, which docs/benchmarks/shapes.md says how to build. The criteria are of the
-box filter's shortest times: shares of AGG's, and less than any other rasterizer takes at the
+Runs build/bench/shapes_bench, which docs/benchmarks/shapes.md says how to build. The criteria are
+of the box filter's shortest times: shares of AGG's, and less than any other rasterizer takes at the
 tolerance where its error is 1/255; of the other filters and the wavelets: multiples of the box.
 Ends with status 1 where one does not hold.
 """
