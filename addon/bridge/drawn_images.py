@@ -37,8 +37,12 @@ class Drawing:
 
 
 def new_image(name: str, drawing: Drawing) -> bpy.types.Image:
-    """Makes a packed image datablock; Blender adds a number to a name that is taken."""
+    """Makes a packed image datablock; Blender adds a number to a name that is taken.
+
+    Nothing uses it yet, and Blender does not save what has no user: it gets a fake one.
+    """
     image = bpy.data.images.new(name, 1, 1, alpha=True)
+    image.use_fake_user = True
     try:
         draw_into(image, drawing)
     except BaseException:

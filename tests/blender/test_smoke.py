@@ -31,6 +31,15 @@ def paint() -> bpy.types.Image:
     return made
 
 
+@pytest.fixture(autouse=True)
+def _all_is_saved() -> Iterator[None]:
+    """Asserts that what the operator made is still there when the file is saved and opened."""
+    yield
+    kinds = (bpy.data.images, bpy.data.objects, bpy.data.meshes, bpy.data.texts, bpy.data.volumes)
+    unused = [block.name for kind in kinds for block in kind if block.users == 0]
+    assert not [name for name in unused if name not in {"Render Result", "Viewer Node"}]
+
+
 @contextmanager
 def image_editor(image: bpy.types.Image) -> Iterator[bpy.types.SpaceImageEditor]:
     """Makes an editor that shows an image the context, without a window to be seen."""
