@@ -5,8 +5,8 @@
 Usage: python3 -m bench.sampling.compare [--rounds N] [--samples N] [--json FILE]
 
 Runs build/bench/sampling_bench, which docs/benchmarks/sampling.md says how to build. The criteria
-are of the medians at 8 texels: at least 3 times OpenImageIO's throughput, and half of what trilinear
-interpolation reaches that is written by hand. Ends with status 1 where one does not hold.
+are of the medians at 8 texels: at least 3 times OpenImageIO's throughput, and half of what
+trilinear interpolation reaches that is written by hand. Ends with status 1 where one does not hold.
 """
 
 import argparse

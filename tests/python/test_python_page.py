@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""docs/python.md: its signatures are the package's, it names all that is public, and samples run."""
+"""docs/python.md: its signatures are the package's, it names all public ones, and samples run."""
 
 import inspect
 import re
