@@ -37,11 +37,19 @@ def _collector_paused() -> Iterator[None]:
 with _collector_paused():
     from . import manual, preferences
     from .commands import Commands
-    from .core import menus, presets, remembered, running
+    from .core import menus, presets, remembered, running, sidebar
     from .core.registration import registration
 
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 
 register, unregister = registration(
-    preferences, presets, running, remembered, menus, *_packages, Commands(SUBJECTS), manual
+    preferences,
+    presets,
+    running,
+    remembered,
+    menus,
+    sidebar,
+    *_packages,
+    Commands(SUBJECTS),
+    manual,
 )

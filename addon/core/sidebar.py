@@ -15,13 +15,19 @@ _AROUND_TEXT = 76
 _FEWEST_LETTERS = 12
 
 
-class SidebarPanel:
-    """A mixin for panels of the tab in the 3D view."""
-
+class _Tab:
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Prefilter"
+
+
+class SidebarPanel(_Tab):
+    """A mixin for panels of the tab in the 3D view."""
+
     bl_context = "objectmode"
+    bl_label = ""
+    wanted = ""
+    """The objects that the panel is for, such as "a curve or a text"."""
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
@@ -32,6 +38,33 @@ class SidebarPanel:
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there is an active object that the panel is for."""
         return context.active_object is not None and cls.fits(context.active_object)
+
+
+class PREFILTER_PT_nothing(_Tab, bpy.types.Panel):
+    """Stands in for the panels where none is for what is active, and says what they are for."""
+
+    bl_label = "Prefilter"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there is no other panel."""
+        return context.mode != "OBJECT" or not any(panel.poll(context) for panel in _panels())
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws what to select for each panel."""
+        if context.mode != "OBJECT":
+            note(self.layout, context, "Prefilter works in Object Mode", "INFO")
+            return
+        note(self.layout, context, "Make one of these the active object", "INFO")
+        for panel in _panels():
+            text = f"{panel.bl_label}: {panel.wanted}"
+            note(self.layout, context, text, "DOT")
+
+
+def _panels() -> list[type[SidebarPanel]]:
+    """Returns the panels of the tab that are registered."""
+    panels = bpy.types.Panel.__subclasses__()
+    return [one for one in panels if issubclass(one, SidebarPanel) and one.is_registered]
 
 
 class ImagePanel:
@@ -88,3 +121,6 @@ def subpanel(
     header, body = layout.panel(f"PREFILTER_{name}", default_closed=True)
     header.label(text=title)
     return header, body
+
+
+register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_nothing,))

@@ -14,6 +14,8 @@ from .properties import RECONSTRUCT
 
 
 class _SidebarPanel(SidebarPanel):
+    wanted = "a point cloud, or a mesh without faces"
+
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
         """Tells whether the panel is for an object."""

@@ -16,6 +16,8 @@ from .properties import RASTERIZE
 
 
 class _CurvesPanel(SidebarPanel):
+    wanted = "a curve or a text"
+
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
         """Tells whether the panel is for an object."""

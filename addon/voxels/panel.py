@@ -23,6 +23,8 @@ class _RemeshPanel:
 
 
 class _SidebarPanel(SidebarPanel):
+    wanted = "a mesh, a curve, a text or a metaball"
+
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
         """Tells whether the panel is for an object."""

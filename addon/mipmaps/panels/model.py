@@ -24,6 +24,7 @@ class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
     """The button, the settings, and what there is to bake."""
 
     bl_label = "Mipmaps of All Images"
+    wanted = "a mesh"
     presets = MODEL
     bl_options = frozenset({"DEFAULT_CLOSED"})
 

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The tab is in the 3D view's sidebar whatever is active, and says what is missing."""
+
+import bodies
+import bpy
+import pytest
+
+
+class _Layout:
+    """Keeps the texts that a panel draws."""
+
+    def __init__(self) -> None:
+        self.texts: list[str] = []
+
+    def column(self, **_: object) -> "_Layout":
+        return self
+
+    def label(self, *, text: str, icon: str) -> None:
+        del icon
+        self.texts.append(text)
+
+
+def shown() -> list[str]:
+    """Returns the names of the panels of the tab that are drawn in the 3D view, but subpanels."""
+    panels = [one for one in bpy.types.Panel.__subclasses__() if one.is_registered]
+    return [
+        panel.__name__
+        for panel in panels
+        if panel.bl_space_type == "VIEW_3D"
+        and panel.__name__.startswith("PREFILTER_PT_")
+        and not panel.__name__.endswith("_presets")
+        and (getattr(panel, "bl_context", "") != "objectmode" or bpy.context.mode == "OBJECT")
+        and panel.poll(bpy.context)
+    ]
+
+
+def said() -> str:
+    """Returns what the panel says that stands in for the others."""
+    layout = _Layout()
+    panel = bpy.types.PREFILTER_PT_nothing
+
+    class Drawn:
+        draw = panel.draw
+
+    drawn = Drawn()
+    drawn.layout = layout
+    drawn.draw(bpy.context)
+    return " ".join(layout.texts)
+
+
+def activate(obj: bpy.types.Object | None) -> None:
+    if obj is not None and obj.name not in bpy.context.scene.collection.objects:
+        bpy.context.scene.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+
+
+@pytest.mark.parametrize("kind", ["none", "EMPTY", "CAMERA", "LIGHT", "ARMATURE"])
+def test_the_tab_is_there_without_a_mesh(kind):
+    data = {
+        "CAMERA": lambda: bpy.data.cameras.new("a"),
+        "LIGHT": lambda: bpy.data.lights.new("a", "POINT"),
+        "ARMATURE": lambda: bpy.data.armatures.new("a"),
+    }
+    made = data[kind]() if kind in data else None
+    activate(None if kind == "none" else bpy.data.objects.new("a", made))
+    assert shown() == ["PREFILTER_PT_nothing"]
+    for words in ("Voxelize: a mesh", "Rasterize: a curve", "Surface: a point cloud"):
+        assert words in said()
+
+
+@pytest.mark.parametrize("mode", ["EDIT", "SCULPT", "VERTEX_PAINT"])
+def test_the_tab_is_there_in_other_modes(mode):
+    activate(bodies.cube())
+    bpy.ops.object.mode_set(mode=mode)
+    assert shown() == ["PREFILTER_PT_nothing"]
+    assert "Object Mode" in said()
+
+
+def test_nothing_stands_in_where_a_panel_is():
+    activate(bodies.cube())
+    assert "PREFILTER_PT_voxelize_sidebar" in shown()
+    assert "PREFILTER_PT_nothing" not in shown()
