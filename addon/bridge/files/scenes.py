@@ -11,6 +11,7 @@ import bpy
 
 from ...core.wording import listed
 from . import staging
+from .complete import check_whole
 
 
 def _import_usd(path: str) -> None:
@@ -140,10 +141,28 @@ def save(target: Path, names: Sequence[str]) -> None:
                 lambda path: bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True),
             )
         else:
-            staged = staging.stage_folder(target, lambda path: EXPORTERS[extension](str(path)))
-    except RuntimeError as error:
-        raise OSError(f"file '{target}': cannot write it: {str(error).strip()}") from error
+            staged = staging.stage_folder(target, _export)
+    except (RuntimeError, OSError) as error:
+        raise OSError(f"file '{target}': cannot write it: {_reason(error)}") from error
     staged.commit()
+
+
+def _export(path: Path) -> None:
+    """Writes the selected objects to a file in a folder of its own."""
+    EXPORTERS[path.suffix.lower()](str(path))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    meshes = [obj.evaluated_get(depsgraph).data for obj in bpy.context.selected_objects]
+    check_whole(
+        path.parent,
+        sum(len(mesh.vertices) for mesh in meshes),
+        sum(len(mesh.polygons) for mesh in meshes),
+    )
+
+
+def _reason(error: RuntimeError | OSError) -> str:
+    """Returns what an operator says of its failure; of one in Python, its last line."""
+    lines = [line for line in str(error).splitlines() if line and not line.startswith("Location:")]
+    return lines[-1] if lines else type(error).__name__
 
 
 def save_open(path: str) -> None:
