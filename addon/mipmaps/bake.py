@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import prefilter
@@ -316,11 +316,13 @@ class Bake:
         return write_all([self])[0]
 
     def stage_images(self) -> None:
-        """Makes the level images, which replace none yet.
+        """Makes the level images, which replace none yet; once is enough.
 
         Raises:
             OSError: An image cannot be made.
         """
+        if self._staged_levels:
+            return
         pairs = [(self._picture, self._levels)] if self._writes_image else []
         if self._roughness is not None:
             pairs.append((self._roughness.picture, self._roughness_levels))
@@ -414,7 +416,24 @@ class Bake:
         return " ".join(parts)
 
 
-def write_all(bakes: Sequence[Bake]) -> list[Outcome]:
+class Writable(Protocol):
+    """A bake, of an image or of all of its tiles, that is computed."""
+
+    @property
+    def staged_files(self) -> Sequence[StagedFile]:
+        """See `Bake.staged_files`."""
+
+    def stage_images(self) -> None:
+        """See `Bake.stage_images`."""
+
+    def finish(self) -> Outcome:
+        """See `Bake.finish`."""
+
+    def discard(self) -> None:
+        """See `Bake.discard`."""
+
+
+def write_all(bakes: Sequence[Writable]) -> list[Outcome]:
     """Writes what bakes have computed: everything, or nothing.
 
     Raises:

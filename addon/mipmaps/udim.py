@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..bridge import meshes
+from ..bridge.files.staging import StagedFile
 from ..bridge.images import Picture
 from ..bridge.tile_surfaces import TileSurfaces
 from ..core.jobs import Progress, parts
@@ -65,9 +66,23 @@ class TiledBake:
             self.discard()
             raise
 
+    @property
+    def staged_files(self) -> Sequence[StagedFile]:
+        """The files of all tiles, to be renamed into place."""
+        return [file for one in self._bakes for file in one.staged_files]
+
+    def stage_images(self) -> None:
+        """See `Bake.stage_images`."""
+        for one in self._bakes:
+            one.stage_images()
+
     def write(self) -> Outcome:
         """Writes all tiles, once everything is staged; see `Bake.write`."""
-        outcomes = write_all(self._bakes)
+        return write_all([self])[0]
+
+    def finish(self) -> Outcome:
+        """See `Bake.finish`."""
+        outcomes = [one.finish() for one in self._bakes]
         for outcome in outcomes:
             self.warnings.extend(outcome.warnings)
         names = [name for outcome in outcomes for name in outcome.images]

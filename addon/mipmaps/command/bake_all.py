@@ -109,20 +109,18 @@ def _list(model: ModelBake) -> None:
 
 
 def _bake(model: ModelBake) -> None:
-    """Bakes image after image, and tells of each what was done."""
+    """Bakes image after image, writes them together, and tells of each what was done."""
     progress = command.ProgressLine()
-    failed = 0
     try:
         while model.next_name:
             _read(model)(progress)
-            for outcome in model.write():
-                command.tell(outcome)
-            command.warn(
-                f"image '{one.image}' is not baked: {one.reason}" for one in model.failed[failed:]
-            )
-            failed = len(model.failed)
+            model.stage_images()
+        written = model.write()
     finally:
         progress.end()
+    for outcome in written:
+        command.tell(outcome)
+    command.warn(f"image '{one.image}' is not baked: {one.reason}" for one in model.failed)
 
 
 def _read(model: ModelBake) -> Compute:

@@ -21,7 +21,7 @@ from ...core.jobs import Progress, go_on, share
 from ...core.outcome import FAILURES, Outcome
 from ...core.wording import counted, listed
 from .. import contents, lookups, reading, udim
-from ..bake import Bake
+from ..bake import Bake, write_all
 from ..choices import FILTERS, Settings
 from . import decisions
 from .plan import Item, Job, LeftOut, Plan, image_of
@@ -138,16 +138,29 @@ class ModelBake:
 
         return compute
 
-    def write(self) -> list[Outcome]:
-        """Writes what is computed and not written yet."""
-        written: list[Outcome] = []
-        while self._computed:
-            job, bake = self._computed.pop(0)
+    def stage_images(self) -> None:
+        """Makes level images of what is computed, which then needs less memory; writes nothing."""
+        if not self._settings.use_images:
+            return
+        computed, self._computed = self._computed, []
+        for job, bake in computed:
             try:
-                written.append(bake.write())
-                self._baked += job.images
+                bake.stage_images()
+                bake.let_pixels_go()
+                self._computed.append((job, bake))
             except FAILURES as error:
                 self._fail(job, error)
+
+    def write(self) -> list[Outcome]:
+        """Writes what is computed, the files of all images together or none of them."""
+        computed, self._computed = self._computed, []
+        try:
+            written = write_all([bake for _, bake in computed])
+        except FAILURES as error:
+            for job, _ in computed:
+                self._fail(job, error)
+            return []
+        self._baked += [name for job, _ in computed for name in job.images]
         self._outcomes += written
         return written
 

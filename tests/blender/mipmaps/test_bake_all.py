@@ -118,6 +118,42 @@ def test_a_file_for_each_image(model, tmp_path):
     }
 
 
+def test_no_file_is_there_before_all_are(addon, model, tmp_path, monkeypatch):
+    """What ends the command, at any point of its work, leaves the files of earlier bakes."""
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "albedo.ktx2").write_bytes(b"earlier")
+    bakes = addon("mipmaps.bake").Bake
+    compute, seen = bakes.compute, []
+
+    def watched(self, progress):
+        compute(self, progress)
+        seen.append([name for name in names(out) if not name.startswith(".")])
+
+    monkeypatch.setattr(bakes, "compute", watched)
+    result = run("bake", model, "--all", "--output", out)
+    assert result.returncode == 0, result.stderr
+    assert seen == [["albedo.ktx2"]] * 4  # The normal map and the roughness are one bake.
+    assert len(names(out)) == 5
+    assert (out / "albedo.ktx2").read_bytes() != b"earlier"
+
+
+def test_all_files_or_none(addon, model, tmp_path, monkeypatch):
+    commit = addon("bridge.files.staging").StagedFile.commit
+
+    def fails(self):
+        if self.target.name == "leaf.ktx2":
+            raise OSError("there is no more room")
+        commit(self)
+
+    monkeypatch.setattr(addon("bridge.files.staging").StagedFile, "commit", fails)
+    result = run("bake", model, "--all", "--output", tmp_path / "out")
+    assert result.returncode == 1
+    assert "error: no image was baked" in result.stderr
+    assert result.stderr.count("there is no more room") >= len(PICTURES)
+    assert not (tmp_path / "out").exists()
+
+
 @pytest.mark.parametrize(
     ("socket", "colorspace", "is_float", "pixels", "expected"),
     [
