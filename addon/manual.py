@@ -5,44 +5,16 @@
 Blender opens the page from the context menu of a button (Online Manual), and with F1 over it.
 """
 
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import bpy
 
 FOLDER = Path(__file__).with_name("manual")
-_PAGES = {
-    "bake": "bake",
-    "bake_mipmaps": "bake",
-    "bake_model": "bake",
-    "model": "bake",
-    "remove_levels": "bake",
-    "bake_texture_cache": "texture_cache",
-    "view": "view",
-    "preview_levels": "view",
-    "end_preview": "view",
-    "plot_error": "view",
-    "show_weights": "view",
-    "show_source": "view",
-    "fill_unused": "view",
-    "resize": "resize",
-    "resize_image": "resize",
-    "resample": "resample",
-    "resample_image": "resample",
-    "plane": "resample",
-    "preview_plane": "resample",
-    "end_plane": "resample",
-    "sampling_table": "shaders",
-    "reconstruct": "scans",
-    "rasterize": "shapes",
-    "rasterize_svg": "shapes",
-    "drawn": "shapes",
-    "update_drawn": "shapes",
-    "voxelize": "voxels",
-    "boolean": "voxels",
-    "add_preset": "preferences",
-}
-"""The page of an operator, and of the settings in a group of properties."""
+_OWN = {"preferences": ("add_preset",)}
+"""What belongs to no subject; see `Manual`."""
 
 
 def page(name: str = "README") -> str:
@@ -51,26 +23,37 @@ def page(name: str = "README") -> str:
     return path.as_uri() if path.exists() else _website()
 
 
-def pages() -> tuple[str, tuple[tuple[str, str], ...]]:
-    """Returns what Blender asks a manual for: where it is, and patterns with what is at each."""
-    if not FOLDER.exists():
-        return "", ()
-    found = []
-    for name, which in _PAGES.items():
-        for pattern in (f"bpy.ops.prefilter.{name}", f"bpy.types.prefilter_pg_{name}"):
-            found += [(pattern, f"{which}.html"), (f"{pattern}.*", f"{which}.html")]
-    found.append(("bpy.types.prefilter_ap_preferences.*", "preferences.html"))
-    return f"{FOLDER.as_uri()}/", tuple(found)
+class Manual:
+    """Which page is about what: each subject says that of its own.
 
+    A subject has `MANUAL`: by the name of a page in docs/, the names of its operators and of its
+    groups of properties, without the prefixes `prefilter.` and `PREFILTER_PG_`.
+    """
 
-def register() -> None:
-    """Makes the pages known to Blender."""
-    bpy.utils.register_manual_map(pages)
+    def __init__(self, subjects: Sequence[ModuleType]) -> None:
+        """Takes the packages of the subjects."""
+        self._tables: list[Mapping[str, Sequence[str]]] = [one.MANUAL for one in subjects]
 
+    def register(self) -> None:
+        """Makes the pages known to Blender."""
+        bpy.utils.register_manual_map(self.pages)
 
-def unregister() -> None:
-    """Takes them back."""
-    bpy.utils.unregister_manual_map(pages)
+    def unregister(self) -> None:
+        """Takes them back."""
+        bpy.utils.unregister_manual_map(self.pages)
+
+    def pages(self) -> tuple[str, tuple[tuple[str, str], ...]]:
+        """Returns what Blender asks for: where the manual is, and patterns with what is at each."""
+        if not FOLDER.exists():
+            return "", ()
+        found = []
+        for table in (*self._tables, _OWN):
+            for which, names in table.items():
+                for name in names:
+                    for pattern in (f"bpy.ops.prefilter.{name}", f"bpy.types.prefilter_pg_{name}"):
+                        found += [(pattern, f"{which}.html"), (f"{pattern}.*", f"{which}.html")]
+        found.append(("bpy.types.prefilter_ap_preferences.*", "preferences.html"))
+        return f"{FOLDER.as_uri()}/", tuple(found)
 
 
 @cache

@@ -5,4 +5,13 @@
 from ..core.registration import registration
 from . import menus, operators, panels, properties, view
 
+MANUAL = {
+    "bake": ("bake", "bake_mipmaps", "bake_model", "model", "remove_levels"),
+    "view": (
+        *("view", "preview_levels", "end_preview", "plot_error"),
+        *("show_weights", "show_source", "fill_unused"),
+    ),
+}
+"""The pages about its operators and settings; see `manual.Manual`."""
+
 register, unregister = registration(properties, view, operators, panels, menus)

@@ -5,4 +5,11 @@
 from ..core.registration import registration
 from . import operators, panels, properties, view
 
+MANUAL = {
+    "resize": ("resize", "resize_image"),
+    "resample": ("resample", "resample_image", "plane", "preview_plane", "end_plane"),
+    "shaders": ("sampling_table",),
+}
+"""The pages about its operators and settings; see `manual.Manual`."""
+
 register, unregister = registration(properties, view, operators, panels)

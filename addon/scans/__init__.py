@@ -5,4 +5,7 @@
 from ..core.registration import registration
 from . import operator, panel, properties
 
+MANUAL = {"scans": ("reconstruct",)}
+"""The pages about its operators and settings; see `manual.Manual`."""
+
 register, unregister = registration(properties, operator, panel)

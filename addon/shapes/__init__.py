@@ -5,4 +5,7 @@
 from ..core.registration import registration
 from . import operators, panels, properties
 
+MANUAL = {"shapes": ("rasterize", "rasterize_svg", "drawn", "update_drawn")}
+"""The pages about its operators and settings; see `manual.Manual`."""
+
 register, unregister = registration(properties, operators, panels)

@@ -5,4 +5,7 @@
 from ..core.registration import registration
 from . import menus, operator, panel
 
+MANUAL = {"texture_cache": ("bake_texture_cache",)}
+"""The pages about its operators and settings; see `manual.Manual`."""
+
 register, unregister = registration(operator, panel, menus)

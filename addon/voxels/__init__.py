@@ -5,4 +5,7 @@
 from ..core.registration import registration
 from . import operators, panel, properties
 
+MANUAL = {"voxels": ("voxelize", "boolean")}
+"""The pages about its operators and settings; see `manual.Manual`."""
+
 register, unregister = registration(properties, operators, panel)

@@ -108,6 +108,18 @@ def test_every_subject_is_registered_and_has_nothing_beside_its_folder():
     assert found == {"__init__.py", "commands.py", "manual.py", "preferences.py"}
 
 
+def test_pages_that_subjects_name_are_in_docs():
+    named = {
+        page
+        for path in ADDON.glob("*/__init__.py")
+        for node in ast.parse(path.read_text()).body
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "MANUAL"
+        for page in map(ast.literal_eval, node.value.keys)
+    }
+    assert named
+    assert named <= {path.stem for path in (ROOT / "docs").glob("*.md")}
+
+
 def test_a_wrong_import_is_found():
     graph = {"addon.core.a": {"addon.bridge.b"}, "addon.mipmaps.c": {"addon.voxels.d", "addon"}}
     assert wrong_imports(graph) == [
