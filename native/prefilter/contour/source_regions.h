@@ -86,6 +86,9 @@ class FramedPositions {
   RootFrame frame_;
 };
 
+/// From a vertex to another one, of length 1; 0 where they are at one place.
+Vector3 direction_of(const FramedPositions& positions, std::int32_t from, std::int32_t to);
+
 class JoinedTriangles {
  public:
   explicit JoinedTriangles(const JoinedMeshes& meshes) : meshes_(meshes) {}

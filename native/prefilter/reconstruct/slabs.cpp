@@ -81,7 +81,6 @@ void Slabs::advance(int s, SlabStage stage) {
       break;
   }
   slot.stage = stage;
-  ++steps_;
 }
 
 void Slabs::find_leaves_of(int s) {

@@ -12,6 +12,8 @@
 
 namespace prefilter {
 
+inline std::size_t as_index(std::int32_t i) { return static_cast<std::size_t>(i); }
+
 /// A triangle, and how well it stands for the surface that was there.
 struct PatchTriangle {
   std::array<std::int32_t, 3> corners{};
@@ -54,8 +56,13 @@ struct Patch {
   /// About how far points of the surface that was there are apart.
   double spacing = 0.0;
 
-  /// Removes what can be removed. Triangles that are gone have their first corner twice.
-  void simplify();
+  const Vector3& point(std::int32_t vertex) const { return positions[as_index(vertex)]; }
+  bool is_shared(std::int32_t vertex) const { return (flags[as_index(vertex)] & kShared) != 0; }
+  const PatchTriangle& triangle(std::int32_t t) const { return triangles[as_index(t)]; }
+  PatchTriangle& triangle(std::int32_t t) { return triangles[as_index(t)]; }
 };
+
+/// Removes what can be removed. Triangles that are gone have their first corner twice.
+void simplify_patch(Patch* patch);
 
 }  // namespace prefilter

@@ -267,7 +267,7 @@ class Simplifier {
     }
     if (is_any_waiting) {
       if (has_labels_ || !kinds_.empty()) find_creases(&patch, vertices);
-      patch.simplify();
+      prefilter::simplify_patch(&patch);
     }
     for (std::size_t i = shared.size(); i < vertices.size(); ++i) {
       targets_[index(vertices[i])] = -1;
