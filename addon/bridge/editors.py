@@ -17,3 +17,9 @@ def redraw() -> None:
         for area in window.screen.areas:
             if area.type == "IMAGE_EDITOR":
                 area.tag_redraw()
+
+
+def redraw_on_change(group: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
+    """Draws the editors again; for what properties call when they change."""
+    del group, context
+    redraw()

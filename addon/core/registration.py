@@ -3,17 +3,31 @@
 """Registering what consists of parts."""
 
 from collections.abc import Callable
-from typing import Protocol
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import bpy
+from bpy.props import PointerProperty
 
 
 class Part(Protocol):
-    """A module or a package that comes and goes with the add-on."""
+    """A module, a package or a `Step` that comes and goes with the add-on."""
 
-    def register(self) -> None:
-        """Makes it known to Blender."""
+    @property
+    def register(self) -> Callable[[], None]:
+        """What makes it known to Blender."""
 
-    def unregister(self) -> None:
-        """Takes back what `register` did."""
+    @property
+    def unregister(self) -> Callable[[], None]:
+        """What takes back what `register` did."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """A part that is two functions."""
+
+    register: Callable[[], None]
+    unregister: Callable[[], None]
 
 
 def registration(*parts: Part) -> tuple[Callable[[], None], Callable[[], None]]:
@@ -28,3 +42,27 @@ def registration(*parts: Part) -> tuple[Callable[[], None], Callable[[], None]]:
             part.unregister()
 
     return register, unregister
+
+
+def classes(*types: type) -> Step:
+    """Returns the part that registers Blender's classes."""
+    return Step(*bpy.utils.register_classes_factory(types))
+
+
+def entry(menu: Any, draw: Callable[[Any, bpy.types.Context], None]) -> Step:
+    """Returns the part that draws something at the end of a menu, a panel or a header."""
+    return Step(lambda: menu.append(draw), lambda: menu.remove(draw))
+
+
+def state(owner: type, name: str, group: type[bpy.types.PropertyGroup]) -> Step:
+    """Returns the part that registers a group of properties, and has each `owner` keep one."""
+
+    def register() -> None:
+        bpy.utils.register_class(group)
+        setattr(owner, name, PointerProperty(type=group))
+
+    def unregister() -> None:
+        delattr(owner, name)
+        bpy.utils.unregister_class(group)
+
+    return Step(register, unregister)

@@ -4,8 +4,9 @@
 
 import bpy
 
+from ..core.buttons import Button
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
-from ..core.properties import copy
+from ..core.registration import entry, registration
 from .choices import NOT_OF_MODELS, ModelSettings, ResultSettings, Settings
 from .operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from .operators.bake_model import PREFILTER_OT_bake_model
@@ -14,43 +15,23 @@ from .operators.plot_error import PREFILTER_OT_plot_error
 from .operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
 from .operators.remove_levels import PREFILTER_OT_remove_levels
 from .operators.show_weights import PREFILTER_OT_show_source, PREFILTER_OT_show_weights
+from .properties import BAKE, MODEL
 
-
-def register() -> None:
-    """Adds the entries."""
-    PREFILTER_MT_image.append(_draw_image_menu)
-    PREFILTER_MT_object.append(_draw_object_menu)
-    bpy.types.MATERIAL_MT_context_menu.append(_draw_material_menu)
-
-
-def unregister() -> None:
-    """Removes them."""
-    bpy.types.MATERIAL_MT_context_menu.remove(_draw_material_menu)
-    PREFILTER_MT_object.remove(_draw_object_menu)
-    PREFILTER_MT_image.remove(_draw_image_menu)
-
-
-def draw_bake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    """Draws the button of the bake, with the settings of the scene."""
-    operator = layout.operator(PREFILTER_OT_bake_mipmaps.bl_idname, icon="TEXTURE")
-    copy(context.scene.prefilter_bake, operator, ResultSettings)
-    copy(context.scene.prefilter_bake, operator, Settings)
-
-
-def draw_bake_model(
-    layout: bpy.types.UILayout, context: bpy.types.Context, text: str | None = None
-) -> bpy.types.OperatorProperties:
-    """Draws the button of the bake of all images, with the settings of the scene."""
-    operator = layout.operator(PREFILTER_OT_bake_model.bl_idname, text=text, icon="RENDERLAYERS")
-    copy(context.scene.prefilter_model, operator, ModelSettings)
-    copy(context.scene.prefilter_model, operator, Settings, NOT_OF_MODELS)
-    return operator
+BAKE_BUTTON = Button(
+    PREFILTER_OT_bake_mipmaps, "TEXTURE", BAKE.group, {ResultSettings: (), Settings: ()}
+)
+MODEL_BUTTON = Button(
+    PREFILTER_OT_bake_model,
+    "RENDERLAYERS",
+    MODEL.group,
+    {ModelSettings: (), Settings: NOT_OF_MODELS},
+)
 
 
 def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     layout, view = menu.layout, context.window_manager.prefilter_view
-    draw_bake(layout, context)
-    draw_bake_model(layout, context)
+    BAKE_BUTTON.draw(layout, context)
+    MODEL_BUTTON.draw(layout, context)
     layout.separator()
     preview = layout.operator(PREFILTER_OT_preview_levels.bl_idname, icon="FILE_REFRESH")
     preview.compare = view.compare
@@ -65,8 +46,8 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
 
 def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
-    draw_bake(menu.layout, context)
-    draw_bake_model(menu.layout, context)
+    BAKE_BUTTON.draw(menu.layout, context)
+    MODEL_BUTTON.draw(menu.layout, context)
 
 
 def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -74,5 +55,12 @@ def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> Non
     if material is None:
         return
     menu.layout.separator()
-    operator = draw_bake_model(menu.layout, context, "Bake All Images of Material")
+    operator = MODEL_BUTTON.draw(menu.layout, context, "Bake All Images of Material")
     operator.objects, operator.material = "scene", material.name
+
+
+register, unregister = registration(
+    entry(PREFILTER_MT_image, _draw_image_menu),
+    entry(PREFILTER_MT_object, _draw_object_menu),
+    entry(bpy.types.MATERIAL_MT_context_menu, _draw_material_menu),
+)

@@ -7,10 +7,10 @@ from dataclasses import replace
 from typing import Any
 
 import bpy
-from bpy.props import PointerProperty
 
 from ..core import presets
 from ..core.properties import following, properties, single_property, values
+from ..core.registration import classes, registration, state
 from ..core.sidebar import subpanel
 from .choices import (
     FITTED_FILTERS,
@@ -230,20 +230,8 @@ class PREFILTER_PG_bake(BakeProperties, bpy.types.PropertyGroup):
     __annotations__ = following(ResultSettings, file_format={"update": _follow_format})
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (PREFILTER_PG_bake, PREFILTER_PG_model, presets.panel(BAKE), presets.panel(MODEL))
+register, unregister = registration(
+    state(bpy.types.Scene, BAKE.group, PREFILTER_PG_bake),
+    state(bpy.types.Scene, MODEL.group, PREFILTER_PG_model),
+    classes(presets.panel(BAKE), presets.panel(MODEL)),
 )
-
-
-def register() -> None:
-    """Registers the settings on the scene."""
-    _register_classes()
-    bpy.types.Scene.prefilter_bake = PointerProperty(type=PREFILTER_PG_bake)
-    bpy.types.Scene.prefilter_model = PointerProperty(type=PREFILTER_PG_model)
-
-
-def unregister() -> None:
-    """Removes the settings from the scene."""
-    del bpy.types.Scene.prefilter_model
-    del bpy.types.Scene.prefilter_bake
-    _unregister_classes()

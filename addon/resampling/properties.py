@@ -5,10 +5,10 @@
 from typing import Any
 
 import bpy
-from bpy.props import PointerProperty
 
 from ..core import presets
 from ..core.properties import properties, values
+from ..core.registration import classes, registration, state
 from .choices import CORNERS, ResampleSettings, ResizeSettings, TableSettings
 
 RESIZE = presets.Kind("resize", "prefilter_resize", [(ResizeSettings, ())])
@@ -148,27 +148,9 @@ class PREFILTER_PG_sampling_table(TableProperties, bpy.types.PropertyGroup):
     """The settings of sampling tables that the panel shows; they stay with the scene."""
 
 
-_GROUPS = {
-    "prefilter_resize": PREFILTER_PG_resize,
-    "prefilter_resample": PREFILTER_PG_resample,
-    "prefilter_sampling_table": PREFILTER_PG_sampling_table,
-}
-_register_presets, _unregister_presets = bpy.utils.register_classes_factory(
-    (presets.panel(RESIZE), presets.panel(RESAMPLE))
+register, unregister = registration(
+    state(bpy.types.Scene, RESIZE.group, PREFILTER_PG_resize),
+    state(bpy.types.Scene, RESAMPLE.group, PREFILTER_PG_resample),
+    state(bpy.types.Scene, "prefilter_sampling_table", PREFILTER_PG_sampling_table),
+    classes(presets.panel(RESIZE), presets.panel(RESAMPLE)),
 )
-
-
-def register() -> None:
-    """Registers the settings on the scene."""
-    for name, group in _GROUPS.items():
-        bpy.utils.register_class(group)
-        setattr(bpy.types.Scene, name, PointerProperty(type=group))
-    _register_presets()
-
-
-def unregister() -> None:
-    """Removes the settings from the scene."""
-    _unregister_presets()
-    for name, group in reversed(_GROUPS.items()):
-        delattr(bpy.types.Scene, name)
-        bpy.utils.unregister_class(group)

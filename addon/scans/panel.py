@@ -4,10 +4,10 @@
 
 import bpy
 
+from ..core.buttons import Button, SettingsPanel
 from ..core.menus import PREFILTER_MT_object
-from ..core.presets import PresetsPanel
-from ..core.properties import copy
-from ..core.sidebar import SidebarPanel, main_button
+from ..core.registration import classes, entry, registration
+from ..core.sidebar import SidebarPanel
 from .choices import ScanSettings
 from .operator import PREFILTER_OT_reconstruct
 from .properties import RECONSTRUCT
@@ -24,18 +24,17 @@ class _SidebarPanel(SidebarPanel):
         return may_be_points(obj)
 
 
-class PREFILTER_PT_reconstruct(_SidebarPanel, PresetsPanel, bpy.types.Panel):
+_RECONSTRUCT = Button(
+    PREFILTER_OT_reconstruct, "POINTCLOUD_DATA", RECONSTRUCT.group, {ScanSettings: ()}
+)
+
+
+class PREFILTER_PT_reconstruct(_SidebarPanel, SettingsPanel, bpy.types.Panel):
     """Button and settings."""
 
     bl_label = "Reconstruct Surface"
     presets = RECONSTRUCT
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the panel."""
-        place = main_button(self.layout, context, PREFILTER_OT_reconstruct)
-        if place:
-            _draw_reconstruct(place, context)
-        context.scene.prefilter_reconstruct.draw_in(self.layout)
+    button = _RECONSTRUCT
 
 
 class PREFILTER_MT_scans(bpy.types.Menu):
@@ -49,26 +48,7 @@ class PREFILTER_MT_scans(bpy.types.Menu):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the menu."""
-        _draw_reconstruct(self.layout, context)
-
-
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (PREFILTER_PT_reconstruct, PREFILTER_MT_scans)
-)
-
-
-def register() -> None:
-    """Registers the panels and the menu entries."""
-    _register_classes()
-    PREFILTER_MT_object.append(_draw_object_menu)
-    bpy.types.VIEW3D_MT_object_convert.append(_draw_convert_menu)
-
-
-def unregister() -> None:
-    """Removes them."""
-    bpy.types.VIEW3D_MT_object_convert.remove(_draw_convert_menu)
-    PREFILTER_MT_object.remove(_draw_object_menu)
-    _unregister_classes()
+        _RECONSTRUCT.draw(self.layout, context)
 
 
 def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -82,6 +62,8 @@ def _draw_convert_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None
     menu.layout.menu(PREFILTER_MT_scans.__name__, text="Prefilter")
 
 
-def _draw_reconstruct(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    operator = layout.operator(PREFILTER_OT_reconstruct.bl_idname, icon="POINTCLOUD_DATA")
-    copy(context.scene.prefilter_reconstruct, operator, ScanSettings)
+register, unregister = registration(
+    classes(PREFILTER_PT_reconstruct, PREFILTER_MT_scans),
+    entry(PREFILTER_MT_object, _draw_object_menu),
+    entry(bpy.types.VIEW3D_MT_object_convert, _draw_convert_menu),
+)

@@ -3,10 +3,10 @@
 """The settings of reconstructing as properties, of the operator and of the scene."""
 
 import bpy
-from bpy.props import PointerProperty
 
 from ..core import presets
 from ..core.properties import following, properties, values
+from ..core.registration import classes, registration, state
 from ..core.sidebar import subpanel
 from .choices import ScanSettings
 
@@ -50,18 +50,7 @@ class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):
     __annotations__ = following(ScanSettings)
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (PREFILTER_PG_reconstruct, presets.panel(RECONSTRUCT))
+register, unregister = registration(
+    state(bpy.types.Scene, RECONSTRUCT.group, PREFILTER_PG_reconstruct),
+    classes(presets.panel(RECONSTRUCT)),
 )
-
-
-def register() -> None:
-    """Registers the settings on the scene."""
-    _register_classes()
-    bpy.types.Scene.prefilter_reconstruct = PointerProperty(type=PREFILTER_PG_reconstruct)
-
-
-def unregister() -> None:
-    """Removes the settings from the scene."""
-    del bpy.types.Scene.prefilter_reconstruct
-    _unregister_classes()

@@ -4,15 +4,19 @@
 
 import bpy
 
+from ..core.buttons import Button
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
 from ..core.presets import PresetsPanel
-from ..core.properties import copy
+from ..core.registration import classes, entry, registration
 from ..core.sidebar import ImagePanel, SidebarPanel, main_button
 from .choices import RasterizeSettings
 from .operators.rasterize import PREFILTER_OT_rasterize
 from .operators.rasterize_svg import PREFILTER_OT_rasterize_svg
 from .operators.update_drawn import PREFILTER_OT_update_drawn
 from .properties import RASTERIZE
+
+_RASTERIZE = Button(PREFILTER_OT_rasterize, "IMAGE_DATA", RASTERIZE.group, {RasterizeSettings: ()})
+_SVG = Button(PREFILTER_OT_rasterize_svg, "FILE_IMAGE", RASTERIZE.group, {RasterizeSettings: ()})
 
 
 class _CurvesPanel(SidebarPanel):
@@ -36,7 +40,7 @@ class PREFILTER_PT_rasterize(_CurvesPanel, PresetsPanel, bpy.types.Panel):
         """Draws the panel."""
         place = main_button(self.layout, context, PREFILTER_OT_rasterize)
         if place:
-            _draw_rasterize(place, context, "curves")
+            _RASTERIZE.draw(place, context).source = "curves"
         context.scene.prefilter_rasterize.draw_in(self.layout, "curves")
 
 
@@ -86,32 +90,9 @@ class PREFILTER_PT_shapes(ImagePanel, PresetsPanel, bpy.types.Panel):
         context.scene.prefilter_rasterize.draw_in(self.layout, "svg")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (PREFILTER_PT_rasterize, PREFILTER_PT_drawn, PREFILTER_PT_shapes)
-)
-
-
-def register() -> None:
-    """Registers the panels and the menu entries."""
-    _register_classes()
-    PREFILTER_MT_object.append(_draw_object_menu)
-    PREFILTER_MT_image.append(_draw_image_menu)
-    bpy.types.IMAGE_MT_uvs.append(_draw_uv_menu)
-    bpy.types.IMAGE_HT_header.append(_draw_header)
-
-
-def unregister() -> None:
-    """Removes them."""
-    bpy.types.IMAGE_HT_header.remove(_draw_header)
-    bpy.types.IMAGE_MT_uvs.remove(_draw_uv_menu)
-    PREFILTER_MT_image.remove(_draw_image_menu)
-    PREFILTER_MT_object.remove(_draw_object_menu)
-    _unregister_classes()
-
-
 def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
-    _draw_rasterize(menu.layout, context, "auto")
+    _RASTERIZE.draw(menu.layout, context).source = "auto"
 
 
 def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -135,29 +116,24 @@ def _draw_header(header: bpy.types.Header, context: bpy.types.Context) -> None:
         header.layout.operator(update, text="Update", icon="FILE_REFRESH").image = image.name
 
 
-def _draw_rasterize(
-    layout: bpy.types.UILayout, context: bpy.types.Context, source: str
-) -> bpy.types.OperatorProperties:
-    operator = layout.operator(PREFILTER_OT_rasterize.bl_idname, icon="IMAGE_DATA")
-    copy(context.scene.prefilter_rasterize, operator, RasterizeSettings)
-    operator.source = source
-    return operator
-
-
 def _draw_svg(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    operator = layout.operator(
-        PREFILTER_OT_rasterize_svg.bl_idname, text="Rasterize SVG...", icon="FILE_IMAGE"
-    )
-    copy(context.scene.prefilter_rasterize, operator, RasterizeSettings)
     # Empty, so that the file browser opens.
-    operator.filepath = ""
+    _SVG.draw(layout, context, "Rasterize SVG...").filepath = ""
 
 
 def _draw_uv_mask(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draws the button of a mask, of the size of the image that the editor shows."""
-    operator = layout.operator(PREFILTER_OT_rasterize.bl_idname, text="Rasterize UV Map", icon="UV")
-    copy(context.scene.prefilter_rasterize, operator, RasterizeSettings)
+    operator = _RASTERIZE.draw(layout, context, "Rasterize UV Map", "UV")
     operator.source = "uv"
     image = getattr(context.space_data, "image", None)
     if image is not None and all(image.size):
         operator.width, operator.height = image.size
+
+
+register, unregister = registration(
+    classes(PREFILTER_PT_rasterize, PREFILTER_PT_drawn, PREFILTER_PT_shapes),
+    entry(PREFILTER_MT_object, _draw_object_menu),
+    entry(PREFILTER_MT_image, _draw_image_menu),
+    entry(bpy.types.IMAGE_MT_uvs, _draw_uv_menu),
+    entry(bpy.types.IMAGE_HT_header, _draw_header),
+)

@@ -7,6 +7,7 @@ from bpy.props import BoolProperty, CollectionProperty, PointerProperty
 
 from ..core import presets
 from ..core.properties import properties, values
+from ..core.registration import classes, registration, state
 from ..core.sidebar import subpanel
 from .choices import RasterizeSettings
 
@@ -94,25 +95,9 @@ class PREFILTER_PG_drawn(RasterizeProperties, bpy.types.PropertyGroup):
         """Draws nothing: the image has its name."""
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        PREFILTER_PG_rasterize,
-        PREFILTER_PG_drawn_object,
-        PREFILTER_PG_drawn,
-        presets.panel(RASTERIZE),
-    )
+register, unregister = registration(
+    state(bpy.types.Scene, RASTERIZE.group, PREFILTER_PG_rasterize),
+    classes(PREFILTER_PG_drawn_object),
+    state(bpy.types.Image, "prefilter_drawn", PREFILTER_PG_drawn),
+    classes(presets.panel(RASTERIZE)),
 )
-
-
-def register() -> None:
-    """Registers the settings on the scene, and on images."""
-    _register_classes()
-    bpy.types.Scene.prefilter_rasterize = PointerProperty(type=PREFILTER_PG_rasterize)
-    bpy.types.Image.prefilter_drawn = PointerProperty(type=PREFILTER_PG_drawn)
-
-
-def unregister() -> None:
-    """Removes them; images keep what they were made with."""
-    del bpy.types.Image.prefilter_drawn
-    del bpy.types.Scene.prefilter_rasterize
-    _unregister_classes()

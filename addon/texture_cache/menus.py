@@ -5,21 +5,15 @@
 import bpy
 
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
+from ..core.registration import entry, registration
 from .operator import PREFILTER_OT_bake_texture_cache
-
-
-def register() -> None:
-    """Adds the entries."""
-    PREFILTER_MT_image.append(_draw)
-    PREFILTER_MT_object.append(_draw)
-
-
-def unregister() -> None:
-    """Removes them."""
-    PREFILTER_MT_object.remove(_draw)
-    PREFILTER_MT_image.remove(_draw)
 
 
 def _draw(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     del context
     menu.layout.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon="TEXTURE")
+
+
+register, unregister = registration(
+    entry(PREFILTER_MT_image, _draw), entry(PREFILTER_MT_object, _draw)
+)

@@ -3,10 +3,10 @@
 """The settings of voxelizing and of booleans as properties, of operators and of the scene."""
 
 import bpy
-from bpy.props import PointerProperty
 
 from ..core import presets
 from ..core.properties import properties, values
+from ..core.registration import classes, registration, state
 from ..core.sidebar import note, subpanel
 from .choices import BooleanSettings, VoxelizeSettings
 
@@ -116,25 +116,8 @@ class PREFILTER_PG_boolean(BooleanProperties, bpy.types.PropertyGroup):
     """The settings that the panel shows; they stay with the scene."""
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (
-        PREFILTER_PG_voxelize,
-        PREFILTER_PG_boolean,
-        presets.panel(VOXELIZE),
-        presets.panel(BOOLEAN),
-    )
+register, unregister = registration(
+    state(bpy.types.Scene, VOXELIZE.group, PREFILTER_PG_voxelize),
+    state(bpy.types.Scene, BOOLEAN.group, PREFILTER_PG_boolean),
+    classes(presets.panel(VOXELIZE), presets.panel(BOOLEAN)),
 )
-
-
-def register() -> None:
-    """Registers the settings on the scene."""
-    _register_classes()
-    bpy.types.Scene.prefilter_voxelize = PointerProperty(type=PREFILTER_PG_voxelize)
-    bpy.types.Scene.prefilter_boolean = PointerProperty(type=PREFILTER_PG_boolean)
-
-
-def unregister() -> None:
-    """Removes the settings from the scene."""
-    del bpy.types.Scene.prefilter_boolean
-    del bpy.types.Scene.prefilter_voxelize
-    _unregister_classes()

@@ -7,16 +7,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
-from bpy.props import StringProperty
 
 from ...core.operator import Compute, WorkOperator, read_at_once
 from ...core.presets import PresetsOperator
 from ...core.properties import set_unset
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
 from ..properties import BAKE, BakeProperties
-from ..view.preview import PreviewWork
-from .preview_levels import reading_preview, show
-from .source import ImageOperator, image_to_read
+from ..view.preview import VIEW, PreviewWork
+from .preview_levels import reading_preview
+from .source import SurfaceOperator
 
 if TYPE_CHECKING:
     from ..bake import Bake
@@ -26,7 +25,7 @@ _OF_FILES = ("filepath", "file_format", "roughness_filepath")
 
 
 class PREFILTER_OT_bake_mipmaps(
-    BakeProperties, PresetsOperator, WorkOperator, ImageOperator, bpy.types.Operator
+    BakeProperties, PresetsOperator, WorkOperator, SurfaceOperator, bpy.types.Operator
 ):
     """Bakes the levels of an image; reads in steps, as there may be many frames."""
 
@@ -38,12 +37,6 @@ class PREFILTER_OT_bake_mipmaps(
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking mipmaps"
     presets = BAKE
-
-    image: StringProperty(
-        name="Image",
-        description="The image to bake; the image of the editor if empty",
-        options={"SKIP_SAVE"},
-    )
 
     if TYPE_CHECKING:
         work: Bake | TiledBake | PreviewWork | None
@@ -81,7 +74,7 @@ class PREFILTER_OT_bake_mipmaps(
         """Copies frame after frame."""
         from .. import reading, users
 
-        image, settings = image_to_read(context, self.image), self.to_settings()
+        image, settings = self.chosen_image(context), self.to_settings()
         self.doing = f"Baking '{image.name}'"
         if self.result == "preview":
             compare = context.window_manager.prefilter_view.compare
@@ -98,7 +91,7 @@ class PREFILTER_OT_bake_mipmaps(
         """Writes the levels, or has the editors draw them."""
         said = super().finish(context, result)
         if isinstance(self.work, PreviewWork):
-            show(context, self.work)
+            VIEW.show(context, self.work.image_name)
         return said
 
     def _with_files(self, image: bpy.types.Image, settings: Settings) -> Settings:

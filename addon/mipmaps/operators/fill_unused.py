@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 import prefilter
-from bpy.props import BoolProperty, StringProperty
+from bpy.props import BoolProperty
 
 from ...bridge import editors
 from ...core.jobs import Progress
 from ...core.operator import Compute
-from .source import ImageOperator, read_source
+from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
     from ...bridge.images import FloatArray
     from ..bake import Bake
 
 
-class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
+class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
     """Makes a copy of an image whose unused texels are filled."""
 
     bl_idname = "prefilter.fill_unused"
@@ -32,11 +32,6 @@ class PREFILTER_OT_fill_unused(ImageOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     doing = "Filling texels"
 
-    image: StringProperty(
-        name="Image",
-        description="The image to fill; the image of the editor if empty",
-        options={"SKIP_SAVE"},
-    )
     use_in_place: BoolProperty(
         name="Use Copy Everywhere",
         description="Have materials, and whatever else uses the image, use the copy instead",

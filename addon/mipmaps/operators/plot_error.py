@@ -5,19 +5,18 @@
 from typing import TYPE_CHECKING
 
 import bpy
-from bpy.props import StringProperty
 
 from ...bridge import editors
 from ...core.operator import Compute
 from ...core.properties import single_property
 from .. import choices
-from .source import ImageOperator, read_source
+from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
     from ..view import errors
 
 
-class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
+class PREFILTER_OT_plot_error(SurfaceOperator, bpy.types.Operator):
     """Measures the levels of filters, and plots their errors."""
 
     bl_idname = "prefilter.plot_error"
@@ -30,11 +29,6 @@ class PREFILTER_OT_plot_error(ImageOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     doing = "Measuring errors"
 
-    image: StringProperty(
-        name="Image",
-        description="The image to measure; the image of the editor if empty",
-        options={"SKIP_SAVE"},
-    )
     filters: single_property(choices.PlotSettings, "filters")
 
     def read(self, context: bpy.types.Context) -> Compute:

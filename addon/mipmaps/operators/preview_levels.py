@@ -5,18 +5,17 @@
 from collections.abc import Generator
 
 import bpy
-from bpy.props import StringProperty
 
-from ...bridge import editors
+from ...bridge.views import EndsView
 from ...core.operator import Compute, WorkOperator, read_at_once
 from ...core.properties import single_property
 from .. import choices
 from ..choices import Settings
 from ..view import preview
-from .source import ImageOperator, reading_source
+from .source import SurfaceOperator, reading_source
 
 
-class PREFILTER_OT_preview_levels(WorkOperator, ImageOperator, bpy.types.Operator):
+class PREFILTER_OT_preview_levels(WorkOperator, SurfaceOperator, bpy.types.Operator):
     """Computes the levels of an image for the editors to draw."""
 
     bl_idname = "prefilter.preview_levels"
@@ -28,11 +27,6 @@ class PREFILTER_OT_preview_levels(WorkOperator, ImageOperator, bpy.types.Operato
     bl_options = {"REGISTER"}
     doing = "Computing levels"
 
-    image: StringProperty(
-        name="Image",
-        description="The image to preview; the image of the editor if empty",
-        options={"SKIP_SAVE"},
-    )
     compare: single_property(choices.PreviewSettings, "compare")
 
     work: preview.PreviewWork | None = None
@@ -60,31 +54,19 @@ class PREFILTER_OT_preview_levels(WorkOperator, ImageOperator, bpy.types.Operato
         """Has the editors draw the levels."""
         said = super().finish(context, result)
         assert self.work is not None
-        show(context, self.work)
+        preview.VIEW.show(context, self.work.image_name)
         return said
 
 
-class PREFILTER_OT_end_preview(bpy.types.Operator):
+class PREFILTER_OT_end_preview(EndsView, bpy.types.Operator):
     """Forgets the levels of the editor's image."""
 
     bl_idname = "prefilter.end_preview"
     bl_label = "End Preview"
     bl_description = "Show the image itself again, and free the memory of its levels"
     bl_options = {"REGISTER"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the editor draws levels."""
-        if preview.find(getattr(context.space_data, "image", None)) is None:
-            cls.poll_message_set("The editor's image has no preview")
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Forgets them."""
-        preview.drop(context.space_data.image)
-        editors.redraw()
-        return {"FINISHED"}
+    view = preview.VIEW
+    nothing = "The editor's image has no preview"
 
 
 def reading_preview(
@@ -107,12 +89,3 @@ def reading_preview(
     source = yield from reading_source(context, name, settings, needs_surface=needs_surface)
     uid = images.find(source.image_name).session_uid
     return preview.PreviewWork(source, uid, (source.settings.filter, compare))
-
-
-def show(context: bpy.types.Context, work: preview.PreviewWork) -> None:
-    """Has the editors draw what a preview has computed."""
-    from ...bridge import images
-
-    editors.show(context, images.find(work.image_name))
-    context.window_manager.prefilter_view.use_preview = True
-    editors.redraw()

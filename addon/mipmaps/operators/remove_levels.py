@@ -3,16 +3,15 @@
 """`prefilter.remove_levels`: what bakes have made of an image goes again."""
 
 import bpy
-from bpy.props import StringProperty
 
 from ...bridge import editors
 from ...core.outcome import FAILURES
 from ...core.properties import single_property
 from ..choices import RemoveSettings
-from .source import image_to_read, shown_image
+from .source import PictureOperator
 
 
-class PREFILTER_OT_remove_levels(bpy.types.Operator):
+class PREFILTER_OT_remove_levels(PictureOperator, bpy.types.Operator):
     """Removes the levels of an image, or of all."""
 
     bl_idname = "prefilter.remove_levels"
@@ -23,25 +22,8 @@ class PREFILTER_OT_remove_levels(bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    image: StringProperty(
-        name="Image",
-        description="The image whose levels go; the image of the editor if empty",
-        options={"SKIP_SAVE"},
-    )
     kinds: single_property(RemoveSettings, "kinds")
     use_all: single_property(RemoveSettings, "use_all")
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image."""
-        is_editor = context.area is not None and context.area.type == "IMAGE_EDITOR"
-        if is_editor and shown_image(context) is None:
-            cls.poll_message_set("Open an image in this editor first")
-            return False
-        if not bpy.data.images:
-            cls.poll_message_set("There is no image in this file")
-            return False
-        return True
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the settings."""
@@ -61,7 +43,7 @@ class PREFILTER_OT_remove_levels(bpy.types.Operator):
             if self.use_all:
                 chosen = list(bpy.data.images)
             else:
-                image = image_to_read(context, self.image)
+                image = self.chosen_image(context)
                 chosen = [level_images.source_of_level(image) or image]
                 # Its levels go, and with them perhaps what the editor shows.
                 self.image = chosen[0].name

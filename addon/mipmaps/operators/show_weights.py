@@ -7,19 +7,18 @@ from typing import TYPE_CHECKING
 
 import bpy
 import prefilter
-from bpy.props import StringProperty
 
 from ...bridge import editors
 from ...core.jobs import Progress
 from ...core.operator import Compute
-from .source import ImageOperator, read_source
+from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
     from ..bake import Bake
     from ..view import weights
 
 
-class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
+class PREFILTER_OT_show_weights(SurfaceOperator, bpy.types.Operator):
     """Makes a picture of the weights of texels."""
 
     bl_idname = "prefilter.show_weights"
@@ -29,12 +28,6 @@ class PREFILTER_OT_show_weights(ImageOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Weighing texels"
-
-    image: StringProperty(
-        name="Image",
-        description="The image whose texels are weighed; the image of the editor if empty",
-        options={"SKIP_SAVE"},
-    )
 
     def read(self, context: bpy.types.Context) -> Compute:
         """Copies the surfaces."""

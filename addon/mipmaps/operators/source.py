@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...bridge.image_operator import ImageOperator
 from ...core.operator import BackgroundOperator, read_at_once
 from ..choices import Settings
 
@@ -15,8 +16,21 @@ if TYPE_CHECKING:
     from ..bake import Bake
 
 
-class ImageOperator(BackgroundOperator):
-    """A mixin: works on an image, that of the editor if none is named."""
+class PictureOperator(ImageOperator):
+    """A mixin: works on an image, also where the editor shows a picture about it."""
+
+    @classmethod
+    def shown_image(cls, context: bpy.types.Context) -> bpy.types.Image | None:
+        """Returns the image that the editor is about."""
+        return shown_image(context)
+
+    def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
+        """Returns the image that `image_to_read` says."""
+        return image_to_read(context, self.image)
+
+
+class SurfaceOperator(PictureOperator, BackgroundOperator):
+    """A mixin: works on an image and its surfaces."""
 
     @classmethod
     def reads_surface(cls, context: bpy.types.Context) -> bool:
@@ -26,24 +40,20 @@ class ImageOperator(BackgroundOperator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether there is an image."""
+        """Tells whether there is an image, and what the editor shows has a surface."""
         from .. import users
 
         if cls.may_be_redone(context):
             return True
-        if context.area is not None and context.area.type == "IMAGE_EDITOR":
-            image = shown_image(context)
-            if image is None:
-                cls.poll_message_set("Open an image in this editor first")
-                return False
-            if cls.reads_surface(context):
-                reason = users.why_none(context, image, context.scene.prefilter_bake.objects)
-                if reason:
-                    cls.poll_message_set(reason)
-                    return False
-        elif not bpy.data.images:
-            cls.poll_message_set("There is no image in this file")
+        if not super().poll(context):
             return False
+        is_editor = context.area is not None and context.area.type == "IMAGE_EDITOR"
+        if is_editor and cls.reads_surface(context):
+            image = cls.shown_image(context)
+            reason = users.why_none(context, image, context.scene.prefilter_bake.objects)
+            if reason:
+                cls.poll_message_set(reason)
+                return False
         return True
 
 

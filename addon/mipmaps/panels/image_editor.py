@@ -5,9 +5,8 @@
 import bpy
 
 from ...core.presets import PresetsPanel
-from ...core.sidebar import ImagePanel, main_button
-from ..menus import draw_bake
-from ..operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
+from ...core.sidebar import ImagePanel
+from ..menus import BAKE_BUTTON
 from ..operators.remove_levels import PREFILTER_OT_remove_levels
 from ..operators.source import shown_image
 from ..properties import BAKE
@@ -25,9 +24,7 @@ class PREFILTER_PT_bake(ImagePanel, PresetsPanel, bpy.types.Panel):
         from .. import removal, users
 
         layout, settings = self.layout, context.scene.prefilter_bake
-        place = main_button(layout, context, PREFILTER_OT_bake_mipmaps)
-        if place:
-            draw_bake(place, context)
+        BAKE_BUTTON.draw_main(layout, context)
         image = shown_image(context)
         if image is not None:
             text = users.what_is_read(context, image, settings.objects, [settings.filter])

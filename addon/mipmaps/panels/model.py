@@ -5,10 +5,9 @@
 import bpy
 
 from ...core.presets import PresetsPanel
-from ...core.sidebar import SidebarPanel, main_button, subpanel
+from ...core.sidebar import SidebarPanel, subpanel
 from ..choices import CONTENTS
-from ..menus import draw_bake_model
-from ..operators.bake_model import PREFILTER_OT_bake_model
+from ..menus import MODEL_BUTTON
 from ..properties import MODEL
 
 _ICONS = {
@@ -40,9 +39,7 @@ class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
         from ..model import known
 
         layout, settings = self.layout, context.scene.prefilter_model
-        place = main_button(layout, context, PREFILTER_OT_bake_model)
-        if place:
-            draw_bake_model(place, context)
+        MODEL_BUTTON.draw_main(layout, context)
         is_beside = settings.result == "file" and settings.folder.startswith("//")
         if is_beside and not bpy.data.is_saved:
             layout.label(text="Save the .blend file first", icon="ERROR")

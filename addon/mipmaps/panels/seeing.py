@@ -27,8 +27,7 @@ class PREFILTER_PT_preview(ImagePanel, bpy.types.Panel):
 
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
-        if preview.find(context.space_data.image) is not None:
-            self.layout.prop(context.window_manager.prefilter_view, "use_preview", text="")
+        preview.VIEW.draw_switch(self.layout, context)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from ...bridge.previews import Previews
+from ...bridge.views import View
 from ...core.alpha import associated
 from ...core.jobs import Progress, parts
 from ...core.outcome import Outcome
@@ -63,6 +64,7 @@ class Preview:
 _previews: Previews[Preview] = Previews()
 keep, find, drop = _previews.keep, _previews.find, _previews.drop
 register, unregister = _previews.register, _previews.unregister
+VIEW = View(_previews, "prefilter_view", "use_preview")
 
 
 class PreviewWork:

@@ -3,16 +3,12 @@
 """What the editors show, in all windows: no part of the scene, so no undo changes it."""
 
 import bpy
-from bpy.props import BoolProperty, FloatProperty, PointerProperty
+from bpy.props import BoolProperty, FloatProperty
 
 from ...bridge import editors
 from ...core.properties import single_property
+from ...core.registration import registration, state
 from ..choices import PlotSettings, PreviewSettings
-
-
-def _redraw(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    del settings, context
-    editors.redraw()
 
 
 class PREFILTER_PG_view(bpy.types.PropertyGroup):
@@ -22,7 +18,7 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
         name="Show Level",
         description="Draw a level in the place of the image",
         default=True,
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
     mip_value: FloatProperty(
         name="Mip Value",
@@ -34,13 +30,13 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
         soft_max=10.0,
         step=100,
         precision=2,
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
     use_wipe: BoolProperty(
         name="Wipe",
         description="Draw the levels of another filter in the left part of the editor",
         default=False,
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
     wipe: FloatProperty(
         name="Position",
@@ -49,21 +45,14 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
         default=0.5,
         min=0.0,
         max=1.0,
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
-    compare: single_property(PreviewSettings, "compare", update=_redraw)
+    compare: single_property(PreviewSettings, "compare", update=editors.redraw_on_change)
     plot_filters: single_property(
         PlotSettings, "filters", description="The filters to compare; Shift-click to choose several"
     )
 
 
-def register() -> None:
-    """Registers the settings on the window manager."""
-    bpy.utils.register_class(PREFILTER_PG_view)
-    bpy.types.WindowManager.prefilter_view = PointerProperty(type=PREFILTER_PG_view)
-
-
-def unregister() -> None:
-    """Removes them."""
-    del bpy.types.WindowManager.prefilter_view
-    bpy.utils.unregister_class(PREFILTER_PG_view)
+register, unregister = registration(
+    state(bpy.types.WindowManager, "prefilter_view", PREFILTER_PG_view)
+)

@@ -4,13 +4,13 @@
 
 import bpy
 
-from ...bridge import editors
+from ...bridge.image_operator import ImageOperator
+from ...bridge.views import EndsView
 from ...core.operator import BackgroundOperator, Compute
 from ...core.preferences import preference
 from ...core.properties import single_property
 from ..choices import PlaneSettings
 from ..view import kept
-from .image_operator import ImageOperator
 
 
 class PREFILTER_OT_preview_plane(ImageOperator, BackgroundOperator, bpy.types.Operator):
@@ -39,33 +39,17 @@ class PREFILTER_OT_preview_plane(ImageOperator, BackgroundOperator, bpy.types.Op
 
     def finish(self, context: bpy.types.Context, result: kept.Plane) -> str:
         """Has the editors draw the plane."""
-        from ...bridge import images
-
         kept.keep(result)
-        editors.show(context, images.find(self._name))
-        context.window_manager.prefilter_plane.use_plane = True
-        editors.redraw()
+        kept.VIEW.show(context, self._name)
         return f"Computed {result.level_count} levels of '{self._name}'"
 
 
-class PREFILTER_OT_end_plane(bpy.types.Operator):
+class PREFILTER_OT_end_plane(EndsView, bpy.types.Operator):
     """Forgets the plane of the editor's image."""
 
     bl_idname = "prefilter.end_plane"
     bl_label = "End Preview Plane"
     bl_description = "Show the image itself again, and free the memory of its levels"
     bl_options = {"REGISTER"}
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Tells whether the editor draws a plane."""
-        if kept.find(getattr(context.space_data, "image", None)) is None:
-            cls.poll_message_set("The editor's image has no preview plane")
-            return False
-        return True
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Forgets it."""
-        kept.drop(context.space_data.image)
-        editors.redraw()
-        return {"FINISHED"}
+    view = kept.VIEW
+    nothing = "The editor's image has no preview plane"

@@ -8,7 +8,7 @@ import bpy
 
 from ...core.presets import PresetsOperator
 from ..properties import RESIZE, ResizeProperties
-from .image_operator import NewImageOperator
+from .new_image_operator import NewImageOperator
 
 if TYPE_CHECKING:
     from ...bridge.images import Picture

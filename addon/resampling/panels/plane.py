@@ -5,6 +5,7 @@
 import bpy
 
 from ...core.menus import PREFILTER_MT_image
+from ...core.registration import classes, entry, registration
 from ...core.sidebar import ImagePanel, button
 from ..operators.preview_plane import PREFILTER_OT_end_plane, PREFILTER_OT_preview_plane
 from ..view import kept
@@ -18,8 +19,7 @@ class PREFILTER_PT_plane(ImagePanel, bpy.types.Panel):
 
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
-        if kept.find(context.space_data.image) is not None:
-            self.layout.prop(context.window_manager.prefilter_plane, "use_plane", text="")
+        kept.VIEW.draw_switch(self.layout, context)
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
@@ -49,21 +49,6 @@ class PREFILTER_PT_plane(ImagePanel, bpy.types.Panel):
         layout.prop(settings, "filter")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((PREFILTER_PT_plane,))
-
-
-def register() -> None:
-    """Registers the panel and the menu entries."""
-    _register_classes()
-    PREFILTER_MT_image.append(_draw_image_menu)
-
-
-def unregister() -> None:
-    """Removes them."""
-    PREFILTER_MT_image.remove(_draw_image_menu)
-    _unregister_classes()
-
-
 def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
     _draw_preview(menu.layout, context, "Preview Plane")
@@ -75,3 +60,8 @@ def _draw_preview(layout: bpy.types.UILayout, context: bpy.types.Context, text: 
         PREFILTER_OT_preview_plane.bl_idname, text=text, icon="VIEW_PERSPECTIVE"
     )
     operator.filter = context.window_manager.prefilter_plane.filter
+
+
+register, unregister = registration(
+    classes(PREFILTER_PT_plane), entry(PREFILTER_MT_image, _draw_image_menu)
+)

@@ -9,6 +9,7 @@ import gpu
 import prefilter
 
 from ...bridge.previews import Previews
+from ...bridge.views import View
 from ...core.alpha import associated
 from ...core.jobs import Progress, go_on, share
 from .atlas import packed
@@ -65,6 +66,7 @@ class Plane:
 _planes: Previews[Plane] = Previews()
 keep, find, drop = _planes.keep, _planes.find, _planes.drop
 register, unregister = _planes.register, _planes.unregister
+VIEW = View(_planes, "prefilter_plane", "use_plane")
 
 
 def compute(

@@ -5,17 +5,13 @@
 import math
 
 import bpy
-from bpy.props import BoolProperty, EnumProperty, FloatProperty, PointerProperty
+from bpy.props import BoolProperty, EnumProperty, FloatProperty
 
 from ...bridge import editors
 from ...core.choices import items
 from ...core.properties import single_property
+from ...core.registration import registration, state
 from ..choices import METHODS, PlaneSettings
-
-
-def _redraw(settings: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
-    del settings, context
-    editors.redraw()
 
 
 class PREFILTER_PG_plane(bpy.types.PropertyGroup):
@@ -25,7 +21,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
         name="Show Plane",
         description="Draw the plane over the image",
         default=True,
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
     filter: single_property(PlaneSettings, "filter")
     texels: EnumProperty(
@@ -33,7 +29,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
         description="How many texels of the mipmap make up a pixel to the right of the line",
         items=items({key: METHODS[key] for key in ("8", "6", "4")}),
         default="8",
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
     tilt: FloatProperty(
         name="Tilt",
@@ -42,14 +38,14 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
         default=math.radians(75),
         min=0.0,
         max=math.radians(89.5),
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
     rotation: FloatProperty(
         name="Rotation",
         description="Of the image in the plane",
         subtype="ANGLE",
         default=0.0,
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
     tiles: FloatProperty(
         name="Tiles",
@@ -60,7 +56,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
         soft_min=0.1,
         max=1000.0,
         soft_max=50.0,
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
     wipe: FloatProperty(
         name="Position",
@@ -69,17 +65,10 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
         default=0.5,
         min=0.0,
         max=1.0,
-        update=_redraw,
+        update=editors.redraw_on_change,
     )
 
 
-def register() -> None:
-    """Registers the settings on the window manager."""
-    bpy.utils.register_class(PREFILTER_PG_plane)
-    bpy.types.WindowManager.prefilter_plane = PointerProperty(type=PREFILTER_PG_plane)
-
-
-def unregister() -> None:
-    """Removes them."""
-    del bpy.types.WindowManager.prefilter_plane
-    bpy.utils.unregister_class(PREFILTER_PG_plane)
+register, unregister = registration(
+    state(bpy.types.WindowManager, "prefilter_plane", PREFILTER_PG_plane)
+)

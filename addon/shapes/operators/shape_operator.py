@@ -6,15 +6,13 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...bridge import editors
-from ...core.operator import WorkOperator
-from ...core.outcome import Outcome
+from ...bridge.image_operator import MakesImage
 
 if TYPE_CHECKING:
     from ..rasterization import Load, Rasterization
 
 
-class ShapeOperator(WorkOperator):
+class ShapeOperator(MakesImage):
     """A mixin: an image of shapes."""
 
     doing = "Rasterizing"
@@ -37,11 +35,3 @@ class ShapeOperator(WorkOperator):
         """Draws the settings."""
         del context
         self.draw_in(layout, self.source_drawn)
-
-    def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Writes the image, and shows it in the editor that the operator was called from."""
-        del result
-        assert self.work is not None
-        outcome: Outcome = self.work.write()
-        editors.show(context, bpy.data.images[outcome.images[0]])
-        return self.tell(outcome)

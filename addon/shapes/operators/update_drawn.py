@@ -5,15 +5,15 @@
 from typing import TYPE_CHECKING
 
 import bpy
-from bpy.props import StringProperty
 
+from ...bridge.image_operator import ImageOperator
 from .shape_operator import ShapeOperator
 
 if TYPE_CHECKING:
     from ..rasterization import Load, Rasterization
 
 
-class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
+class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator):
     """Makes an image again, of what its objects or its file are now."""
 
     bl_idname = "prefilter.update_drawn"
@@ -24,19 +24,13 @@ class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
     )
     bl_options = {"REGISTER", "UNDO"}
 
-    image: StringProperty(
-        name="Image",
-        description="The image to make again; the image of the editor if empty",
-        options={"SKIP_SAVE"},
-    )
-
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there is an image that remembers how it was made."""
         from ..memory import is_drawn
 
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
-            if not is_drawn(context.space_data.image):
+            if not is_drawn(cls.shown_image(context)):
                 cls.poll_message_set("The image of this editor was not made by Rasterize")
                 return False
         elif not any(is_drawn(image) for image in bpy.data.images):
@@ -61,7 +55,7 @@ class PREFILTER_OT_update_drawn(ShapeOperator, bpy.types.Operator):
         if self.image:
             image = images.find(self.image)
         else:
-            image = getattr(context.space_data, "image", None) or _only_drawn()
+            image = self.shown_image(context) or _only_drawn()
         if not is_drawn(image):
             raise ValueError(f"image '{image.name}' was not made by Rasterize")
         if image.library is not None:

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What operators share that work on an image, or make one."""
+
+import bpy
+from bpy.props import StringProperty
+
+from ..core.operator import WorkOperator
+from . import editors
+
+
+class ImageOperator:
+    """A mixin: works on an image, that of the editor if none is named."""
+
+    image: StringProperty(
+        name="Image",
+        description="The image to work on; the image of the editor if empty",
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def shown_image(cls, context: bpy.types.Context) -> bpy.types.Image | None:
+        """Returns the image that the editor is about."""
+        return getattr(context.space_data, "image", None)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether there is an image."""
+        if context.area is not None and context.area.type == "IMAGE_EDITOR":
+            if cls.shown_image(context) is None:
+                cls.poll_message_set("Open an image in this editor first")
+                return False
+        elif not bpy.data.images:
+            cls.poll_message_set("There is no image in this file")
+            return False
+        return True
+
+    def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
+        """Returns the image that is named, or shown.
+
+        Raises:
+            ValueError: There is none.
+        """
+        from . import images
+
+        image = images.find(self.image) if self.image else self.shown_image(context)
+        if image is None:
+            raise ValueError("image: no name is given, and the editor shows no image")
+        return image
+
+
+class MakesImage(WorkOperator):
+    """A mixin: work that makes an image, which the editor then shows that the operator is called
+    from."""
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Writes the image, shows it, and returns what to report."""
+        del result
+        assert self.work is not None
+        outcome = self.work.write()
+        editors.show(context, bpy.data.images[outcome.images[0]])
+        return self.tell(outcome)

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Buttons of operators with the settings of the scene, and the panels that consist of both."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+
+import bpy
+
+from .presets import PresetsPanel
+from .properties import copy
+from .sidebar import main_button
+
+
+@dataclass(frozen=True)
+class Button:
+    """An operator that gets the settings of the scene, in panels and menus.
+
+    Attributes:
+        operator: The operator.
+        icon: Its icon.
+        group: The settings of the scene, a property of it.
+        settings: The dataclasses of what is handed to the operator, each with fields that are not.
+    """
+
+    operator: type[bpy.types.Operator]
+    icon: str
+    group: str
+    settings: Mapping[type, Collection[str]]
+
+    def draw(
+        self,
+        layout: bpy.types.UILayout,
+        context: bpy.types.Context,
+        text: str | None = None,
+        icon: str = "",
+    ) -> bpy.types.OperatorProperties:
+        """Draws it, with another text or icon if one is given."""
+        made = layout.operator(self.operator.bl_idname, text=text, icon=icon or self.icon)
+        for settings, without in self.settings.items():
+            copy(getattr(context.scene, self.group), made, settings, without)
+        return made
+
+    def draw_main(
+        self, layout: bpy.types.UILayout, context: bpy.types.Context, text: str | None = None
+    ) -> None:
+        """Draws it as the main button of a panel, or how far the operator is."""
+        place = main_button(layout, context, self.operator)
+        if place:
+            self.draw(place, context, text)
+
+
+class SettingsPanel(PresetsPanel):
+    """A mixin for panels: a main button, what its settings come to, and these."""
+
+    button: Button
+    layout: bpy.types.UILayout
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        self.button.draw_main(self.layout, context)
+        self.draw_notes(context)
+        getattr(context.scene, self.button.group).draw_in(self.layout)
+
+    def draw_notes(self, context: bpy.types.Context) -> None:
+        """Draws what the settings come to; nothing where that is not said."""

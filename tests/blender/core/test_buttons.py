@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Buttons in panels and menus hand the settings of the scene over to their operators."""
+
+from types import SimpleNamespace
+
+import bpy
+
+
+class Layout:
+    """Takes what a button draws."""
+
+    def operator(self, name, **more):
+        self.name, self.more = name, more
+        return SimpleNamespace()
+
+
+def test_a_button_has_the_settings_of_the_scene(addon):
+    bpy.context.scene.prefilter_voxelize.depth = 5
+    layout = Layout()
+    made = addon("voxels.panel")._VOXELIZE.draw(layout, bpy.context)
+    assert (layout.name, made.depth) == ("prefilter.voxelize", 5)
+    assert layout.more == {"text": None, "icon": "MOD_REMESH"}
+    addon("voxels.panel")._VOXELIZE.draw(layout, bpy.context, "Again", "X")
+    assert layout.more == {"text": "Again", "icon": "X"}
+
+
+def test_of_two_settings_with_one_name_the_button_has_the_one_that_counts(addon):
+    """A bake of a model chooses objects in its own way, and leaves out what it finds by itself."""
+    bpy.context.scene.prefilter_model.objects = "selected"
+    made = addon("mipmaps.menus").MODEL_BUTTON.draw(Layout(), bpy.context)
+    assert made.objects == "selected"
+    assert made.filter == bpy.context.scene.prefilter_model.filter
+    assert not hasattr(made, "content")
