@@ -4,7 +4,6 @@
 #include "prefilter/mipmap/bilinear_system.h"
 
 #include <algorithm>
-#include <tuple>
 
 namespace prefilter {
 namespace {
@@ -120,8 +119,7 @@ void BilinearSystem<C>::add_links(const std::vector<SeamLink>& links, double tex
 }
 
 template <int C>
-void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares& shares,
-                                const Progress& progress) {
+void BilinearSystem<C>::start_at_means(const Progress& progress) {
   double sum = 0.0;
   std::int64_t used = 0;
   const auto size = static_cast<std::ptrdiff_t>(system_.size());
@@ -143,6 +141,26 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares
       system_.texel(j).v[c] = static_cast<float>(mean);
     }
   }
+}
+
+template <int C>
+ChannelSums BilinearSystem<C>::square_of_target(const TargetShares& target,
+                                                const ChannelSums& own_finer) const {
+  const auto& [image, finer, own] = target;
+  ChannelSums sums{};
+  for (int c = 0; c < C; ++c) {
+    sums[c] = image * image * squares_.image[c] + finer * finer * squares_.means[c] +
+              own * own * own_squares_.means[c] +
+              2.0 * (image * finer * squares_.image_means[c] +
+                     image * own * own_squares_.image_means[c] + own * finer * own_finer[c]);
+  }
+  return sums;
+}
+
+template <int C>
+void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares& shares,
+                                const Progress& progress) {
+  start_at_means(progress);
   const auto image_share = static_cast<float>(target.image);
   const auto finer_share = static_cast<float>(target.finer_means);
   const auto own_share = static_cast<float>(target.own_means);
@@ -153,6 +171,7 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares
   if (own_share != 0.0F || has_squares) own_means = system_.product();
   if (has_links()) target_.resize(system_.size());
   ChannelSums own_finer{};
+  const auto size = static_cast<std::ptrdiff_t>(system_.size());
   for (std::ptrdiff_t j = 0; j < size; ++j) {
     if (j % kTexelsPerReport == 0) progress.report(0.0);
     if (!(system_.diagonal(j) > 0.0F)) continue;
@@ -170,14 +189,7 @@ void BilinearSystem<C>::prepare(const TargetShares& target, const EquationShares
     system_.right_side(j).v = times * (right - known * image) + pull_ * mean;
     system_.diagonal(j) += pull_;
   }
-  for (int c = 0; c < C && has_links(); ++c) {
-    const auto& [own, finer, image] = std::tie(target.own_means, target.finer_means, target.image);
-    target_square_[c] =
-        image * image * squares_.image[c] + finer * finer * squares_.means[c] +
-        own * own * own_squares_.means[c] +
-        2.0 * (image * finer * squares_.image_means[c] + image * own * own_squares_.image_means[c] +
-               own * finer * own_finer[c]);
-  }
+  if (has_links()) target_square_ = square_of_target(target, own_finer);
   own_squares_.image = squares_.image;
   std::vector<LaneValues>().swap(finer_means_);
   std::vector<float>().swap(weights_);

@@ -114,6 +114,11 @@ class BilinearSystem {
   Solution take_solution();
 
  private:
+  // Puts texels at their means p_j, and leaves out those that nothing reads; sets the pull.
+  void start_at_means(const Progress& progress);
+  // The integral of the target's square; `own_finer` is that of this level's means times the finer
+  // level's.
+  ChannelSums square_of_target(const TargetShares& target, const ChannelSums& own_finer) const;
   void add_dual_cell(const CellMoments<C>& moments, int column, int row);
   // The texel at corner k, [2 * y + x], of a cell between texel centres; -1 for the border.
   std::ptrdiff_t corner(int column, int row, int k) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,34 @@ void check(const ImageView& alpha, const ImageView& weights, int samples) {
   }
 }
 
+// How many of a cell's lookups are at the threshold or above. `texels` is framed.
+int hits_in(const Image& texels, std::span<const Lookup> columns, std::span<const Lookup> rows,
+            float threshold) {
+  // Most cells are read above the threshold everywhere, or nowhere.
+  float low = *texels.texel(columns.front().first + 1, rows.front().first + 1);
+  float high = low;
+  for (int y = rows.front().first + 1; y <= rows.back().first + 2; ++y) {
+    for (int x = columns.front().first + 1; x <= columns.back().first + 2; ++x) {
+      low = std::min(low, *texels.texel(x, y));
+      high = std::max(high, *texels.texel(x, y));
+    }
+  }
+  if (high < threshold) return 0;
+  if (low >= threshold) return static_cast<int>(columns.size() * rows.size());
+
+  int hits = 0;
+  for (const Lookup& y : rows) {
+    for (const Lookup& x : columns) {
+      const float* const below = texels.texel(x.first + 1, y.first + 1);
+      const float* const above = below + texels.width;
+      const float at_below = below[0] + (below[1] - below[0]) * x.fraction;
+      const float at_above = above[0] + (above[1] - above[0]) * x.fraction;
+      hits += at_below + (at_above - at_below) * y.fraction >= threshold ? 1 : 0;
+    }
+  }
+  return hits;
+}
+
 }  // namespace
 
 double covered_share(const ImageView& alpha, const ImageView& weights, int samples, float threshold,
@@ -67,52 +96,25 @@ double covered_share(const ImageView& alpha, const ImageView& weights, int sampl
   const Image texels = framed(alpha, wrap, progress.part(0.0, 0.1), threads);
   const std::vector<Lookup> columns = lookups(weights.width, samples, alpha.width);
   const std::vector<Lookup> rows = lookups(weights.height, samples, alpha.height);
+  const auto lookups_of = [samples](const std::vector<Lookup>& all, std::int64_t cell) {
+    return std::span(all).subspan(static_cast<std::size_t>(cell) * samples, samples);
+  };
   const auto per_row = static_cast<std::size_t>(weights.height);
   std::vector<double> kept(per_row);
   std::vector<double> all(per_row);
-
-  parallel_for(weights.height, threads, progress.part(0.1, 1.0), [&](std::int64_t index) {
-    const int cell_y = static_cast<int>(index);
-    const Lookup* const y_from = rows.data() + index * samples;
-    const Lookup* const y_to = y_from + samples;
+  parallel_for(weights.height, threads, progress.part(0.1, 1.0), [&](std::int64_t cell_y) {
     double kept_here = 0.0;
     double all_here = 0.0;
     for (int cell_x = 0; cell_x < weights.width; ++cell_x) {
-      const double weight = *weights.texel(cell_x, cell_y);
+      const double weight = *weights.texel(cell_x, static_cast<int>(cell_y));
       if (!(weight > 0.0)) continue;
       all_here += weight;
-      const Lookup* const x_from = columns.data() + static_cast<std::int64_t>(cell_x) * samples;
-      const Lookup* const x_to = x_from + samples;
-
-      // Most cells are read above the threshold everywhere, or nowhere.
-      float low = *texels.texel(x_from->first + 1, y_from->first + 1);
-      float high = low;
-      for (int y = y_from->first + 1; y <= (y_to - 1)->first + 2; ++y) {
-        for (int x = x_from->first + 1; x <= (x_to - 1)->first + 2; ++x) {
-          low = std::min(low, *texels.texel(x, y));
-          high = std::max(high, *texels.texel(x, y));
-        }
-      }
-      if (high < threshold) continue;
-      if (low >= threshold) {
-        kept_here += weight;
-        continue;
-      }
-
-      int hits = 0;
-      for (const Lookup* y = y_from; y != y_to; ++y) {
-        for (const Lookup* x = x_from; x != x_to; ++x) {
-          const float* const below = texels.texel(x->first + 1, y->first + 1);
-          const float* const above = below + texels.width;
-          const float at_below = below[0] + (below[1] - below[0]) * x->fraction;
-          const float at_above = above[0] + (above[1] - above[0]) * x->fraction;
-          hits += at_below + (at_above - at_below) * y->fraction >= threshold ? 1 : 0;
-        }
-      }
+      const int hits =
+          hits_in(texels, lookups_of(columns, cell_x), lookups_of(rows, cell_y), threshold);
       kept_here += weight * hits / (static_cast<double>(samples) * samples);
     }
-    kept[static_cast<std::size_t>(index)] = kept_here;
-    all[static_cast<std::size_t>(index)] = all_here;
+    kept[static_cast<std::size_t>(cell_y)] = kept_here;
+    all[static_cast<std::size_t>(cell_y)] = all_here;
   });
 
   double kept_sum = 0.0;

@@ -201,26 +201,66 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
 }
 
 template <int C>
-void EncodedFit<C>::improve(const Image& start, const std::vector<unsigned char>& used,
-                            double weight, const SolveOptions& options, const Progress& progress) {
-  const int width = system_.width();
-  const int height = system_.height();
+auto EncodedFit<C>::sums_with_links(double weight, int threads, const Progress& progress)
+    -> ColourSums {
+  ColourSums sums = assemble(threads, progress);
+  if (weight == 0.0) return sums;
+  const ColourSums of_links = link_squares(weight);
+  for (int c = 0; c < kColours; ++c) sums[c] += of_links[c];
+  return sums;
+}
+
+template <int C>
+auto EncodedFit<C>::go_back(const std::vector<LaneValues>& before, const ColourSums& least,
+                            double weight, int threads, const Progress& progress, ColourSums sums)
+    -> ColourSums {
+  constexpr int kMostHalvings = 5;
+  for (int halving = 0; halving <= kMostHalvings; ++halving) {
+    Lanes keep{};
+    bool worse = false;
+    for (int c = 0; c < kColours; ++c) {
+      if (!(sums[c] > least[c])) continue;
+      keep[c] = halving == kMostHalvings ? 1.0F : 0.5F;
+      worse = true;
+    }
+    if (!worse) break;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      LaneValues& texel = system_.texel(static_cast<std::ptrdiff_t>(i));
+      texel.v += keep * (before[i].v - texel.v);
+    }
+    sums = sums_with_links(weight, threads, progress);
+  }
+  return sums;
+}
+
+template <int C>
+void EncodedFit<C>::add_pull(const Image& start, const std::vector<unsigned char>& used) {
   const auto for_each_texel = [&](const auto& use) {
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) {
-        if (used[static_cast<std::size_t>(y) * width + x] == 0) continue;
+    for (int y = 0; y < system_.height(); ++y) {
+      for (int x = 0; x < system_.width(); ++x) {
+        if (used[static_cast<std::size_t>(y) * system_.width() + x] == 0) continue;
         use(system_.at(x, y), start.texel(x, y));
       }
     }
   };
-  const auto sums_of_squares = [&](const Progress& part) {
-    ColourSums sums = assemble(options.threads, part);
-    if (weight == 0.0) return sums;
-    const ColourSums of_links = link_squares(weight);
-    for (int c = 0; c < kColours; ++c) sums[c] += of_links[c];
-    return sums;
-  };
+  Lanes mean{};
+  float count = 0.0F;
+  for_each_texel([&](std::ptrdiff_t at, const float*) {
+    mean += system_.diagonal(at).v;
+    count += 1.0F;
+  });
+  const Lanes pull = static_cast<float>(kPull) / std::max(count, 1.0F) * mean;
+  for_each_texel([&](std::ptrdiff_t at, const float* texel) {
+    Lanes target{};
+    for (int c = 0; c < kColours; ++c) target[c] = texel[c];
+    system_.diagonal(at).v += pull;
+    system_.right_side(at).v += pull * target;
+  });
+}
 
+template <int C>
+void EncodedFit<C>::improve(const Image& start, const std::vector<unsigned char>& used,
+                            double weight, const SolveOptions& options, const Progress& progress) {
   SolveOptions round_options = options;
   round_options.max_sweeps = kSweepsPerRound;
   round_options.ranges_times_alpha = false;
@@ -231,27 +271,11 @@ void EncodedFit<C>::improve(const Image& start, const std::vector<unsigned char>
     const Progress part = progress.part(static_cast<double>(round) / kMostRounds,
                                         static_cast<double>(round + 1) / kMostRounds);
     const Progress assembling = part.part(0.0, 0.4);
-    ColourSums sums = sums_of_squares(assembling);
+    ColourSums sums = sums_with_links(weight, options.threads, assembling);
     if (round == 0) {
       first = least = sums;
     } else {
-      // Back half of the way, until no channel is worse than before.
-      constexpr int kMostHalvings = 5;
-      for (int halving = 0; halving <= kMostHalvings; ++halving) {
-        Lanes keep{};
-        bool worse = false;
-        for (int c = 0; c < kColours; ++c) {
-          if (!(sums[c] > least[c])) continue;
-          keep[c] = halving == kMostHalvings ? 1.0F : 0.5F;
-          worse = true;
-        }
-        if (!worse) break;
-        for (std::size_t i = 0; i < before.size(); ++i) {
-          LaneValues& texel = system_.texel(static_cast<std::ptrdiff_t>(i));
-          texel.v += keep * (before[i].v - texel.v);
-        }
-        sums = sums_of_squares(assembling);
-      }
+      sums = go_back(before, least, weight, options.threads, assembling, sums);
       bool settled = true;
       for (int c = 0; c < kColours; ++c) {
         if (least[c] - sums[c] > kLeastGain * (first[c] - sums[c])) settled = false;
@@ -259,21 +283,7 @@ void EncodedFit<C>::improve(const Image& start, const std::vector<unsigned char>
       }
       if (settled) break;
     }
-
-    Lanes mean{};
-    float count = 0.0F;
-    for_each_texel([&](std::ptrdiff_t at, const float*) {
-      mean += system_.diagonal(at).v;
-      count += 1.0F;
-    });
-    part.report(0.42);
-    const Lanes pull = static_cast<float>(kPull) / std::max(count, 1.0F) * mean;
-    for_each_texel([&](std::ptrdiff_t at, const float* texel) {
-      Lanes target{};
-      for (int c = 0; c < kColours; ++c) target[c] = texel[c];
-      system_.diagonal(at).v += pull;
-      system_.right_side(at).v += pull * target;
-    });
+    add_pull(start, used);
     system_.invert_diagonal();
     if (weight > 0.0) system_.weigh_links(&links_, link_weights(weight));
     part.report(0.48);

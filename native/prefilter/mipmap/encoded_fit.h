@@ -63,6 +63,14 @@ class EncodedFit {
   // A difference of encoded values counts as the decoded one that the curve's mean slope makes of
   // it: of the slopes at the start, so that all rounds minimise the same.
   Lanes link_weights(double weight) const;
+  // The sums of squares of the texels as they are, with those of links of this weight; assembles.
+  ColourSums sums_with_links(double weight, int threads, const Progress& progress);
+  // Halves the way that the texels went since `before`, until no channel's sum, of those that there
+  // are now, is above its `least`. Returns the sums there.
+  ColourSums go_back(const std::vector<LaneValues>& before, const ColourSums& least, double weight,
+                     int threads, const Progress& progress, ColourSums sums);
+  // Adds what pulls texels to their start to the system.
+  void add_pull(const Image& start, const std::vector<unsigned char>& used);
   // Rounds from where the texels are, to the fit with links of this weight.
   void improve(const Image& start, const std::vector<unsigned char>& used, double weight,
                const SolveOptions& options, const Progress& progress);

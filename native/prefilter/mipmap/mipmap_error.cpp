@@ -176,6 +176,42 @@ std::vector<double> measure(const std::vector<ImageView>& levels, const ImageVie
   return errors_at(mip_values, squares, triangles.total_mass * C);
 }
 
+// The decoded lookup at a place of the image, in its texels, of a level whose colours are encoded.
+template <int C>
+std::array<double, C> decoded_lookup(const ImageView& level, const ImageView& image, WrapModes wrap,
+                                     double u, double v) {
+  const SrgbDecoder& decode = SrgbDecoder::instance();
+  const double x = u * level.width / image.width - 0.5;
+  const double y = v * level.height / image.height - 0.5;
+  const CellPlace in_x{static_cast<int>(std::floor(x)), {x - std::floor(x), 0.0}};
+  const CellPlace in_y{static_cast<int>(std::floor(y)), {y - std::floor(y), 0.0}};
+  const auto polynomials = interpolant<C>(level, wrap, in_x, in_y);
+  std::array<double, C> value;
+  for (int c = 0; c < C; ++c) {
+    value[c] = polynomials[c][0];
+    if (c < encoded_channels(C)) value[c] = decode(static_cast<float>(value[c])).value;
+  }
+  return value;
+}
+
+// Adds what a place of this weight has to each level's.
+template <int C>
+void add_decoded(const std::vector<ImageView>& levels, const ImageView& image, WrapModes wrap,
+                 double u, double v, double weight, Squares* squares) {
+  const auto source = decoded_lookup<C>(image, image, wrap, u, v);
+  auto here = decoded_lookup<C>(levels[0], image, wrap, u, v);
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const bool has_next = level + 1 < levels.size();
+    const auto next = has_next ? decoded_lookup<C>(levels[level + 1], image, wrap, u, v) : here;
+    for (int c = 0; c < C; ++c) {
+      const double off = here[c] - source[c];
+      const double step = next[c] - here[c];
+      squares[level] += {weight * off * off, weight * off * step, weight * step * step};
+    }
+    here = next;
+  }
+}
+
 // The same for a reader that decodes after the lookup: `levels` and `image` are encoded, and the
 // integrals are sums over FourPointRule in the finest cells.
 template <int C>
@@ -183,60 +219,27 @@ std::vector<double> measure_decoded(const std::vector<ImageView>& levels, const 
                                     const TexelTriangles& triangles,
                                     const std::vector<double>& mip_values, WrapModes wrap,
                                     const Progress& progress, int threads) {
-  const SrgbDecoder& decode = SrgbDecoder::instance();
   const std::size_t level_count = levels.size();
   const std::int64_t block_count = sweep_block_count(image.width, image.height);
   std::vector<Squares> parts(static_cast<std::size_t>(block_count) * level_count);
-  const auto lookup = [&](const ImageView& level, double u, double v) {
-    const double x = u * level.width / image.width - 0.5;
-    const double y = v * level.height / image.height - 0.5;
-    const CellPlace in_x{static_cast<int>(std::floor(x)), {x - std::floor(x), 0.0}};
-    const CellPlace in_y{static_cast<int>(std::floor(y)), {y - std::floor(y), 0.0}};
-    const auto polynomials = interpolant<C>(level, wrap, in_x, in_y);
-    std::array<double, C> value;
-    for (int c = 0; c < C; ++c) {
-      value[c] = polynomials[c][0];
-      if (c < encoded_channels(C)) value[c] = decode(static_cast<float>(value[c])).value;
-    }
-    return value;
-  };
-
   sweep_moments<C>(triangles, image, wrap, {.first_level = 0, .last_level = 0, .threads = threads},
                    progress, [&](const MomentBlock<C>& block) {
-                     const std::vector<double>& x_lines = block.x_cells->lines(0);
-                     const std::vector<double>& y_lines = block.y_cells->lines(0);
+                     const double* const x_lines = block.x_cells->lines(0).data() + block.x0;
+                     const double* const y_lines = block.y_cells->lines(0).data() + block.y0;
                      for (int y = 0; y < block.height; ++y) {
                        for (int x = 0; x < block.width; ++x) {
                          const CellMoments<C>& cell = block.at(x, y);
                          if (cell.empty()) continue;
                          const FourPointRule rule(cell.weight);
-                         const double left = x_lines[block.x0 + x];
-                         const double right = x_lines[block.x0 + x + 1];
-                         const double bottom = y_lines[block.y0 + y];
-                         const double top = y_lines[block.y0 + y + 1];
                          for (int k = 0; k < 4; ++k) {
-                           const double u = left + rule.x(k) * (right - left);
-                           const double v = bottom + rule.y(k) * (top - bottom);
-                           const auto source = lookup(image, u, v);
-                           auto here = lookup(levels[0], u, v);
-                           for (std::size_t level = 0; level < level_count; ++level) {
-                             Squares& sums = parts[block.index * level_count + level];
-                             const auto next =
-                                 level + 1 < level_count ? lookup(levels[level + 1], u, v) : here;
-                             for (int c = 0; c < C; ++c) {
-                               const double off = here[c] - source[c];
-                               const double step = next[c] - here[c];
-                               sums.here += rule.weight(k) * off * off;
-                               sums.cross += rule.weight(k) * off * step;
-                               sums.step += rule.weight(k) * step * step;
-                             }
-                             here = next;
-                           }
+                           const double u = x_lines[x] + rule.x(k) * (x_lines[x + 1] - x_lines[x]);
+                           const double v = y_lines[y] + rule.y(k) * (y_lines[y + 1] - y_lines[y]);
+                           add_decoded<C>(levels, image, wrap, u, v, rule.weight(k),
+                                          parts.data() + block.index * level_count);
                          }
                        }
                      }
                    });
-
   progress.report(1.0);
   return errors_at(mip_values, totals_of_levels(parts, level_count), triangles.total_mass * C);
 }

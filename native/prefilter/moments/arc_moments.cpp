@@ -70,29 +70,17 @@ void antiderivatives(Lanes y, std::array<IntegerLanes, kCount>* values) {
   }
 }
 
-}  // namespace
-
+// Adds the integrals of x^(a + 1) P_b(y) dy along lines, one a lane, to those at [a * (N + 1) + b].
 template <int N>
-void ArcBatch<N>::flush(Cells* cells) {
-  for (int first = 0; first < size_; first += kLanes) flush_lanes(first, cells);
-  size_ = 0;
-}
-
-template <int N>
-void ArcBatch<N>::flush_lanes(int first, Cells* cells) {
+inline void integrate_lines(Lanes x0, Lanes y0, Lanes x1, Lanes y1, Lanes signs, Lanes* sums) {
   // x^(a + 1) P_b has degree 2 N + 1 at the most along a line: this is exact up to N = 4, and
   // beyond the highest powers, of less than 1/2, are off by less than 1e-8.
   constexpr int kPoints = N < 5 ? N + 1 : 6;
+  constexpr int kCount = N + 1;
   const auto& rule = gauss_rule<kPoints>();
-  const Lanes x0 = lanes_at(&x0_[first]);
-  const Lanes y0 = lanes_at(&y0_[first]);
-  const Lanes x1 = lanes_at(&x1_[first]);
-  const Lanes y1 = lanes_at(&y1_[first]);
-  const Lanes signs = lanes_at(&signs_[first]);
   const Lanes dx = x1 - x0;
   const Lanes dy = y1 - y0;
   const Lanes weight = dy * signs;
-  Lanes sums[kCount * kCount] = {};
   for (int k = 0; k < kPoints; ++k) {
     const auto t = static_cast<float>(rule.nodes[k]);
     const Lanes x = x0 + dx * t;
@@ -111,6 +99,53 @@ void ArcBatch<N>::flush_lanes(int first, Cells* cells) {
       }
     }
   }
+}
+
+// Into how many parts an arc is cut. Where it is bent, or of a high degree, so many powers of t do
+// not do: it is halved.
+int parts_of(const ParametricCurve& curve, const CellArc& arc) {
+  constexpr int kMostParts = 256;
+  constexpr double kMostBend = 0.06;
+  int parts = curve.kind == CurveKind::kConic ? 2 : 1;
+  if (curve.kind == CurveKind::kBezier) {
+    const double turns = static_cast<double>(curve.controls.size()) * (arc.t_end - arc.t_begin);
+    while (parts < turns) parts *= 2;
+  }
+  const auto bend = [&](double t_begin, double t_end) {
+    const Point2 a = curve.at(t_begin);
+    const Point2 c = curve.at(t_end);
+    const Point2 off = curve.at(0.5 * (t_begin + t_end)) - 0.5 * (a + c);
+    return std::abs(off.x) + std::abs(off.y);
+  };
+  while (parts < kMostParts) {
+    const double step = (arc.t_end - arc.t_begin) / parts;
+    double most = 0.0;
+    for (int part = 0; part < parts; ++part) {
+      most = std::max(most, bend(arc.t_begin + part * step, arc.t_begin + (part + 1) * step));
+    }
+    if (most < kMostBend) break;
+    parts *= 2;
+  }
+  return parts;
+}
+
+}  // namespace
+
+template <int N>
+void ArcBatch<N>::flush(Cells* cells) {
+  for (int first = 0; first < size_; first += kLanes) flush_lanes(first, cells);
+  size_ = 0;
+}
+
+template <int N>
+void ArcBatch<N>::flush_lanes(int first, Cells* cells) {
+  const Lanes x0 = lanes_at(&x0_[first]);
+  const Lanes y0 = lanes_at(&y0_[first]);
+  const Lanes x1 = lanes_at(&x1_[first]);
+  const Lanes y1 = lanes_at(&y1_[first]);
+  const Lanes signs = lanes_at(&signs_[first]);
+  Lanes sums[kCount * kCount] = {};
+  integrate_lines<N>(x0, y0, x1, y1, signs, sums);
   // The sums of each arc, in the order of the cells', one arc a lane.
   IntegerLanes whole[ArcMoments<N>::kSums] = {};
   const Lanes share = share_of(x1, y1);
@@ -147,29 +182,7 @@ void ArcBatch<N>::add_curve(const ParametricCurve& curve, const CellArc& arc, Po
   constexpr int kPoints = N < 5 ? N + 4 : 9;
   const auto& rule = gauss_rule<kPoints>();
   std::array<float, kCount * kCount> sums{};
-  // Where an arc is bent, or of a high degree, so many powers of t do not do: it is halved.
-  int parts = curve.kind == CurveKind::kConic ? 2 : 1;
-  if (curve.kind == CurveKind::kBezier) {
-    const double turns = static_cast<double>(curve.controls.size()) * (arc.t_end - arc.t_begin);
-    while (parts < turns) parts *= 2;
-  }
-  const auto bend = [&](double t_begin, double t_end) {
-    const Point2 a = curve.at(t_begin);
-    const Point2 c = curve.at(t_end);
-    const Point2 off = curve.at(0.5 * (t_begin + t_end)) - 0.5 * (a + c);
-    return std::abs(off.x) + std::abs(off.y);
-  };
-  constexpr int kMostParts = 256;
-  constexpr double kMostBend = 0.06;
-  while (parts < kMostParts) {
-    const double step = (arc.t_end - arc.t_begin) / parts;
-    double most = 0.0;
-    for (int part = 0; part < parts; ++part) {
-      most = std::max(most, bend(arc.t_begin + part * step, arc.t_begin + (part + 1) * step));
-    }
-    if (most < kMostBend) break;
-    parts *= 2;
-  }
+  const int parts = parts_of(curve, arc);
   const double step = (arc.t_end - arc.t_begin) / parts;
   for (int part = 0; part < parts; ++part) {
     const double from = arc.t_begin + part * step;

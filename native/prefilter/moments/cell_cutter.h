@@ -48,6 +48,73 @@ inline int cell_at(double value, bool rises) {
   return static_cast<int>(rises ? std::floor(value) : std::ceil(value) - 1.0);
 }
 
+// The column that it is in, first_column - 1 for all left of the window, end_column for all right
+// of it.
+inline int column_at(double x, bool rises, const GridWindow& window) {
+  if (x < window.first_column) return window.first_column - 1;
+  if (x > window.end_column) return window.end_column;
+  return std::clamp(cell_at(x, rises), window.first_column - 1, window.end_column);
+}
+
+// Where a piece passes coordinates, and its own; of lines without asking the curve.
+struct PieceWay {
+  explicit PieceWay(const MonotoneCurve& monotone)
+      : piece(monotone),
+        is_line(monotone.curve.kind == CurveKind::kLine),
+        x_rises(monotone.end.x >= monotone.begin.x),
+        y_rises(monotone.end.y > monotone.begin.y),
+        begin(monotone.begin),
+        slope(monotone.end - monotone.begin) {}
+
+  double pass_x(double value, double low) const {
+    return is_line ? (value - begin.x) / slope.x : crossing(piece, 0, value, low);
+  }
+  double pass_y(double value, double low) const {
+    return is_line ? (value - begin.y) / slope.y : crossing(piece, 1, value, low);
+  }
+  double x_at(double t) const { return is_line ? begin.x + t * slope.x : piece.curve.at(t).x; }
+  double y_at(double t) const { return is_line ? begin.y + t * slope.y : piece.curve.at(t).y; }
+
+  const MonotoneCurve& piece;
+  bool is_line;
+  bool x_rises;
+  bool y_rises;
+  Point2 begin;
+  Point2 slope;
+};
+
+// Where the piece comes into the window's rows.
+inline CellArc first_arc(const PieceWay& way, const GridWindow& window) {
+  CellArc arc{way.piece.t_begin, way.piece.t_begin, way.begin, way.begin};
+  if (way.y_rises ? arc.begin.y < window.first_row : arc.begin.y > window.end_row) {
+    arc.begin.y = way.y_rises ? window.first_row : window.end_row;
+    arc.t_begin = way.pass_y(arc.begin.y, arc.t_begin);
+    arc.begin.x = way.x_at(arc.t_begin);
+  }
+  return arc;
+}
+
+// Ends an arc at the line of the grid that comes first: that at next.x, passed at t_x, or that at
+// next.y, passed at t_y.
+inline void end_at_line(const PieceWay& way, double t_x, double t_y, const Point2& next,
+                        CellArc* arc) {
+  arc->t_end = std::min(t_x, t_y);
+  const Point2& begin = arc->begin;
+  if (t_x <= t_y) {
+    arc->end.x = next.x;
+  } else {
+    const double x = way.x_at(t_y);
+    arc->end.x = way.x_rises ? std::clamp(x, begin.x, std::max(begin.x, next.x))
+                             : std::clamp(x, std::min(begin.x, next.x), begin.x);
+  }
+  if (t_y <= t_x) {
+    arc->end.y = next.y;
+  } else {
+    const double y = way.y_at(t_x);
+    arc->end.y = way.y_rises ? std::clamp(y, begin.y, next.y) : std::clamp(y, next.y, begin.y);
+  }
+}
+
 }  // namespace internal
 
 template <typename InCell, typename LeftOfWindow>
@@ -55,97 +122,54 @@ void cut_to_cells(const MonotoneCurve& piece, const GridWindow& window, const In
                   const LeftOfWindow& left_of_window) {
   const Point2 end = piece.end;
   if (piece.begin.y == end.y) return;
-  const bool x_rises = end.x >= piece.begin.x;
-  const bool y_rises = end.y > piece.begin.y;
-  const double y_low = y_rises ? piece.begin.y : end.y;
-  const double y_high = y_rises ? end.y : piece.begin.y;
-  if (y_high <= window.first_row || y_low >= window.end_row) return;
+  const internal::PieceWay way(piece);
+  const bool x_rises = way.x_rises;
+  const bool y_rises = way.y_rises;
+  if (std::max(piece.begin.y, end.y) <= window.first_row) return;
+  if (std::min(piece.begin.y, end.y) >= window.end_row) return;
   if (std::min(piece.begin.x, end.x) >= window.end_column) return;
 
-  const bool is_line = piece.curve.kind == CurveKind::kLine;
-  const Point2 line_begin = piece.begin;
-  const Point2 line_slope = piece.end - piece.begin;
-  const auto pass_x = [&](double value, double low) {
-    return is_line ? (value - line_begin.x) / line_slope.x : crossing(piece, 0, value, low);
-  };
-  const auto pass_y = [&](double value, double low) {
-    return is_line ? (value - line_begin.y) / line_slope.y : crossing(piece, 1, value, low);
-  };
-  const auto x_at = [&](double t) {
-    return is_line ? line_begin.x + t * line_slope.x : piece.curve.at(t).x;
-  };
-  const auto y_at = [&](double t) {
-    return is_line ? line_begin.y + t * line_slope.y : piece.curve.at(t).y;
-  };
-
-  CellArc arc{piece.t_begin, piece.t_begin, piece.begin, piece.begin};
-  if (y_rises ? arc.begin.y < window.first_row : arc.begin.y > window.end_row) {
-    arc.begin.y = y_rises ? window.first_row : window.end_row;
-    arc.t_begin = pass_y(arc.begin.y, arc.t_begin);
-    arc.begin.x = x_at(arc.t_begin);
-  }
   constexpr double kNever = std::numeric_limits<double>::infinity();
+  CellArc arc = internal::first_arc(way, window);
   const int left = window.first_column - 1;
-  int column;
-  if (arc.begin.x < window.first_column) {
-    column = left;
-  } else if (arc.begin.x > window.end_column) {
-    column = window.end_column;
-  } else {
-    column = std::clamp(internal::cell_at(arc.begin.x, x_rises), left, window.end_column);
-  }
+  int column = internal::column_at(arc.begin.x, x_rises, window);
   int row = internal::cell_at(arc.begin.y, y_rises);
   const int row_after_last = y_rises ? window.end_row : window.first_row - 1;
   double t_x = -1.0;
   double t_y = -1.0;
   for (;;) {
-    const double next_x = x_rises ? column + 1 : column;
-    const double next_y = y_rises ? row + 1 : row;
+    const Point2 next{static_cast<double>(x_rises ? column + 1 : column),
+                      static_cast<double>(y_rises ? row + 1 : row)};
     if (t_x < 0.0) {
-      const bool there_is = x_rises ? column < window.end_column && next_x < end.x
-                                    : column >= window.first_column && next_x > end.x;
-      t_x = there_is ? pass_x(next_x, arc.t_begin) : kNever;
+      const bool there_is = x_rises ? column < window.end_column && next.x < end.x
+                                    : column >= window.first_column && next.x > end.x;
+      t_x = there_is ? way.pass_x(next.x, arc.t_begin) : kNever;
     }
     if (t_y < 0.0) {
-      const bool there_is = y_rises ? next_y < end.y : next_y > end.y;
-      t_y = there_is ? pass_y(next_y, arc.t_begin) : kNever;
+      const bool there_is = y_rises ? next.y < end.y : next.y > end.y;
+      t_y = there_is ? way.pass_y(next.y, arc.t_begin) : kNever;
     }
-    int column_step = 0;
-    int row_step = 0;
-    if (t_x == kNever && t_y == kNever) {
+    const bool is_last = t_x == kNever && t_y == kNever;
+    if (is_last) {
       arc.t_end = piece.t_end;
       arc.end = end;
     } else {
-      arc.t_end = std::min(t_x, t_y);
-      if (t_x <= t_y) {
-        arc.end.x = next_x;
-        column_step = x_rises ? 1 : -1;
-      } else {
-        const double x = x_at(t_y);
-        arc.end.x = x_rises ? std::clamp(x, arc.begin.x, std::max(arc.begin.x, next_x))
-                            : std::clamp(x, std::min(arc.begin.x, next_x), arc.begin.x);
-      }
-      if (t_y <= t_x) {
-        arc.end.y = next_y;
-        row_step = y_rises ? 1 : -1;
-      } else {
-        const double y = y_at(t_x);
-        arc.end.y =
-            y_rises ? std::clamp(y, arc.begin.y, next_y) : std::clamp(y, next_y, arc.begin.y);
-      }
+      internal::end_at_line(way, t_x, t_y, next, &arc);
     }
     if (column == left) {
       left_of_window(row, arc.begin.y, arc.end.y);
     } else if (column < window.end_column) {
       in_cell(column, row, arc);
     }
-    if (column_step == 0 && row_step == 0) return;
-    row += row_step;
+    if (is_last) return;
+    const bool passes_x = t_x <= t_y;
+    const bool passes_y = t_y <= t_x;
+    if (passes_y) row += y_rises ? 1 : -1;
     if (row == row_after_last) return;
-    column += column_step;
+    if (passes_x) column += x_rises ? 1 : -1;
     if (x_rises && column == window.end_column) return;
-    if (column_step != 0) t_x = -1.0;
-    if (row_step != 0) t_y = -1.0;
+    if (passes_x) t_x = -1.0;
+    if (passes_y) t_y = -1.0;
     arc.t_begin = arc.t_end;
     arc.begin = arc.end;
   }
@@ -166,16 +190,11 @@ void cut_line_to_cells(Point2 begin, Point2 end, const GridWindow& window, const
     return std::clamp(begin.x + (y - begin.y) * slope, x_low, x_high);
   };
   const int left = window.first_column - 1;
-  const auto column_at = [&](double x) {
-    if (x < window.first_column) return left;
-    if (x > window.end_column) return window.end_column;
-    return std::clamp(internal::cell_at(x, x_rises), left, window.end_column);
-  };
   Point2 from = begin;
   if (from.y < window.first_row)
     from = {x_at(window.first_row), static_cast<double>(window.first_row)};
   int row = static_cast<int>(std::floor(from.y));
-  int column = column_at(from.x);
+  int column = internal::column_at(from.x, x_rises, window);
   const double y_end = std::min(end.y, static_cast<double>(window.end_row));
   while (from.y < y_end) {
     Point2 to{end.x, end.y};

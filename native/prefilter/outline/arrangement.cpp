@@ -285,8 +285,36 @@ void Arrangement::group_chains() {
   }
 }
 
-void Arrangement::visit(std::size_t first, std::size_t last, const Visitor& visitor) const {
+// The part of a chain that reaches farthest across one axis, which tells best on which side of it
+// something is; of so many of them.
+struct Arrangement::Reach {
+  Part part;
+  Point2 step;  // from its beginning to its end
+};
+
+std::optional<Arrangement::Reach> Arrangement::farthest_part(const OutlineChain& chain) const {
   constexpr int kMostLooked = 32;
+  std::optional<Reach> best;
+  double best_reach = -1.0;
+  int looked = 0;
+  visit_parts(chain, [&](const Part& part) {
+    const Curve curve = contours_.curve(contours_.contours()[chain.contour], part.piece);
+    const MonotonePiece& piece = part.piece;
+    const Point2 begin =
+        part.from == piece.from ? piece.controls.front() : point_at(curve, part.from);
+    const Point2 end = part.to == piece.to ? piece.controls.back() : point_at(curve, part.to);
+    const Point2 step = end - begin;
+    const double reach = std::max(std::fabs(step.x), std::fabs(step.y));
+    if (reach > best_reach) {
+      best = {part, step};
+      best_reach = reach;
+    }
+    return ++looked < kMostLooked;
+  });
+  return best;
+}
+
+void Arrangement::visit(std::size_t first, std::size_t last, const Visitor& visitor) const {
   LayerWindings near_side(layers_);
   LayerWindings far_side(layers_);
   std::vector<PieceId> excluded;
@@ -294,61 +322,35 @@ void Arrangement::visit(std::size_t first, std::size_t last, const Visitor& visi
     const OutlineChain& chain = chains_[i];
     const std::uint32_t group = group_of_[i];
     if (group != OutlineChain::kNone && groups_[group].front() != i) continue;
+    std::span<const std::uint32_t> others;  // that run along it
+    if (group != OutlineChain::kNone) others = std::span(groups_[group]).subspan(1);
 
-    // The part that reaches farthest across one axis tells best.
-    std::optional<Part> best;
-    Point2 best_step{};
-    double best_reach = -1.0;
-    int looked = 0;
-    visit_parts(chain, [&](const Part& part) {
-      const Curve curve = contours_.curve(contours_.contours()[chain.contour], part.piece);
-      const MonotonePiece& piece = part.piece;
-      const Point2 begin =
-          part.from == piece.from ? piece.controls.front() : point_at(curve, part.from);
-      const Point2 end = part.to == piece.to ? piece.controls.back() : point_at(curve, part.to);
-      const Point2 step = end - begin;
-      const double reach = std::max(std::fabs(step.x), std::fabs(step.y));
-      if (reach > best_reach) {
-        best = part;
-        best_step = step;
-        best_reach = reach;
-      }
-      return ++looked < kMostLooked;
-    });
+    const std::optional<Reach> best = farthest_part(chain);
     if (!best) continue;
-    const Curve curve = contours_.curve(contours_.contours()[chain.contour], best->piece);
-    const Point2 point = point_at(curve, 0.5 * (best->from + best->to));
-    const RayAxis axis =
-        std::fabs(best_step.y) >= std::fabs(best_step.x) ? RayAxis::kX : RayAxis::kY;
-    const auto sign_of = [axis](const Point2& step) {
-      return axis == RayAxis::kX ? (step.y > 0.0 ? 1 : -1) : (step.x < 0.0 ? 1 : -1);
-    };
+    const auto& [part, step] = *best;
+    const Curve curve = contours_.curve(contours_.contours()[chain.contour], part.piece);
+    const Point2 point = point_at(curve, 0.5 * (part.from + part.to));
+    const RayAxis axis = std::fabs(step.y) >= std::fabs(step.x) ? RayAxis::kX : RayAxis::kY;
+    // The ray starts on the side of +x, or of +y.
+    const bool near_is_right = axis == RayAxis::kX ? step.y > 0.0 : step.x < 0.0;
+    const int sign = near_is_right ? 1 : -1;
 
-    excluded.assign(1, {chain.contour, best->piece_index});
+    excluded.assign(1, {chain.contour, part.piece_index});
+    for (const std::uint32_t other : others) {
+      excluded.push_back({chains_[other].contour, only_part(chains_[other])->piece_index});
+    }
     near_side.clear();
     far_side.clear();
-    if (group != OutlineChain::kNone) {
-      for (std::size_t m = 1; m < groups_[group].size(); ++m) {
-        const OutlineChain& member = chains_[groups_[group][m]];
-        excluded.push_back({member.contour, only_part(member)->piece_index});
-      }
-    }
     tree_.add_windings(point, axis, excluded, &near_side);
     for (const std::uint32_t layer : near_side.touched()) {
       far_side.add(layer, near_side[layer] - far_side[layer]);
     }
-    far_side.add(contours_.contours()[chain.contour].layer, sign_of(best_step));
-    if (group != OutlineChain::kNone) {
-      const std::uint32_t begin = cuts_[chain.begin_cut].vertex;
-      for (std::size_t m = 1; m < groups_[group].size(); ++m) {
-        const OutlineChain& member = chains_[groups_[group][m]];
-        const bool along = cuts_[member.begin_cut].vertex == begin;
-        far_side.add(contours_.contours()[member.contour].layer,
-                     along ? sign_of(best_step) : -sign_of(best_step));
-      }
+    far_side.add(contours_.contours()[chain.contour].layer, sign);
+    for (const std::uint32_t other : others) {
+      const OutlineChain& member = chains_[other];
+      const bool along = cuts_[member.begin_cut].vertex == cuts_[chain.begin_cut].vertex;
+      far_side.add(contours_.contours()[member.contour].layer, along ? sign : -sign);
     }
-    // The ray starts on the side of +x, or of +y.
-    const bool near_is_right = axis == RayAxis::kX ? best_step.y > 0.0 : best_step.x < 0.0;
     visitor(static_cast<std::uint32_t>(i), near_is_right ? near_side : far_side,
             near_is_right ? far_side : near_side);
   }

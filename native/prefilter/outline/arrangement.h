@@ -71,6 +71,7 @@ class Arrangement {
     double from = 0.0;
     double to = 1.0;
   };
+  struct Reach;
   struct Site;
   class SiteList;
   class Tracer;
@@ -85,6 +86,7 @@ class Arrangement {
   void group_chains();
   bool is_negligible(const OutlineChain& chain) const;
   std::optional<Part> only_part(const OutlineChain& chain) const;
+  std::optional<Reach> farthest_part(const OutlineChain& chain) const;
   template <typename Visit>
   void visit_parts(const OutlineChain& chain, const Visit& visit) const;
 

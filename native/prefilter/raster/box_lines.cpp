@@ -82,47 +82,32 @@ void BoxLines::add_line(Point2 low, Point2 high, double scale) {
   const double slope = (high.x - low.x) / (high.y - low.y);
   double begin = std::max(low.y, first_row);
   double end = std::min(high.y, end_row);
-  if (right > width || left < 0.0) {
-    // Rows in which the line is beyond a side, by more than what rounding is worth, are not cut.
-    const auto y_at = [&](double x) { return low.y + (x - low.x) / slope; };
-    const auto row_at = [&](double y) { return std::floor(std::clamp(y, begin, end)); };
-    const auto add_left = [&](double from, double to) {
-      const double full_from = std::min(std::ceil(from), to);
-      const double full_to = std::max(std::floor(to), full_from);
-      const auto sign = scale > 0.0 ? 1U : ~0U;
-      const auto add_part = [&](double part_from, double part_to) {
-        if (part_from >= part_to) return;
-        rows_.row(static_cast<int>(std::floor(part_from)))
-            .add(-1, to_steps((part_to - part_from) * scale));
-      };
-      add_part(from, full_from);
-      rows_.add_rows(static_cast<int>(full_from), static_cast<int>(full_to), sign * kOne);
-      add_part(full_to, to);
-    };
-    const bool rises = slope > 0.0;
-    if (right <= 0.0) {
-      add_left(begin, end);
-      return;
+  if (right <= 0.0) {
+    add_left(begin, end, scale);
+    return;
+  }
+  // Rows in which the line is beyond a side, by more than what rounding is worth, are not cut.
+  const auto row_at = [&](double x) {
+    return std::floor(std::clamp(low.y + (x - low.x) / slope, begin, end));
+  };
+  if (left < 0.0) {
+    const double pass = row_at(0.0);
+    if (slope > 0.0) {
+      const double to = std::max(pass - 1.0, begin);
+      add_left(begin, to, scale);
+      begin = to;
+    } else {
+      const double from = std::min(pass + 2.0, end);
+      add_left(from, end, scale);
+      end = from;
     }
-    if (left < 0.0) {
-      const double pass = row_at(y_at(0.0));
-      if (rises) {
-        const double to = std::max(pass - 1.0, begin);
-        add_left(begin, to);
-        begin = to;
-      } else {
-        const double from = std::min(pass + 2.0, end);
-        add_left(from, end);
-        end = from;
-      }
-    }
-    if (right > width && begin < end) {
-      const double pass = row_at(y_at(width));
-      if (rises) {
-        end = std::min(end, pass + 2.0);
-      } else {
-        begin = std::max(begin, pass - 1.0);
-      }
+  }
+  if (right > width && begin < end) {
+    const double pass = row_at(width);
+    if (slope > 0.0) {
+      end = std::min(end, pass + 2.0);
+    } else {
+      begin = std::max(begin, pass - 1.0);
     }
   }
   const double reach = std::min(std::abs(slope), right - left);
@@ -135,8 +120,24 @@ void BoxLines::add_line(Point2 low, Point2 high, double scale) {
   }
 }
 
+void BoxLines::add_left(double from, double to, double scale) {
+  const double full_from = std::min(std::ceil(from), to);
+  const double full_to = std::max(std::floor(to), full_from);
+  const auto sign = scale > 0.0 ? 1U : ~0U;
+  const auto add_part = [&](double part_from, double part_to) {
+    if (part_from >= part_to) return;
+    rows_.row(static_cast<int>(std::floor(part_from)))
+        .add(-1, to_steps((part_to - part_from) * scale));
+  };
+  add_part(from, full_from);
+  rows_.add_rows(static_cast<int>(full_from), static_cast<int>(full_to), sign * kOne);
+  add_part(full_to, to);
+}
+
+namespace {
+
 // Two rows of a line.
-struct BoxLines::RowPair {
+struct RowPair {
   IntFour column;
   IntFour height;
   IntFour inside;   // E_0
@@ -144,23 +145,23 @@ struct BoxLines::RowPair {
   IntFour farther;  // E_2
 };
 
-// In each row no more than three columns, or two where kColumns is that: four differences, of four
-// rows at once.
-template <int kColumns>
-void BoxLines::add_narrow(const Point2& low, double slope, double begin, double end, double scale) {
-  const DoublePair c = pair_of(half_over(slope) * scale);
-  const auto first_row = static_cast<int>(std::floor(begin));
-  const auto end_row = static_cast<int>(std::ceil(end));
-  const DoublePair least = pair_of(-DifferenceRows::kMargin);
-  const DoublePair most = pair_of(rows_.width());
-  const DoublePair low_x = pair_of(low.x);
-  const DoublePair low_y = pair_of(low.y);
-  const DoublePair slopes = pair_of(slope);
-  const DoublePair begins = pair_of(begin);
-  const DoublePair ends = pair_of(end);
-  const DoublePair half_scale = pair_of(0.5 * scale);
-  const IntFour full_height = joined(round_to_int(pair_of(scale)), round_to_int(pair_of(scale)));
-  const auto two_rows = [&](DoublePair y, auto is_full) {
+// A line that rises, as both rows of a pair have it.
+struct NarrowLine {
+  NarrowLine(const Point2& low, double slope, double begin, double end, double scale, int width)
+      : c(pair_of(half_over(slope) * scale)),
+        least(pair_of(-DifferenceRows::kMargin)),
+        most(pair_of(width)),
+        low_x(pair_of(low.x)),
+        low_y(pair_of(low.y)),
+        slopes(pair_of(slope)),
+        begins(pair_of(begin)),
+        ends(pair_of(end)),
+        half_scale(pair_of(0.5 * scale)),
+        full_height(joined(round_to_int(pair_of(scale)), round_to_int(pair_of(scale)))) {}
+
+  // In each row no more than kColumns columns. `is_full`: the line passes all of both.
+  template <int kColumns, bool is_full>
+  RowPair rows_at(DoublePair y) const {
     RowPair out;
     DoublePair from = y;
     DoublePair to = y + 1.0;
@@ -187,16 +188,38 @@ void BoxLines::add_narrow(const Point2& low, double slope, double begin, double 
       out.farther = round_to_int(c * farther * farther);
     }
     return out;
-  };
+  }
+
+  DoublePair c;
+  DoublePair least;  // columns
+  DoublePair most;
+  DoublePair low_x;
+  DoublePair low_y;
+  DoublePair slopes;
+  DoublePair begins;
+  DoublePair ends;
+  DoublePair half_scale;
+  IntFour full_height;
+};
+
+}  // namespace
+
+// In each row no more than three columns, or two where kColumns is that: four differences, of four
+// rows at once.
+template <int kColumns>
+void BoxLines::add_narrow(const Point2& low, double slope, double begin, double end, double scale) {
+  const NarrowLine line(low, slope, begin, end, scale, rows_.width());
+  const auto first_row = static_cast<int>(std::floor(begin));
+  const auto end_row = static_cast<int>(std::ceil(end));
   DifferenceRows::Row to = rows_.row(first_row);
   const DifferenceRows::Row second = rows_.next(to);
   const std::ptrdiff_t stride = second.steps - to.steps;
   const std::ptrdiff_t mark_stride = second.marks - to.marks;
   const auto four_rows = [&](DoublePair y, auto is_full) {
-    const RowPair a = two_rows(y, is_full);
-    const RowPair b = two_rows(y + 2.0, is_full);
+    const RowPair a = line.rows_at<kColumns, is_full>(y);
+    const RowPair b = line.rows_at<kColumns, is_full>(y + 2.0);
     const IntFour column = joined(a.column, b.column);
-    const IntFour height = is_full ? full_height : joined(a.height, b.height);
+    const IntFour height = is_full ? line.full_height : joined(a.height, b.height);
     const IntFour e0 = joined(a.inside, b.inside);
     const IntFour e1 = joined(a.beyond, b.beyond);
     IntFour s0 = height - e0 + e1;

@@ -63,7 +63,8 @@ class BoxLines {
   void leave_cell(const Point2& point);
   void begin_at(const Point2& point);
   void add_line(Point2 low, Point2 high, double scale);
-  struct RowPair;
+  // Rows from y to y in which a line is left of the image.
+  void add_left(double from, double to, double scale);
   template <int kColumns>
   void add_narrow(const Point2& low, double slope, double begin, double end, double scale);
   void add_wide(const Point2& low, double slope, double begin, double end, double scale);

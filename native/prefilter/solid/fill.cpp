@@ -62,16 +62,13 @@ void add_piece(const std::array<int, 3>& cell, const CellPolygon& piece, double 
   }
 }
 
-}  // namespace
-
-TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
-                            const std::vector<bool>& is_filled, const Progress& progress,
-                            int threads) {
-  const std::vector<ReachGrid::Label>& labels = grid.labels();
-  std::unordered_map<std::size_t, CellPlane> planes;
+// Those of the triangles that have such a region on one side only, by cell.
+using CellPlanes = std::unordered_map<std::size_t, CellPlane>;
+CellPlanes planes_of(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
+                     const std::vector<bool>& is_filled, const Progress& progress) {
+  CellPlanes planes;
   const CellBox all = {{0, 0, 0}, grid.size()};
-  const Progress cutting = progress.part(0.0, 0.5);
-  Pulse pulse(cutting);
+  Pulse pulse(progress);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     pulse.step();
     const std::array<Vector3, 3> corners = mesh.corners(t);
@@ -98,6 +95,28 @@ TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid&
       add_piece(cell, piece, is_back ? 1.0 : -1.0, &planes[grid.index(cell[0], cell[1], cell[2])]);
     });
   }
+  return planes;
+}
+
+// Whether a cell of the mesh is a wall within filled regions; the grid has a margin, so that there
+// are cells all around.
+bool is_inner_wall(int x, int y, int z, const ReachGrid& grid, const std::vector<bool>& is_filled) {
+  bool is_within = true;
+  bool is_beside = false;
+  for (const std::size_t next :
+       {grid.index(x - 1, y, z), grid.index(x + 1, y, z), grid.index(x, y - 1, z),
+        grid.index(x, y + 1, z), grid.index(x, y, z - 1), grid.index(x, y, z + 1)}) {
+    const ReachGrid::Label label = grid.labels()[next];
+    is_within = is_within && (label == ReachGrid::kMet || is_filled[label]);
+    is_beside = is_beside || is_filled[label];
+  }
+  return is_within && is_beside;
+}
+
+// How much of each cell is filled.
+std::vector<float> filled_cells(const ReachGrid& grid, const std::vector<bool>& is_filled,
+                                const CellPlanes& planes) {
+  const std::vector<ReachGrid::Label>& labels = grid.labels();
   std::vector<float> values(labels.size(), 0.0F);
   const auto [nx, ny, nz] = grid.size();
   for (int x = 0; x < nx; ++x) {
@@ -109,23 +128,21 @@ TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid&
           continue;
         }
         const auto plane = planes.find(i);
-        if (plane != planes.end()) {
-          values[i] = plane->second.share();
-          continue;
-        }
-        // Walls within a region; the grid has a margin, so that there are cells all around.
-        bool is_within = true;
-        bool is_beside = false;
-        for (const std::size_t next :
-             {grid.index(x - 1, y, z), grid.index(x + 1, y, z), grid.index(x, y - 1, z),
-              grid.index(x, y + 1, z), grid.index(x, y, z - 1), grid.index(x, y, z + 1)}) {
-          is_within = is_within && (labels[next] == ReachGrid::kMet || is_filled[labels[next]]);
-          is_beside = is_beside || is_filled[labels[next]];
-        }
-        values[i] = is_within && is_beside ? 1.0F : 0.0F;
+        values[i] = plane != planes.end() ? plane->second.share()
+                                          : (is_inner_wall(x, y, z, grid, is_filled) ? 1.0F : 0.0F);
       }
     }
   }
+  return values;
+}
+
+}  // namespace
+
+TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid& grid,
+                            const std::vector<bool>& is_filled, const Progress& progress,
+                            int threads) {
+  const std::vector<float> values =
+      filled_cells(grid, is_filled, planes_of(mesh, grid, is_filled, progress.part(0.0, 0.5)));
   ContourOptions options;
   options.interpolant = Interpolant::kPlane;
   options.threads = threads;

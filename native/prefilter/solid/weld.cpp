@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <tuple>
 
 #include "prefilter/base/parallel.h"
@@ -175,6 +176,55 @@ void split_triangle(std::uint32_t t, std::span<const SplitPoint> points, WorkMes
 
 double squared_length(const Vector3& a) { return dot(a, a); }
 
+using Corners = std::array<std::int32_t, 3>;
+
+bool is_degenerate(const Corners& corners) {
+  const auto& [a, b, c] = corners;
+  return a == b || b == c || c == a;
+}
+
+Corners sorted(Corners corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+// Whether the corners, from the lowest one on, go up.
+bool goes_up(const Corners& corners) {
+  const auto& [a, b, c] = corners;
+  return (a < b) + (b < c) + (c < a) == 2;
+}
+
+struct Face {
+  Corners corners;  // sorted
+  std::uint64_t triangle;
+  bool operator<(const Face& other) const {
+    return corners != other.corners ? corners < other.corners : triangle < other.triangle;
+  }
+};
+
+// Marks, of triangles with the same three corners, the first of the direction that more of them
+// have; the first of all, where as many have either. `faces` is for use within.
+void keep_one_of_each(const std::vector<Corners>& triangles,
+                      std::span<const std::uint64_t> candidates, std::vector<Face>* faces,
+                      std::vector<std::uint8_t>* is_kept) {
+  faces->clear();
+  for (const std::uint64_t t : candidates) faces->push_back({sorted(triangles[t]), t});
+  std::sort(faces->begin(), faces->end());
+  for (auto first = faces->begin(); first != faces->end();) {
+    std::array<std::size_t, 2> counts{};
+    std::array<std::uint64_t, 2> firsts{};  // that goes down, that goes up
+    auto face = first;
+    for (; face != faces->end() && face->corners == first->corners; ++face) {
+      const std::size_t way = goes_up(triangles[face->triangle]) ? 1 : 0;
+      if (counts[way]++ == 0) firsts[way] = face->triangle;
+    }
+    const bool is_up =
+        counts[0] != counts[1] ? counts[1] > counts[0] : goes_up(triangles[first->triangle]);
+    (*is_kept)[firsts[is_up ? 1 : 0]] = 1;
+    first = face;
+  }
+}
+
 }  // namespace
 
 std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads) {
@@ -303,66 +353,29 @@ std::size_t split_borders(WorkMesh* mesh, double distance, const Progress& progr
 
 std::size_t drop_duplicates(WorkMesh* mesh, const Progress& progress, int threads) {
   auto& triangles = mesh->triangles;
-  const auto sorted = [&](std::size_t t) {
-    std::array<std::int32_t, 3> corners = triangles[t];
-    std::sort(corners.begin(), corners.end());
-    return corners;
-  };
-  const auto is_degenerate = [&](std::size_t t) {
-    const auto& [a, b, c] = triangles[t];
-    return a == b || b == c || c == a;
-  };
-  // Whether the corners, from the lowest one on, go up.
-  const auto goes_up = [&](std::size_t t) {
-    const auto& [a, b, c] = triangles[t];
-    return (a < b) + (b < c) + (c < a) == 2;
-  };
   const Buckets buckets(
       mesh->positions.size(), triangles.size(),
       [&](std::size_t begin, std::size_t end, const auto& put) {
         for (std::size_t t = begin; t < end; ++t) {
-          if (is_degenerate(t)) continue;
-          const auto [a, b, c] = sorted(t);
-          put(static_cast<std::size_t>(a), t);
+          if (is_degenerate(triangles[t])) continue;
+          put(static_cast<std::size_t>(sorted(triangles[t])[0]), t);
         }
       },
       progress.part(0.0, 0.6), threads);
   std::vector<std::uint8_t> is_kept(triangles.size(), 0);
-  parallel_ranges(
-      static_cast<std::int64_t>(buckets.size()), kRowsPerTask, threads, progress.part(0.6, 0.9),
-      [&](std::int64_t begin, std::int64_t end) {
-        struct Face {
-          std::array<std::int32_t, 3> corners;
-          std::uint64_t triangle;
-          bool operator<(const Face& other) const {
-            return corners != other.corners ? corners < other.corners : triangle < other.triangle;
-          }
-        };
-        std::vector<Face> faces;
-        for (auto b = static_cast<std::size_t>(begin); b < static_cast<std::size_t>(end); ++b) {
-          faces.clear();
-          for (const std::uint64_t t : buckets[b]) faces.push_back({sorted(t), t});
-          std::sort(faces.begin(), faces.end());
-          for (std::size_t i = 0; i < faces.size();) {
-            std::array<std::size_t, 2> counts{};
-            std::array<std::uint64_t, 2> firsts{};  // that goes down, that goes up
-            const std::size_t first = i;
-            for (; i < faces.size() && faces[i].corners == faces[first].corners; ++i) {
-              const std::size_t way = goes_up(faces[i].triangle) ? 1 : 0;
-              if (counts[way]++ == 0) firsts[way] = faces[i].triangle;
-            }
-            const std::size_t way = counts[0] != counts[1]
-                                        ? (counts[1] > counts[0] ? 1 : 0)
-                                        : (goes_up(faces[first].triangle) ? 1 : 0);
-            is_kept[firsts[way]] = 1;
-          }
-        }
-      });
+  parallel_ranges(static_cast<std::int64_t>(buckets.size()), kRowsPerTask, threads,
+                  progress.part(0.6, 0.9), [&](std::int64_t begin, std::int64_t end) {
+                    std::vector<Face> faces;
+                    for (auto b = static_cast<std::size_t>(begin);
+                         b < static_cast<std::size_t>(end); ++b) {
+                      keep_one_of_each(triangles, buckets[b], &faces, &is_kept);
+                    }
+                  });
   std::size_t count = 0;
   std::size_t duplicates = 0;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (is_kept[t] == 0) {
-      if (!is_degenerate(t)) ++duplicates;
+      if (!is_degenerate(triangles[t])) ++duplicates;
       continue;
     }
     triangles[count] = triangles[t];

@@ -5,22 +5,27 @@
 #include <algorithm>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "prefilter/base/pulse.h"
 
 namespace prefilter {
 
-LinkForm::LinkForm(const std::vector<TexelLink>& links,
-                   const std::function<bool(std::ptrdiff_t)>& is_part, const Progress& progress) {
-  Pulse pulse(progress);
-  struct Use {
-    std::ptrdiff_t at;
-    std::uint32_t link;
-    float share;
-  };
+namespace {
+
+// A link's share of a texel.
+struct Use {
+  std::ptrdiff_t at;
+  std::uint32_t link;
+  float share;
+};
+
+// Those of the links all of whose texels are part of the system, in the order of the texels.
+std::vector<Use> uses_of(const std::vector<TexelLink>& links,
+                         const std::function<bool(std::ptrdiff_t)>& is_part, Pulse* pulse) {
   std::vector<Use> uses;
   for (std::size_t i = 0; i < links.size(); ++i) {
-    pulse.step();
+    pulse->step();
     const TexelLink& link = links[i];
     if (!(link.weight > 0.0F) ||
         !std::all_of(link.texels.begin(), link.texels.begin() + link.count, is_part)) {
@@ -30,27 +35,44 @@ LinkForm::LinkForm(const std::vector<TexelLink>& links,
       uses.push_back({link.texels[k], static_cast<std::uint32_t>(i), link.shares[k]});
     }
   }
-  std::stable_sort(uses.begin(), uses.end(), [&pulse](const Use& a, const Use& b) {
-    pulse.step();
+  std::stable_sort(uses.begin(), uses.end(), [pulse](const Use& a, const Use& b) {
+    pulse->step();
     return a.at < b.at;
   });
-  struct Product {
-    std::ptrdiff_t at;
-    double value;
-  };
+  return uses;
+}
+
+struct Product {
+  std::ptrdiff_t at;
+  double value;
+};
+
+// What a texel has with each, one after the other, by its uses.
+void find_products(const std::vector<TexelLink>& links, std::span<const Use> uses,
+                   std::vector<Product>* products) {
+  products->clear();
+  for (const Use& use : uses) {
+    const TexelLink& link = links[use.link];
+    const double share = static_cast<double>(link.weight) * use.share;
+    for (int k = 0; k < link.count; ++k) {
+      products->push_back({link.texels[k], share * link.shares[k]});
+    }
+  }
+  std::stable_sort(products->begin(), products->end(),
+                   [](const Product& a, const Product& b) { return a.at < b.at; });
+}
+
+}  // namespace
+
+LinkForm::LinkForm(const std::vector<TexelLink>& links,
+                   const std::function<bool(std::ptrdiff_t)>& is_part, const Progress& progress) {
+  Pulse pulse(progress);
+  const std::vector<Use> uses = uses_of(links, is_part, &pulse);
   std::vector<Product> products;
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
     pulse.step();
-    products.clear();
-    for (end = begin; end < uses.size() && uses[end].at == uses[begin].at; ++end) {
-      const TexelLink& link = links[uses[end].link];
-      const double share = static_cast<double>(link.weight) * uses[end].share;
-      for (int k = 0; k < link.count; ++k) {
-        products.push_back({link.texels[k], share * link.shares[k]});
-      }
-    }
-    std::stable_sort(products.begin(), products.end(),
-                     [](const Product& a, const Product& b) { return a.at < b.at; });
+    while (end < uses.size() && uses[end].at == uses[begin].at) ++end;
+    find_products(links, std::span(uses).subspan(begin, end - begin), &products);
     Texel texel{uses[begin].at, 0.0F, entries_.size()};
     for (std::size_t i = 0, next = 0; i < products.size(); i = next) {
       double sum = 0.0;

@@ -17,6 +17,8 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t kUncut = 24;
 // Steps with so many products between two reports.
 constexpr std::size_t kProductsPerReport = 1U << 21U;
+// Of what a row has on the diagonal: what is left of it must not be rounding alone.
+constexpr double kLeastPivot = 1e-13;
 
 // Lists of numbers, one after the other.
 struct Lists {
@@ -94,6 +96,79 @@ class Dissection {
   std::uint32_t stamp_ = 0;
 };
 
+bool comes_first(const SparseEntry& a, const SparseEntry& b) {
+  return a.row != b.row ? a.row < b.row : a.column < b.column;
+}
+
+// One entry for each place, the sum of all there.
+void add_up(std::vector<SparseEntry>* entries) {
+  // Stable, so that the sums of what is at one place do not depend on the library's sort.
+  std::stable_sort(entries->begin(), entries->end(), comes_first);
+  std::size_t kept = 0;
+  for (const SparseEntry& entry : *entries) {
+    if (kept > 0 && !comes_first((*entries)[kept - 1], entry)) {
+      (*entries)[kept - 1].value += entry.value;
+    } else {
+      (*entries)[kept++] = entry;
+    }
+  }
+  entries->resize(kept);
+}
+
+// The entries in the order of elimination: rows and columns are steps, and sorted.
+void sort_by_steps(std::span<const std::uint32_t> order, std::vector<SparseEntry>* entries) {
+  std::vector<std::uint32_t> steps(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) steps[order[i]] = static_cast<std::uint32_t>(i);
+  for (SparseEntry& entry : *entries) {
+    const std::uint32_t a = steps[entry.row];
+    const std::uint32_t b = steps[entry.column];
+    entry = {std::max(a, b), std::min(a, b), entry.value};
+  }
+  std::sort(entries->begin(), entries->end(), comes_first);
+}
+
+// Where the entries of each row begin, and where the last one ends.
+std::vector<std::size_t> row_begins_of(std::size_t count, std::span<const SparseEntry> entries) {
+  std::vector<std::size_t> begins(count + 1, 0);
+  for (const SparseEntry& entry : entries) ++begins[entry.row + 1];
+  for (std::size_t i = 0; i < count; ++i) begins[i + 1] += begins[i];
+  return begins;
+}
+
+// Calls visit(column) for the columns up the elimination tree from one, until one that `seen` has
+// for this row.
+template <typename Visit>
+void for_path(std::uint32_t row, std::uint32_t column, std::span<const std::uint32_t> parents,
+              std::span<std::uint32_t> seen, const Visit& visit) {
+  for (std::uint32_t at = column; seen[at] != row; at = parents[at]) {
+    visit(at);
+    seen[at] = row;
+  }
+}
+
+// The elimination tree, and how long the columns of the factor become.
+struct EliminationTree {
+  std::vector<std::uint32_t> parents;
+  std::vector<std::size_t> lengths;
+};
+
+EliminationTree elimination_tree(std::span<const std::size_t> row_begins,
+                                 std::span<const SparseEntry> entries) {
+  const std::size_t count = row_begins.size() - 1;
+  EliminationTree tree{std::vector<std::uint32_t>(count, kNone), std::vector<std::size_t>(count)};
+  std::vector<std::uint32_t> seen(count, kNone);
+  for (std::uint32_t row = 0; row < count; ++row) {
+    seen[row] = row;
+    for (std::size_t e = row_begins[row]; e < row_begins[row + 1]; ++e) {
+      for_path(row, entries[e].column, tree.parents, seen, [&](std::uint32_t at) {
+        if (tree.parents[at] == kNone) tree.parents[at] = row;
+        ++tree.lengths[at];
+      });
+    }
+  }
+  return tree;
+}
+
 }  // namespace
 
 SparseFactors::SparseFactors(std::vector<SparseEntry> lower, std::span<const Vector3> places,
@@ -101,64 +176,34 @@ SparseFactors::SparseFactors(std::vector<SparseEntry> lower, std::span<const Vec
     : order_(places.size()), diagonal_(places.size()), begins_(places.size() + 1, 0) {
   const std::size_t count = places.size();
   progress.report(0.0);
-  const auto comes_first = [](const SparseEntry& a, const SparseEntry& b) {
-    return a.row != b.row ? a.row < b.row : a.column < b.column;
-  };
-  // Stable, so that the sums of what is at one place do not depend on the library's sort.
-  std::stable_sort(lower.begin(), lower.end(), comes_first);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < lower.size(); ++i) {
-    if (kept > 0 && !comes_first(lower[kept - 1], lower[i])) {
-      lower[kept - 1].value += lower[i].value;
-    } else {
-      lower[kept++] = lower[i];
-    }
-  }
-  lower.resize(kept);
+  add_up(&lower);
   progress.report(0.1);
-
   for (std::size_t i = 0; i < count; ++i) order_[i] = static_cast<std::uint32_t>(i);
   Dissection(neighbours_of(count, lower), places).sort(order_);
-  std::vector<std::uint32_t> steps(count);
-  for (std::size_t i = 0; i < count; ++i) steps[order_[i]] = static_cast<std::uint32_t>(i);
-  for (SparseEntry& entry : lower) {
-    const std::uint32_t a = steps[entry.row];
-    const std::uint32_t b = steps[entry.column];
-    entry = {std::max(a, b), std::min(a, b), entry.value};
-  }
-  std::sort(lower.begin(), lower.end(), comes_first);
+  sort_by_steps(order_, &lower);
   progress.report(0.2);
 
-  std::vector<std::size_t> row_begins(count + 1, 0);
-  for (const SparseEntry& entry : lower) ++row_begins[entry.row + 1];
-  for (std::size_t i = 0; i < count; ++i) row_begins[i + 1] += row_begins[i];
-
-  // The elimination tree, and how long the columns become.
-  std::vector<std::uint32_t> parents(count, kNone);
-  std::vector<std::uint32_t> seen(count, kNone);
-  std::vector<std::size_t> lengths(count, 0);
-  for (std::uint32_t row = 0; row < count; ++row) {
-    seen[row] = row;
-    for (std::size_t e = row_begins[row]; e < row_begins[row + 1]; ++e) {
-      for (std::uint32_t at = lower[e].column; seen[at] != row; at = parents[at]) {
-        if (parents[at] == kNone) parents[at] = row;
-        ++lengths[at];
-        seen[at] = row;
-      }
-    }
-  }
-  double products = 0.0;
-  for (std::size_t i = 0; i < count; ++i) {
-    begins_[i + 1] = begins_[i] + lengths[i];
-    products += static_cast<double>(lengths[i]) * static_cast<double>(lengths[i]) / 2.0;
-  }
+  const std::vector<std::size_t> row_begins = row_begins_of(count, lower);
+  const EliminationTree tree = elimination_tree(row_begins, lower);
+  for (std::size_t i = 0; i < count; ++i) begins_[i + 1] = begins_[i] + tree.lengths[i];
   rows_.resize(begins_.back());
   values_.resize(begins_.back());
+  is_definite_ = factorize(lower, row_begins, tree.parents, progress.part(0.2, 1.0));
+}
 
+bool SparseFactors::factorize(std::span<const SparseEntry> entries,
+                              std::span<const std::size_t> row_begins,
+                              std::span<const std::uint32_t> parents, const Progress& progress) {
+  const std::size_t count = order_.size();
+  double products = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto length = static_cast<double>(begins_[i + 1] - begins_[i]);
+    products += length * length / 2.0;
+  }
   std::vector<double> row_values(count, 0.0);
   std::vector<std::uint32_t> pattern(count);
+  std::vector<std::uint32_t> seen(count, kNone);
   std::vector<std::size_t> ends(begins_.begin(), begins_.end() - 1);
-  std::fill(seen.begin(), seen.end(), kNone);
   std::size_t since_report = 0;
   double done = 0.0;
   for (std::uint32_t row = 0; row < count; ++row) {
@@ -167,16 +212,14 @@ SparseFactors::SparseFactors(std::vector<SparseEntry> lower, std::span<const Vec
     seen[row] = row;
     double own = 0.0;
     for (std::size_t e = row_begins[row]; e < row_begins[row + 1]; ++e) {
-      if (lower[e].column == row) {
-        own = lower[e].value;
+      if (entries[e].column == row) {
+        own = entries[e].value;
         continue;
       }
-      row_values[lower[e].column] = lower[e].value;
+      row_values[entries[e].column] = entries[e].value;
       std::size_t length = 0;
-      for (std::uint32_t at = lower[e].column; seen[at] != row; at = parents[at]) {
-        pattern[length++] = at;
-        seen[at] = row;
-      }
+      for_path(row, entries[e].column, parents, seen,
+               [&](std::uint32_t at) { pattern[length++] = at; });
       while (length > 0) pattern[--top] = pattern[--length];
     }
     const double scale = own;
@@ -193,17 +236,15 @@ SparseFactors::SparseFactors(std::vector<SparseEntry> lower, std::span<const Vec
       values_[end] = share;
       ++ends[column];
     }
-    if (!(own > 1e-13 * scale)) {
-      is_definite_ = false;
-      return;
-    }
+    if (!(own > kLeastPivot * scale)) return false;
     diagonal_[row] = own;
     if (since_report > kProductsPerReport) {
       done += static_cast<double>(std::exchange(since_report, 0));
-      progress.report(0.2 + 0.8 * done / std::max(products, 1.0));
+      progress.report(done / std::max(products, 1.0));
     }
   }
   progress.report(1.0);
+  return true;
 }
 
 void SparseFactors::solve(std::span<Vector3> values) const {

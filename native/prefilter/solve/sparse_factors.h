@@ -37,6 +37,11 @@ class SparseFactors {
   void solve(std::span<Vector3> values) const;
 
  private:
+  // Row by row, of entries whose rows and columns are steps, into the room that there is for the
+  // columns. Returns false where the matrix is not definite.
+  bool factorize(std::span<const SparseEntry> entries, std::span<const std::size_t> row_begins,
+                 std::span<const std::uint32_t> parents, const Progress& progress);
+
   bool is_definite_ = true;
   std::vector<std::uint32_t> order_;  // the row that is eliminated at each step
   std::vector<double> diagonal_;

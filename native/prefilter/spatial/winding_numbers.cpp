@@ -68,43 +68,47 @@ WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, 
     return box;
   };
   tree_ = BoxTree(keys, kLeafTriangles, box_of, progress.part(0.6, 0.9));
-  const auto nodes = tree_.nodes();
-  fars_.resize(nodes.size());
-  std::vector<double> areas(nodes.size());
-  for (std::size_t n = nodes.size(); n-- > 0;) {
+  fars_.resize(tree_.nodes().size());
+  std::vector<double> areas(fars_.size());
+  for (std::size_t n = fars_.size(); n-- > 0;) {
     if (n % (1U << 16U) == 0) progress.report(0.9);
-    Far& far = fars_[n];
-    far = {};
-    double area = 0.0;
-    Vector3 sum{};
-    const auto add = [&](const Vector3& middle, double weight) {
-      area += weight;
-      for (std::size_t a = 0; a < 3; ++a) sum[a] += weight * middle[a];
-    };
-    if (nodes[n].right == 0) {
-      for (std::uint32_t item = nodes[n].begin; item < nodes[n].end; ++item) {
-        const auto& [a, b, c] = triangles_[item];
-        Vector3 normal = cross(b - a, c - a);
-        for (double& x : normal) x /= 2.0;
-        const Vector3 corners = a + b + c;
-        add({corners[0] / 3.0, corners[1] / 3.0, corners[2] / 3.0}, size_of(normal));
-        far.normal = far.normal + normal;
-      }
-    } else {
-      for (const std::size_t child : {n + 1, std::size_t{nodes[n].right}}) {
-        add(fars_[child].middle, areas[child]);
-        far.normal = far.normal + fars_[child].normal;
-      }
-    }
-    areas[n] = area;
-    const Box& box = nodes[n].box;
-    for (std::size_t a = 0; a < 3; ++a) {
-      far.middle[a] = area > 0.0 ? sum[a] / area : (box.low[a] + box.high[a]) / 2.0;
-      const double reach = std::max(far.middle[a] - box.low[a], box.high[a] - far.middle[a]);
-      far.squared_radius += reach * reach;
-    }
+    fars_[n] = far_of(n, &areas);
   }
   progress.report(1.0);
+}
+
+auto WindingNumbers::far_of(std::size_t n, std::vector<double>* areas) const -> Far {
+  const BoxTree::Node& node = tree_.nodes()[n];
+  Far far{};
+  double area = 0.0;
+  Vector3 sum{};
+  const auto add = [&](const Vector3& middle, double weight) {
+    area += weight;
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += weight * middle[a];
+  };
+  if (node.right == 0) {
+    for (std::uint32_t item = node.begin; item < node.end; ++item) {
+      const auto& [a, b, c] = triangles_[item];
+      Vector3 normal = cross(b - a, c - a);
+      for (double& x : normal) x /= 2.0;
+      const Vector3 corners = a + b + c;
+      add({corners[0] / 3.0, corners[1] / 3.0, corners[2] / 3.0}, size_of(normal));
+      far.normal = far.normal + normal;
+    }
+  } else {
+    for (const std::size_t child : {n + 1, std::size_t{node.right}}) {
+      add(fars_[child].middle, (*areas)[child]);
+      far.normal = far.normal + fars_[child].normal;
+    }
+  }
+  (*areas)[n] = area;
+  for (std::size_t a = 0; a < 3; ++a) {
+    far.middle[a] = area > 0.0 ? sum[a] / area : (node.box.low[a] + node.box.high[a]) / 2.0;
+    const double reach =
+        std::max(far.middle[a] - node.box.low[a], node.box.high[a] - far.middle[a]);
+    far.squared_radius += reach * reach;
+  }
+  return far;
 }
 
 double WindingNumbers::at(const Vector3& point) const {

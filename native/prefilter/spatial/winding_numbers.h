@@ -35,6 +35,8 @@ class WindingNumbers {
     Vector3 normal;  // the sum of their areas along their normals
     double squared_radius;
   };
+  // That of a node whose children have theirs; `areas` are the nodes', this one's is set.
+  Far far_of(std::size_t n, std::vector<double>* areas) const;
 
   std::vector<std::array<Vector3, 3>> triangles_;  // along the Morton curve
   BoxTree tree_;

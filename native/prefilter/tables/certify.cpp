@@ -87,26 +87,11 @@ class Rows {
   std::vector<std::vector<double>> rows_;
 };
 
-// The inverse of all candidates' products with the weights' sum fixed, and their weights.
-struct AllTexels {
-  AllTexels(const SubdomainSystem& system, const Progress& progress);
-
-  const double* inverse_of(int i) const { return inverse.data() + i * weights.count; }
-
-  std::vector<double> inverse;
-  Elimination weights;
-  double slack = 0.0;  // for each texel of a set: how much the ridge raises errors at the most
-};
-
-AllTexels::AllTexels(const SubdomainSystem& system, const Progress& progress) {
+// Cholesky's factor of the candidates' products, with `ridge` on their diagonal: by rows, below the
+// diagonal.
+std::vector<double> cholesky_factor(const SubdomainSystem& system, double ridge,
+                                    const Progress& progress) {
   const auto count = static_cast<std::size_t>(system.candidates());
-  const auto polynomials = static_cast<std::size_t>(system.polynomials());
-  double trace = 0.0;
-  for (std::size_t i = 0; i < count; ++i) trace += system.products_of(static_cast<int>(i))[i];
-  const double ridge = kRidge * trace / static_cast<double>(count);
-  slack = ridge * system.unit * system.unit * kMostWeight * kMostWeight;
-
-  // Cholesky's factor by rows, below the diagonal.
   std::vector<double> factor(count * count);
   for (std::size_t i = 0; i < count; ++i) {
     std::copy_n(system.products_of(static_cast<int>(i)), i + 1, factor.data() + i * count);
@@ -128,9 +113,14 @@ AllTexels::AllTexels(const SubdomainSystem& system, const Progress& progress) {
       for (std::size_t j = k + 1; j <= i; ++j) row[j] -= at_k * column[j];
     }
   }
-  // The factor's inverse, and the products of its columns.
+  return factor;
+}
+
+// The inverse of what has this factor: that of the factor, and the products of its columns.
+std::vector<double> inverse_of_factor(const std::vector<double>& factor, std::size_t count,
+                                      const Progress& progress) {
   std::vector<double> factor_inverse(count * count);
-  inverse.assign(count * count, 0.0);
+  std::vector<double> inverse(count * count);
   for (std::size_t i = 0; i < count; ++i) {
     progress.report(0.0);
     double* const row = factor_inverse.data() + i * count;
@@ -151,6 +141,34 @@ AllTexels::AllTexels(const SubdomainSystem& system, const Progress& progress) {
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < i; ++j) inverse[j * count + i] = inverse[i * count + j];
   }
+  return inverse;
+}
+
+// The inverse of all candidates' products with the weights' sum fixed, and their weights.
+struct AllTexels {
+  AllTexels(const SubdomainSystem& system, const Progress& progress);
+
+  const double* inverse_of(int i) const { return inverse.data() + i * weights.count; }
+
+  std::vector<double> inverse;
+  Elimination weights;
+  double slack = 0.0;  // for each texel of a set: how much the ridge raises errors at the most
+
+ private:
+  // Of one polynomial, by the inverse as it is without the weights' sum. `of_ones` are its rows'
+  // sums, and `sum_of_ones` the sum of these.
+  void add_weights(const SubdomainSystem& system, std::size_t polynomial,
+                   const std::vector<double>& of_ones, double sum_of_ones);
+};
+
+AllTexels::AllTexels(const SubdomainSystem& system, const Progress& progress) {
+  const auto count = static_cast<std::size_t>(system.candidates());
+  const auto polynomials = static_cast<std::size_t>(system.polynomials());
+  double trace = 0.0;
+  for (std::size_t i = 0; i < count; ++i) trace += system.products_of(static_cast<int>(i))[i];
+  const double ridge = kRidge * trace / static_cast<double>(count);
+  slack = ridge * system.unit * system.unit * kMostWeight * kMostWeight;
+  inverse = inverse_of_factor(cholesky_factor(system, ridge, progress), count, progress);
 
   std::vector<double> of_ones(count);
   double sum_of_ones = 0.0;
@@ -161,26 +179,31 @@ AllTexels::AllTexels(const SubdomainSystem& system, const Progress& progress) {
   weights.count = count;
   weights.error = system.filter_square;
   weights.sides.assign(polynomials * count, 0.0);
-  for (std::size_t p = 0; p < polynomials; ++p) {
-    double* const of_polynomial = weights.sides.data() + p * count;
-    double sum = 0.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      for (std::size_t j = 0; j < count; ++j) {
-        of_polynomial[i] += inverse[i * count + j] * system.right_side_of(static_cast<int>(j))[p];
-      }
-      sum += of_polynomial[i];
-      weights.error -= of_polynomial[i] * system.right_side_of(static_cast<int>(i))[p];
-    }
-    const double missing = system.weight_sum(static_cast<int>(p)) - sum;
-    weights.error += missing * missing / sum_of_ones;
-    for (std::size_t i = 0; i < count; ++i) of_polynomial[i] += missing / sum_of_ones * of_ones[i];
-  }
+  for (std::size_t p = 0; p < polynomials; ++p) add_weights(system, p, of_ones, sum_of_ones);
   for (std::size_t i = 0; i < count; ++i) {
     const double share = of_ones[i] / sum_of_ones;
     double* const row = inverse.data() + i * count;
     for (std::size_t j = 0; j < count; ++j) row[j] -= share * of_ones[j];
     weights.squares.push_back(row[i]);
   }
+}
+
+void AllTexels::add_weights(const SubdomainSystem& system, std::size_t polynomial,
+                            const std::vector<double>& of_ones, double sum_of_ones) {
+  const std::size_t count = weights.count;
+  double* const of_polynomial = weights.sides.data() + polynomial * count;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) {
+      of_polynomial[i] +=
+          inverse[i * count + j] * system.right_side_of(static_cast<int>(j))[polynomial];
+    }
+    sum += of_polynomial[i];
+    weights.error -= of_polynomial[i] * system.right_side_of(static_cast<int>(i))[polynomial];
+  }
+  const double missing = system.weight_sum(static_cast<int>(polynomial)) - sum;
+  weights.error += missing * missing / sum_of_ones;
+  for (std::size_t i = 0; i < count; ++i) of_polynomial[i] += missing / sum_of_ones * of_ones[i];
 }
 
 // The sets that have some texels, and others that are not excluded.

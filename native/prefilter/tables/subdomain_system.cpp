@@ -148,6 +148,77 @@ double trilinear_error(const FilterProducts& filters, const Subdomain& subdomain
   return error;
 }
 
+// A texel, and its numbers among those along x and along y.
+struct Candidate {
+  TexelOffset texel;
+  int along_x;
+  int along_y;
+};
+
+// All that the filter overlaps somewhere in the subdomain, by their supports.
+std::vector<Candidate> candidates_of(const FilterProducts& filters, const Subdomain& subdomain,
+                                     const AxisProducts& axis) {
+  std::vector<Candidate> candidates;
+  const double width = filters.width(subdomain.f_high());
+  for (int finer = 0; finer < filters.levels(); ++finer) {
+    const auto along_x = filters.overlapping(finer, subdomain.x_low(), subdomain.x_high(), width);
+    const auto along_y = filters.overlapping(finer, subdomain.y_low(), subdomain.y_high(), width);
+    for (int y = along_y.first; y <= along_y.last; ++y) {
+      for (int x = along_x.first; x <= along_x.last; ++x) {
+        candidates.push_back({{finer, x, y}, axis.number(finer, x), axis.number(finer, y)});
+      }
+    }
+  }
+  return candidates;
+}
+
+// The polynomials of a basis at a place.
+std::array<double, kMostTerms> polynomials_at(const OrthonormalBasis& basis,
+                                              const Subdomain::Node& node) {
+  const Terms terms = terms_at(node.x, node.y, node.f);
+  std::array<double, kMostTerms> polynomials{};
+  for (int p = 0; p < basis.count; ++p) {
+    for (int q = 0; q < kMostTerms; ++q) polynomials[p] += basis.coefficients[p][q] * terms[q];
+  }
+  return polynomials;
+}
+
+// [candidate][polynomial]: of a texel and the filter of a sample, times the polynomial, integrated
+// over the subdomain.
+std::vector<double> right_sides_of(const std::vector<Candidate>& candidates,
+                                   const OrthonormalBasis& basis,
+                                   const std::vector<Subdomain::Node>& nodes, AxisProducts* axis) {
+  std::vector<double> sides(candidates.size() * basis.count);
+  for (const Subdomain::Node& node : nodes) {
+    std::array<double, kMostTerms> polynomials = polynomials_at(basis, node);
+    for (int p = 0; p < basis.count; ++p) polynomials[p] *= node.weight;
+    const std::vector<double>& along_x = axis->with_sample(node.x, node.f);
+    const std::vector<double>& along_y = axis->with_sample(node.y, node.f);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const double product = along_x[candidates[i].along_x] * along_y[candidates[i].along_y];
+      for (int p = 0; p < basis.count; ++p) sides[i * basis.count + p] += product * polynomials[p];
+    }
+  }
+  return sides;
+}
+
+// [i][j]: of two texels over the plane.
+std::vector<double> products_between(const std::vector<Candidate>& candidates,
+                                     const AxisProducts& axis) {
+  const std::vector<double> of_texels = axis.of_texels();
+  const auto along_axis = [&](int i, int j) {
+    return of_texels[static_cast<std::size_t>(i) * axis.count() + j];
+  };
+  std::vector<double> products;
+  products.reserve(candidates.size() * candidates.size());
+  for (const Candidate& a : candidates) {
+    for (const Candidate& b : candidates) {
+      products.push_back(along_axis(a.along_x, b.along_x) * along_axis(a.along_y, b.along_y));
+    }
+  }
+  return products;
+}
+
 }  // namespace
 
 SubdomainSystem::SubdomainSystem(const Kernel& kernel, const TableShape& shape,
@@ -162,60 +233,23 @@ SubdomainSystem::SubdomainSystem(const Kernel& kernel, const TableShape& shape,
   trilinear_error = prefilter::trilinear_error(filters, subdomain, std::max(panels, 2));
 
   AxisProducts axis(filters, subdomain);
-  std::vector<std::pair<int, int>> numbers;  // of the candidates, along x and along y
-  std::vector<TexelOffset> all;
-  const double width = filters.width(subdomain.f_high());
-  for (int finer = 0; finer < section.levels; ++finer) {
-    const auto along_x = filters.overlapping(finer, subdomain.x_low(), subdomain.x_high(), width);
-    const auto along_y = filters.overlapping(finer, subdomain.y_low(), subdomain.y_high(), width);
-    for (int y = along_y.first; y <= along_y.last; ++y) {
-      for (int x = along_x.first; x <= along_x.last; ++x) {
-        all.push_back({finer, x, y});
-        numbers.emplace_back(axis.number(finer, x), axis.number(finer, y));
-      }
-    }
-  }
-
-  const std::size_t count = all.size();
-  std::vector<double> sides(count * basis.count);
-  for (const Subdomain::Node& node : subdomain.quadrature(panels)) {
-    const Terms terms = terms_at(node.x, node.y, node.f);
-    std::array<double, kMostTerms> polynomials{};
-    for (int p = 0; p < basis.count; ++p) {
-      for (int q = 0; q < kMostTerms; ++q) polynomials[p] += basis.coefficients[p][q] * terms[q];
-      polynomials[p] *= node.weight;
-    }
-    const std::vector<double>& along_x = axis.with_sample(node.x, node.f);
-    const std::vector<double>& along_y = axis.with_sample(node.y, node.f);
-    for (std::size_t i = 0; i < count; ++i) {
-      const double product = along_x[numbers[i].first] * along_y[numbers[i].second];
-      for (int p = 0; p < basis.count; ++p) sides[i * basis.count + p] += product * polynomials[p];
-    }
+  const std::vector<Candidate> candidates = candidates_of(filters, subdomain, axis);
+  const auto nodes = subdomain.quadrature(panels);
+  const std::vector<double> sides = right_sides_of(candidates, basis, nodes, &axis);
+  for (const Subdomain::Node& node : nodes) {
     filter_square +=
         node.weight * filters.of_sample(node.x, node.f) * filters.of_sample(node.y, node.f);
   }
-
   // Sums over texels of level 0 can be zero where supports overlap.
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < count; ++i) {
+  std::vector<Candidate> kept;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
     const double* side = sides.data() + i * basis.count;
-    if (std::any_of(side, side + basis.count, [](double value) { return value != 0.0; })) {
-      kept.push_back(i);
-      texels.push_back(all[i]);
-      right_sides.insert(right_sides.end(), side, side + basis.count);
-    }
+    if (std::all_of(side, side + basis.count, [](double value) { return value == 0.0; })) continue;
+    kept.push_back(candidates[i]);
+    texels.push_back(candidates[i].texel);
+    right_sides.insert(right_sides.end(), side, side + basis.count);
   }
-  const std::vector<double> of_texels = axis.of_texels();
-  const auto along_axis = [&](int i, int j) {
-    return of_texels[static_cast<std::size_t>(i) * axis.count() + j];
-  };
-  products.reserve(kept.size() * kept.size());
-  for (const std::size_t i : kept) {
-    for (const std::size_t j : kept) {
-      products.push_back(along_axis(numbers[i].first, numbers[j].first) *
-                         along_axis(numbers[i].second, numbers[j].second));
-    }
-  }
+  products = products_between(kept, axis);
   // Sums over texels of level 0 are integrals times the number of those in a cell.
   add_ramps(subdomain, section.levels == 3 ? shape.ramp_weight
                                            : shape.ramp_weight / (section.levels * section.levels));
@@ -230,14 +264,10 @@ void SubdomainSystem::add_ramps(const Subdomain& subdomain, double weight) {
     centres_.push_back({(texel.x + 0.5) * width - middle_x, (texel.y + 0.5) * width - middle_y});
   }
   for (const Subdomain::Node& node : subdomain.quadrature(1)) {
-    const Terms terms = terms_at(node.x, node.y, node.f);
-    const double x = node.x - middle_x;
-    const double y = node.y - middle_y;
+    const std::array<double, kMostTerms> polynomials = polynomials_at(basis, node);
     for (int p = 0; p < basis.count; ++p) {
-      double value = 0.0;
-      for (int q = 0; q < kMostTerms; ++q) value += basis.coefficients[p][q] * terms[q];
-      ramps_[p].x += node.weight * value * x;
-      ramps_[p].y += node.weight * value * y;
+      ramps_[p].x += node.weight * polynomials[p] * (node.x - middle_x);
+      ramps_[p].y += node.weight * polynomials[p] * (node.y - middle_y);
     }
   }
   const std::size_t count = centres_.size();
