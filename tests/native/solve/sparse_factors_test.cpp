@@ -89,6 +89,15 @@ TEST(SparseFactors, TellWhatIsNotDefinite) {
   EXPECT_FALSE(SparseFactors({{0, 0, 1.0}, {1, 0, 1.0}, {1, 1, 1.0}}, places, {}).is_definite());
   EXPECT_FALSE(SparseFactors({{0, 0, 1.0}, {1, 1, -1.0}}, places, {}).is_definite());
   EXPECT_FALSE(SparseFactors({{0, 0, 1.0}}, places, {}).is_definite());
+  // What is left of the second row is e; a row's own size is what it is compared with.
+  const auto is_definite = [&](double e, double size) {
+    return SparseFactors({{0, 0, size}, {1, 0, size}, {1, 1, size + e * size}}, places, {})
+        .is_definite();
+  };
+  for (const double size : {1e-20, 1.0, 1e20}) {
+    EXPECT_FALSE(is_definite(0x1p-44, size));  // 5.7e-14: rounding, for all that is known
+    EXPECT_TRUE(is_definite(0x1p-42, size));
+  }
 }
 
 }  // namespace

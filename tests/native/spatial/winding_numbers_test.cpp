@@ -52,6 +52,37 @@ TEST(WindingNumbers, OfAnOpenBox) {
   EXPECT_NEAR(winding.at({0.0, 0.5, 0.5}), 0.5 - missing, 1e-12);
 }
 
+// By the formula of van Oosterom and Strackee, triangle by triangle.
+double sum_of_solid_angles(const testing::Mesh& mesh, const Triangles& triangles,
+                           const Vector3& point) {
+  double sum = 0.0;
+  for (const auto& [i, j, k] : triangles) {
+    const Vector3 a = mesh.positions[static_cast<std::size_t>(i)] - point;
+    const Vector3 b = mesh.positions[static_cast<std::size_t>(j)] - point;
+    const Vector3 c = mesh.positions[static_cast<std::size_t>(k)] - point;
+    const double la = length(a);
+    const double lb = length(b);
+    const double lc = length(c);
+    sum += 2.0 * std::atan2(dot(a, cross(b, c)),
+                            la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  }
+  return sum / (4.0 * std::acos(-1.0));
+}
+
+TEST(WindingNumbers, OfWhatIsOpenAreTheSumOfSolidAngles) {
+  testing::Mesh mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 40);
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-0.5, 1.5);
+  for (Vector3& p : mesh.positions) p[2] *= p[0] < 0.5 ? 0.3 : 1.0;  // no longer round
+  Triangles triangles = triangles_of(mesh);
+  triangles.resize(triangles.size() / 3);
+  const WindingNumbers winding({mesh.positions, triangles}, Progress(), 1);
+  for (int i = 0; i < 300; ++i) {
+    const Vector3 point = {uniform(random), uniform(random), uniform(random)};
+    EXPECT_NEAR(winding.at(point), sum_of_solid_angles(mesh, triangles, point), 0.01);
+  }
+}
+
 TEST(WindingNumbers, ThreadsAndErrors) {
   const testing::Mesh mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 20);
   const Triangles triangles = triangles_of(mesh);
