@@ -44,7 +44,7 @@ ContourOptions contour_options(const std::string& interpolant, float isovalue, b
 
 using MeshArrays = std::pair<Array<double>, Array<std::int32_t>>;
 
-MeshArrays to_arrays(TriangleMesh mesh) {
+MeshArrays mesh_arrays(TriangleMesh mesh) {
   const auto vertices = static_cast<py::ssize_t>(mesh.positions.size());
   const auto triangles = static_cast<py::ssize_t>(mesh.triangles.size());
   return {to_array<double>(std::move(mesh.positions), {vertices, 3}),
@@ -75,7 +75,7 @@ MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpo
     const py::gil_scoped_release unlocked;
     mesh = contour_occupancies(octree.cells, octree.bounds, options);
   }
-  return to_arrays(std::move(mesh));
+  return mesh_arrays(std::move(mesh));
 }
 
 using TracedArrays = std::tuple<Array<double>, Array<std::int32_t>, Array<std::int64_t>>;
@@ -92,7 +92,7 @@ TracedArrays bound_traced_contour(const Octree& octree,
     traced = contour_traced(octree.cells, octree.bounds, options);
   }
   const auto count = static_cast<py::ssize_t>(traced.origins.size());
-  auto [positions, triangles] = to_arrays(std::move(traced.mesh));
+  auto [positions, triangles] = mesh_arrays(std::move(traced.mesh));
   return {std::move(positions), std::move(triangles),
           to_array<std::int64_t>(std::move(traced.origins), {count})};
 }
@@ -120,7 +120,7 @@ MeshArrays bound_contour_grid(const Array<float>& grid, const std::string& inter
     const py::gil_scoped_release unlocked;
     mesh = contour_grid(view, {origin, spacing}, options);
   }
-  return to_arrays(std::move(mesh));
+  return mesh_arrays(std::move(mesh));
 }
 
 using Pair = std::array<double, 2>;

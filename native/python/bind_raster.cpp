@@ -103,7 +103,7 @@ void add_path(Outline* outline, const std::string& letters, const Array<double>&
   }
 }
 
-ChannelValues values_of(const std::vector<double>& values) {
+ChannelValues channel_values(const std::vector<double>& values) {
   ChannelValues out{};
   std::copy(values.begin(), values.end(), out.begin());
   return out;
@@ -113,9 +113,9 @@ Paint linear_paint(const std::vector<double>& constant, const std::vector<double
                    const std::vector<double>& along_y) {
   Paint paint;
   paint.channels = static_cast<int>(constant.size());
-  paint.constant = values_of(constant);
-  paint.along_x = values_of(along_x);
-  paint.along_y = values_of(along_y);
+  paint.constant = channel_values(constant);
+  paint.along_x = channel_values(along_x);
+  paint.along_y = channel_values(along_y);
   const ChannelValues none{};
   const bool is_constant = paint.along_x == none && paint.along_y == none;
   paint.kind = is_constant ? Paint::Kind::kConstant : Paint::Kind::kLinear;
@@ -136,7 +136,7 @@ Paint stops_paint(bool is_radial, const std::array<double, 2>& start, double sta
   Paint paint;
   paint.kind = is_radial ? Paint::Kind::kRadialStops : Paint::Kind::kLinearStops;
   paint.channels = static_cast<int>(stops.front().second.size());
-  for (const auto& [offset, value] : stops) paint.stops.push_back({offset, values_of(value)});
+  for (const auto& [offset, value] : stops) paint.stops.push_back({offset, channel_values(value)});
   paint.spread = spread_of(spread);
   paint.start = point_of(start);
   paint.end = point_of(end);

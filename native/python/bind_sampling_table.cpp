@@ -43,7 +43,7 @@ SamplingTable bound_build(const std::string& filter, int texels, int grid, int s
   return build_sampling_table(options);
 }
 
-std::vector<double> values_of(const Array<double>& array) {
+std::vector<double> numbers_of(const Array<double>& array) {
   return {array.data(), array.data() + array.size()};
 }
 
@@ -61,10 +61,10 @@ SamplingTable bound_make(const std::string& filter, int texels, int grid, int sl
       const int* const offset = offsets.data() + k;
       section.texels.push_back({offset[0], offset[1], offset[2]});
     }
-    section.coefficients = values_of(coefficients);
-    section.errors = values_of(errors);
-    section.trilinear_errors = values_of(trilinear_errors);
-    section.gaps = values_of(gaps);
+    section.coefficients = numbers_of(coefficients);
+    section.errors = numbers_of(errors);
+    section.trilinear_errors = numbers_of(trilinear_errors);
+    section.gaps = numbers_of(gaps);
   }
   check_table(table);
   return table;

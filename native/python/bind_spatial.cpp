@@ -21,7 +21,7 @@ namespace {
 // The triangle, the weights of its corners, and the distance of each point.
 using Found = std::tuple<Array<std::int64_t>, Array<double>, Array<double>>;
 
-Found to_arrays(const std::vector<SurfacePoint>& points) {
+Found point_arrays(const std::vector<SurfacePoint>& points) {
   const auto count = static_cast<py::ssize_t>(points.size());
   Array<std::int64_t> triangles(count);
   Array<double> weights({count, py::ssize_t{3}});
@@ -53,7 +53,7 @@ Found bound_find(const NearestPoints& tree, const Array<double>& points, const p
     const py::gil_scoped_release unlocked;
     found = tree.find(rows_of(points), progress, threads);
   }
-  return to_arrays(found);
+  return point_arrays(found);
 }
 
 Found bound_nearest_points(const Array<double>& points, const py::array& positions,
@@ -65,7 +65,7 @@ Found bound_nearest_points(const Array<double>& points, const py::array& positio
     const py::gil_scoped_release unlocked;
     found = nearest_points(rows_of(points), mesh, progress, threads);
   }
-  return to_arrays(found);
+  return point_arrays(found);
 }
 
 // The points, and which of them the corners have.
@@ -83,7 +83,7 @@ std::tuple<Found, Array<std::int32_t>> bound_corner_points(
                                threads);
   }
   const auto count = static_cast<py::ssize_t>(found.corners.size());
-  return {to_arrays(found.points),
+  return {point_arrays(found.points),
           to_array<std::int32_t>(std::move(found.corners), {count, py::ssize_t{3}})};
 }
 
