@@ -357,8 +357,9 @@ setup_host() {
   unlock "$cache_dir/.lock"
 }
 
-# setup: installs or makes all that is missing, and sets blender_kind, blender_tag, host_tag, python_tags,
-# python_headers and pybind11_include.
+# setup: installs or makes all that is missing, and sets blender_kind, blender_tag, host_tag, python_tags (of all
+# Pythons that there are headers of), own_tags (of those that Blender and python3 are beside it), python_headers and
+# pybind11_include.
 setup() {
   lock "$cache_dir/.lock"
   setup_host
@@ -370,6 +371,9 @@ setup() {
   fi
   find_headers
   host_tag=$(/usr/bin/python3 -c 'import sys; print("cp%d%d" % sys.version_info[:2])')
+  own_tags=("$blender_tag")
+  [[ $blender_kind == root || $host_tag == "$blender_tag" || " ${python_tags[*]} " != *" $host_tag "* ]] ||
+    own_tags+=("$host_tag")
   unlock "$cache_dir/.lock"
 }
 
@@ -417,11 +421,11 @@ configure_release() {
     "${source_options[@]}" "PREFILTER_WHEELS=$wheels_dir"
 }
 
-# build_packages: brings the Python package of every Python up to date.
+# build_packages TAG...: brings the packages of these Pythons up to date.
 build_packages() {
   lock "$(build_lock release)"
   configure_release
-  compile release "${python_tags[@]/#/package_}"
+  compile release "${@/#/package_}"
   unlock "$(build_lock release)"
 }
 
@@ -445,19 +449,22 @@ package_with() {
   /usr/bin/python3 "$source_dir/scripts/packager" "$@" "--reader=$reader_dir" -- "${blender[@]}"
 }
 
-# package_extension [--install FOLDER]: makes build/prefilter-<version>.zip where its contents are new, and sets
-# extension_zip to it. Packages must be built. FOLDER, for BLENDER_USER_RESOURCES, then has it installed and enabled.
+# package_extension TAGS [--install FOLDER]: makes build/prefilter-<version>.zip for these Pythons (TAG or 'TAG TAG...')
+# where its contents are new, and sets extension_zip to it. Their packages must be built. FOLDER, for
+# BLENDER_USER_RESOURCES, then has it installed and enabled.
 package_extension() {
+  local tags
+  read -ra tags <<<"$1"
   lock "$(build_lock release)"
-  extension_zip=$(package_with extension "${python_tags[@]/#/--tag=}" "${linked_sources[@]/#*=/--linked=}" \
-    "--wheels=$wheels_dir" "$@")
+  extension_zip=$(package_with extension "${tags[@]/#/--tag=}" "${linked_sources[@]/#*=/--linked=}" \
+    "--wheels=$wheels_dir" "${@:2}")
   unlock "$(build_lock release)"
 }
 
-# ensure_extension: packages the extension and installs it in build/blender/<tag>, where its contents are
-# new; then Blender is to use that folder, unless the caller has set BLENDER_USER_RESOURCES.
+# ensure_extension: packages the extension for this Blender and installs it in build/blender/<tag>, where its contents
+# are new; then Blender is to use that folder, unless the caller has set BLENDER_USER_RESOURCES.
 ensure_extension() {
   [[ -z ${BLENDER_USER_RESOURCES:-} ]] || return 0
-  package_extension --install "$build_dir/blender/$blender_tag"
+  package_extension "$blender_tag" --install "$build_dir/blender/$blender_tag"
   export BLENDER_USER_RESOURCES=$build_dir/blender/$blender_tag
 }

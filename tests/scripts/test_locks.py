@@ -10,7 +10,7 @@ import pytest
 CHECKOUT = Path(__file__).resolve().parents[2]
 LIBRARY = f"""
 . '{CHECKOUT}/scripts/lib.sh'
-build_dir=$PWD log=$PWD/log python_tags=(cp311)
+build_dir=$PWD log=$PWD/log
 slowly() {{ echo "began $1" >>"$log"; sleep 0.1; echo "ended $1" >>"$log"; }}
 ninja() {{ slowly compiling; }}
 cmake() {{ slowly configuring; }}
@@ -18,11 +18,13 @@ configure_release() {{ configure release NAME=VALUE; }}
 """
 
 
-@pytest.mark.parametrize("command", ["compile release", "configure release A=B", "build_packages"])
+@pytest.mark.parametrize(
+    "command", ["compile release", "configure release A=B", "build_packages cp311"]
+)
 def test_a_build_folder_is_changed_by_one_process_at_a_time(tmp_path: Path, command: str) -> None:
     started = [
         subprocess.Popen(["bash", "-c", LIBRARY + each], cwd=tmp_path)
-        for each in (command, command, "build_packages")
+        for each in (command, command, "build_packages cp311")
     ]
     assert [process.wait(timeout=30) for process in started] == [0, 0, 0]
     log = (tmp_path / "log").read_text().splitlines()
@@ -44,7 +46,9 @@ def test_folders_are_locked_each_by_itself(tmp_path: Path) -> None:
 
 
 def test_what_fails_under_a_lock_fails_the_program_and_leaves_the_lock(tmp_path: Path) -> None:
-    failing = "ninja() { return 3; }\nconfigure_release() { :; }\nbuild_packages\necho went on"
+    failing = (
+        "ninja() { return 3; }\nconfigure_release() { :; }\nbuild_packages cp311\necho went on"
+    )
     done = subprocess.run(
         ["bash", "-c", LIBRARY + failing], cwd=tmp_path, timeout=30, capture_output=True, text=True
     )
