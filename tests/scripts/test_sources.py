@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 import sources
+from small_modules import cache_folder
 
 CHECKOUT = Path(__file__).resolve().parents[2]
 HOSTS = r"pypi\.org|pythonhosted|crates\.io\b.*/|://[\w.]*crates\.io|maven\.org|maven\.apache|npmjs|debian\.org"
@@ -40,12 +41,36 @@ def registry(tmp_path: Path) -> Iterator[tuple[str, Path]]:
 @pytest.mark.parametrize(("name", "source"), sources.read_table().items())
 def test_a_table_says_all_that_is_needed(name: str, source: dict[str, object]) -> None:
     library, _, version = name.rpartition("-")
-    assert re.fullmatch(r"[0-9.]+", version)
+    assert re.fullmatch(r"[0-9.]+(beta[0-9]|\+git[0-9]{8})?", version)
     assert (CHECKOUT / "native" / library / "CMakeLists.txt").is_file()
     assert len({"debian", "pypi", "crate"} & set(source)) == 1
     assert re.fullmatch("[0-9a-f]{64}", str(source["sha256"]))
     assert source["license"]
     assert source["kept"]
+    assert source["security"]
+
+
+@pytest.mark.parametrize(
+    ("library", "file", "pattern"),
+    [
+        ("basisu", "encoder/basisu_comp.h", r'BASISU_LIB_VERSION_STRING "(.*)"'),
+        ("bc7enc", "bc7enc.cpp", r"Geldreich, Jr\. (\d+)/(\d+)/(\d+) "),
+        ("clipper2", "include/clipper2/clipper.version.h", r'CLIPPER2_VERSION = "(.*)"'),
+        ("libdeflate", "libdeflate.h", r'LIBDEFLATE_VERSION_STRING\s+"(.*)"'),
+        ("opensubdiv", "opensubdiv/version.h", r"OPENSUBDIV_VERSION v(\d)_(\d)_(\d)"),
+        ("simde", "simde/simde-common.h", r"(?s)MAJOR (\d).*MINOR (\d).*MICRO (\d)"),
+        ("zstd", "zstd.h", r"(?s)MAJOR +(\d).*MINOR +(\d).*RELEASE +(\d)"),
+    ],
+)
+def test_a_version_is_the_one_that_the_source_says(library: str, file: str, pattern: str) -> None:
+    (name,) = (name for name in sources.read_table() if name.startswith(f"{library}-"))
+    path = cache_folder() / name / file
+    if not path.exists():
+        pytest.skip("scripts/setup has not been run")
+    found = re.search(pattern, path.read_text())
+    assert found
+    said = found.groups() if library != "bc7enc" else (found[3], found[1], found[2])
+    assert name == f"{library}-{'.'.join(said)}"
 
 
 def test_the_scripts_know_the_same_libraries() -> None:
