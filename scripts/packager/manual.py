@@ -2,14 +2,15 @@
 
 """The manual that goes along with the add-on: pages of docs/ as HTML, which any browser opens.
 
-Of Markdown it knows what these pages use: headings, paragraphs, lists in lists, tables, code,
-links, pictures, emphasis.
+Needs markdown-it-py, which reads Markdown; scripts/packager.txt has its version.
 """
 
-import html
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
+
+from markdown_it import MarkdownIt
+from markdown_it.token import Token
 
 from packager.project import SOURCE, PackagingError
 
@@ -48,18 +49,19 @@ th, td {{ text-align: left; vertical-align: top; }}
 </html>
 """
 _HOME = f'<p><a href="{INDEX}.html">Prefilter</a></p>\n'
-_ITEM = re.compile(r"( *)(-|\d+\.) +(.*)")
-_LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
-_HELD = re.compile("\0(\\d+)\0")
+_MARKDOWN = MarkdownIt("commonmark", {"xhtmlOut": False}).enable("table")
 
 
 def pictures(docs: Path = DOCS) -> list[Path]:
     """Returns the pictures that go along."""
     found = set()
     for page in PAGES:
-        for mark, _, target in _LINK.findall((docs / f"{page}.md").read_text(encoding="utf-8")):
-            if mark and (docs / target).stat().st_size <= LARGEST_PICTURE:
-                found.add(docs / target)
+        for token in _MARKDOWN.parse((docs / f"{page}.md").read_text(encoding="utf-8")):
+            for child in token.children or ():
+                if child.type == "image":
+                    picture = docs / str(child.attrs["src"])
+                    if picture.stat().st_size <= LARGEST_PICTURE:
+                        found.add(picture)
     return sorted(found)
 
 
@@ -108,161 +110,60 @@ def check_links(page: str, bodies: dict[str, str]) -> None:
             raise PackagingError(f"docs/{page}.md: found a link to '{target}', which is not there")
 
 
-def body(text: str, docs: Path, kept: list[Path]) -> str:
-    """Returns a page of Markdown as HTML."""
-    text = re.sub(r"<!--.*?-->\n?", "", text, flags=re.S)
-    return "\n".join(_Blocks(docs, kept).of(text.split("\n")))
+def body(text: str, docs: Path, kept: Collection[Path]) -> str:
+    """Returns a page of Markdown as HTML, with the pictures in `kept`."""
+    places: dict[str, int] = {}
+    tokens = []
+    for token in _MARKDOWN.parse(text):
+        if token.type == "html_block" and token.content.startswith("<!--"):
+            continue
+        if token.type == "inline":
+            if tokens[-1].type == "heading_open":
+                tokens[-1].attrSet("id", _place(token.children or (), places))
+            token.children = list(_links_that_lead_somewhere(token.children or (), docs, kept))
+        tokens.append(token)
+    return str(_MARKDOWN.renderer.render(tokens, _MARKDOWN.options, {})).rstrip()
 
 
-class _Blocks:
-    """Makes HTML of blocks of lines."""
-
-    def __init__(self, docs: Path, kept: list[Path]) -> None:
-        self._docs = docs
-        self._kept = set(kept)
-        self._places: dict[str, int] = {}
-
-    def of(self, lines: list[str]) -> Iterator[str]:
-        """Yields the HTML of lines."""
-        i = 0
-        while i < len(lines):
-            line = lines[i]
-            end = i + 1
-            if not line.strip():
-                pass
-            elif line.startswith("```"):
-                while end < len(lines) and not lines[end].startswith("```"):
-                    end += 1
-                yield _code(lines[i + 1 : end])
-                end += 1
-            elif line.startswith("    "):
-                while end < len(lines) and (
-                    lines[end].startswith("    ") or not lines[end].strip()
-                ):
-                    end += 1
-                yield _code([one[4:] for one in lines[i:end]])
-            elif heading := re.match(r"(#+) +(.*)", line):
-                yield self._heading(len(heading[1]), heading[2])
-            elif line.startswith("|"):
-                while end < len(lines) and lines[end].startswith("|"):
-                    end += 1
-                yield self._table(lines[i:end])
-            elif _ITEM.match(line):
-                end = _end_of_list(lines, i)
-                yield self._list(lines[i:end])
-            else:
-                while end < len(lines) and _goes_on(lines[end]):
-                    end += 1
-                yield f"<p>{self._inline(' '.join(one.strip() for one in lines[i:end]))}</p>"
-            i = end
-
-    def _heading(self, level: int, text: str) -> str:
-        inline = self._inline(text)
-        plain = html.unescape(re.sub(r"<[^>]*>", "", inline))
-        place = re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
-        count = self._places.get(place, 0)
-        self._places[place] = count + 1
-        place += f"-{count}" if count else ""
-        return f'<h{level} id="{place}">{inline}</h{level}>'
-
-    def _table(self, lines: list[str]) -> str:
-        rows = [[cell.strip() for cell in _cells(line)] for line in lines]
-        parts = ["<table>"]
-        for i, row in enumerate(rows):
-            if i != 1:
-                kind = "td" if i else "th"
-                cells = "".join(f"<{kind}>{self._inline(cell)}</{kind}>" for cell in row)
-                parts.append(f"<tr>{cells}</tr>")
-        return "\n".join([*parts, "</table>"])
-
-    def _list(self, lines: list[str]) -> str:
-        first = _ITEM.match(lines[0])
-        assert first is not None
-        kind = "ul" if first[2] == "-" else "ol"
-        items: list[list[str]] = []
-        width = 0
-        for line in lines:
-            found = _ITEM.match(line)
-            if found and len(found[1]) == len(first[1]):
-                width = found.start(3)
-                items.append([found[3]])
-            else:
-                items[-1].append(line[width:] if not line[:width].strip() else line.lstrip())
-        parts = []
-        for item in items:
-            made = list(self.of(item))
-            # A single paragraph stands in its item by itself.
-            made[0] = re.sub(r"^<p>(.*)</p>$", r"\1", made[0], flags=re.S)
-            parts.append(f"<li>{chr(10).join(made)}</li>")
-        return "\n".join([f"<{kind}>", *parts, f"</{kind}>"])
-
-    def _inline(self, text: str) -> str:
-        held: list[str] = []
-
-        def hold(made: str) -> str:
-            held.append(made)
-            return f"\0{len(held) - 1}\0"
-
-        def link(found: re.Match[str]) -> str:
-            mark, shown, target = found.groups()
-            if mark:
-                return hold(self._picture(shown, target))
-            opening = self._opening(target)
-            return f"{hold(opening)}{shown}{hold('</a>')}" if opening else shown
-
-        text = re.sub(r"(`+)(.+?)\1", lambda one: hold(f"<code>{_escaped(one[2])}</code>"), text)
-        text = text.replace("<br>", hold("<br>"))
-        text = re.sub(r"\\([\\|*_`<>\[\]])", lambda one: hold(_escaped(one[1])), text)
-        text = _escaped(_LINK.sub(link, text))
-        text = re.sub(r"\*\*(.+?)\*\*", r"<strong>\1</strong>", text)
-        text = re.sub(r"\*(.+?)\*", r"<em>\1</em>", text)
-        while _HELD.search(text):
-            text = _HELD.sub(lambda one: held[int(one[1])], text)
-        return text
-
-    def _picture(self, shown: str, target: str) -> str:
-        if self._docs / target in self._kept:
-            return f'<img src="{target}" alt="{html.escape(shown)}">'
-        return f"<em>({_escaped(shown)})</em>"
-
-    def _opening(self, target: str) -> str:
-        """Returns the tag of a link; nothing where it leads to a page that does not go along."""
-        if "://" in target:
-            return f'<a href="{html.escape(target)}">'
-        name, mark, place = target.partition("#")
-        page = name.removesuffix(".md")
-        if name and (page not in PAGES or not name.endswith(".md")):
-            return ""
-        return f'<a href="{page + ".html" if name else ""}{mark}{place}">'
+def _place(heading: Sequence[Token], places: dict[str, int]) -> str:
+    """Returns the name of a heading's place, as GitHub gives them; `places` counts equal ones."""
+    plain = "".join(token.content for token in heading)
+    place = re.sub(r"[^\w\- ]", "", plain.lower()).replace(" ", "-")
+    count = places.get(place, 0)
+    places[place] = count + 1
+    return f"{place}-{count}" if count else place
 
 
-def _escaped(text: str) -> str:
-    return html.escape(text, quote=False)
+def _links_that_lead_somewhere(
+    tokens: Sequence[Token], docs: Path, kept: Collection[Path]
+) -> Iterator[Token]:
+    """Yields a text's tokens; links to pages that do not go along, and pictures, become text."""
+    are_kept = []
+    for token in tokens:
+        if token.type == "link_open":
+            target = _target(str(token.attrs["href"]))
+            are_kept.append(bool(target))
+            token.attrs["href"] = target
+        if token.type.startswith("link_") and not are_kept[-1]:
+            is_shown = False
+        else:
+            is_shown = not (token.type == "html_inline" and token.content.startswith("<!--"))
+        if token.type == "link_close":
+            are_kept.pop()
+        if token.type == "image" and docs / str(token.attrs["src"]) not in kept:
+            yield Token("em_open", "em", 1)
+            yield Token("text", "", 0, content=f"({token.content})")
+            yield Token("em_close", "em", -1)
+        elif is_shown:
+            yield token
 
 
-def _code(lines: list[str]) -> str:
-    return f"<pre><code>{_escaped(chr(10).join(lines).rstrip())}</code></pre>"
-
-
-def _cells(line: str) -> list[str]:
-    """Returns the cells of a row; bars in code, and those with a backslash, part none."""
-    return re.findall(r"((?:`[^`]*`|\\.|[^|`\\])*)\|", line.strip().removeprefix("|"))
-
-
-def _goes_on(line: str) -> bool:
-    """Tells whether a line belongs to the paragraph of the line above."""
-    return bool(line.strip()) and not (line.startswith(("#", "|", "```")) or _ITEM.match(line))
-
-
-def _end_of_list(lines: list[str], start: int) -> int:
-    """Returns where a list ends: before a line without indent that is no item, after a gap."""
-    end = start + 1
-    while end < len(lines):
-        line = lines[end]
-        is_after_gap = not lines[end - 1].strip()
-        if line.strip() and is_after_gap and not line.startswith("  ") and not _ITEM.match(line):
-            break
-        if line.startswith(("#", "|", "```")):
-            break
-        end += 1
-    return end
+def _target(link: str) -> str:
+    """Returns where a link leads in the manual; nowhere where to a page that does not go along."""
+    if "://" in link:
+        return link
+    name, mark, place = link.partition("#")
+    page = name.removesuffix(".md")
+    if name and (page not in PAGES or not name.endswith(".md")):
+        return ""
+    return f"{page + '.html' if name else ''}{mark}{place}"

@@ -95,20 +95,23 @@ def made(text):
     ("text", "expected"),
     [
         ("a *b* **c** `d*e*`", "<p>a <em>b</em> <strong>c</strong> <code>d*e*</code></p>"),
-        ("a < b & c\nd", "<p>a &lt; b &amp; c d</p>"),
+        ("a < b & c\nd", "<p>a &lt; b &amp; c\nd</p>"),
         ("## A `b`, c", '<h2 id="a-b-c">A <code>b</code>, c</h2>'),
         ("[a](bake.md#b)", '<p><a href="bake.html#b">a</a></p>'),
         ("[a *b*](benchmarks.md)", "<p>a <em>b</em></p>"),
         ("[`a`](https://b.c/?d&e)", '<p><a href="https://b.c/?d&amp;e"><code>a</code></a></p>'),
         ("![a b](pictures/none.png)", "<p><em>(a b)</em></p>"),
-        ("    a\n\n    b <c>", "<pre><code>a\n\nb &lt;c&gt;</code></pre>"),
-        ("```python\na\n\n# b\n```\nc", "<pre><code>a\n\n# b</code></pre>\n<p>c</p>"),
-        ("- a\n  b\n- c", "<ul>\n<li>a b</li>\n<li>c</li>\n</ul>"),
-        ("1. a\n   - b\n2. c", "<ol>\n<li>a\n<ul>\n<li>b</li>\n</ul></li>\n<li>c</li>\n</ol>"),
+        ("    a\n\n    b <c>", "<pre><code>a\n\nb &lt;c&gt;\n</code></pre>"),
         (
-            "|a|b|\n|---|---|\n|`c|d`|e \\| f<br>g|",
-            "<table>\n<tr><th>a</th><th>b</th></tr>\n"
-            "<tr><td><code>c|d</code></td><td>e | f<br>g</td></tr>\n</table>",
+            "```python\na\n\n# b\n```\nc",
+            '<pre><code class="language-python">a\n\n# b\n</code></pre>\n<p>c</p>',
+        ),
+        ("- a\n  b\n- c", "<ul>\n<li>a\nb</li>\n<li>c</li>\n</ul>"),
+        ("1. a\n   - b\n2. c", "<ol>\n<li>a\n<ul>\n<li>b</li>\n</ul>\n</li>\n<li>c</li>\n</ol>"),
+        (
+            "|a|b|\n|---|---|\n|`c\\|d`|e \\| f<br>g|",
+            "<table>\n<thead>\n<tr>\n<th>a</th>\n<th>b</th>\n</tr>\n</thead>\n<tbody>\n"
+            "<tr>\n<td><code>c|d</code></td>\n<td>e | f<br>g</td>\n</tr>\n</tbody>\n</table>",
         ),
     ],
 )
