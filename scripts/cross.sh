@@ -3,10 +3,9 @@
 # shellcheck shell=bash
 # Functions that build the package for systems other than this machine's. Source it after lib.sh.
 
-# Blender's names of them. Each has a toolchain in native/cross/zig.cmake, and a build folder build/cross/<platform>.
-platforms=(linux-x64 linux-arm64 windows-x64 macos-arm64)
-# The Pythons of the official Blenders: 4.2 to 5.0, and from 5.1 on.
-official_tags=(cp311 cp313)
+# Those of scripts/platforms.toml; each has a build folder build/cross/<platform>.
+mapfile -t platforms < <(sed -n 's/^\[\(.*\)\]$/\1/p' "$source_dir/scripts/platforms.toml")
+read -ra official_tags < <(sed -n 's/^pythons = //p' "$source_dir/scripts/platforms.toml" | tr -d '[]",')
 zig_dir=$cache_dir/zig-$(sha256sum <"$source_dir/scripts/toolchain.txt" | cut -c 1-12)
 
 # ensure_zig: installs the compiler of scripts/toolchain.txt, with a program for each of its parts as CMake wants them.
@@ -56,29 +55,11 @@ linux_headers() {
 
 # ensure_cpython PLATFORM TAG: fetches CPython for Windows or macOS; prints the folder of its headers.
 ensure_cpython() {
-  local system=${1%%-*} version=3.${2#cp3} release classifier hash
-  case $1-$2 in
-    windows-x64-cp311)
-      release=3.11.3-1.5.9 classifier=windows-x86_64
-      hash=3263a50b256447bb7b9e604d6587627e419891370fc33b94469e6a06ff4de834
-      ;;
-    windows-x64-cp313)
-      release=3.13.0-1.5.11 classifier=windows-x86_64
-      hash=dd3590a19413e7e3e8b01d8dfd88ee2fc97f2fd0079e50d47fa6a55c41b0afc3
-      ;;
-    # There is none for arm64; of what its headers tell, only the size of long double differs, which no header asks for.
-    macos-arm64-cp311)
-      release=3.11.3-1.5.9 classifier=macosx-x86_64
-      hash=223aed1538351b9df68781f60afa865c5ca6cc640353cb5d46b4706049cec5e4
-      ;;
-    macos-arm64-cp313)
-      release=3.13.0-1.5.11 classifier=macosx-arm64
-      hash=7ad951d158fcb50d5fc3d485712c700c248ce1c747a64148c7dfda5ec140cf0b
-      ;;
-    *) fail "there is no CPython of $2 for $1" ;;
-  esac
-  fetch_maven "python-$system-$version" "org.bytedeco:cpython:$release:jar:$classifier" "$hash"
-  local folder=$cache_dir/python-$system-$version/org/bytedeco/cpython/$classifier/include
+  local system=${1%%-*} version=3.${2#cp3} artifact hash
+  read -r artifact hash < <(sed -n "/^\[$1\]$/,/^\[/s/^$2 = \"\(.*\)\"$/\1/p" "$source_dir/scripts/platforms.toml") ||
+    fail "there is no CPython of $2 for $1"
+  fetch_maven "python-$system-$version" "$artifact" "$hash"
+  local folder=$cache_dir/python-$system-$version/org/bytedeco/cpython/${artifact##*:}/include
   [[ $system == windows ]] || folder+=/python$version
   printf '%s\n' "$folder"
 }

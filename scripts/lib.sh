@@ -388,16 +388,19 @@ configured() {
   done
 }
 
-# configure PRESET NAME=VALUE...: runs cmake where the build folder is not configured so.
+# configure PRESET NAME=VALUE...: runs cmake where the build folder is not configured so. Beside the presets of
+# CMakePresets.json there is cross/<platform>, for each table of scripts/platforms.toml.
 configure() {
-  local preset=$1 folder=$build_dir/$1
+  local preset=$1 folder=$build_dir/$1 how=(--preset "$1")
+  [[ $preset != cross/* ]] ||
+    how=(-S . -B "$folder" -G Ninja --toolchain "$source_dir/native/cross/zig.cmake" -DCMAKE_BUILD_TYPE=Release)
   shift
   lock "$(build_lock "$preset")"
   if ! configured "$folder" "CMAKE_HOME_DIRECTORY=$source_dir" "$@"; then
     note "configuring build/$preset"
     mkdir -p "$folder"
     rm -f "$folder/build.ninja"
-    if ! (cd "$source_dir" && cmake --fresh --preset "$preset" "${@/#/-D}") </dev/null >"$folder/.configured" 2>&1; then
+    if ! (cd "$source_dir" && cmake --fresh "${how[@]}" "${@/#/-D}") </dev/null >"$folder/.configured" 2>&1; then
       cat "$folder/.configured" >&2
       fail "cmake failed"
     fi

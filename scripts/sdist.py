@@ -22,6 +22,7 @@ FILES = (
     "CMakeLists.txt",
     "LICENSE",
     "blender_manifest.toml",
+    "scripts/platforms.toml",
     "scripts/sources.toml",
 )
 FOLDERS = ("native", "bench/voxels", "tests/python")

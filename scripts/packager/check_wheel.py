@@ -79,14 +79,7 @@ def bundled_faults(name: str, names: Sequence[str], modules: Sequence[str]) -> l
 
 def suffix_faults(path: str, python: str, platform: Platform) -> list[str]:
     """Returns whether Python would not find the module, by the end of its name."""
-    minor = python.removeprefix("cp3")
-    suffix = {
-        "linux-x64": f".cpython-3{minor}-x86_64-linux-gnu.so",
-        "linux-arm64": f".cpython-3{minor}-aarch64-linux-gnu.so",
-        "windows-x64": f".cp3{minor}-win_amd64.pyd",
-        "macos-arm64": f".cpython-3{minor}-darwin.so",
-    }[platform.name]
-    wanted = f"{NAME}/_native{suffix}"
+    wanted = f"{NAME}/_native{platform.suffix_for(python)}"
     return [] if path == wanted else [f"holds {path}; {platform.name}'s Python looks for {wanted}"]
 
 

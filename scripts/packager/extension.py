@@ -12,7 +12,7 @@ from pathlib import Path
 from packager import blender as blenders
 from packager import manual
 from packager.licenses import license_texts
-from packager.platforms import PLATFORMS, here
+from packager.platforms import OFFICIAL_TAGS, PLATFORMS, here
 from packager.project import (
     BUILD,
     NAME,
@@ -24,8 +24,6 @@ from packager.project import (
 )
 from packager.wheels import make_wheel
 
-# The Pythons of official Blenders: 4.2 to 5.0, and from 5.1 on.
-OFFICIAL_TAGS = ("cp311", "cp313")
 DEBIAN_TAGS = ("cp313", "cp314")  # Of Debian 13's Blender, and of sid's.
 
 

@@ -113,7 +113,7 @@ def check_links(page: str, bodies: dict[str, str]) -> None:
 def body(text: str, docs: Path, kept: Collection[Path]) -> str:
     """Returns a page of Markdown as HTML, with the pictures in `kept`."""
     places: dict[str, int] = {}
-    tokens = []
+    tokens: list[Token] = []
     for token in _MARKDOWN.parse(text):
         if token.type == "html_block" and token.content.startswith("<!--"):
             continue

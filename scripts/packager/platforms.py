@@ -4,23 +4,31 @@
 
 import platform
 import re
-from collections.abc import Sequence
+import tomllib
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from packager.project import SOURCE
+
 Version = tuple[int, int]
+_TABLE = tomllib.loads((SOURCE / "scripts/platforms.toml").read_text())
+_FORMS = {"Linux": "ELF", "Windows": "PE", "Darwin": "Mach-O"}
+
+OFFICIAL_TAGS: tuple[str, ...] = tuple(_TABLE["pythons"])
+"""The Pythons of official Blenders."""
 
 
 @dataclass(frozen=True)
 class Platform:
-    """A system and a processor.
+    """A system and a processor: a table of scripts/platforms.toml, which says more.
 
     Attributes:
         name: Blender's, such as linux-x64.
         form: Of its modules: ELF, PE or Mach-O.
         machine: The processor, as modules.py names it.
-        tag: Regular expression of the last part of a wheel's name; its groups are the lowest
-            version of the system that the wheel is for: glibc's or macOS's. Windows has none.
-        tag_format: The same to be filled in.
+        wheel: The last part of a wheel's name, to be filled in with the lowest version of the
+            system that the wheel is for: glibc's or macOS's. Windows has none.
+        suffix: Of a module's name, to be filled in with Python's version.
         libraries: Regular expression of the libraries that every such system has; `{python}` is
             Python's version, such as 311.
         newest: The newest version of the system that a module may ask for.
@@ -29,14 +37,26 @@ class Platform:
     name: str
     form: str
     machine: str
-    tag: str
-    tag_format: str
+    wheel: str
+    suffix: str
     libraries: str
     newest: Version
 
     def tag_for(self, lowest: Version) -> str:
         """Returns the last part of the name of a wheel that needs at least that system."""
-        return self.tag_format.format(*lowest)
+        return self.wheel.format(*lowest)
+
+    def system_of(self, tag: str) -> Version | None:
+        """Returns what system the last part of a wheel's name is for; None for another's."""
+        match = re.fullmatch(self.wheel.replace("{}", r"(\d+)"), tag)
+        if match is None:
+            return None
+        lowest = tuple(map(int, match.groups()))
+        return (lowest[0], lowest[1]) if lowest else self.newest
+
+    def suffix_for(self, python: str) -> str:
+        """Returns how the file of a module for a Python, such as cp311, ends."""
+        return self.suffix.format(python.removeprefix("cp"))
 
     def allows(self, library: str, python: str) -> bool:
         """Whether a module for a Python, such as cp311, may need that library."""
@@ -44,60 +64,28 @@ class Platform:
         return re.fullmatch(allowed, library) is not None
 
 
-# What Blender 4.2 to 5.2 run on themselves: glibc 2.28, macOS 11 (arm64), Windows 8.1 or later.
-_GLIBC = r"(libc|libm)\.so\.6|libpthread\.so\.0|libdl\.so\.2|ld-linux-(x86-64|aarch64)\.so\.[12]"
-_GLIBC_NEWEST = (2, 28)
-
-PLATFORMS = {
-    each.name: each
-    for each in (
-        Platform(
-            "linux-x64",
-            "ELF",
-            "x86_64",
-            r"manylinux_(\d+)_(\d+)_x86_64",
-            "manylinux_{}_{}_x86_64",
-            _GLIBC,
-            _GLIBC_NEWEST,
-        ),
-        Platform(
-            "linux-arm64",
-            "ELF",
-            "arm64",
-            r"manylinux_(\d+)_(\d+)_aarch64",
-            "manylinux_{}_{}_aarch64",
-            _GLIBC,
-            _GLIBC_NEWEST,
-        ),
-        Platform(
-            "windows-x64",
-            "PE",
-            "x86_64",
-            "win_amd64",
-            "win_amd64",
-            r"python{python}\.dll|(?i:kernel32|ntdll|api-ms-win-(core|crt)-[a-z0-9-]+)\.dll",
-            (6, 3),
-        ),
-        Platform(
-            "macos-arm64",
-            "Mach-O",
-            "arm64",
-            r"macosx_(\d+)_(\d+)_arm64",
-            "macosx_{}_{}_arm64",
-            r"/usr/lib/libSystem\.B\.dylib",
-            (11, 0),
-        ),
+def _platform(name: str, row: Mapping[str, str]) -> Platform:
+    major, minor = row["newest"].split(".")
+    return Platform(
+        name,
+        _FORMS[row["system"]],
+        row["processor"].replace("aarch64", "arm64"),
+        row["wheel"],
+        row["suffix"],
+        row["libraries"],
+        (int(major), int(minor)),
     )
-}
+
+
+PLATFORMS = {name: _platform(name, row) for name, row in _TABLE.items() if isinstance(row, dict)}
 
 
 def platform_of_wheel(name: str) -> tuple[Platform, Version] | None:
     """Returns the platform of a wheel's name, and the system that it is for; None for any other."""
     last = name.removesuffix(".whl").split("-")[-1]
     for each in PLATFORMS.values():
-        if match := re.fullmatch(each.tag, last):
-            lowest = tuple(map(int, match.groups()))
-            return each, (lowest[0], lowest[1]) if lowest else each.newest
+        if lowest := each.system_of(last):
+            return each, lowest
     return None
 
 

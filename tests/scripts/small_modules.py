@@ -6,16 +6,13 @@ import hashlib
 import os
 import shutil
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
 
 CHECKOUT = Path(__file__).resolve().parents[2]
-TARGETS = {
-    "linux-arm64": "aarch64-linux-gnu.2.28",
-    "windows-x64": "x86_64-windows-gnu",
-    "macos-arm64": "aarch64-macos.11.0",
-}
+PLATFORMS = tomllib.loads((CHECKOUT / "scripts/platforms.toml").read_text())
 SUFFIXES = {
     "linux-x64": "cpython-311-x86_64-linux-gnu.so",
     "linux-arm64": "cpython-311-aarch64-linux-gnu.so",
@@ -51,7 +48,7 @@ def compiler(platform: str) -> list[str]:
     zig = cache_folder() / f"zig-{pinned}/bin/zig-cc"
     if not zig.exists():
         pytest.skip(f"{zig} is missing: scripts/package fetches it")
-    return [str(zig), "-target", TARGETS[platform], "-nostdlib"]
+    return [str(zig), "-target", PLATFORMS[platform]["target"], "-nostdlib"]
 
 
 def compiled(
