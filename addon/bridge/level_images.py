@@ -38,11 +38,8 @@ class StagedLevels:
             image[_SOURCE_KEY] = self.picture.full_name
             _replace(made_before.pop(number, []), image)
             image.name = level_name(self.picture.name, number)
-        for number, (deeper, *twins) in made_before.items():
+        for deeper, *twins in made_before.values():
             _replace(twins, deeper)
-            name = level_name(self.picture.name, number)
-            if _unnumbered(deeper.name) != name:
-                deeper.name = name
         return [image.name for image in self.images]
 
     def discard(self) -> None:
@@ -111,14 +108,8 @@ def levels_of(image: bpy.types.Image) -> list[bpy.types.Image]:
 
 
 def _earlier_levels(picture: Picture) -> dict[int, list[bpy.types.Image]]:
-    """Returns the level images that bakes of a picture have made, in the order of their names.
-
-    The first versions of the add-on named level 1 `<image>.mip1`.
-    """
-    numbers = {}
-    for number in range(1, _MOST_LEVELS):
-        numbers[level_name(picture.name, number)] = number
-        numbers[suffixed(picture.name, f"mip{number}")] = number
+    """Returns the level images that bakes of a picture have made, in the order of their names."""
+    numbers = {level_name(picture.name, number): number for number in range(1, _MOST_LEVELS)}
     found: dict[int, list[bpy.types.Image]] = {}
     for image in bpy.data.images:
         name = _unnumbered(image.name)

@@ -175,9 +175,6 @@ def reading(
             f"image '{image.name}' has the color space {pictures[0].colorspace}; a shader "
             f"reads normals right in Non-Color only"
         )
-    for target in (*targets, roughness_target):
-        if target is not None:
-            job.warnings.extend(textures.left_by_earlier_versions(target))
     if settings.reader != "linear":
         job.warnings.extend(_odd_readers(pictures[0], targets))
         if settings.lookups in {"one-lookup", "anisotropic"} and reads_encoded(pictures[0]):

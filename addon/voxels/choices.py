@@ -143,7 +143,7 @@ class VoxelSettings:
         "Other Attributes",
         "Keep vertex groups, custom normals and other attributes of the surface",
     )
-    use_smooth: bool = switch(True, "Smooth Shading", "Shade the result smooth", flag="")
+    use_smooth_shading: bool = switch(True, "Smooth Shading", "Shade the result smooth", flag="")
     smooth_angle: float = number(
         math.radians(30.0),
         "Angle",

@@ -143,5 +143,5 @@ def _settings(
         if name in found:
             more["resolution"] = resolution
     if "smooth_angle" in found:
-        more["use_smooth"] = found["smooth_angle"] > 0.0
+        more["use_smooth_shading"] = found["smooth_angle"] > 0.0
     return presets.settings_given(options, kind, settings, **more)

@@ -55,9 +55,9 @@ class VoxelProperties:
         layout.prop(self, "interpolant")
         layout.prop(self, "use_cleanup")
         row = layout.row(heading="Smooth Shading", align=True)
-        row.prop(self, "use_smooth", text="")
+        row.prop(self, "use_smooth_shading", text="")
         part = row.row()
-        part.active = self.use_smooth
+        part.active = self.use_smooth_shading
         part.prop(self, "smooth_angle", text="")
 
     def _makes_mesh(self) -> bool:

@@ -203,7 +203,7 @@ def contoured(
         layers,
         solid.active,
         solid.rendered,
-        settings.smooth_angle if settings.use_smooth else None,
+        settings.smooth_angle if settings.use_smooth_shading else None,
     )
     return Result(place, grid, tree.volume, len(triangles), contour)
 

@@ -138,7 +138,7 @@ def abutting() -> Image.Image:
     for quad in quads:
         coverage = prefilter.rasterize([quad], 64, 64)
         composited += coverage * (1 - composited)
-    added = prefilter.rasterize(quads, 64, 64)
+    added = prefilter.rasterize(quads, 64, 64, overlap="add")
     cells = []
     for found, how in ((composited, "composited"), (added, "added")):
         print(f"abutting quads, {how}: lowest {np.floor(255 * found.min() + 0.5):.0f} of 255")

@@ -15,10 +15,6 @@ ABSENT = {
     "memory_limit": (0, None),
     "background": ("transparent", None),
     "table": ("", None),
-    # Blender knows the meshes that voxels come from.
-    "interpolant": ("sharp", "occupancy"),
-    # What lies over something hides it in Blender.
-    "overlap": ("cover", "add"),
 }
 
 

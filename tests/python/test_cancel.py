@@ -195,7 +195,7 @@ WORK = {
     },
     **{
         f"rasterize, {filter}": lambda filter=filter, **options: prefilter.rasterize(
-            DRAWING, 1024, 1024, filter=filter, threads=1, **options
+            DRAWING, 1024, 1024, filter=filter, overlap="add", threads=1, **options
         )
         for filter in ("box", "lanczos3", "radial2")
     },
@@ -203,7 +203,7 @@ WORK = {
         DRAWING, 1024, 1024, overlap="cover", threads=1, **options
     ),
     "rasterize, gradients": lambda **options: prefilter.rasterize(
-        PAINTED, 512, 512, filter="mitchell", threads=1, **options
+        PAINTED, 512, 512, filter="mitchell", overlap="add", threads=1, **options
     ),
     "rasterize, many vertices": lambda **options: prefilter.rasterize(
         [FINE], 1024, 1024, filter="tent", threads=1, **options

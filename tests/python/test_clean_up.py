@@ -170,9 +170,9 @@ def test_few_triangles_are_narrow_and_normals_are_as_good(interpolant, center):
 def test_the_number_of_threads_makes_no_difference():
     sphere = solids.sphere(100.0, 6, (0.2, 0.3, 0.4))
     octree = prefilter.voxelize(sphere.positions, sphere.triangles, depth=8)
-    one = octree.contour(threads=1)
+    one = octree.contour(interpolant="occupancy", threads=1)
     for threads in (2, 5):
-        other = octree.contour(threads=threads)
+        other = octree.contour(interpolant="occupancy", threads=threads)
         np.testing.assert_array_equal(other[0], one[0])
         np.testing.assert_array_equal(other[1], one[1])
 

@@ -140,7 +140,7 @@ def test_spacing_and_origin_place_the_cells():
 def test_shapes_have_a_surface_wherever_they_are(center, scale):
     sphere = solids.sphere(1.0, 4, (0.0, 0.0, 0.0))
     octree = prefilter.voxelize(scale * (sphere.positions + center), sphere.triangles, depth=6)
-    positions, triangles = octree.contour()
+    positions, triangles = octree.contour(interpolant="occupancy")
     assert positions.dtype == np.float64
     local = positions / scale - center
     corners = local[triangles]
@@ -275,7 +275,10 @@ def test_adaptivity_is_in_cells():
 def test_adaptivity_does_not_depend_on_threads():
     solid = solids.sphere(0.4, 4, (0.5, 0.5, 0.5))
     octree = prefilter.voxelize(solid.positions, solid.triangles, depth=7)
-    first, other = (octree.contour(adaptivity=0.1, threads=threads) for threads in (1, 3))
+    first, other = (
+        octree.contour(interpolant="occupancy", adaptivity=0.1, threads=threads)
+        for threads in (1, 3)
+    )
     np.testing.assert_array_equal(first[0], other[0])
     np.testing.assert_array_equal(first[1], other[1])
 
@@ -284,7 +287,7 @@ def test_adaptivity_does_not_depend_on_threads():
 def test_adaptivity_out_of_range_is_refused(adaptivity):
     octree = prefilter.voxelize(*vars(solids.box()).values(), depth=3)
     with pytest.raises(ValueError, match=r"adaptivity: found .* allowed are 0 to 1e"):
-        octree.contour(adaptivity=adaptivity)
+        octree.contour(interpolant="occupancy", adaptivity=adaptivity)
     with pytest.raises(ValueError, match=r"adaptivity: found .* allowed are 0 to 1e"):
         prefilter.contour(np.ones((4, 4, 4)), adaptivity=adaptivity)
 
@@ -293,4 +296,6 @@ def test_adaptive_contours_stop_when_asked():
     solid = solids.sphere(0.4, 4, (0.5, 0.5, 0.5))
     octree = prefilter.voxelize(solid.positions, solid.triangles, depth=6)
     with pytest.raises(prefilter.Cancelled):
-        octree.contour(adaptivity=0.1, progress=lambda fraction: fraction < 0.6)
+        octree.contour(
+            interpolant="occupancy", adaptivity=0.1, progress=lambda fraction: fraction < 0.6
+        )

@@ -62,12 +62,12 @@ def tiling(seed, low, high, count, curved):
 def test_shapes_that_cover_the_image_leave_no_seam(filter, curved):
     cells = tiling(3, -5.3, 16.4, 9, curved)
     ones = [to_shape([cell]) for cell in cells]
-    image = prefilter.rasterize(ones, 11, 10, filter=filter)
+    image = prefilter.rasterize(ones, 11, 10, filter=filter, overlap="add")
     assert (image == 1.0).all()
     # In many colors, of which one channel is the same for all.
     random = np.random.default_rng(1)
     many = [to_shape([cell], color=(0.7, *random.random(2))) for cell in cells]
-    image = prefilter.rasterize(many, 11, 10, filter=filter)
+    image = prefilter.rasterize(many, 11, 10, filter=filter, overlap="add")
     assert (image[..., 0] == np.float32(0.7)).all()
     assert image[..., 1].std() > 0.1
 
@@ -102,7 +102,12 @@ def test_abutting_quads_are_opaque():
     for shapes in (row, fan):
         for filter in FILTERS:
             image = prefilter.rasterize(
-                [to_shape([quad]) for quad in shapes], 40, 40, filter=filter, dtype="uint8"
+                [to_shape([quad]) for quad in shapes],
+                40,
+                40,
+                filter=filter,
+                overlap="add",
+                dtype="uint8",
             )
             assert image.min() == 255, filter
 
@@ -188,9 +193,9 @@ def test_a_conic_of_weight_one_is_a_parabola():
 def test_images_are_linear_in_shapes_and_colors(filter):
     first, second = to_shape(drawing(4)), to_shape(drawing(5), color=(0.25,))
     images = [prefilter.rasterize([shape], 11, 9, filter=filter) for shape in (first, second)]
-    both = prefilter.rasterize([first, second], 11, 9, filter=filter)
+    both = prefilter.rasterize([first, second], 11, 9, filter=filter, overlap="add")
     assert np.abs(both - sum(images)).max() < ROUNDING
-    assert (prefilter.rasterize([second, first], 11, 9, filter=filter) == both).all()
+    assert (prefilter.rasterize([second, first], 11, 9, filter=filter, overlap="add") == both).all()
     first.color = (4.0, -1.0, 0.0, 0.25)
     image = prefilter.rasterize([first], 11, 9, filter=filter)
     assert (image == images[0] * np.float32([4.0, -1.0, 0.0, 0.25])).all()
@@ -268,9 +273,9 @@ def test_the_number_of_threads_changes_no_bit(filter, overlap):
 def test_a_part_of_an_image_is_the_same(filter):
     """What lies beyond the right or the upper side of an image changes nothing in it."""
     shapes = scene()[:2]
-    whole = prefilter.rasterize(shapes, 200, 310, filter=filter)
+    whole = prefilter.rasterize(shapes, 200, 310, filter=filter, overlap="add")
     for width, height in ((1, 310), (90, 17), (137, 300), (200, 1)):
-        part = prefilter.rasterize(shapes, width, height, filter=filter)
+        part = prefilter.rasterize(shapes, width, height, filter=filter, overlap="add")
         assert np.abs(part - whole[:height, :width]).max() == 0.0
 
 

@@ -15,9 +15,9 @@ SOON = 2.0  # seconds of a processor; what takes long takes minutes
 LIMIT = 1e9
 
 
-def image_of(*shapes, width=6, height=5, filter="box", **options):
+def image_of(*shapes, width=6, height=5, filter="box", overlap="add", **options):
     begin = time.process_time()
-    image = prefilter.rasterize(shapes, width, height, filter=filter, **options)
+    image = prefilter.rasterize(shapes, width, height, filter=filter, overlap=overlap, **options)
     assert time.process_time() - begin < SOON
     assert np.isfinite(image).all()
     assert image.shape[:2] == (height, width)

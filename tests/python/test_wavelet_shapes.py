@@ -45,7 +45,7 @@ def test_colors_add_up_before_a_background(channels: int) -> None:
     behind = random.random(channels)
     for count, background in itertools.product((1, 12), (None, behind)):
         images = [
-            rasterize(shapes[:count], 90, 50, method=method, background=background)
+            rasterize(shapes[:count], 90, 50, method=method, background=background, overlap="add")
             for method in ("scanline", "wavelet")
         ]
         np.testing.assert_allclose(*images, atol=2e-6)
@@ -88,7 +88,7 @@ def test_shapes_that_share_edges_have_no_seam() -> None:
         shape = Shape()
         shape.add_polygon(corners @ np.array([[1.0, 0.1], [-0.1, 1.0]]) + (9.0, -6.0))
         shapes.append(shape)
-    image = rasterize(shapes, 90, 90, method="wavelet")
+    image = rasterize(shapes, 90, 90, method="wavelet", overlap="add")
     assert np.array_equal(image[20:70, 20:70], np.ones((50, 50, 1), np.float32))
 
 
@@ -97,7 +97,8 @@ def test_threads_change_no_bit() -> None:
     shapes = [_curves(random, 700, 600, 1.2) for _ in range(3)]
     shapes[1].color = (0.3,)
     one, *others = (
-        rasterize(shapes, 700, 600, method="wavelet", threads=threads) for threads in (1, 2, 5)
+        rasterize(shapes, 700, 600, method="wavelet", overlap="add", threads=threads)
+        for threads in (1, 2, 5)
     )
     for other in others:
         assert np.array_equal(one, other)
@@ -169,4 +170,4 @@ def test_it_can_be_cancelled() -> None:
         return len(calls) < 2
 
     with pytest.raises(prefilter.Cancelled):
-        rasterize(shapes, 400, 400, method="wavelet", progress=stop)
+        rasterize(shapes, 400, 400, method="wavelet", overlap="add", progress=stop)

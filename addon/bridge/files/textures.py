@@ -19,7 +19,6 @@ import numpy as np
 import prefilter
 
 from ...core import alpha
-from ...core.wording import listed
 from .. import images, openimageio
 from ..images import FloatArray, Picture
 from .staging import StagedFile, check_place, stage_with
@@ -69,23 +68,6 @@ def shown(target: Path) -> str:
     if target.suffix.lower() != ".png":
         return f"'{target}'"
     return f"'{numbered(target, 0)}' and so on"
-
-
-def left_by_earlier_versions(target: Path) -> list[str]:
-    """Returns a warning of level files under names that were given once, such as `wood.0.png`."""
-    if target.suffix.lower() != ".png":
-        return []
-    found = [
-        path.name
-        for number in range(10)
-        if (path := target.with_suffix(f".{number}{target.suffix}")).exists()
-    ]
-    if not found:
-        return []
-    return [
-        f"levels are now '{numbered(target, 0).name}' and so on; left as they are, from an earlier "
-        f"bake: {listed(found)}"
-    ]
 
 
 def is_stored(target: Path) -> bool:

@@ -233,18 +233,16 @@ def test_levels_sort_by_their_names(addon):
     assert names == sorted(names)
 
 
-def test_levels_of_earlier_versions_leave_no_twins(addon):
-    """They were named mip1, mip2 ... mip10; those that the bake does not make get the new names."""
+def test_levels_of_earlier_bakes_leave_no_twins(addon):
     made = scenes.image("Paint", scenes.noise(8, 8))
-    for name in ("mip1", "mip2", "mip2.001", "mip3", "mip9", "mip10"):
+    for name in ("mip01", "mip02", "mip02.001", "mip03", "mip03.001", "mip10"):
         scenes.image(f"Paint.{name}", scenes.noise(2, 2))["prefilter_level_of"] = "Paint"
-    scenes.image("Paint.mip4", scenes.noise(2, 2))
-    shown = scenes.material("Shows level", bpy.data.images["Paint.mip2.001"])
+    scenes.image("Paint.mip04", scenes.noise(2, 2))
+    shown = scenes.material("Shows level", bpy.data.images["Paint.mip02.001"])
     levels = [scenes.noise(4, 4), scenes.noise(2, 2, seed=2)]
     assert write_levels(addon, made, levels) == ["Paint.mip01", "Paint.mip02"]
     assert [image.name for image in bpy.data.images] == [
-        "Paint", "Paint.mip01", "Paint.mip02", "Paint.mip03", "Paint.mip09", "Paint.mip10",
-        "Paint.mip4",
+        "Paint", "Paint.mip01", "Paint.mip02", "Paint.mip03", "Paint.mip04", "Paint.mip10",
     ]  # fmt: skip
     node = next(node for node in shown.node_tree.nodes if node.type == "TEX_IMAGE")
     assert node.image == bpy.data.images["Paint.mip02"]

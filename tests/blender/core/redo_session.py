@@ -236,9 +236,7 @@ def volume_of(name: str) -> float:
 
 def level() -> float:
     """Returns how much the texels of a level image differ."""
-    return float(
-        scenes.pixels("Paint.mip01" if "Paint.mip01" in bpy.data.images else "Paint.mip1").std()
-    )
+    return float(scenes.pixels("Paint.mip01").std())
 
 
 play(session())

@@ -15,5 +15,5 @@ settings.use_materials = True
 settings.use_uv_maps = True
 settings.use_colors = True
 settings.use_attributes = True
-settings.use_smooth = True
+settings.use_smooth_shading = True
 settings.output = "mesh"

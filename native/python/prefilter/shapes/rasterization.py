@@ -417,7 +417,7 @@ def rasterize(
     method: str = "scanline",
     depth: int | None = None,
     background: Sequence[float] | None = None,
-    overlap: str = "add",
+    overlap: str = "cover",
     dtype: npt.DTypeLike = np.float32,
     progress: ProgressCallback | None = None,
     threads: int = 0,
@@ -445,9 +445,9 @@ def rasterize(
             image is halved so many times, and each pixel gets the mean over the cell that it is in.
             0 is one cell for all; None ends at pixels.
         background: What is behind the shapes, as many values as they have; None for 0.
-        overlap: "add": the values of all shapes are summed, so that shapes that share an edge have
-            no seam. "cover": later ones cover those before them, with four channels as far as alpha
-            says.
+        overlap: "cover": later shapes cover those before them, with four channels as far as alpha
+            says. "add": the values of all shapes are summed, so that shapes that share an edge have
+            no seam.
         dtype: float32, or uint8 for values from 0 to 1 as 0 to 255, rounded.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.

@@ -135,7 +135,7 @@ class Octree(_native.Octree):
     def contour(
         self,
         *,
-        interpolant: str = "occupancy",
+        interpolant: str = "sharp",
         isovalue: float = 0.5,
         sources: Sequence[Source] | None = None,
         cleanup: bool = True,
@@ -149,10 +149,10 @@ class Octree(_native.Octree):
         no cracks. What is outside of the bounds is empty.
 
         Args:
-            interpolant: Where a vertex lies between the centres of two leaves. "occupancy" leaves
+            interpolant: Where a vertex lies between the centers of two leaves. "occupancy" leaves
                 each of the two its share of a half-space (section 5.2); "plane" fits the surface to
-                the leaves around, and reproduces planes; "linear" is marching cubes; "sharp" is
-                "plane", with the edges and corners of the shape.
+                the leaves around, and reproduces planes; "linear" is marching cubes; "sharp", the
+                default, is "plane" with the edges and corners of the shape.
             isovalue: Above 0 and up to 1. Leaves of at least that are inside. For other values than
                 0.5, interpolation is linear.
             sources: The meshes that the shape was made of, each (positions, triangles) or

@@ -6,7 +6,6 @@ import os
 import stat
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 import scenes
 
@@ -153,14 +152,3 @@ def test_a_normal_map_without_its_roughness_is_not_written(bake, addon, tmp_path
             roughness_filepath=str(tmp_path / "rough.exr"),
         )
     assert list(tmp_path.iterdir()) == []
-
-
-def test_pngs_of_earlier_versions_are_told(bake, tmp_path):
-    for number in (0, 1):
-        pixels = oiio.ImageBuf(np.zeros((2, 2, 3), np.float32))
-        assert pixels.write(str(tmp_path / f"out.{number}.png"), "uint8")
-    image = scenes.image("Paint", scenes.noise(4, 4))
-    outcome = bake(image, filter="box", filepath=str(tmp_path / "out.png"))
-    (warning,) = outcome.warnings
-    assert "'out.00.png' and so on" in warning
-    assert "'out.0.png', 'out.1.png'" in warning

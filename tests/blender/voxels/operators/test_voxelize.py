@@ -292,7 +292,7 @@ def test_without_transfer():
 
 def test_flat_shading():
     box = bodies.cube()
-    voxelize(use_smooth=False)
+    voxelize(use_smooth_shading=False)
     assert not any(face.use_smooth for face in box.data.polygons)
 
 
@@ -300,7 +300,7 @@ def test_flat_shading():
 def test_edges_are_sharp_above_the_angle(degrees):
     """By the angles of the result's own faces; none is as sharp as 120 degrees."""
     box = bodies.cube(rotation_euler=(0.2, 0.3, 0.1))
-    voxelize(use_smooth=True, smooth_angle=math.radians(degrees), interpolant="occupancy")
+    voxelize(use_smooth_shading=True, smooth_angle=math.radians(degrees), interpolant="occupancy")
     assert all(face.use_smooth for face in box.data.polygons)
     angles, is_sharp = bodies.face_angles(box), bodies.sharp_edges(box)
     clear = np.abs(angles - degrees) > 0.5
