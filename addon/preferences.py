@@ -7,17 +7,10 @@ from dataclasses import dataclass
 import bpy
 
 from . import manual
-from .core.choices import Choice
 from .core.options import number, one_of
 from .core.preferences import PACKAGE
 from .core.properties import properties
 from .mipmaps.choices import FILE_FORMATS, ModelSettings
-
-_MIB = {"mib": 1, "gib": 1024}
-UNITS = {
-    "mib": Choice("MiB", "1024 KiB"),
-    "gib": Choice("GiB", "1024 MiB"),
-}
 
 
 @dataclass(frozen=True)
@@ -31,17 +24,14 @@ class Preferences:
         low=0,
         high=1024,
     )
-    memory_limit: float = number(
-        0.0,
-        "Memory Limit",
-        "Reconstruct Surface uses at most this much memory beside the points, and temporary files "
-        "for the rest; Voxelize, Voxel Boolean and Rasterize refuse what needs more. 0 sets no "
-        "limit",
-        low=0.0,
-        high=1048576.0,
-        display={"precision": 1, "step": 50},
+    memory_limit: int = number(
+        0,
+        "Memory Limit (MiB)",
+        "Reconstruct Surface uses at most this many MiB beside the points, and temporary files for "
+        "the rest; Voxelize, Voxel Boolean and Rasterize refuse what needs more. 0 sets no limit",
+        low=0,
+        display={"soft_max": 65536},
     )
-    memory_unit: str = one_of("gib", "Unit", "Unit of the memory limit", UNITS)
     file_format: str = one_of(
         ModelSettings.file_format,
         "File Format",
@@ -64,9 +54,7 @@ class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
     @property
     def followed_memory_limit(self) -> int:
         """How many MiB to use; 0 for no limit."""
-        if self.memory_limit <= 0.0:
-            return 0
-        return max(1, round(self.memory_limit * _MIB[self.memory_unit]))
+        return self.memory_limit
 
     @property
     def followed_file_format(self) -> str:
@@ -80,12 +68,7 @@ class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.prop(self, "threads")
-        row = layout.row(align=True)
-        row.prop(self, "memory_limit")
-        unit = row.row(align=True)
-        unit.use_property_split = False
-        unit.ui_units_x = 3.5
-        unit.prop(self, "memory_unit", text="")
+        layout.prop(self, "memory_limit")
         layout.prop(self, "file_format")
         row = layout.row()
         row.alignment = "RIGHT"

@@ -49,7 +49,6 @@ class Points:
         materials: Those of the object's slots.
         active_color: The name of the active colour attribute; empty for none.
         render_color: The name of the one that renders use.
-        viewpoint: Where the scanner stood, (3,); None where that is not known.
     """
 
     positions: FloatArray
@@ -59,7 +58,6 @@ class Points:
     materials: tuple[MaterialKey | None, ...] = ()
     active_color: str = ""
     render_color: str = ""
-    viewpoint: FloatArray | None = None
 
 
 def may_be_points(obj: bpy.types.Object) -> bool:

@@ -13,5 +13,5 @@ def usable_memory() -> tuple[float, str]:
     """Returns the bytes that work may use, and in words what sets that limit."""
     free, limit = available_memory(), preference("memory_limit", 0) * _MIB
     if 0 < limit < free:
-        return limit, f"the preferences allow {limit / 2**30:.3g} GiB"
+        return limit, f"the preferences allow {limit / _MIB:g} MiB"
     return free, f"{free / 1e9:.3g} GB are free"

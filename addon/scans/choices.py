@@ -112,11 +112,11 @@ class ScanSettings:
     memory_limit: int = number(
         0,
         "Memory Limit",
-        "Use at most this many megabytes beside the points, and temporary files for the rest; "
+        "Use at most this many MiB beside the points, and temporary files for the rest; "
         "0 sets no limit",
         low=0,
         display={"soft_max": 65536},
-        metavar="MB",
+        metavar="MiB",
         preference="memory_limit",
     )
     threads: int = threads()

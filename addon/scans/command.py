@@ -23,11 +23,11 @@ _BLEND = ".blend"
 _SOURCES = (*SOURCES, _BLEND)
 _WANTED = "visible object with points and no faces"
 _NOTES = """\
-Several SOURCEs are put together as one cloud. Points without normals get estimated ones. From one
-file of points with normals to a .ply file the work goes on piece by piece, so that neither has to
-fit into memory; with --memory-limit, what does not fit goes to temporary files. To estimate
-normals, with --voxel-size, with several SOURCEs, and for other targets, the points are read into
-memory first. Of a .blend file, the objects that have points and no faces count.
+Several SOURCEs are put together as one cloud. Points without normals get estimated ones, and are
+read into memory for that. To a .ply file all other points go piece by piece, and so does the
+surface, so that neither has to fit into memory; with --memory-limit, what does not fit goes to
+temporary files. For other targets the surface is made in memory. Of a .blend file, the objects that
+have points and no faces count.
 
 examples:
   prefilter reconstruct scan.ply surface.ply
@@ -73,13 +73,8 @@ def _reconstruct(options: argparse.Namespace) -> None:
         _from_objects(options, target, settings)
         return
     sources = [Path(path) for path in options.sources]
-    streams = len(sources) == 1 and ending == STREAMED_TARGET and settings.resolution == "depth"
-    work = (
-        Streaming(sources[0], target, settings)
-        if streams
-        else FilesReconstruction(sources, target, settings)
-    )
-    command.tell(command.done(work))
+    work = Streaming if ending == STREAMED_TARGET else FilesReconstruction
+    command.tell(command.done(work(sources, target, settings)))
 
 
 def _from_objects(options: argparse.Namespace, target: Path, settings: ScanSettings) -> None:

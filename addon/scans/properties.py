@@ -41,7 +41,7 @@ class ScanProperties:
                 body.prop(self, "custom_isovalue")
         _, body = subpanel(layout, "scan_performance", "Performance")
         if body:
-            body.prop(self, "memory_limit", text="Memory (MB)")
+            body.prop(self, "memory_limit", text="Memory (MiB)")
 
 
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):

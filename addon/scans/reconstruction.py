@@ -2,20 +2,29 @@
 
 """The surface of selected points in three steps: read from Blender, compute, write to Blender."""
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import bpy
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
 
 from ..bridge import new_meshes
+from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.place import Place, still_there
-from ..bridge.points import Points, read_points
+from ..bridge.points import Carried, Points, read_points
 from ..core.jobs import Progress, go_on
 from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import listed
 from .choices import ScanSettings
-from .cloud import Surface, depth_of, extent, oddities, reconstructed, told
+from .surface import Look, Surface, contour, oddities, reconstructed, told
+
+_CHANNELS = ("red", "green", "blue", "alpha")
+_CONFIDENCE = "confidence"
+"""The attribute that says how much each point counts."""
 
 # What a load takes in seconds, as measured once on two cores; ratios are what counts.
 _ALWAYS = 0.01
@@ -41,10 +50,11 @@ class Load:
 
     def seconds(self, settings: ScanSettings) -> float:
         """Returns about how long it takes on two cores; settings that are refused take none."""
-        try:
-            depth = depth_of(self.extent, settings)
-        except ValueError:
-            return 0.0
+        depth: float = settings.depth
+        if settings.resolution == "size":
+            depth = math.log2(max(self.extent / settings.voxel_size, 2.0))
+            if depth > prefilter.MAX_DEPTH:
+                return 0.0
         triangles = min(_TRIANGLES_OF_CUBE * 4.0**depth, _TRIANGLES_PER_POINT * self.points)
         per_triangle = _PER_TRIANGLE[settings.wavelet] + (_FITTING if settings.use_fit else 0.0)
         return _ALWAYS + _PER_POINT[settings.wavelet] * self.points + per_triangle * triangles
@@ -63,7 +73,7 @@ class Reconstruction:
         """Keeps copies of what was read; use `Reconstruction.read`."""
         self.load = Load(
             sum(len(points.positions) for points in read),
-            max((extent(points.positions) for points in read), default=0.0),
+            max((_extent(points.positions) for points in read), default=0.0),
         )
         self._place = place
         self._names = names
@@ -117,10 +127,13 @@ class Reconstruction:
         without = list(dict.fromkeys(one.name for one in self._read if one.normals is None))
         if without:
             self._notes.append(f"normals were estimated for {listed(without)}")
-        surface = reconstructed(self._read, self._settings, progress)
+        carried = _carried(self._read)
+        scans = [_scan(one, carried) for one in self._read]
+        surface = reconstructed(scans, self._settings, progress)
         self._warnings.extend(oddities(surface.report))
         self._surface = surface
-        self._contour = surface.contour(self._place, self._source(), self._settings)
+        look = self._look(surface, carried)
+        self._contour = contour(surface, self._place, look, self._settings)
         go_on(progress, 1.0)
         self._read.clear()
 
@@ -156,8 +169,53 @@ class Reconstruction:
     def discard(self) -> None:
         """Does nothing: nothing is staged."""
 
-    def _source(self) -> Points:
-        """Returns the points that materials are taken from, with the names of active colours."""
+    def _look(self, surface: Surface, carried: dict[str, Carried]) -> Look:
+        """Returns what the surface has, with the active object's materials and colors if it can."""
         first = next((one for one in self._read if one.name == self._place.name), self._read[0])
         colored = next((one for one in (first, *self._read) if one.active_color), first)
-        return replace(first, active_color=colored.active_color, render_color=colored.render_color)
+        return Look(
+            [_layer(name, one.data_type, surface) for name, one in carried.items()],
+            colored.active_color,
+            colored.render_color,
+            first.materials,
+        )
+
+
+def _extent(positions: NDArray[np.float64]) -> float:
+    """Returns the longest side of the box around the points that are finite; 0 without any."""
+    finite = positions[np.isfinite(positions).all(axis=1)]
+    return float(np.ptp(finite, axis=0).max()) if len(finite) else 0.0
+
+
+def _carried(parts: Sequence[Points]) -> dict[str, Carried]:
+    """Returns for each attribute the first one of its name, whose kind the others must be of."""
+    found: dict[str, Carried] = {}
+    for part in parts:
+        for name, one in part.attributes.items():
+            found.setdefault(name, one)
+    return found
+
+
+def _columns(name: str, width: int) -> list[str]:
+    """Returns what the library calls the numbers of an attribute."""
+    return [name] if width == 1 else [f"{name}.{channel}" for channel in _CHANNELS]
+
+
+def _scan(points: Points, carried: dict[str, Carried]) -> "prefilter.ScanPoints":
+    attributes: dict[str, NDArray[np.uint8 | np.float32]] = {}
+    for name, like in carried.items():
+        width = like.values.shape[1]
+        one = points.attributes.get(name)
+        if one is not None and one.values.shape[1] == width:
+            attributes |= dict(zip(_columns(name, width), one.values.T, strict=True))
+        elif name == _CONFIDENCE:
+            attributes[name] = np.ones(len(points.positions), np.float32)
+    weighs = _CONFIDENCE in carried and carried[_CONFIDENCE].data_type == "FLOAT"
+    weights = attributes[_CONFIDENCE].astype(np.float32, copy=False) if weighs else None
+    return prefilter.ScanPoints(points.positions, points.normals, weights, attributes)
+
+
+def _layer(name: str, data_type: str, surface: Surface) -> NewLayer:
+    columns = _columns(name, 1 if data_type == "FLOAT" else len(_CHANNELS))
+    values = np.stack([surface.attributes[column] for column in columns], axis=1)
+    return NewLayer(ATTRIBUTE if data_type == "FLOAT" else COLOR, name, data_type, "POINT", values)

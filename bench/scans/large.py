@@ -3,7 +3,7 @@
 """Streams a file that is larger than the memory allowed, and one of a tenth of its points.
 
 Usage: scripts/run python3 bench/scans/large.py FOLDER [--wavelet haar|d4] [--depth N]
-                                               [--limit BYTES] [--threads N]
+                                               [--limit MIB] [--threads N]
 
 FOLDER keeps the points, 2.4 GB and 0.24 GB, and needs as much again and more for temporary files
 and the surface. The criteria: the whole process stays below 600 MB, and ten times the points take
@@ -31,7 +31,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--wavelet", default="haar", choices=["haar", "d4"])
     parser.add_argument("--depth", type=int, default=11, help="default: %(default)s")
-    parser.add_argument("--limit", type=int, default=500_000_000, help="default: %(default)s")
+    parser.add_argument("--limit", type=int, default=500, help="default: %(default)s")
     parser.add_argument("--threads", type=int, default=1, help="default: %(default)s")
     add_json_option(parser)
     options = parser.parse_args()
@@ -54,7 +54,7 @@ def main() -> None:
         seconds = [f"{value:.1f}" for value in (run.cpu_seconds, run.seconds)]
         rows.append([name, *seconds, f"{1e3 * cpu[name]:.0f}", f"{run.peak_mib:.0f}", size])
     report = Report()
-    title = f"{options.wavelet} at depth {options.depth}, memory limit {options.limit / 1e6:.0f} MB"
+    title = f"{options.wavelet} at depth {options.depth}, memory limit {options.limit} MiB"
     head = ["set", "CPU s", "wall s", "CPU ms / million points", "peak MiB", "surface MB"]
     report.table(title, head, rows, "clouds")
     report.verdict(

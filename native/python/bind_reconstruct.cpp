@@ -19,6 +19,7 @@
 #include "prefilter/mesh/ply_mesh_writer.h"
 #include "prefilter/reconstruct/reconstruct.h"
 #include "prefilter/scan/array_source.h"
+#include "prefilter/scan/joined_points.h"
 
 namespace py = pybind11;
 
@@ -31,32 +32,36 @@ WaveletBasis basis_of(const std::string& name) {
   throw_invalid("wavelet: '" + name + "' is not one of haar, d4");
 }
 
-ReconstructOptions options_of(int depth, const std::string& wavelet, bool smooth,
-                              const std::variant<double, std::string>& isovalue,
-                              bool are_sides_known, bool fit, const std::optional<double>& trim,
-                              const std::optional<std::uint64_t>& memory_limit,
-                              const std::string& folder, const py::object& progress, int threads) {
-  ReconstructOptions options;
-  options.depth = depth;
-  options.basis = basis_of(wavelet);
-  options.smooth = smooth;
-  if (const auto* name = std::get_if<std::string>(&isovalue)) {
+using Level = std::variant<double, std::string>;
+
+void set_isovalue(ReconstructOptions* options, const Level& level) {
+  if (const auto* name = std::get_if<std::string>(&level)) {
     if (*name != "auto" && *name != "mean" && *name != "half") {
       throw_invalid("isovalue: '" + *name + "' is not one of auto, mean, half, or a number");
     }
-    options.isovalue = *name == "half" ? Isovalue::kHalf : Isovalue::kMean;
+    options->isovalue = *name == "half" ? Isovalue::kHalf : Isovalue::kMean;
   } else {
-    options.isovalue = Isovalue::kGiven;
-    options.given_isovalue = std::get<double>(isovalue);
+    options->isovalue = Isovalue::kGiven;
+    options->given_isovalue = std::get<double>(level);
   }
-  options.are_sides_known = are_sides_known;
-  options.fit = fit;
-  options.trim = trim;
-  if (memory_limit) options.memory_limit = *memory_limit;
-  options.folder = folder;
-  options.threads = threads;
-  options.progress = to_progress(progress);
-  return options;
+}
+
+void bind_options(py::module_& m) {
+  using Options = ReconstructOptions;
+  py::class_<Options>(m, "ReconstructOptions")
+      .def(py::init<>())
+      .def_readwrite("depth", &Options::depth)
+      .def_readwrite("cell_size", &Options::cell_size)
+      .def_property("wavelet", nullptr,
+                    [](Options* o, const std::string& name) { o->basis = basis_of(name); })
+      .def_readwrite("smooth", &Options::smooth)
+      .def_property("isovalue", nullptr, &set_isovalue)
+      .def_readwrite("are_sides_known", &Options::are_sides_known)
+      .def_readwrite("fit", &Options::fit)
+      .def_readwrite("trim", &Options::trim)
+      .def_readwrite("memory_limit", &Options::memory_limit)
+      .def_readwrite("folder", &Options::folder)
+      .def_readwrite("threads", &Options::threads);
 }
 
 using Rows = std::variant<Array<float>, Array<double>>;
@@ -68,7 +73,8 @@ VectorRows rows_in(const Rows& arrays) {
 std::unique_ptr<ArraySource> array_points(const Rows& positions, const Rows& normals,
                                           const std::optional<Array<float>>& weights,
                                           const std::optional<Array<float>>& attributes,
-                                          const std::vector<std::pair<std::string, bool>>& names) {
+                                          const std::vector<std::pair<std::string, bool>>& names,
+                                          bool is_double) {
   const auto floats = [](const std::optional<Array<float>>& array) {
     return array ? std::span(array->data(), static_cast<std::size_t>(array->size()))
                  : std::span<const float>();
@@ -76,7 +82,7 @@ std::unique_ptr<ArraySource> array_points(const Rows& positions, const Rows& nor
   std::vector<PointAttribute> carried;
   for (const auto& [name, is_byte] : names) carried.push_back({name, is_byte});
   return std::make_unique<ArraySource>(rows_in(positions), rows_in(normals), floats(weights),
-                                       floats(attributes), std::move(carried));
+                                       floats(attributes), std::move(carried), is_double);
 }
 
 py::dict to_dict(const ReconstructReport& report) {
@@ -94,7 +100,8 @@ py::dict to_dict(const ReconstructReport& report) {
 }
 
 std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_reconstruct(
-    PointSource* source, const ReconstructOptions& options) {
+    PointSource* source, ReconstructOptions options, const py::object& callback) {
+  options.progress = to_progress(callback);
   ArraySink sink;
   ReconstructReport report;
   {
@@ -110,15 +117,15 @@ std::tuple<Array<double>, Array<std::int32_t>, Array<float>, py::dict> bound_rec
 }
 
 py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
-                                const ReconstructOptions& options) {
+                                ReconstructOptions options, const py::object& callback) {
+  const Progress progress = to_progress(callback);
   ReconstructReport report;
   {
     const py::gil_scoped_release unlocked;
     PlyMeshWriter writer(target, source->attributes(), source->is_double());
-    ReconstructOptions most = options;
-    most.progress = options.progress.part(0.0, 0.95);
-    report = reconstruct(source, most, &writer);
-    writer.finish(options.progress.part(0.95, 1.0));
+    options.progress = progress.part(0.0, 0.95);
+    report = reconstruct(source, options, &writer);
+    writer.finish(progress.part(0.95, 1.0));
   }
   return to_dict(report);
 }
@@ -126,19 +133,22 @@ py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
 }  // namespace
 
 void bind_reconstruct(py::module_& m) {
-  py::class_<ReconstructOptions>(m, "ReconstructOptions")
-      .def(py::init(&options_of), py::arg("depth"), py::arg("wavelet"), py::arg("smooth"),
-           py::arg("isovalue"), py::arg("are_sides_known"), py::arg("fit"), py::arg("trim"),
-           py::arg("memory_limit"), py::arg("folder"), py::arg("progress"), py::arg("threads"),
-           py::keep_alive<1, 11>());
+  bind_options(m);
   // The arrays are to live as long as it does.
   py::class_<ArraySource, PointSource>(m, "ArrayPoints")
       .def(py::init(&array_points), py::arg("positions"), py::arg("normals"), py::arg("weights"),
-           py::arg("attributes"), py::arg("names"), py::keep_alive<1, 2>(), py::keep_alive<1, 3>(),
-           py::keep_alive<1, 4>(), py::keep_alive<1, 5>());
-  m.def("reconstruct", &bound_reconstruct, py::arg("source"), py::arg("options"));
+           py::arg("attributes"), py::arg("names"), py::arg("is_double"), py::keep_alive<1, 2>(),
+           py::keep_alive<1, 3>(), py::keep_alive<1, 4>(), py::keep_alive<1, 5>());
+  // So are the sources.
+  py::class_<JoinedPoints, PointSource>(m, "JoinedPoints")
+      .def(py::init([](const py::tuple& sources) {
+             return std::make_unique<JoinedPoints>(sources.cast<std::vector<PointSource*>>());
+           }),
+           py::arg("sources"), py::keep_alive<1, 2>());
+  m.def("reconstruct", &bound_reconstruct, py::arg("source"), py::arg("options"),
+        py::arg("progress"));
   m.def("reconstruct_file", &bound_reconstruct_file, py::arg("source"), py::arg("target"),
-        py::arg("options"));
+        py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -282,7 +282,7 @@ ROWS = [
         for value in (NAN, -np.inf, 1e31)
     ),
     *(
-        ("reconstruct", {"memory_limit": limit}, [f"memory_limit: {limit!r}", "bytes from 0"])
+        ("reconstruct", {"memory_limit": limit}, [f"memory_limit: {limit!r}", "MiB from 0"])
         for limit in (-1, 2.5, True, "1 GB")
     ),
     *(

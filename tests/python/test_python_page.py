@@ -122,7 +122,7 @@ def given(folder: Path) -> dict[str, object]:
     points /= np.linalg.norm(points, axis=1, keepdims=True)
     kinds = [("float", name) for name in ("x", "y", "z", "nx", "ny", "nz")]
     rows = [tuple(row) for row in np.hstack([points, points])]
-    for name in ("scan.ply", "city.ply"):
+    for name in ("scan.ply", "city.ply", "left.ply", "right.ply"):
         (folder / name).write_bytes(ply("binary_little_endian", [("vertex", kinds, rows)]))
     (folder / "drawing.svg").write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><circle r="4"/></svg>'

@@ -50,7 +50,9 @@ def test_members_are_the_same():
             continue
         bound = getattr(_native, node.name)
         methods = [part for part in node.body if isinstance(part, ast.FunctionDef)]
-        assert {part.name for part in methods} == public(bound), node.name
+        fields = {part.target.id for part in node.body if isinstance(part, ast.AnnAssign)}
+        assert {part.name for part in methods} | fields == public(bound), node.name
+        assert all(isinstance(inspect.getattr_static(bound, name), property) for name in fields)
         for name in {part.name for part in methods}:
             member = inspect.getattr_static(bound, name)
             expected = [arguments_in_stub(part) for part in methods if part.name == name]

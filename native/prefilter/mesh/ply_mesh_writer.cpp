@@ -75,10 +75,10 @@ class PlyMeshWriter::Files {
   TemporaryFile triangles_;
   std::vector<PointAttribute> attributes_;
   bool is_double_;
-  std::size_t header_size_;
-  std::uint64_t vertices_end_;  // in the file
   std::size_t vertex_count_ = 0;
   std::size_t triangle_count_ = 0;
+  std::size_t header_size_;     // follows from what stands above it
+  std::uint64_t vertices_end_;  // in the file
   // Not written yet.
   std::vector<std::byte> vertex_buffer_;
   std::vector<std::byte> triangle_buffer_;

@@ -56,6 +56,22 @@ SampleGrid grid_around(const Box& box, int depth) {
   return grid;
 }
 
+// Of cells that sizes in single precision, and those of messages, are rounded by.
+constexpr double kSizeRounding = 1e-6;
+
+int depth_for(const Box& box, const ReconstructOptions& options) {
+  if (!options.cell_size) return options.depth;
+  const auto cell_at = [&](int depth) {
+    return cube_around(box, depth).size(0) / std::ldexp(1.0, depth);
+  };
+  for (int depth = 1; depth <= kMaxTreeDepth; ++depth) {
+    if (cell_at(depth) <= *options.cell_size * (1.0 + kSizeRounding)) return depth;
+  }
+  throw_invalid("cell_size: " + to_text(*options.cell_size) + " makes more than " +
+                std::to_string(1 << kMaxTreeDepth) + " cells along an axis; use " +
+                to_text(cell_at(kMaxTreeDepth) * (1.0 + 1e-5)) + " or more");  // not rounded down
+}
+
 // What is kept of a cell of the samples, in all stages, at most.
 constexpr double kBytesPerCell = 130.0;
 
@@ -417,6 +433,10 @@ constexpr double kLargestTrim = 1e6;
 
 void check_options(const ReconstructOptions& options) {
   check_depth(options.depth, 1, "depth");
+  if (options.cell_size && !(*options.cell_size > 0.0 && std::isfinite(*options.cell_size))) {
+    throw_invalid("cell_size: " + to_text(*options.cell_size) +
+                  "; a length above 0 is needed, or none");
+  }
   if (options.isovalue == Isovalue::kGiven &&
       !(std::abs(options.given_isovalue) <= kLargestIsovalue)) {
     throw_invalid("isovalue: " + to_text(options.given_isovalue) +
@@ -447,9 +467,9 @@ ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& opt
   }
   const double longest = std::max({extent.box.size(0), extent.box.size(1), extent.box.size(2)});
   if (!(longest > 0.0)) throw_invalid("points: all coincide; a cloud with an extent is needed");
-  const SampleGrid grid = grid_around(extent.box, options.depth);
+  const SampleGrid grid = grid_around(extent.box, depth_for(extent.box, options));
   report.cell = grid.cell;
-  SampleStore store(options.depth, slab_bits(options.depth), source->attributes().size(),
+  SampleStore store(grid.depth, slab_bits(grid.depth), source->attributes().size(),
                     options.memory_limit / 4, options.folder);
   gather_samples(source, grid, options.progress.part(0.1, 0.4), options.threads, &store);
   report.is_spilled = store.is_spilled();

@@ -34,12 +34,12 @@ from .points.normals import estimate_normals as estimate_normals
 from .points.normals import grid_normals as grid_normals
 from .points.normals import mesh_normals as mesh_normals
 from .points.reconstruction import ReconstructionReport as ReconstructionReport
-from .points.reconstruction import file_normals as file_normals
 from .points.reconstruction import reconstruct as reconstruct
 from .points.reconstruction import reconstruct_file as reconstruct_file
 from .points.scan_files import POINT_EXTENSIONS as POINT_EXTENSIONS
 from .points.scan_files import ScanPoints as ScanPoints
 from .points.scan_files import read_points as read_points
+from .points.sources import file_normals as file_normals
 from .sampling.anisotropic import sample_anisotropic as sample_anisotropic
 from .sampling.exact import sample_ewa as sample_ewa
 from .sampling.exact import sample_exact as sample_exact

@@ -593,20 +593,18 @@ def contour_outlines(
 ) -> list[npt.NDArray[np.float64]]: ...
 
 class ReconstructOptions:
-    def __init__(
-        self,
-        depth: int,
-        wavelet: str,
-        smooth: bool,
-        isovalue: float | str,
-        are_sides_known: bool,
-        fit: bool,
-        trim: float | None,
-        memory_limit: int | None,
-        folder: bytes,
-        progress: ProgressCallback | None,
-        threads: int,
-    ) -> None: ...
+    def __init__(self) -> None: ...
+    depth: int
+    cell_size: float | None
+    wavelet: str
+    smooth: bool
+    isovalue: float | str
+    are_sides_known: bool
+    fit: bool
+    trim: float | None
+    memory_limit: int
+    folder: bytes
+    threads: int
 
 class ArrayPoints(PointSource):
     def __init__(
@@ -616,10 +614,14 @@ class ArrayPoints(PointSource):
         weights: npt.NDArray[np.float32] | None,
         attributes: npt.NDArray[np.float32] | None,
         names: list[tuple[str, bool]],
+        is_double: bool,
     ) -> None: ...
 
+class JoinedPoints(PointSource):
+    def __init__(self, sources: tuple[PointSource, ...]) -> None: ...
+
 def reconstruct(
-    source: PointSource, options: ReconstructOptions
+    source: PointSource, options: ReconstructOptions, progress: ProgressCallback | None
 ) -> tuple[
     npt.NDArray[np.float64],
     npt.NDArray[np.int32],
@@ -627,7 +629,10 @@ def reconstruct(
     dict[str, float],
 ]: ...
 def reconstruct_file(
-    source: PointSource, target: bytes, options: ReconstructOptions
+    source: PointSource,
+    target: bytes,
+    options: ReconstructOptions,
+    progress: ProgressCallback | None,
 ) -> dict[str, float]: ...
 def rasterize(
     shapes: Sequence[tuple[Outline, str, Paint, bool]],

@@ -15,15 +15,13 @@ import scenes
 from command_line import run
 from conftest import PACKAGE
 
-MIB = 1 << 20
-
 
 @pytest.fixture
 def preferences():
     """Returns the preferences, which the next test finds as they were."""
     found = bpy.context.preferences.addons[PACKAGE].preferences
     yield found
-    for name in ("threads", "memory_limit", "memory_unit", "file_format"):
+    for name in ("threads", "memory_limit", "file_format"):
         found.property_unset(name)
 
 
@@ -53,31 +51,23 @@ def saved_scan(tmp_path):
 
 def test_factory_settings_are_the_defaults(addon, preferences):
     defaults = addon("preferences").Preferences()
-    for name in ("threads", "memory_limit", "memory_unit", "file_format"):
+    for name in ("threads", "memory_limit", "file_format"):
         assert getattr(preferences, name) == getattr(defaults, name)
     assert preferences.followed_memory_limit == 0
     assert bpy.context.scene.prefilter_reconstruct.memory_limit == 0
     assert bpy.context.scene.prefilter_model.file_format == "ktx2"
 
 
-@pytest.mark.parametrize(
-    ("limit", "unit", "mebibytes"), [(1.5, "gib", 1536), (300, "mib", 300), (0.2, "mib", 1)]
-)
-def test_units_of_memory(preferences, limit, unit, mebibytes):
-    preferences.memory_limit, preferences.memory_unit = limit, unit
-    assert preferences.followed_memory_limit == mebibytes
-
-
 def test_operators_follow(preferences, told):
     calls = told("reconstruct")
-    preferences.threads, preferences.memory_limit, preferences.memory_unit = 1, 200, "mib"
+    preferences.threads, preferences.memory_limit = 1, 200
     points = clouds.scan(*clouds.torus(2000))
     bpy.ops.prefilter.reconstruct(depth=4, points="keep")
     bpy.context.view_layer.objects.active = points
     points.select_set(True)
     bpy.ops.prefilter.reconstruct(depth=4, memory_limit=0)
     assert [call["threads"] for call in calls] == [1, 1]
-    assert [call["memory_limit"] for call in calls] == [200 * MIB, None]
+    assert [call["memory_limit"] for call in calls] == [200, None]
 
 
 def test_looks_at_images_follow(preferences, told):
@@ -99,13 +89,13 @@ def test_looks_at_images_follow(preferences, told):
 
 def test_commands_follow(preferences, told, tmp_path):
     calls = told("reconstruct")
-    preferences.threads, preferences.memory_limit = 1, 1
+    preferences.threads, preferences.memory_limit = 1, 1024
     path, target = saved_scan(tmp_path), tmp_path / "surface.ply"
     arguments = ("reconstruct", path, target, "--depth", 4)
     for more in ((), ("--threads", 2, "--memory-limit", 0)):
         assert run(*arguments, *more).returncode == 0
     assert [call["threads"] for call in calls] == [1, 2]
-    assert [call["memory_limit"] for call in calls] == [1024 * MIB, None]
+    assert [call["memory_limit"] for call in calls] == [1024, None]
 
 
 def test_panels_show_what_holds(preferences):
@@ -118,7 +108,7 @@ def test_panels_show_what_holds(preferences):
     shown.file_format = "png"
     preferences.file_format = "dds"
     assert shown.file_format == "png"
-    preferences.memory_limit = 2
+    preferences.memory_limit = 2048
     assert bpy.context.scene.prefilter_reconstruct.memory_limit == 2048
     bpy.context.scene.prefilter_reconstruct.memory_limit = 0
     assert bpy.context.scene.prefilter_reconstruct.to_settings().memory_limit == 0
@@ -147,8 +137,8 @@ def test_commands_have_the_default_format(preferences, tmp_path):
 
 def test_what_needs_more_memory_is_refused(preferences):
     box = bodies.cube()
-    preferences.memory_limit, preferences.memory_unit = 64, "mib"
-    with pytest.raises(RuntimeError, match=r"GB of memory.*the preferences allow 0.0625 GiB"):
+    preferences.memory_limit = 64
+    with pytest.raises(RuntimeError, match=r"GB of memory.*the preferences allow 64 MiB"):
         bpy.ops.prefilter.voxelize(depth=9)
     assert len(box.data.vertices) == 8
     preferences.memory_limit = 0

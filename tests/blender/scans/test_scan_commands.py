@@ -127,6 +127,23 @@ def test_far_away_points_keep_their_precision(tmp_path):
     assert np.abs(clouds.torus_distance(clouds.vertices(made))).mean() < 0.1
 
 
+def test_several_files_to_ply_keep_their_doubles(tmp_path, addon):
+    """They come nowhere near Blender, whose meshes have floats."""
+    points, normals = clouds.torus()
+    offset = np.array([500_000.0, 5_000_000.0, 100.0])
+    sources = [
+        write_ply(tmp_path / f"{i}.ply", points[i::2] + offset, normals[i::2]) for i in range(2)
+    ]
+    target = tmp_path / "out.ply"
+    result = run("reconstruct", *sources, target, "--voxel-size", 0.05)
+    assert result.returncode == 0, result.stderr
+    assert "from 20000 points" in result.stdout
+    assert "read '0.ply', '1.ply'" in result.stdout
+    made = addon("scans.files").prefilter.read_points(target)
+    assert len(made.positions) > 1000
+    assert np.abs(clouds.torus_distance(made.positions - offset)).mean() < 0.01
+
+
 def test_objects_of_a_blend_file(tmp_path):
     clouds.scan(*clouds.torus())
     clouds.scan(*clouds.sphere(), name="Other")

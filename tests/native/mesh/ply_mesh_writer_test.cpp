@@ -99,6 +99,23 @@ TEST(PlyMeshWriter, WritesAMeshOfNothing) {
   EXPECT_EQ(body, "");
 }
 
+// Room for two counts of 20 digits is kept, whatever the memory held that the writer gets.
+TEST(PlyMeshWriter, HeadersHaveTheRoomForCounts) {
+  const TestFolder folder;
+  const std::string path = folder.path("mesh.ply");
+  for (const char filling : {'\0', '\x7f'}) {
+    std::vector<std::string> held;
+    for (std::size_t size = 16; size < 4096; size += 16) held.emplace_back(size, filling);
+    held.clear();
+    PlyMeshWriter writer(path, {}, false);
+    writer.add_vertices({{1, 2, 3}}, {});
+    writer.finish(Progress());
+    const std::string header = header_and_body(path).first;
+    const std::size_t comment = std::strlen("comment Prefilter\n");
+    EXPECT_EQ(contents(path).size(), header.size() + comment + 2 * 20 + 3 * sizeof(float));
+  }
+}
+
 // More than the buffers hold, in pieces of any size.
 void add_grid(std::size_t vertices, std::size_t triangles, PlyMeshWriter* writer) {
   std::size_t piece = 1;

@@ -28,8 +28,11 @@ enum class Isovalue {
 
 struct ReconstructOptions {
   int depth = 9;  // 1 to kMaxTreeDepth: 2^depth cells along the longest axis
+  // Instead: the least depth at which cells have no longer sides. Sizes in single precision may be
+  // rounded down.
+  std::optional<double> cell_size;
   WaveletBasis basis = WaveletBasis::kHaar;
-  bool smooth = true;  // the indicator function, over the neighbouring cells
+  bool smooth = true;  // the indicator function, over the neighboring cells
   Isovalue isovalue = Isovalue::kMean;
   double given_isovalue = 0.5;   // of a function that is 0 outside and 1 inside
   bool are_sides_known = false;  // normals point outward for sure: towards the scanner
@@ -63,9 +66,9 @@ struct ReconstructReport {
 /// counter-clockwise. It is the same for any number of threads and any limit of memory, and to
 /// rounding for any order of the points.
 ///
-/// Throws Error for options out of range, fewer than 3 points that count, or points that all
-/// coincide, normals that cancel each other everywhere; what the source and the sink throw;
-/// Error(kOutOfMemory); Error(kCancelled).
+/// Throws Error for options out of range, cells that are too small, fewer than 3 points that count,
+/// or points that all coincide, normals that cancel each other everywhere; what the source and the
+/// sink throw; Error(kOutOfMemory); Error(kCancelled).
 ReconstructReport reconstruct(PointSource* source, const ReconstructOptions& options,
                               MeshSink* sink);
 

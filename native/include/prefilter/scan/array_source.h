@@ -23,20 +23,23 @@ using VectorRows =
 /// Points from arrays, which must outlive it.
 class ArraySource : public PointSource {
  public:
-  /// `weights` may be empty; `attributes` has a row for each point.
+  /// `weights` may be empty; `attributes` has a row for each point. `is_double`: see PointSource.
   ArraySource(VectorRows positions, VectorRows normals, std::span<const float> weights,
-              std::span<const float> attributes, std::vector<PointAttribute> names)
+              std::span<const float> attributes, std::vector<PointAttribute> names,
+              bool is_double = false)
       : positions_(positions),
         normals_(normals),
         weights_(weights),
         attributes_(attributes),
-        names_(std::move(names)) {}
+        names_(std::move(names)),
+        is_double_(is_double) {}
 
   std::optional<std::size_t> count() const override {
     return std::visit([](const auto& rows) { return rows.size(); }, positions_);
   }
   bool has_normals() const override { return true; }
   const std::vector<PointAttribute>& attributes() const override { return names_; }
+  bool is_double() const override { return is_double_; }
   void rewind() override { next_ = 0; }
 
   bool read(std::size_t most, PointBatch* batch) override {
@@ -72,6 +75,7 @@ class ArraySource : public PointSource {
   std::span<const float> weights_;
   std::span<const float> attributes_;
   std::vector<PointAttribute> names_;
+  bool is_double_;
   std::size_t next_ = 0;
 };
 

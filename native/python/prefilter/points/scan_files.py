@@ -44,7 +44,7 @@ class ScanPoints:
     """
 
     positions: npt.NDArray[np.float64]
-    normals: npt.NDArray[np.float32] | None = None
+    normals: npt.NDArray[np.floating] | None = None
     weights: npt.NDArray[np.float32] | None = None
     attributes: dict[str, AttributeArray] = field(default_factory=dict)
     viewpoint: npt.NDArray[np.float64] | None = None

@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Where a surface's points come from: arrays, scans in memory, files, or several of these."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypeAlias, TypeGuard
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, progress_part
+from .._border.arrays import as_array, as_floats
+from .normals import estimate_normals, grid_normals, mesh_normals
+from .scan_files import ScanPoints, open_points, read_faces, read_points, read_range_grid
+
+Source: TypeAlias = str | os.PathLike[str] | ScanPoints
+"""A file that `read_points` reads, or what it returns."""
+
+_LARGEST_VALUE = 1e30
+_Told: TypeAlias = tuple[npt.NDArray[np.float64], npt.NDArray[np.float32] | None]
+
+
+@dataclass
+class Cloud:
+    """Points with normals.
+
+    Attributes:
+        points: For the native module.
+        are_sides_known: Normals point outward for sure: to the scanner.
+        is_read: Points had to be read into memory, or normals estimated, which is half of the work.
+    """
+
+    points: _native.PointSource
+    are_sides_known: bool = False
+    is_read: bool = False
+
+    def rest(self, progress: ProgressCallback | None) -> ProgressCallback | None:
+        """What is told of the work that is left, of all that `progress` is told of."""
+        return progress_part(progress, 0.5, 1.0) if self.is_read else progress
+
+
+def is_source(points: object) -> TypeGuard[Source]:
+    return isinstance(points, str | os.PathLike | ScanPoints)
+
+
+def sources_in(points: object) -> list[Source] | None:
+    """The sources that are given, one or a list of them; None for anything else."""
+    if is_source(points):
+        return [points]
+    if isinstance(points, list | tuple) and len(points) > 0 and all(map(is_source, points)):
+        return list(points)
+    return None
+
+
+def array_cloud(
+    points: npt.ArrayLike,
+    normals: npt.ArrayLike | None,
+    weights: npt.ArrayLike | None,
+    attributes: npt.ArrayLike | None,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> Cloud:
+    """Points from arrays. Raises ValueError for a shape, type or value that is wrong."""
+    rows = _as_rows("points", points)
+    given: npt.NDArray[np.floating]
+    if normals is None:
+        given = estimate_normals(rows, progress=progress_part(progress, 0.0, 0.5), threads=threads)
+    else:
+        given = _as_rows("normals", normals)
+    if len(given) != len(rows):
+        raise ValueError(f"normals: {len(given)} rows; {len(rows)} are needed, one for each point")
+    values = None
+    if attributes is not None:
+        values = as_floats("attributes", attributes, (len(rows), "n"), np.float32)
+        _check_values("attributes", values, -_LARGEST_VALUE)
+    counts = None
+    if weights is not None:
+        counts = as_floats("weights", weights, (len(rows),), np.float32)
+        _check_values("weights", counts, 0.0)
+    names = [] if values is None else [("", False)] * values.shape[1]
+    points_of = _native.ArrayPoints(rows, given, counts, values, names, False)
+    return Cloud(points_of, is_read=normals is None)
+
+
+def joined_cloud(
+    sources: Sequence[Source], progress: ProgressCallback | None, threads: int
+) -> Cloud:
+    """Several sources as one, with normals.
+
+    What has normals is read piece by piece, when the surface is made. All else is read into memory
+    here: in a PLY file a scanner's grid or faces tell the normals, others are estimated, those seen
+    from one place by themselves, and those seen from nobody knows where together.
+    """
+    scans = [_opened(source) for source in sources]
+    missing = [scan for scan in scans if not scan.has_normals]
+    progress = progress_part(progress, 0.0, 0.5)
+    for k, scan in enumerate(missing):
+        _look_up_normals(scan, _step(progress_part(progress, 0.0, 0.6), k, len(missing)))
+    unseen = [scan for scan in missing if not scan.has_normals and scan.viewpoint is None]
+    groups = [[scan] for scan in missing if not scan.has_normals and scan.viewpoint is not None]
+    groups += [unseen] if unseen else []
+    for k, group in enumerate(groups):
+        _estimate(group, _step(progress_part(progress, 0.6, 1.0), k, len(groups)), threads)
+    native = tuple(scan.native() for scan in scans)
+    return Cloud(
+        native[0] if len(native) == 1 else _native.JoinedPoints(native),
+        are_sides_known=all(scan.is_side_known for scan in scans),
+        is_read=bool(missing),
+    )
+
+
+@dataclass
+class _Scan:
+    """A source on its way to having normals.
+
+    Attributes:
+        path: Of its file, if it is one.
+        points: The file, opened.
+        read: What is in memory.
+        is_side_known: Its normals point outward for sure.
+    """
+
+    path: str | os.PathLike[str] | None
+    points: _native.PointSource | None
+    read: ScanPoints | None
+    is_side_known: bool = False
+
+    @property
+    def has_normals(self) -> bool:
+        if self.read is not None:
+            return self.read.normals is not None
+        return self.points is not None and self.points.has_normals
+
+    @property
+    def viewpoint(self) -> npt.NDArray[np.float64] | None:
+        return None if self.read is None else self.read.viewpoint
+
+    def native(self) -> _native.PointSource:
+        """The points for the native module."""
+        if self.read is None:
+            assert self.points is not None
+            return self.points
+        columns, names = [], []
+        for name, values in self.read.attributes.items():
+            columns.append(values)
+            names.append((name, values.dtype == np.uint8))
+        assert self.read.normals is not None
+        return _native.ArrayPoints(
+            self.read.positions,
+            self.read.normals,
+            self.read.weights,
+            np.stack(columns, axis=1).astype(np.float32) if columns else None,
+            names,
+            self.points is None or self.points.is_double,
+        )
+
+
+def _opened(source: Source) -> _Scan:
+    if not isinstance(source, ScanPoints):
+        return _Scan(source, open_points(source), None)
+    rows = as_floats("positions", source.positions, ("points", 3), np.float64)
+    normals = None if source.normals is None else _as_rows("normals", source.normals)
+    if normals is not None and len(normals) != len(rows):
+        raise ValueError(
+            f"normals: {len(normals)} rows; {len(rows)} are needed, one for each point"
+        )
+    checked = {name: _as_values(name, one, len(rows)) for name, one in source.attributes.items()}
+    weights = source.weights
+    if weights is not None:
+        weights = as_floats("weights", weights, (len(rows),), np.float32)
+    return _Scan(
+        None,
+        None,
+        replace(source, positions=rows, normals=normals, weights=weights, attributes=checked),
+    )
+
+
+def _look_up_normals(scan: _Scan, progress: ProgressCallback | None) -> None:
+    """Reads a file that has no normals, and what else in it may tell them."""
+    if scan.path is None:
+        return
+    read = read_points(scan.path, progress=progress_part(progress, 0.0, 0.3))
+    seen = _grid_normals(scan.path, read, progress_part(progress, 0.3, 0.6))
+    told = seen or _face_normals(scan.path, read, progress_part(progress, 0.6, 1.0))
+    if told is not None:
+        normals, weights = told
+        read = replace(read, normals=normals, weights=weights)
+    scan.read = read
+    # A scanner sees outsides. Faces may be inside out.
+    scan.is_side_known = seen is not None
+
+
+def _estimate(group: Sequence[_Scan], progress: ProgressCallback | None, threads: int) -> None:
+    """Estimates the normals of one scan, or of several that no viewpoint is known of."""
+    scans = [scan.read for scan in group if scan.read is not None]
+    normals = estimate_normals(
+        np.concatenate([read.positions for read in scans]),
+        viewpoint=scans[0].viewpoint,
+        progress=progress,
+        threads=threads,
+    )
+    ends = np.cumsum([len(read.positions) for read in scans])[:-1]
+    for scan, read, own in zip(group, scans, np.split(normals, ends), strict=True):
+        scan.read = replace(read, normals=own)
+        scan.is_side_known = read.viewpoint is not None
+
+
+def file_normals(
+    path: str | os.PathLike[str], read: ScanPoints, *, progress: ProgressCallback | None = None
+) -> _Told | None:
+    """What a file without normals tells of them besides the positions of its points.
+
+    In a PLY file that is a scanner's grid, or faces of the points.
+
+    Args:
+        path: Of the file.
+        read: Its points, as `read_points` returns them.
+        progress: Called with the fraction done; returning False stops the work.
+
+    Returns:
+        Normals, (points, 3), and how much each point counts, (points,) or None: all the same. None
+        where the file tells nothing; `estimate_normals` does without.
+
+    Raises:
+        ValueError: The file is damaged.
+        OSError: The file cannot be read.
+        Cancelled: `progress` returned False.
+    """
+    return _grid_normals(path, read, progress_part(progress, 0.0, 0.7)) or _face_normals(
+        path, read, progress_part(progress, 0.7, 1.0)
+    )
+
+
+def _step(progress: ProgressCallback | None, k: int, count: int) -> ProgressCallback | None:
+    return progress_part(progress, k / count, (k + 1) / count)
+
+
+def _is_ply(path: str | os.PathLike[str]) -> bool:
+    return Path(os.fsdecode(path)).suffix.lower() == ".ply"
+
+
+def _grid_normals(
+    path: str | os.PathLike[str], read: ScanPoints, progress: ProgressCallback | None
+) -> _Told | None:
+    first, rest = progress_part(progress, 0.0, 0.5), progress_part(progress, 0.5, 1.0)
+    grid = read_range_grid(path, progress=first) if _is_ply(path) else None
+    if grid is None:
+        return None
+    normals, sureness = grid_normals(read.positions, grid, viewpoint=read.viewpoint, progress=rest)
+    return normals, sureness if read.weights is None else sureness * read.weights
+
+
+def _face_normals(
+    path: str | os.PathLike[str], read: ScanPoints, progress: ProgressCallback | None
+) -> _Told | None:
+    if not _is_ply(path):
+        return None
+    first, rest = progress_part(progress, 0.0, 0.5), progress_part(progress, 0.5, 1.0)
+    triangles = read_faces(path, progress=first)
+    # A few faces are no mesh of the points.
+    if len(np.unique(triangles)) <= len(read.positions) / 2:
+        return None
+    return mesh_normals(read.positions, triangles, progress=rest), read.weights
+
+
+def _as_values(name: str, values: npt.ArrayLike, count: int) -> npt.NDArray[np.uint8 | np.float32]:
+    found = as_array(f"attributes: '{name}'", values)
+    dtype = np.uint8 if found.dtype == np.uint8 else np.float32
+    return as_floats(f"attributes: '{name}'", found, (count,), dtype)
+
+
+def _as_rows(name: str, array: npt.ArrayLike) -> npt.NDArray[np.floating]:
+    """Rows of three, float32 or float64 as they are."""
+    found = as_array(name, array)
+    dtype = np.float32 if found.dtype == np.float32 else np.float64
+    return as_floats(name, found, ("points", 3), dtype)
+
+
+def _check_values(name: str, values: npt.NDArray[np.float32], low: float) -> None:
+    """Rows, one for each point: weights or attributes, of which sums have to be finite."""
+    is_bad = ~((values >= low) & (values <= _LARGEST_VALUE))
+    if is_bad.any():
+        place = tuple(np.argwhere(is_bad)[0])
+        raise ValueError(
+            f"{name}: point {place[0]} has {values[place]}; "
+            f"numbers from {low:g} to {_LARGEST_VALUE:g} are needed"
+        )
