@@ -35,14 +35,12 @@ std::optional<Plane> plane_of(const Vector3& normal, const Vector3& position, do
   return plane;
 }
 
+Vector3 doubles(const std::array<float, 3>& v) {
+  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
+}
+
 std::optional<Plane> plane_of(const SampleCell& cell) {
-  Vector3 normal;
-  Vector3 position;
-  for (std::size_t a = 0; a < 3; ++a) {
-    normal[a] = static_cast<double>(cell.normal[a]);
-    position[a] = static_cast<double>(cell.position[a]);
-  }
-  return plane_of(normal, position, static_cast<double>(cell.weight));
+  return plane_of(doubles(cell.normal), doubles(cell.position), static_cast<double>(cell.weight));
 }
 
 // The part of a plane in the unit cell; its corners run around the normal.
@@ -79,10 +77,10 @@ CellFlux patch(const CellPosition& at, const CellPolygon& polygon) {
 
 // Sums for a cell without samples, from the planes next to it.
 struct Guess {
-  CellKey key;
-  float weight;
-  std::array<float, 3> normal;
-  std::array<float, 3> position;
+  CellKey key = 0;
+  Vector3 normal{};
+  Vector3 position{};
+  double weight = 0.0;
 };
 
 // Whether there are samples in the neighbours of cells that are asked for in row-major order.
@@ -101,6 +99,72 @@ class Neighbours {
   std::array<std::size_t, 6> cursors_{};
 };
 
+// The cells that planes may be guessed for.
+struct CellRange {
+  int side;  // of the root, in cells
+  int low;   // heights
+  int high;
+
+  bool holds(const CellPosition& at, int axis) const {
+    return at[axis] >= 0 && at[axis] < side && at[2] >= low && at[2] < high;
+  }
+};
+
+// Adds the sums of a cell to those of the cells next to it that its plane reaches, where these have
+// no samples.
+void add_guesses(const SampleCell& cell, const CellPolygon& polygon, const CellRange& range,
+                 Neighbours* neighbours, std::vector<Guess>* guesses) {
+  const CellPosition at = cell_position(cell.key);
+  for (int face = 0; face < 6; ++face) {
+    const int axis = face / 2;
+    const bool is_high = (face & 1) != 0;
+    if (is_high ? polygon.highest(axis) < 1.0 : polygon.lowest(axis) > 0.0) continue;
+    CellPosition next = at;
+    next[axis] += is_high ? 1 : -1;
+    if (!range.holds(next, axis)) continue;
+    if (neighbours->has(static_cast<std::size_t>(face), cell_key(next))) continue;
+    std::array<float, 3> position = cell.position;
+    position[axis] += is_high ? -cell.weight : cell.weight;
+    guesses->push_back({cell_key(next), doubles(cell.normal), doubles(position),
+                        static_cast<double>(cell.weight)});
+  }
+}
+
+// Sums the guesses of the same cell; they are left in the order of their cells.
+void merge_guesses(std::vector<Guess>* guesses) {
+  std::stable_sort(guesses->begin(), guesses->end(),
+                   [](const Guess& a, const Guess& b) { return a.key < b.key; });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < guesses->size(); ++i) {
+    const Guess guess = (*guesses)[i];  // its place may be that of the sum
+    if (kept == 0 || (*guesses)[kept - 1].key != guess.key) (*guesses)[kept++] = {guess.key};
+    Guess& sum = (*guesses)[kept - 1];
+    sum.weight += guess.weight;
+    for (std::size_t a = 0; a < 3; ++a) {
+      sum.normal[a] += guess.normal[a];
+      sum.position[a] += guess.position[a];
+    }
+  }
+  guesses->resize(kept);
+}
+
+// Calls visit(level, i) for the cells of a slab and of the layers next to it, in row-major order.
+template <typename Visit>
+void for_cells_and_layers(const SampleLevel* below, const SampleLevel& level,
+                          const SampleLevel* above, const CellRange& range, const Visit& visit) {
+  const auto height = [](const SampleLevel& of, std::size_t i) {
+    return cell_position(of.samples.cells[i].key)[2];
+  };
+  for (std::size_t i = 0; below != nullptr && i < below->size(); ++i) {
+    if (height(*below, i) == range.low - 1) visit(*below, i);
+  }
+  for (std::size_t i = 0; i < level.size(); ++i) visit(level, i);
+  for (std::size_t i = 0; above != nullptr && i < above->size(); ++i) {
+    if (height(*above, i) > range.high) break;
+    visit(*above, i);
+  }
+}
+
 }  // namespace
 
 void add_patches(const SampleLevel* below, const SampleLevel& level, const SampleLevel* above,
@@ -108,61 +172,24 @@ void add_patches(const SampleLevel* below, const SampleLevel& level, const Sampl
   const std::vector<CellKey> keys = keys_with_layers(below, level, above);
   Neighbours neighbours(keys);
   std::vector<Guess> guesses;
-  const int side = 1 << depth;
-  const auto visit = [&](const SampleLevel& from, std::size_t i, bool is_own) {
+  const CellRange range = {1 << depth, low, high};
+  const auto visit = [&](const SampleLevel& from, std::size_t i) {
     if (from.is_met[i] == 0) return;
     const SampleCell& cell = from.samples.cells[i];
     const std::optional<Plane> plane = plane_of(cell);
     if (!plane) return;
     const CellPolygon polygon = cut_to_cell(*plane);
     if (polygon.count < 3) return;
-    const CellPosition at = cell_position(cell.key);
-    if (is_own) patches->push_back(patch(at, polygon));
-    for (int face = 0; face < 6; ++face) {
-      const int axis = face / 2;
-      const bool is_high = (face & 1) != 0;
-      if (is_high ? polygon.highest(axis) < 1.0 : polygon.lowest(axis) > 0.0) continue;
-      CellPosition next = at;
-      next[axis] += is_high ? 1 : -1;
-      if (next[axis] < 0 || next[axis] >= side || next[2] < low || next[2] >= high) continue;
-      if (neighbours.has(static_cast<std::size_t>(face), cell_key(next))) continue;
-      Guess guess = {cell_key(next), cell.weight, cell.normal, cell.position};
-      guess.position[axis] += is_high ? -cell.weight : cell.weight;
-      guesses.push_back(guess);
-    }
+    if (&from == &level) patches->push_back(patch(cell_position(cell.key), polygon));
+    add_guesses(cell, polygon, range, &neighbours, &guesses);
   };
-  // In row-major order, as the keys are.
-  if (below != nullptr) {
-    for (std::size_t i = 0; i < below->size(); ++i) {
-      if (cell_position(below->samples.cells[i].key)[2] == low - 1) visit(*below, i, false);
-    }
-  }
-  for (std::size_t i = 0; i < level.size(); ++i) visit(level, i, true);
-  if (above != nullptr) {
-    for (std::size_t i = 0; i < above->size(); ++i) {
-      if (cell_position(above->samples.cells[i].key)[2] > high) break;
-      visit(*above, i, false);
-    }
-  }
-  std::stable_sort(guesses.begin(), guesses.end(),
-                   [](const Guess& a, const Guess& b) { return a.key < b.key; });
-  for (std::size_t i = 0; i < guesses.size();) {
-    Vector3 normal{};
-    Vector3 position{};
-    double weight = 0.0;
-    const CellKey key = guesses[i].key;
-    for (; i < guesses.size() && guesses[i].key == key; ++i) {
-      const Guess& guess = guesses[i];
-      weight += static_cast<double>(guess.weight);
-      for (std::size_t a = 0; a < 3; ++a) {
-        normal[a] += static_cast<double>(guess.normal[a]);
-        position[a] += static_cast<double>(guess.position[a]);
-      }
-    }
-    const std::optional<Plane> plane = plane_of(normal, position, weight);
+  for_cells_and_layers(below, level, above, range, visit);
+  merge_guesses(&guesses);
+  for (const Guess& guess : guesses) {
+    const std::optional<Plane> plane = plane_of(guess.normal, guess.position, guess.weight);
     if (!plane) continue;
     const CellPolygon polygon = cut_to_cell(*plane);
-    if (polygon.count >= 3) patches->push_back(patch(cell_position(key), polygon));
+    if (polygon.count >= 3) patches->push_back(patch(cell_position(guess.key), polygon));
   }
 }
 

@@ -81,6 +81,7 @@ void Slabs::advance(int s, SlabStage stage) {
       break;
   }
   slot.stage = stage;
+  ++steps_;
 }
 
 void Slabs::find_leaves_of(int s) {

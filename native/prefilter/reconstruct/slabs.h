@@ -3,6 +3,7 @@
 // What is made of a cloud's slabs, stage by stage, and forgotten where memory is scarce.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -14,7 +15,7 @@
 
 namespace prefilter {
 
-/// Each needs those before it; some need a neighbouring slab's, too.
+/// Each needs those before it; some need a neighboring slab's, too.
 enum class SlabStage : std::uint8_t {
   kNone,
   kLevels,        // the samples at all depths
@@ -42,6 +43,9 @@ class Slabs {
   void bring(int begin, int end, SlabStage stage);
   /// Forgets slabs below one, where not all are kept, or `for_good`.
   void drop_below(int end, bool for_good);
+
+  /// How many times a slab was brought to its next stage.
+  std::size_t steps() const { return steps_; }
 
   /// Null where there is no such slab.
   const SampleSlab* samples(int s) const;
@@ -85,6 +89,7 @@ class Slabs {
   bool keeps_all_;
   int threads_;
   int dropped_ = 0;  // slabs below this have nothing
+  std::atomic<std::size_t> steps_ = 0;
   std::vector<Slot> slots_;
 };
 

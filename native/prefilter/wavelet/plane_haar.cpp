@@ -39,72 +39,77 @@ class PlaceTable {
   std::vector<std::int32_t> places_;
 };
 
+// The bricks of all strips, one after the other; the strips are emptied.
+StripBricks joined(std::span<StripBricks> strips) {
+  if (strips.size() == 1) return std::move(strips[0]);
+  StripBricks all;
+  std::size_t count = 0;
+  for (const StripBricks& strip : strips) count += strip.bricks.size();
+  all.bricks.reserve(count);
+  all.fluxes.reserve(count);
+  for (StripBricks& strip : strips) {
+    all.bricks.insert(all.bricks.end(), strip.bricks.begin(), strip.bricks.end());
+    all.fluxes.insert(all.fluxes.end(), strip.fluxes.begin(), strip.fluxes.end());
+    all.at_sides += strip.at_sides;
+    strip = {};
+  }
+  return all;
+}
+
+// The parents of cells, in the order in which their first children come. Each of `children` has a
+// place x, y; flux_of(i) tells its flux.
+template <typename Node, typename Child, typename FluxOf>
+std::vector<Node> parents_of(const std::vector<Child>& children, const FluxOf& flux_of) {
+  int low_x = children[0].x;
+  int low_y = children[0].y;
+  int high_x = low_x;
+  int high_y = low_y;
+  for (const Child& child : children) {
+    low_x = std::min(low_x, child.x);
+    low_y = std::min(low_y, child.y);
+    high_x = std::max(high_x, child.x);
+    high_y = std::max(high_y, child.y);
+  }
+  PlaceTable table(low_x >> 1, low_y >> 1, (high_x >> 1) + 1, (high_y >> 1) + 1);
+  std::vector<Node> nodes;
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    const int x = children[i].x;
+    const int y = children[i].y;
+    std::int32_t& slot = table.at(x >> 1, y >> 1);
+    if (slot < 0) {
+      slot = static_cast<std::int32_t>(nodes.size());
+      nodes.push_back({x >> 1, y >> 1});
+    }
+    const int quadrant = (x & 1) | ((y & 1) << 1);
+    nodes[slot].next[quadrant] = static_cast<int>(i);
+    nodes[slot].fluxes[quadrant] = flux_of(i);
+  }
+  return nodes;
+}
+
 }  // namespace
 
 PlaneHaar::PlaneHaar(const PlaneGrid& grid, std::span<StripBricks> strips) : grid_(grid) {
-  std::vector<PlaneFlux> fluxes;
-  PlaneFlux at_sides;
-  std::size_t count = 0;
-  for (const StripBricks& strip : strips) count += strip.bricks.size();
-  if (strips.size() == 1) {
-    bricks_ = std::move(strips[0].bricks);
-    fluxes = std::move(strips[0].fluxes);
-    at_sides = strips[0].at_sides;
-  } else {
-    bricks_.reserve(count);
-    fluxes.reserve(count);
-    for (StripBricks& strip : strips) {
-      bricks_.insert(bricks_.end(), strip.bricks.begin(), strip.bricks.end());
-      fluxes.insert(fluxes.end(), strip.fluxes.begin(), strip.fluxes.end());
-      at_sides += strip.at_sides;
-      strip = {};
-    }
-  }
-
+  StripBricks all = joined(strips);
+  bricks_ = std::move(all.bricks);
   const double side = std::ldexp(1.0, grid.depth);
   if (bricks_.empty()) {
-    mean_ = root_mean({}, at_sides, side);
+    mean_ = root_mean({}, all.at_sides, side);
     return;
-  }
-  int low_x = bricks_[0].x;
-  int low_y = bricks_[0].y;
-  int high_x = low_x;
-  int high_y = low_y;
-  for (const PlaneBrick& brick : bricks_) {
-    low_x = std::min(low_x, brick.x);
-    low_y = std::min(low_y, brick.y);
-    high_x = std::max(high_x, brick.x);
-    high_y = std::max(high_y, brick.y);
   }
   const int coarse = grid.depth - kPlaneBrickDepth;
   levels_.resize(coarse);
   for (int k = coarse - 1; k >= 0; --k) {
-    const int up = coarse - k;
-    PlaceTable table(low_x >> up, low_y >> up, (high_x >> up) + 1, (high_y >> up) + 1);
-    std::vector<Node>& nodes = levels_[k];
-    const auto add_child = [&](int x, int y, int place, const PlaneFlux& flux) {
-      std::int32_t& slot = table.at(x >> 1, y >> 1);
-      if (slot < 0) {
-        slot = static_cast<std::int32_t>(nodes.size());
-        nodes.push_back({x >> 1, y >> 1});
-      }
-      const int quadrant = (x & 1) | ((y & 1) << 1);
-      nodes[slot].next[quadrant] = place;
-      nodes[slot].fluxes[quadrant] = flux;
-    };
     if (k == coarse - 1) {
-      for (std::size_t i = 0; i < bricks_.size(); ++i) {
-        add_child(bricks_[i].x, bricks_[i].y, static_cast<int>(i), fluxes[i]);
-      }
+      levels_[k] = parents_of<Node>(bricks_, [&](std::size_t i) { return all.fluxes[i]; });
     } else {
       const std::vector<Node>& finer = levels_[k + 1];
-      for (std::size_t i = 0; i < finer.size(); ++i) {
-        add_child(finer[i].x, finer[i].y, static_cast<int>(i), flux_of_quadrants(finer[i].fluxes));
-      }
+      levels_[k] = parents_of<Node>(
+          finer, [&](std::size_t i) { return flux_of_quadrants(finer[i].fluxes); });
     }
   }
-  const PlaneFlux root = coarse > 0 ? flux_of_quadrants(levels_[0][0].fluxes) : fluxes[0];
-  mean_ = root_mean(root, at_sides, side);
+  const PlaneFlux root = coarse > 0 ? flux_of_quadrants(levels_[0][0].fluxes) : all.fluxes[0];
+  mean_ = root_mean(root, all.at_sides, side);
 }
 
 void PlaneHaar::brick_values(const PlaneBrick& brick, float mean, int cell_depth,

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// All slabs of a cloud, from below, with few in memory at a time.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "prefilter/base/parallel.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/reconstruct/slabs.h"
+
+namespace prefilter {
+
+/// What a walk brings slabs to.
+struct SlabWalk {
+  SlabStage stage = SlabStage::kNone;
+  int margin = 0;        // so many slabs to both sides of a slab are to be there, too
+  bool is_last = false;  // slabs are forgotten for good
+};
+
+/// Bring(s) all slabs to a stage, some at a time with those next to them, and calls visit(s) for
+/// each, on any thread, and then join(s), in order. Without a reason to keep them slabs are
+/// forgotten as soon as no other one needs them, and none is made twice.
+template <typename Visit, typename Join>
+void for_slabs(const SlabWalk& walk, const Progress& progress, int threads, Slabs* slabs,
+               const Visit& visit, const Join& join) {
+  // kValues and kCoefficients of a slab need kLevels of the second one below it.
+  constexpr int kReach = 2;
+  const int width = resolve_threads(threads);
+  for (int begin = 0; begin < slabs->count(); begin += width) {
+    const int end = std::min(begin + width, slabs->count());
+    slabs->bring(begin - walk.margin, end + walk.margin, walk.stage);
+    parallel_for(end - begin, threads, Progress(),
+                 [&](std::int64_t i) { visit(begin + static_cast<int>(i)); });
+    for (int s = begin; s < end; ++s) join(s);
+    slabs->drop_below(end - walk.margin - kReach, walk.is_last);
+    progress.report(static_cast<double>(end) / slabs->count());
+  }
+  slabs->drop_below(slabs->count(), walk.is_last);
+}
+
+}  // namespace prefilter

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// At which value of the function the surface is.
+#pragma once
+
+#include "prefilter/base/progress.h"
+#include "prefilter/reconstruct/reconstruct.h"
+#include "prefilter/reconstruct/sample_cell.h"
+#include "prefilter/reconstruct/slabs.h"
+#include "prefilter/wavelet/cell_tree.h"
+
+namespace prefilter {
+
+/// The surface is where the function times `scale` is `isovalue`.
+struct SurfaceLevel {
+  float scale = 1.0F;
+  float isovalue = 0.5F;
+};
+
+/// As the options say, from the mean at the samples where that counts; `is_flipped`: the function
+/// is 0 inside. Slabs have got all but their values. Throws Error(kCancelled).
+SurfaceLevel find_surface_level(const ReconstructOptions& options, bool is_flipped,
+                                const Progress& progress, Slabs* slabs);
+
+/// The level that follows from the mean of the function, times -1 where it is flipped, at the
+/// samples. Of a closed surface the mean is off from 1/2 as the areas are; of an open one, as the
+/// mean over the root is, to which its holes leave much.
+SurfaceLevel level_of_mean(double mean, bool is_flipped, bool are_sides_known);
+
+/// The tree around slab `s` of values times `scale`, smoothed or not. The values of the slab and of
+/// those next to it have been made.
+CellTree tree_around(const Slabs& slabs, int s, float scale, bool is_smooth);
+
+/// The value of the leaf that holds a cell of depth `depth`.
+float leaf_value(const CellTree& tree, int depth, const CellPosition& at);
+
+}  // namespace prefilter
