@@ -50,22 +50,11 @@ TEST(SplitFinder, FindsTheParentsOfCellsAndTheirNeighbors) {
   }
 }
 
-// A dense half of a sphere and a thin one, so that leaves have several depths, also above slabs.
-testing::TestCloud uneven_sphere() {
-  const testing::TestCloud all = testing::sphere_cloud(20000);
-  testing::TestCloud cloud;
-  for (std::size_t i = 0; i < all.points.size(); ++i) {
-    if (all.points[i][2] > 0.5 && i % 16 != 0) continue;
-    cloud.points.push_back(all.points[i]);
-    cloud.normals.push_back(all.normals[i]);
-  }
-  return cloud;
-}
-
 class D4Trees : public ::testing::Test {
  protected:
   D4Trees()
-      : store_(uneven_sphere(), kDepth, kDepth - kTop), slabs_(&store_, kDepth, kTop, 0, true, 1) {
+      : store_(testing::uneven_sphere_cloud(), kDepth, kDepth - kTop),
+        slabs_(&store_, kDepth, kTop, 0, true, 1) {
     find_whole(0, Progress(), 1, &slabs_);
     slabs_.bring(0, slabs_.count(), SlabStage::kLeaves);
     for (int s = 0; s < slabs_.count(); ++s) leaves_.push_back(find_slab_leaves(slabs_, s));
@@ -160,9 +149,19 @@ TEST_F(D4Trees, AreasAreThoseOfTheLeaves) {
                          2 * (kDepth - leaves.leaf[i]));
     }
   }
-  EXPECT_NEAR(weight, static_cast<double>(uneven_sphere().points.size()), 1e-3);
+  EXPECT_NEAR(weight, static_cast<double>(testing::uneven_sphere_cloud().points.size()), 1e-3);
   const double radius = 0.35 * 64.0;
   EXPECT_NEAR(area, 4.0 * 3.14159265 * radius * radius, 0.1 * 4.0 * 3.14159265 * radius * radius);
+}
+
+TEST(D4Leaves, LeaveOutliersOut) {
+  testing::CloudStore store(testing::stray_cloud(), kDepth, kDepth - kTop);
+  Slabs slabs(&store, kDepth, kTop, 0, true, 1);
+  find_whole(0, Progress(), 1, &slabs);
+  slabs.bring(0, slabs.count(), SlabStage::kLeaves);
+  double left_out = 0.0;
+  for (int s = 0; s < slabs.count(); ++s) left_out += find_slab_leaves(slabs, s).left_out;
+  EXPECT_NEAR(left_out, 6.0, 1e-6);
 }
 
 }  // namespace

@@ -86,6 +86,76 @@ TEST(Reconstruct, OfABallIsClosedAndNear) {
   }
 }
 
+TEST(Reconstruct, ReportsTheShareOfOutliers) {
+  Cloud cloud = ball(20000);
+  for (const double x : {-2.0, 0.0, 2.0}) {
+    cloud.points.push_back({x, 2.0, 2.0});
+    cloud.normals.push_back({0.0, 0.0, 1.0});
+    cloud.weights.push_back(2.0F);
+    cloud.attributes.push_back(0.0F);
+  }
+  ReconstructOptions options;
+  options.depth = 7;
+  for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
+    options.basis = basis;
+    EXPECT_NEAR(surface_of(cloud, options).report.outliers, 6.0 / 20006.0, 1e-9);
+  }
+}
+
+TEST(Reconstruct, FlipsNormalsThatMayPointInward) {
+  Cloud cloud = ball(5000);
+  for (Vector3& normal : cloud.normals) normal = Vector3{} - normal;
+  ReconstructOptions options;
+  options.depth = 5;
+  for (const WaveletBasis basis : {WaveletBasis::kHaar, WaveletBasis::kD4}) {
+    options.basis = basis;
+    options.are_sides_known = false;
+    EXPECT_TRUE(surface_of(cloud, options).report.is_flipped);
+    options.are_sides_known = true;
+    EXPECT_FALSE(surface_of(cloud, options).report.is_flipped);
+    EXPECT_FALSE(surface_of(ball(5000), options).report.is_flipped);
+  }
+}
+
+TEST(Reconstruct, CellsAreAsLargeAsTheyMayBe) {
+  const Cloud cloud = ball(1000);
+  for (int depth = 2; depth < 7; ++depth) {
+    ReconstructOptions options;
+    options.depth = depth;
+    const double cell = surface_of(cloud, options).report.cell;
+    options.depth = 1;  // does not count
+    // Rounded as sizes in single precision are, and by what is more than that.
+    for (const double size : {cell, (1.0 - 5e-7) * cell, 1.9 * cell}) {
+      options.cell_size = size;
+      EXPECT_EQ(surface_of(cloud, options).report.cell, cell) << depth;
+    }
+    options.cell_size = (1.0 - 1e-5) * cell;
+    EXPECT_LT(surface_of(cloud, options).report.cell, 0.6 * cell) << depth;
+  }
+}
+
+TEST(Reconstruct, RefusesCellsThatAreTooSmall) {
+  const Cloud cloud = ball(1000);
+  ReconstructOptions options;
+  const auto message = [&](double size) {
+    options.cell_size = size;
+    try {
+      surface_of(cloud, options);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const double size : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_TRUE(message(size).starts_with("cell_size: ")) << size;
+  }
+  const std::string least = message(1e-6);
+  const std::string use = "use ";
+  ASSERT_NE(least.find(use), std::string::npos);
+  // The length that the message names is taken.
+  EXPECT_EQ(message(std::stod(least.substr(least.find(use) + use.size()))), "");
+}
+
 TEST(Reconstruct, RefusesWhatIsOutOfRange) {
   const Cloud cloud = ball(100);
   const double nan = std::numeric_limits<double>::quiet_NaN();

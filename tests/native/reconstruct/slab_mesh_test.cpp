@@ -9,6 +9,7 @@
 #include <random>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "prefilter/reconstruct/coarse_tree.h"
 #include "prefilter/reconstruct/whole_samples.h"
@@ -23,8 +24,8 @@ constexpr int kTop = 3;
 // With the leaves of all slabs.
 class Sphere {
  public:
-  explicit Sphere(int count = 5000)
-      : cloud(testing::sphere_cloud(count)),
+  explicit Sphere(testing::TestCloud points = testing::sphere_cloud(5000))
+      : cloud(std::move(points)),
         store(cloud, kDepth, kDepth - kTop),
         slabs(&store, kDepth, kTop, 0, true, 1) {
     largest = find_whole(0, Progress(), 1, &slabs);
@@ -122,7 +123,7 @@ TEST(SlabMesh, NoiseIsThatOfTheSamples) {
 }
 
 TEST(SlabMesh, IsThePartOfTheSphereInTheSlab) {
-  Sphere sphere(20000);
+  Sphere sphere(testing::sphere_cloud(20000));
   ReconstructOptions options;
   options.depth = kDepth;
   const SurfaceSamples surface = {sphere.slabs, 0, find_noise(sphere.largest, &sphere.slabs)};
@@ -140,6 +141,56 @@ TEST(SlabMesh, IsThePartOfTheSphereInTheSlab) {
     }
   }
   EXPECT_GT(vertices, 5000U);
+}
+
+// The mean of the distances of vertices from the sphere's middle, in cells.
+double mean_radius(const Sphere& sphere, const ReconstructOptions& options,
+                   const SurfaceLevel& level) {
+  const SurfaceSamples surface = {sphere.slabs, 0, {}};
+  double sum = 0.0;
+  double count = 0.0;
+  for (int s = 0; s < sphere.slabs.count(); ++s) {
+    for (const Vector3& p : mesh_of_slab(surface, options, level, s).contour.mesh.positions) {
+      sum += length(Vector3{p[0] - 32.0, p[1] - 32.0, p[2] - 32.0});
+      count += 1.0;
+    }
+  }
+  return sum / count;
+}
+
+TEST(SlabMesh, GrowsAsTheLevelFalls) {
+  const Sphere sphere(testing::sphere_cloud(20000));
+  for (const bool smooth : {false, true}) {
+    ReconstructOptions options;
+    options.fit = false;
+    options.smooth = smooth;
+    const double low = mean_radius(sphere, options, {1.0F, 0.4F});
+    const double middle = mean_radius(sphere, options, {1.0F, 0.5F});
+    const double high = mean_radius(sphere, options, {1.0F, 0.6F});
+    EXPECT_GT(low, middle + 0.05) << smooth;
+    EXPECT_GT(middle, high + 0.05) << smooth;
+    // By the scale as by the level.
+    if (smooth) {
+      EXPECT_NEAR(mean_radius(sphere, options, {1.25F, 0.5F}), low, 1e-3);
+    }
+  }
+}
+
+TEST(SlabMesh, FollowsThinSamplesToo) {
+  const Sphere sphere(testing::uneven_sphere_cloud());
+  const SurfaceSamples surface = {sphere.slabs, 0, {}};
+  const ReconstructOptions options;
+  double error = 0.0;
+  double count = 0.0;
+  for (int s = 5; s < sphere.slabs.count(); ++s) {
+    const SlabMesh slab = mesh_of_slab(surface, options, SurfaceLevel(), s);
+    for (const Vector3& p : slab.contour.mesh.positions) {
+      error += std::abs(length(Vector3{p[0] - 32.0, p[1] - 32.0, p[2] - 32.0}) - 0.35 * 64.0);
+    }
+    count += static_cast<double>(slab.contour.mesh.positions.size());
+  }
+  EXPECT_GT(count, 1000.0);
+  EXPECT_LT(error, 0.05 * count);
 }
 
 }  // namespace

@@ -41,6 +41,30 @@ inline TestCloud sphere_cloud(int count, double radius = 0.35) {
   return cloud;
 }
 
+/// A dense lower half and a thin upper one, so that leaves have several depths, also above slabs.
+inline TestCloud uneven_sphere_cloud() {
+  const TestCloud all = sphere_cloud(20000);
+  TestCloud cloud;
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    if (all.points[i][2] > 0.5 && i % 16 != 0) continue;
+    cloud.points.push_back(all.points[i]);
+    cloud.normals.push_back(all.normals[i]);
+  }
+  return cloud;
+}
+
+/// A dense sphere, and six points that lie far from all others.
+inline TestCloud stray_cloud() {
+  TestCloud cloud = sphere_cloud(20000);
+  for (const double x : {0.05, 0.5, 0.95}) {
+    for (const double z : {0.02, 0.98}) {
+      cloud.points.push_back({x, 0.05, z});
+      cloud.normals.push_back({0.0, 0.0, 1.0});
+    }
+  }
+  return cloud;
+}
+
 /// The cells of the unit cube.
 inline SampleGrid unit_grid(int depth) {
   SampleGrid grid;
