@@ -2,7 +2,7 @@
 
 """Attributes of meshes that are carried from the corners of triangles to other triangles."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Any
@@ -112,36 +112,59 @@ class Wanted:
     attributes: bool = True
 
 
+@dataclass(frozen=True)
+class Triangles:
+    """Which vertices, corners and faces the triangles of an evaluated mesh have.
+
+    Attributes:
+        vertices: (m, 3).
+        corners: (m, 3); None where all faces are triangles.
+        faces: (m,), likewise.
+    """
+
+    vertices: NDArray[np.int32]
+    corners: NDArray[np.int32] | None = None
+    faces: NDArray[np.int32] | None = None
+
+    def indices(self, domain: str) -> NDArray[np.int32]:
+        """Returns where the values of the triangles are in a domain: (m, 3), of faces (m, 1)."""
+        count = len(self.vertices)
+        if domain == "POINT":
+            return self.vertices
+        if domain == "FACE":
+            faces = np.arange(count, dtype=np.int32) if self.faces is None else self.faces
+            return faces[:, None]
+        if self.corners is None:
+            return np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
+        return self.corners
+
+
 def read_layers(
-    shown: bpy.types.Object,
-    mesh: bpy.types.Mesh,
-    corners: NDArray[np.int32] | None,
-    triangles: NDArray[np.int32],
-    faces: NDArray[np.int32] | None,
-    wanted: Wanted,
+    shown: bpy.types.Object, mesh: bpy.types.Mesh, triangles: Triangles, wanted: Wanted
 ) -> Iterator[Layer]:
     """Yields the layers of an evaluated mesh.
 
     Args:
         shown: The object that shows it, which knows the names of vertex groups.
         mesh: The mesh.
-        corners: (m, 3), the corners of its triangles; None where all faces are triangles.
-        triangles: (m, 3), their vertices.
-        faces: (m,), their faces, likewise.
+        triangles: Its triangles.
         wanted: What to read.
     """
-    count = len(triangles)
+    indices = cache(triangles.indices)
+    yield from _read_attributes(mesh, indices, wanted)
+    if not wanted.attributes:
+        return
+    for name, values in attributes.group_weights(shown, mesh):
+        yield Layer(VERTEX_GROUP, name, "FLOAT", "POINT", values[:, None], triangles.vertices)
+    if mesh.has_custom_normals:
+        normals = np.empty((len(mesh.loops), 3), np.float32)
+        mesh.corner_normals.foreach_get("vector", normals.ravel())
+        yield Layer(NORMALS, "", "FLOAT_VECTOR", "CORNER", normals, indices("CORNER"))
 
-    @cache
-    def indices(domain: str) -> NDArray[np.int32]:
-        if domain == "POINT":
-            return triangles
-        if domain == "FACE":
-            return (np.arange(count, dtype=np.int32) if faces is None else faces)[:, None]
-        if corners is None:
-            return np.arange(3 * count, dtype=np.int32).reshape(-1, 3)
-        return corners
 
+def _read_attributes(
+    mesh: bpy.types.Mesh, indices: Callable[[str], NDArray[np.int32]], wanted: Wanted
+) -> Iterator[Layer]:
     uv_maps = {layer.name for layer in mesh.uv_layers}
     colors = {layer.name for layer in mesh.color_attributes}
     for attribute in mesh.attributes:
@@ -153,29 +176,13 @@ def read_layers(
             UV_MAP: wanted.uv_maps,
             ATTRIBUTE: wanted.attributes and _is_free(attribute),
         }
-        if not is_wanted[kind] or attribute.data_type not in _TYPES:
-            continue
-        if attribute.domain not in _DOMAINS:
+        domain = attribute.domain
+        if not is_wanted[kind] or attribute.data_type not in _TYPES or domain not in _DOMAINS:
             continue
         field, width, dtype = _TYPES[attribute.data_type]
         values = np.empty((len(attribute.data), width), dtype)
         attribute.data.foreach_get(field, values.ravel())
-        yield Layer(
-            kind,
-            attribute.name,
-            attribute.data_type,
-            attribute.domain,
-            values,
-            indices(attribute.domain),
-        )
-    if not wanted.attributes:
-        return
-    for name, values in attributes.group_weights(shown, mesh):
-        yield Layer(VERTEX_GROUP, name, "FLOAT", "POINT", values[:, None], triangles)
-    if mesh.has_custom_normals:
-        normals = np.empty((len(mesh.loops), 3), np.float32)
-        mesh.corner_normals.foreach_get("vector", normals.ravel())
-        yield Layer(NORMALS, "", "FLOAT_VECTOR", "CORNER", normals, indices("CORNER"))
+        yield Layer(kind, attribute.name, attribute.data_type, domain, values, indices(domain))
 
 
 def write_layer(mesh: bpy.types.Mesh, layer: NewLayer) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import attributes
-from .layers import COLOR, UV_MAP, Layer, Wanted, read_layers
+from .layers import COLOR, UV_MAP, Layer, Triangles, Wanted, read_layers
 
 FloatArray = NDArray[np.float64]
 Positions = NDArray[np.floating]
@@ -213,7 +213,7 @@ class _Reader:
             materials = materials[:1]
         elif faces is not None:
             materials = materials[faces]
-        layers = list(read_layers(shown, mesh, corners, triangles, faces, self._wanted))
+        layers = list(read_layers(shown, mesh, Triangles(triangles, corners, faces), self._wanted))
         self._note_active(mesh)
         return _LocalMesh(positions, triangles, materials, slots, layers)
 

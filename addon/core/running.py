@@ -8,6 +8,15 @@ from bpy.props import BoolProperty, CollectionProperty
 TICK_SECONDS = 0.05
 """How often a running operator looks at its thread."""
 
+# While settings are applied, the view may be turned, but nothing may change.
+_HARMLESS_EVENTS = frozenset(
+    {
+        *("MOUSEMOVE", "INBETWEEN_MOUSEMOVE", "WINDOW_DEACTIVATE", "TIMER"),
+        *("MIDDLEMOUSE", "WHEELUPMOUSE", "WHEELDOWNMOUSE"),
+        *("TRACKPADPAN", "TRACKPADZOOM", "MOUSEROTATE", "NDOF_MOTION"),
+    }
+)
+
 _SWITCH = "use_cancel"
 _STATUS_UNITS = 20.0
 _runs: dict[str, "Run"] = {}
@@ -109,6 +118,20 @@ def is_over_button(context: bpy.types.Context, event: bpy.types.Event) -> bool:
             if under is not None and under[1].rpartition(".")[2] == _SWITCH:
                 return True
     return False
+
+
+def handed_on(context: bpy.types.Context, event: bpy.types.Event, *, is_free: bool) -> set[str]:
+    """Returns what an event leads to that says nothing to an operator at work.
+
+    Args:
+        context: The context.
+        event: The event.
+        is_free: Whether a user may go on with other things meanwhile.
+    """
+    if is_free or event.type in _HARMLESS_EVENTS:
+        return {"PASS_THROUGH"}
+    is_click = event.type == "LEFTMOUSE" and is_over_button(context, event)
+    return {"PASS_THROUGH"} if is_click else {"RUNNING_MODAL"}
 
 
 def register() -> None:

@@ -3,8 +3,7 @@
 """The first step of a bake: everything that it needs is copied out of Blender, and checked."""
 
 from collections.abc import Generator, Iterable, Sequence
-from dataclasses import replace
-from functools import partial
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
@@ -12,11 +11,13 @@ import bpy
 from ..bridge import image_roles, images, meshes
 from ..bridge.files import engines, textures
 from ..bridge.images import Picture
+from ..core.doing import read_at_once
 from ..core.options import check
 from ..core.wording import listed
 from . import blocks, contents, frames, udim
-from .bake import Bake, reads_encoded, roughness_format
+from .bake import Bake, Outputs
 from .choices import TEXTURE_SPACE_FILTERS, Settings
+from .source import on_surfaces, reads_encoded
 
 
 class NoSurfaceError(ValueError):
@@ -32,67 +33,81 @@ class NoSurfaceError(ValueError):
         self.problems = list(problems)
 
 
-def read(
-    image: bpy.types.Image,
-    objects: Sequence[bpy.types.Object],
-    settings: Settings,
-    depsgraph: bpy.types.Depsgraph,
-    *,
-    all_faces: bool = False,
-    needs_surface: bool = False,
-) -> Bake | udim.TiledBake:
-    """Copies everything that the bake needs out of Blender.
+@dataclass(frozen=True)
+class Request:
+    """What is to be baked, and on what.
 
-    Args:
+    Attributes:
         image: Level 0.
         objects: The objects to look for the image on.
         settings: What to bake.
         depsgraph: The evaluated dependency graph.
         all_faces: See `meshes.image_surfaces`.
         needs_surface: Whether a surface is needed for any filter.
+        roughness_texture_format: That of the file of the roughness; by default `roughness_format`.
+        may_lose_channels: See `engines.checked`.
+        writes_image: Whether the image itself is baked; else only the roughness that it is the
+            normal map of, for the surfaces of that.
+    """
+
+    image: bpy.types.Image
+    objects: Sequence[bpy.types.Object]
+    settings: Settings
+    depsgraph: bpy.types.Depsgraph
+    all_faces: bool = False
+    needs_surface: bool = False
+    roughness_texture_format: str = ""
+    may_lose_channels: bool = False
+    writes_image: bool = True
+
+
+@dataclass(frozen=True)
+class Level0:
+    """What was read of an image.
+
+    Attributes:
+        numbers: Of its tiles; none for an image without.
+        pictures: Of its tiles, or the one of an image without.
+        targets: The files of the tiles, or of the image; none for no file.
+        content: What it holds, a key of `choices.CONTENTS` and not "auto".
+        is_encoded: Whether the image is to be decoded, whatever it holds.
+    """
+
+    numbers: list[int]
+    pictures: list[Picture]
+    targets: list[Path]
+    content: str
+    is_encoded: bool
+
+
+@dataclass(frozen=True)
+class Rough:
+    """The roughness of a normal map.
+
+    Attributes:
+        roughness: What was read of it; None for none.
+        target: Its file; None for none.
+    """
+
+    roughness: contents.Roughness | None = None
+    target: Path | None = None
+
+
+def read(request: Request) -> Bake | udim.TiledBake:
+    """Copies everything that the bake needs out of Blender.
 
     Raises:
         ValueError: There is nothing to bake, or the image or a mesh is unfit.
         OSError: The file of the settings cannot be written.
     """
-    steps = reading(
-        image, objects, settings, depsgraph, all_faces=all_faces, needs_surface=needs_surface
-    )
-    while True:
-        try:
-            next(steps)
-        except StopIteration as done:
-            return done.value
+    return read_at_once(reading(request))
 
 
-def reading(
-    image: bpy.types.Image,
-    objects: Sequence[bpy.types.Object],
-    settings: Settings,
-    depsgraph: bpy.types.Depsgraph,
-    *,
-    all_faces: bool = False,
-    needs_surface: bool = False,
-    roughness_texture_format: str = "",
-    may_lose_channels: bool = False,
-    writes_image: bool = True,
-) -> Generator[float, None, Bake | udim.TiledBake]:
+def reading(request: Request) -> Generator[float, None, Bake | udim.TiledBake]:
     """Does what `read` does, in steps of a frame.
 
     The scene is at other frames in between; closing the generator takes it back, as its end
     does. Nothing else may change meanwhile.
-
-    Args:
-        image: See `read`, also for those that follow.
-        objects: See above.
-        settings: See above.
-        depsgraph: See above.
-        all_faces: See above.
-        needs_surface: See above.
-        roughness_texture_format: That of the file of the roughness; by default `roughness_format`.
-        may_lose_channels: See `engines.checked`.
-        writes_image: Whether the image itself is baked; else only the roughness that it is the
-            normal map of, for the surfaces of that.
 
     Yields:
         The fraction done.
@@ -100,15 +115,29 @@ def reading(
     Returns:
         The bake.
     """
-    check(settings)
+    check(request.settings)
+    level_0 = read_level_0(request)
+    request = with_format(request, level_0)
+    told = told_of_files(request, level_0)
+    rough = read_roughness(request, level_0)
+    told += told_of_roughness(request, rough)
+    found = yield from read_surfaces(request)
+    job = bake_of(request, level_0, rough, found)
+    job.warnings.extend(told + odd_uses(request, level_0, rough))
+    return job
+
+
+def read_level_0(request: Request) -> Level0:
+    """Copies the image, and checks what its settings say of it."""
+    image, settings = request.image, request.settings
     numbers = images.tile_numbers(image)
     targets = [textures.check_target(path) for path in udim.paths(settings.filepath, numbers)]
-    if not targets and not settings.use_images and writes_image:
+    if not targets and not settings.use_images and request.writes_image:
         raise ValueError("nothing to write: neither level images nor a file are asked for")
     pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
     for picture in pictures:
         _check_levels(picture, settings.levels)
-    used_by = meshes.materials_of_objects(objects)
+    used_by = meshes.materials_of_objects(request.objects)
     is_normal_map = any(image_roles.feeds_normal_map(material, image) for material in used_by)
     if any(image_roles.has_alpha_of(material, image) for material in used_by):
         pictures = [replace(picture, covers=True) for picture in pictures]
@@ -123,70 +152,105 @@ def reading(
             f"roughness: found '{settings.roughness}' for the tiled image '{image.name}'; it "
             f"goes with images of one tile"
         )
-    threshold = settings.threshold if content == "cutout" else None
-    if settings.texture_format == "blocks":
-        may_lose_channels = True
-        settings = replace(settings, texture_format=_blocks(pictures, content))
-    checked = partial(engines.checked, may_lose_channels=may_lose_channels)
-    told = [
+    return Level0(numbers, pictures, targets, content, is_encoded)
+
+
+def with_format(request: Request, level_0: Level0) -> Request:
+    """Returns the request with a format of texels in the place of "blocks"."""
+    if request.settings.texture_format != "blocks":
+        return request
+    chosen = _blocks(level_0.pictures, level_0.content)
+    settings = replace(request.settings, texture_format=chosen)
+    return replace(request, settings=settings, may_lose_channels=True)
+
+
+def told_of_files(request: Request, level_0: Level0) -> list[str]:
+    """Returns what the files cannot hold of the image; raises ValueError where that is too much."""
+    settings = request.settings
+    threshold = settings.threshold if level_0.content == "cutout" else None
+    return [
         note
-        for picture, target in zip(pictures, targets, strict=False)
-        for note in checked(picture, target, settings.texture_format, threshold)
-    ]
-    roughness, roughness_target = _read_roughness(settings, content, pictures[0])
-    if roughness is not None:
-        chosen = roughness_texture_format or roughness_format(settings, roughness.picture)
-        roughness = replace(roughness, texture_format=chosen)
-        told += checked(roughness.picture, roughness_target, chosen)
-    weighed = image if writes_image else images.find(settings.roughness)
-    found = yield from frames.surfaces_over(
-        weighed, objects, settings, depsgraph, all_faces=all_faces
-    )
-    needs_surface = needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
-    if needs_surface and not found.surfaces:
-        raise NoSurfaceError(
-            _no_surface(weighed, objects, settings.objects, found.problems), found.problems
+        for picture, target in zip(level_0.pictures, level_0.targets, strict=False)
+        for note in engines.checked(
+            picture,
+            target,
+            settings.texture_format,
+            threshold,
+            may_lose_channels=request.may_lose_channels,
         )
+    ]
+
+
+def told_of_roughness(request: Request, rough: Rough) -> list[str]:
+    """Returns the same of the file of the roughness."""
+    if rough.roughness is None:
+        return []
+    return engines.checked(
+        rough.roughness.picture,
+        rough.target,
+        rough.roughness.texture_format,
+        may_lose_channels=request.may_lose_channels,
+    )
+
+
+def read_surfaces(request: Request) -> Generator[float, None, meshes.ImageSurfaces]:
+    """Copies the surfaces that show the image, in steps of a frame."""
+    settings = request.settings
+    image = request.image if request.writes_image else images.find(settings.roughness)
+    found = yield from frames.surfaces_over(
+        image, request.objects, settings, request.depsgraph, all_faces=request.all_faces
+    )
+    needs_surface = request.needs_surface or settings.filter not in TEXTURE_SPACE_FILTERS
+    if needs_surface and not found.surfaces:
+        message = _no_surface(image, request.objects, settings.objects, found.problems)
+        raise NoSurfaceError(message, found.problems)
     if settings.importance and found.surfaces and not any(s.area for s in found.surfaces):
         raise ValueError(
             f"importance: '{settings.importance}' is 0 wherever objects "
             f"{listed(dict.fromkeys(found.objects))} use the image"
         )
-    job: Bake | udim.TiledBake
-    if numbers:
-        tiles, warnings = udim.tiles(image.name, pictures, numbers, found, settings, targets)
-        bakes = [Bake(one.picture, one.found, settings, one.target, content) for one in tiles]
-        job = udim.TiledBake(image.name, bakes, warnings)
-    else:
-        target = targets[0] if targets else None
-        job = Bake(
-            pictures[0],
-            found,
-            settings,
-            target,
-            content,
-            roughness,
-            roughness_target,
-            writes_image=writes_image,
+    return found
+
+
+def bake_of(
+    request: Request, level_0: Level0, rough: Rough, found: meshes.ImageSurfaces
+) -> Bake | udim.TiledBake:
+    """Returns the bake of what was read."""
+    settings, content, pictures = request.settings, level_0.content, level_0.pictures
+    if level_0.numbers:
+        tiles, warnings = udim.tiles(
+            request.image.name, pictures, level_0.numbers, found, settings, level_0.targets
         )
-    job.warnings.extend(told)
-    if content == "normal" and is_encoded:
-        job.warnings.append(
-            f"image '{image.name}' has the color space {pictures[0].colorspace}; a shader "
+        bakes = [
+            Bake(on_surfaces(one.picture, one.found, settings, content), Outputs(one.target))
+            for one in tiles
+        ]
+        return udim.TiledBake(request.image.name, bakes, warnings)
+    target = level_0.targets[0] if level_0.targets else None
+    outputs = Outputs(target, rough.roughness, rough.target, request.writes_image)
+    return Bake(on_surfaces(pictures[0], found, settings, content), outputs)
+
+
+def odd_uses(request: Request, level_0: Level0, rough: Rough) -> list[str]:
+    """Returns warnings of settings that do not go with the image, or with each other."""
+    settings, picture, told = request.settings, level_0.pictures[0], []
+    if level_0.content == "normal" and level_0.is_encoded:
+        told.append(
+            f"image '{request.image.name}' has the color space {picture.colorspace}; a shader "
             f"reads normals right in Non-Color only"
         )
     if settings.reader != "linear":
-        job.warnings.extend(_odd_readers(pictures[0], targets))
-        if settings.lookups in {"one-lookup", "anisotropic"} and reads_encoded(pictures[0]):
-            job.warnings.append(
-                f"lookups: readers of encoded texels are supersampled, so '{pictures[0].name}' is "
+        told.extend(_odd_readers(picture, level_0.targets))
+        if settings.lookups in {"one-lookup", "anisotropic"} and reads_encoded(picture):
+            told.append(
+                f"lookups: readers of encoded texels are supersampled, so '{picture.name}' is "
                 f"baked for that"
             )
-    if settings.roughness and roughness is None:
-        job.warnings.append(
-            f"roughness '{settings.roughness}' is left out: '{image.name}' is no normal map"
+    if settings.roughness and rough.roughness is None:
+        told.append(
+            f"roughness '{settings.roughness}' is left out: '{request.image.name}' is no normal map"
         )
-    return job
+    return told
 
 
 def _blocks(pictures: Sequence[Picture], content: str) -> str:
@@ -213,20 +277,19 @@ def _check_levels(picture: Picture, levels: int) -> None:
         raise ValueError(f"levels: found {levels}; an image of {width} x {height} has 1 to {full}")
 
 
-def _read_roughness(
-    settings: Settings, content: str, picture: Picture
-) -> tuple[contents.Roughness | None, Path | None]:
-    """Returns the roughness of a normal map, and the file to write it to."""
+def read_roughness(request: Request, level_0: Level0) -> Rough:
+    """Copies the roughness of a normal map, and checks what its settings say of it."""
+    settings = request.settings
     if not settings.roughness:
         if settings.roughness_filepath:
             raise ValueError("roughness file: needs the name of a roughness image, found none")
-        return None, None
-    if content != "normal":
+        return Rough()
+    if level_0.content != "normal":
         if settings.content == "auto":
-            return None, None
+            return Rough()
         raise ValueError(
-            f"roughness: found '{settings.roughness}' with the content '{content}'; it is for "
-            f"normal maps only"
+            f"roughness: found '{settings.roughness}' with the content '{level_0.content}'; it is "
+            f"for normal maps only"
         )
     if not settings.use_images and not settings.roughness_filepath:
         raise ValueError(
@@ -236,12 +299,26 @@ def _read_roughness(
     target = None
     if settings.roughness_filepath:
         target = textures.check_target(settings.roughness_filepath)
-        if settings.filepath and target == textures.check_target(settings.filepath):
+        if target in level_0.targets:
             raise ValueError(f"roughness file: '{target}' is the file of the normal map")
-    rough = images.read(images.find(settings.roughness))
-    contents.check_roughness(picture, rough)
-    linear = images.scene_linear(rough)
-    return contents.Roughness(rough, linear, settings.roughness_channel), target
+    picture = images.read(images.find(settings.roughness))
+    contents.check_roughness(level_0.pictures[0], picture)
+    chosen = request.roughness_texture_format or roughness_format(settings, picture)
+    linear = images.scene_linear(picture)
+    return Rough(contents.Roughness(picture, linear, settings.roughness_channel, chosen), target)
+
+
+def roughness_format(settings: Settings, picture: Picture) -> str:
+    """Returns the format of the roughness file: that of the normal map, unless channels lack."""
+    if settings.texture_format in {"eac-r11", "eac-rg11"}:
+        if settings.roughness_channel == "all":
+            return "eac-r11"
+        return "etc2-rgba" if picture.stored.shape[2] == 4 else "etc2-rgb"
+    if settings.texture_format not in {"bc4", "bc5"}:
+        return settings.texture_format
+    if settings.roughness_channel == "all":
+        return "bc4"
+    return "bc7"
 
 
 def _no_surface(

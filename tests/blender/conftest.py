@@ -3,6 +3,7 @@
 """An empty Blender with the add-on enabled, for every test."""
 
 import importlib
+import json
 import os
 import shutil
 import subprocess
@@ -81,9 +82,11 @@ def bake(addon: Callable[[str], ModuleType]) -> Callable[..., Any]:
 
     def run(image, objects=(), *, all_faces=False, progress=lambda _: True, **settings):
         chosen = addon("mipmaps.choices").Settings(**settings)
-        job = addon("mipmaps.reading").read(
+        reading = addon("mipmaps.reading")
+        request = reading.Request(
             image, list(objects), chosen, scenes.depsgraph(), all_faces=all_faces
         )
+        job = reading.read(request)
         job.compute(progress)
         return job.write()
 
@@ -160,3 +163,15 @@ def in_window(display: dict[str, str]) -> Callable[[Path, Path], None]:
         assert "Error" not in output, output
 
     return run
+
+
+@pytest.fixture(scope="module")
+def found(
+    request: pytest.FixtureRequest,
+    in_window: Callable[[Path, Path], None],
+    tmp_path_factory: pytest.TempPathFactory,
+) -> Any:
+    """Runs the session of a module of tests, its `SESSION`, once, and returns what it found."""
+    result = tmp_path_factory.mktemp("session") / "result.json"
+    in_window(request.module.SESSION, result)
+    return json.loads(result.read_text())

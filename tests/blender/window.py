@@ -5,8 +5,13 @@
 import os
 import traceback
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
 
+import addon_utils
 import bpy
+
+PACKAGE = "bl_ext.user_default.prefilter"
 
 SECONDS_PER_STEP = 0.3
 MAX_WAITS = 200
@@ -80,6 +85,86 @@ def cancelled(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
 def region(area: bpy.types.Area, kind: str) -> bpy.types.Region:
     """Returns the region of a kind."""
     return next(found for found in area.regions if found.type == kind)
+
+
+@dataclass(frozen=True)
+class Stage:
+    """The largest editor of the window."""
+
+    window: bpy.types.Window
+    area: bpy.types.Area
+
+    @property
+    def override(self) -> dict[str, Any]:
+        """What `temp_override` takes for operators to run there."""
+        return {"window": self.window, "area": self.area, "region": region(self.area, "WINDOW")}
+
+    @property
+    def tab(self) -> str:
+        """The tab that the sidebar shows."""
+        return region(self.area, "UI").active_panel_category
+
+    def open_tab(self) -> Iterator[None]:
+        """Opens the sidebar at the tab of the add-on, and draws that."""
+        self.area.spaces.active.show_region_ui = True
+        yield from until(lambda: self.tab != "UNSUPPORTED")
+        region(self.area, "UI").active_panel_category = "Prefilter"
+        yield from self.redrawn()
+
+    def redrawn(self) -> Iterator[None]:
+        """Draws the editor."""
+        self.area.tag_redraw()
+        yield
+        yield
+
+    def escape(self) -> None:
+        """Presses Esc."""
+        self.window.event_simulate(type="ESC", value="PRESS")
+
+    def menus(self, *names: str) -> Iterator[None]:
+        """Opens menus one after another."""
+        for name in names:
+            with bpy.context.temp_override(**self.override):
+                bpy.ops.wm.call_menu(name=name)
+            yield
+            self.escape()
+            yield
+
+    def redo_panel(self) -> Iterator[None]:
+        """Yields until Adjust Last Operation is open."""
+        if region(self.area, "HUD").height < 40:
+            yield from RedoPanel(self.window, self.area).unfolded()
+
+
+def begun(kind: str = "", *, opened: str = "") -> Stage:
+    """Enables the add-on, and returns the largest editor.
+
+    Args:
+        kind: What editor it is to be; empty for the one that it is.
+        opened: A panel that is to be open, as one that is closed is not drawn.
+    """
+    assert addon_utils.enable(PACKAGE, default_set=True) is not None
+    if opened:
+        panel = getattr(bpy.types, opened)
+        bpy.utils.unregister_class(panel)
+        panel.bl_options = set()
+        bpy.utils.register_class(panel)
+    return largest(kind)
+
+
+def largest(kind: str = "") -> Stage:
+    """Returns the largest editor, which becomes one of a kind."""
+    window = bpy.context.window_manager.windows[0]
+    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    if kind:
+        area.type = kind
+    return Stage(window, area)
+
+
+def without_objects() -> None:
+    """Removes the objects of the file that Blender starts with."""
+    for obj in list(bpy.data.objects):
+        bpy.data.objects.remove(obj)
 
 
 class RedoPanel:

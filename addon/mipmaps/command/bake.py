@@ -125,13 +125,14 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         users_of_it, warnings = source.users_of(image, objects, options.object)
         command.warn(warnings)
         try:
-            work = reading.read(
+            request = reading.Request(
                 image,
                 users_of_it,
                 replace(settings, filepath=target),
                 bpy.context.evaluated_depsgraph_get(),
                 all_faces=is_picture,
             )
+            work = reading.read(request)
             command.tell(command.done(work))
         except FAILURES as error:
             if len(chosen) == 1:

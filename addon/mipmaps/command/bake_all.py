@@ -12,8 +12,8 @@ import bpy
 from ...bridge import meshes
 from ...bridge.files import engines, scenes, staging
 from ...core import command, presets
+from ...core.doing import read_at_once
 from ...core.flags import given
-from ...core.operator import read_at_once
 from ...core.wording import listed
 from .. import file_names
 from ..choices import NOT_OF_MODELS, ModelSettings, Settings
@@ -50,14 +50,14 @@ def bake_all(options: argparse.Namespace, settings: Settings) -> None:
         _bake(model)
     finally:
         model.discard()
-    outcome = model.outcome()
+    outcome = model.results.outcome()
     if options.save:
         scenes.save_open(path)
-    for line in model.lines_of_left_out():
+    for line in model.results.lines_of_left_out():
         print(line)
     print(outcome.summary)
-    if model.failed:
-        raise ValueError(f"not baked: {listed(one.image for one in model.failed)}")
+    if model.results.failed:
+        raise ValueError(f"not baked: {listed(one.image for one in model.results.failed)}")
 
 
 def _pattern(options: argparse.Namespace, chosen: ModelSettings) -> file_names.Pattern:
@@ -98,14 +98,16 @@ def _list(model: ModelBake) -> None:
         _read(model)
     for line in table.lines(model.rows):
         print(line)
-    for line in model.lines_of_left_out():
+    for line in model.results.lines_of_left_out():
         print(line)
     command.warn(dict.fromkeys(model.warnings))
-    command.warn(f"image '{one.image}' cannot be baked: {one.reason}" for one in model.failed)
+    command.warn(
+        f"image '{one.image}' cannot be baked: {one.reason}" for one in model.results.failed
+    )
     if not model.rows:
         raise ValueError("there is no image to bake")
-    if model.failed:
-        raise ValueError(f"cannot be baked: {listed(one.image for one in model.failed)}")
+    if model.results.failed:
+        raise ValueError(f"cannot be baked: {listed(one.image for one in model.results.failed)}")
 
 
 def _bake(model: ModelBake) -> None:
@@ -120,7 +122,7 @@ def _bake(model: ModelBake) -> None:
         progress.end()
     for outcome in written:
         command.tell(outcome)
-    command.warn(f"image '{one.image}' is not baked: {one.reason}" for one in model.failed)
+    command.warn(f"image '{one.image}' is not baked: {one.reason}" for one in model.results.failed)
 
 
 def _read(model: ModelBake) -> Compute:

@@ -69,17 +69,14 @@ def _plot(options: argparse.Namespace) -> None:
     settings = settings_given(options, Settings)
     filters = given(options, PlotSettings).get("filters", errors.default_filters(settings.reader))
     work = reading.read(
-        image,
-        objects,
-        settings,
-        depsgraph,
-        all_faces=is_picture,
-        needs_surface=True,
+        reading.Request(
+            image, objects, settings, depsgraph, all_faces=is_picture, needs_surface=True
+        )
     )
     assert isinstance(work, Bake)
     progress = command.ProgressLine()
     try:
-        curves = errors.measure(work, list(dict.fromkeys(filters)), progress)
+        curves = errors.measure(work.source, list(dict.fromkeys(filters)), progress)
     finally:
         progress.end()
     staged = []

@@ -3,11 +3,40 @@
 """What a bake of a model does, as a table of text."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 
-from .bake import Row, shown_file
+from ...bridge.files import textures
 
 _HEAD = ("Image", "Size", "Objects", "Content", "Filter", "Format", "File")
 _MOST_OBJECTS = 3
+
+
+@dataclass(frozen=True)
+class Row:
+    """What is done with an image.
+
+    Attributes:
+        image: Its name.
+        size: Such as "2048 x 2048".
+        objects: The names of the objects whose surfaces count.
+        content: What it is taken for.
+        uses: What shaders take of it, which says why.
+        filter: The label of the filter.
+        format: What the file holds.
+        file: The path of the file, or of all levels; empty for none.
+        remarks: More about what is done.
+    """
+
+    image: str
+    size: str
+    objects: tuple[str, ...]
+    content: str
+    uses: tuple[str, ...]
+    filter: str
+    format: str
+    file: str
+    remarks: tuple[str, ...] = ()
 
 
 def lines(rows: Sequence[Row]) -> list[str]:
@@ -27,7 +56,7 @@ def _cells(row: Row) -> tuple[str, ...]:
     objects = ", ".join(row.objects[:_MOST_OBJECTS]) + (f" and {more} more" if more > 0 else "")
     return (
         *(row.image, row.size, objects, row.content, row.filter),
-        *(row.format or "-", shown_file(row.file) or "-"),
+        *(row.format or "-", _shown_file(row.file) or "-"),
     )
 
 
@@ -38,3 +67,8 @@ def _line(cells: Sequence[str], widths: Sequence[int]) -> str:
 def _reasons(row: Row) -> list[str]:
     uses = ", ".join(row.uses) if row.uses else "no shader, so its color space decides"
     return [f"read by {uses}", *row.remarks]
+
+
+def _shown_file(path: str) -> str:
+    """Returns how to call a file of a row."""
+    return textures.shown(Path(path)).strip("'") if path else ""

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.operator import Compute, WorkOperator, read_at_once
+from ...core.doing import Compute, read_at_once
+from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
 from ...core.properties import set_unset
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
@@ -84,7 +85,7 @@ class PREFILTER_OT_bake_mipmaps(
         self.warn(warnings)
         settings = self._with_files(image, settings)
         depsgraph = context.evaluated_depsgraph_get()
-        self.work = yield from reading.reading(image, objects, settings, depsgraph)
+        self.work = yield from reading.reading(reading.Request(image, objects, settings, depsgraph))
         return self.work.compute
 
     def finish(self, context: bpy.types.Context, result: None) -> str:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ...core.operator import BackgroundOperator, Compute, read_at_once
+from ...core.doing import Compute, read_at_once
+from ...core.operator import BackgroundOperator
 from ...core.presets import PresetsOperator
 from ..properties import MODEL, ModelProperties
 
@@ -79,7 +80,7 @@ class PREFILTER_OT_bake_model(
         del context, result
         assert self._model is not None
         self._model.write()
-        return self.tell(self._model.outcome())
+        return self.tell(self._model.results.outcome())
 
     def discard(self) -> None:
         """Removes what was staged."""
@@ -94,6 +95,7 @@ class PREFILTER_OT_bake_model(
         from .. import file_names
         from ..model.bake import ModelBake
         from ..model.plan import image_of, plan
+        from ..model.results import Results
 
         own, shared = self.to_settings()
         folder = own.folder if own.result == "file" else ""
@@ -111,7 +113,7 @@ class PREFILTER_OT_bake_model(
             context.view_layer, context.evaluated_depsgraph_get(), chosen, material=own.material
         )
         if not planned.items:
-            raise ValueError("\n".join(ModelBake(planned, shared, {}).nothing()))
+            raise ValueError("\n".join(Results(planned.left_out).nothing()))
         images = [image_of(item.full_name) for item in planned.items]
         pattern = file_names.Pattern.in_folder(folder, f".{own.file_format}")
         if not engines.has_formats(pattern.text):

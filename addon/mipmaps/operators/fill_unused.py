@@ -11,13 +11,13 @@ import prefilter
 from bpy.props import BoolProperty
 
 from ...bridge import editors
+from ...core.doing import Compute
 from ...core.jobs import Progress
-from ...core.operator import Compute
 from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
     from ...bridge.images import FloatArray
-    from ..bake import Bake
+    from ..source import Source
 
 
 class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
@@ -57,7 +57,7 @@ class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
         return f"Filled {changed:.1%} of the texels in '{filled.name}'"
 
 
-def _fill(source: "Bake", progress: Progress) -> "FloatArray":
+def _fill(source: "Source", progress: Progress) -> "FloatArray":
     """Returns stored values; those of texels that are used are the image's own, bit for bit."""
     from ...bridge import images
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...bridge import editors
-from ...core.operator import Compute
+from ...core.doing import Compute
 from ...core.properties import single_property
 from .. import choices
 from .source import SurfaceOperator, read_source

@@ -7,7 +7,8 @@ from collections.abc import Generator
 import bpy
 
 from ...bridge.views import EndsView
-from ...core.operator import Compute, WorkOperator, read_at_once
+from ...core.doing import Compute, read_at_once
+from ...core.operator import WorkOperator
 from ...core.properties import single_property
 from .. import choices
 from ..choices import Settings

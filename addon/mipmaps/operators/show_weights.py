@@ -9,12 +9,12 @@ import bpy
 import prefilter
 
 from ...bridge import editors
+from ...core.doing import Compute
 from ...core.jobs import Progress
-from ...core.operator import Compute
 from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
-    from ..bake import Bake
+    from ..source import Source
     from ..view import weights
 
 
@@ -70,7 +70,7 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
         return {"FINISHED"}
 
 
-def _weigh(source: "Bake", progress: Progress) -> "weights.Weights":
+def _weigh(source: "Source", progress: Progress) -> "weights.Weights":
     from ..view import weights
 
     height, width = source.picture.shape[:2]

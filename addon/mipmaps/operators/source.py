@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...bridge.image_operator import ImageOperator
-from ...core.operator import BackgroundOperator, read_at_once
+from ...core.doing import read_at_once
+from ...core.operator import BackgroundOperator
 from ..choices import Settings
 
 if TYPE_CHECKING:
-    from ..bake import Bake
+    from ..source import Source
 
 
 class PictureOperator(ImageOperator):
@@ -84,14 +85,14 @@ def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
     return image
 
 
-def read_source(context: bpy.types.Context, name: str, settings: Settings) -> "Bake":
+def read_source(context: bpy.types.Context, name: str, settings: Settings) -> "Source":
     """Does all of `reading_source` at once."""
     return read_at_once(reading_source(context, name, settings))
 
 
 def reading_source(
     context: bpy.types.Context, name: str, settings: Settings, *, needs_surface: bool = True
-) -> "Generator[float, None, Bake]":
+) -> "Generator[float, None, Source]":
     """Reads an image and the objects that use it, in steps of a frame.
 
     Args:
@@ -108,14 +109,14 @@ def reading_source(
         ValueError: There is no such image, or no surface.
     """
     from ...bridge import images
-    from .. import lookups, users
+    from .. import lookups, reading, users
     from ..bake import Bake
-    from ..reading import reading
+    from ..reading import Request
 
     image = image_to_read(context, name)
     images.check_untiled(image)
     objects, warnings = users.objects_to_read(context, image, settings.objects)
-    source = yield from reading(
+    request = Request(
         image,
         objects,
         replace(
@@ -129,9 +130,10 @@ def reading_source(
         context.evaluated_depsgraph_get(),
         needs_surface=needs_surface,
     )
-    assert isinstance(source, Bake)
-    source.warnings.extend(warnings)
-    return source
+    bake = yield from reading.reading(request)
+    assert isinstance(bake, Bake)
+    bake.warnings.extend(warnings)
+    return bake.source
 
 
 def _image_of(obj: bpy.types.Object | None) -> bpy.types.Image | None:

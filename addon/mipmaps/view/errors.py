@@ -10,8 +10,8 @@ import prefilter
 from numpy.typing import NDArray
 
 from ...core.jobs import Progress, parts, share
-from ..bake import Bake
 from ..choices import FILTERS, PlotSettings
+from ..source import Source
 
 STEPS_PER_LEVEL = 8  # Even, for Simpson's rule.
 _FILTERING = 0.7  # The share of the time that is spent on filtering, roughly.
@@ -72,7 +72,7 @@ def default_filters(reader: str) -> tuple[str, ...]:
     )
 
 
-def measure(source: Bake, filters: Sequence[str], progress: Progress) -> ErrorCurves:
+def measure(source: Source, filters: Sequence[str], progress: Progress) -> ErrorCurves:
     """Filters an image with each filter, and measures the levels.
 
     Errors are those that supersampled readers see, whatever the lookups of the settings.

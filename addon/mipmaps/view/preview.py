@@ -15,7 +15,7 @@ from ..choices import Settings
 
 if TYPE_CHECKING:
     from ...bridge.images import FloatArray
-    from ..bake import Bake
+    from ..source import Source
 
 _WRAPS = ("clamp", "repeat", "border")
 
@@ -70,7 +70,7 @@ VIEW = View(_previews, "prefilter_view", "use_preview")
 class PreviewWork:
     """The levels of an image with some filters, as work."""
 
-    def __init__(self, source: "Bake", image_uid: int, filters: Iterable[str]) -> None:
+    def __init__(self, source: "Source", image_uid: int, filters: Iterable[str]) -> None:
         """Takes what `compute` does."""
         self._source = source
         self._image_uid = image_uid
@@ -105,8 +105,10 @@ def settings_for_preview(settings: Settings) -> Settings:
     return replace(lookups.resolved(settings), levels=0, use_images=True, filepath="")
 
 
-def compute(source: "Bake", image_uid: int, filters: Iterable[str], progress: Progress) -> Preview:
-    """Computes the levels with each filter; raises what `Bake.compute` does.
+def compute(
+    source: "Source", image_uid: int, filters: Iterable[str], progress: Progress
+) -> Preview:
+    """Computes the levels with each filter; raises what `Source.filtered` does.
 
     Args:
         source: What was read from Blender.

@@ -6,7 +6,8 @@ import bpy
 
 from ...bridge.image_operator import ImageOperator
 from ...bridge.views import EndsView
-from ...core.operator import BackgroundOperator, Compute
+from ...core.doing import Compute
+from ...core.operator import BackgroundOperator
 from ...core.preferences import preference
 from ...core.properties import single_property
 from ..choices import PlaneSettings

@@ -14,7 +14,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-import addon_utils
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
@@ -22,9 +21,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import bodies
 import scenes
 import window as windows
-from window import RedoPanel, clicked, play, region, until
+from window import PACKAGE, RedoPanel, begun, clicked, play, region, until
 
-PACKAGE = "bl_ext.user_default.prefilter"
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
 
@@ -33,10 +31,9 @@ found: dict[str, object] = {}
 
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
-    assert addon_utils.enable(PACKAGE, default_set=True) is not None
-    core = importlib.import_module(f"{PACKAGE}.core.operator")
-    window = bpy.context.window_manager.windows[0]
-    area = max(window.screen.areas, key=lambda area: area.width * area.height)
+    stage = begun()
+    window, area = stage.window, stage.area
+    core = importlib.import_module(f"{PACKAGE}.core.redo")
     for operands in ("hide", "delete"):
         yield from boolean(window, area, operands)
     yield from volume(window, area)

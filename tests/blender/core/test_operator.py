@@ -167,7 +167,7 @@ def test_thread_that_does_not_start_leaves_nothing(addon, probe, context, monkey
     def no_job(work):
         raise RuntimeError("no thread")
 
-    monkeypatch.setattr(addon("core.operator"), "Job", no_job)
+    monkeypatch.setattr(addon("core.parts"), "Job", no_job)
     operator = probe()
     with pytest.raises(RuntimeError, match="no thread"):
         operator.invoke(context, None)
@@ -200,7 +200,7 @@ def test_esc_ends_within_a_tick_of_the_work(addon, probe, context):
     while operator.modal(context, TIMER) != {"CANCELLED"}:
         time.sleep(0.001)
     assert ended[0] - began < 0.1
-    assert addon("core.operator").TICK_SECONDS <= 0.05
+    assert addon("core.running").TICK_SECONDS <= 0.05
     assert operator.reports == ["Probing canceled"]
     assert operator.discarded == 1
 
@@ -215,7 +215,7 @@ def test_the_button_cancels_as_esc_does(addon, probe, context):
 
     operator.compute = compute
     operator.invoke(context, None)
-    while operator._job.progress < 0.25:
+    while operator._parts.job.progress < 0.25:
         time.sleep(0.001)
     assert operator.modal(context, TIMER) == {"PASS_THROUGH"}
     drawn = Drawing()
@@ -269,7 +269,7 @@ def test_esc_does_not_wait_for_a_step_that_cannot_stop(probe, context):
         operator.compute = lambda progress, may_end=may_end: may_end.wait(10)
         operator.releaser = lambda released=released: released.set
         operator.invoke(context, None)
-        job = operator._job
+        job = operator._parts.job
         began = time.monotonic()
         operator.modal(context, ESC)
         while operator.modal(context, TIMER) != {"CANCELLED"}:
@@ -295,7 +295,7 @@ def test_redo_that_is_slow_waits(probe, context):
 
 
 def test_redo_that_turns_out_slow_is_cut_short_and_waits(addon, probe, context, monkeypatch):
-    monkeypatch.setattr(addon("core.operator"), "QUICK_SECONDS", 0.3)
+    monkeypatch.setattr(addon("core.redo"), "QUICK_SECONDS", 0.3)
     assert played(probe(), context) == {"FINISHED"}
     operator = probe()
     operator.options = SimpleNamespace(is_repeat=True, is_repeat_last=False)
@@ -371,7 +371,7 @@ def test_esc_between_parts(in_parts, context, is_waiting):
     operator.invoke(context, None)
     if not is_waiting:
         operator.gate.set()
-        while not operator._job.is_done:
+        while not operator._parts.job.is_done:
             time.sleep(0.001)
     operator.modal(context, ESC)
     operator.gate.set()

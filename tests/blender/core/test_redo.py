@@ -2,19 +2,11 @@
 
 """Adjust Last Operation, in a window that nobody sees: changing a setting changes the result."""
 
-import json
 from pathlib import Path
 
 import pytest
 
 SESSION = Path(__file__).with_name("redo_session.py")
-
-
-@pytest.fixture(scope="module")
-def found(in_window, tmp_path_factory):
-    result = tmp_path_factory.mktemp("redo") / "result.json"
-    in_window(SESSION, result)
-    return json.loads(result.read_text())
 
 
 @pytest.mark.parametrize("operands", ["hide", "delete"])

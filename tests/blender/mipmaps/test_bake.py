@@ -20,7 +20,7 @@ def calls(addon, monkeypatch):
         caught.append(options)
         return original(image, surface, **options)
 
-    monkeypatch.setattr(addon("mipmaps.bake").prefilter, "coarser_levels", mipmaps)
+    monkeypatch.setattr(addon("mipmaps.contents").prefilter, "coarser_levels", mipmaps)
     return caught
 
 

@@ -59,7 +59,8 @@ def test_scene_is_back_at_its_frame(bake, pulse):
 
 def test_closing_the_reading_takes_the_scene_back(addon, pulse):
     settings = addon("mipmaps.choices").Settings(use_frames=True, frame_start=2, frame_end=9)
-    reading = addon("mipmaps.reading").reading(*pulse, settings, scenes.depsgraph())
+    module = addon("mipmaps.reading")
+    reading = module.reading(module.Request(*pulse, settings, scenes.depsgraph()))
     assert next(reading) == pytest.approx(1 / 8)
     assert bpy.context.scene.frame_current == 2
     reading.close()
@@ -68,8 +69,9 @@ def test_closing_the_reading_takes_the_scene_back(addon, pulse):
 
 def test_poses_are_joined(addon, pulse):
     settings = addon("mipmaps.choices").Settings(use_frames=True, frame_start=1, frame_end=50)
-    read = addon("mipmaps.reading").read(*pulse, settings, scenes.depsgraph())
-    assert [round(s.area, 3) for s in read._surfaces] == [50, 1 + 4 + 48 * 9]
+    module = addon("mipmaps.reading")
+    read = module.read(module.Request(*pulse, settings, scenes.depsgraph()))
+    assert [round(s.area, 3) for s in read.source.surfaces] == [50, 1 + 4 + 48 * 9]
 
 
 def test_faces_that_come_and_go(bake, pulse):

@@ -51,9 +51,9 @@ def test_other_operators_heed_the_setting_of_the_panel(pair, addon, monkeypatch,
     reading = addon("mipmaps.reading")
     original = reading.reading
 
-    def caught(image, objects, *rest, **options):
-        read.append([obj.name for obj in objects])
-        return original(image, objects, *rest, **options)
+    def caught(request):
+        read.append([obj.name for obj in request.objects])
+        return original(request)
 
     monkeypatch.setattr(reading, "reading", caught)
     for choice in ("all", "selected"):

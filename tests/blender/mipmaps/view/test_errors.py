@@ -187,8 +187,9 @@ def test_report_has_the_values(stretched, capfd):
 
 def test_cancelling_stops(stretched, addon):
     settings = addon("mipmaps.choices").Settings()
-    read = addon("mipmaps.reading").read
-    source = read(stretched, list(bpy.data.objects), settings, scenes.depsgraph())
+    reading = addon("mipmaps.reading")
+    request = reading.Request(stretched, list(bpy.data.objects), settings, scenes.depsgraph())
+    source = reading.read(request).source
     seen = []
 
     def progress(fraction):

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What became of the images of a model, and what to tell of it."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ...core.outcome import Outcome
+from ...core.wording import counted, listed
+from .plan import LeftOut
+
+
+@dataclass
+class Results:
+    """What became of the images of a model.
+
+    Attributes:
+        left_out: Those that are not to be baked.
+        failed: Those that cannot be baked.
+        baked: The names of those that were baked.
+        outcomes: Of the bakes.
+    """
+
+    left_out: list[LeftOut]
+    failed: list[LeftOut] = field(default_factory=list)
+    baked: list[str] = field(default_factory=list)
+    outcomes: list[Outcome] = field(default_factory=list)
+
+    def fail(self, names: Iterable[str], error: BaseException) -> None:
+        """Notes that images cannot be baked."""
+        text = str(error) or type(error).__name__
+        self.failed += without_names(names, text)
+
+    def outcome(self) -> Outcome:
+        """Returns what was done, with all that a user should look at.
+
+        Raises:
+            ValueError: Nothing was baked.
+        """
+        if not self.outcomes:
+            raise ValueError("\n".join(self.nothing()))
+        files = [path for one in self.outcomes for path in one.files]
+        names = [name for one in self.outcomes for name in one.images]
+        return Outcome(
+            self.summary(files, names),
+            images=names,
+            files=files,
+            warnings=self._problems() + [text for one in self.outcomes for text in one.warnings],
+            notes=self.lines_of_left_out() + [text for one in self.outcomes for text in one.notes],
+        )
+
+    def nothing(self) -> list[str]:
+        """Returns lines that say why there is no image that can be baked."""
+        return ["no image was baked", *self._problems(), *self.lines_of_left_out()]
+
+    def lines_of_left_out(self) -> list[str]:
+        """Returns a line for each reason why images are left out."""
+        by_reason: dict[str, list[str]] = {}
+        for one in self.left_out:
+            by_reason.setdefault(one.reason, []).append(one.image)
+        return [f"Left out, {reason}: {listed(names)}" for reason, names in by_reason.items()]
+
+    def summary(self, files: Sequence[str], names: Sequence[str]) -> str:
+        """Returns how many images were baked into which files and level images, in a line."""
+        text = f"Baked {counted(self.baked, 'image')}"
+        if self.failed:
+            text = f"Baked {len(self.baked)} of {len(self.baked) + len(self.failed)} images"
+        results = [counted(files, "file")] if files else []
+        results += [counted(names, "level image")] if names else []
+        if results:
+            text += f" into {' and '.join(results)}"
+        folders = {str(Path(path).parent) for path in files}
+        if len(folders) == 1:
+            text += f" in '{folders.pop()}'"
+        if self.failed:
+            text += f"; not baked: {listed(one.image for one in self.failed)}"
+        return text
+
+    def _problems(self) -> list[str]:
+        return [f"image '{one.image}' is not baked: {one.reason}" for one in self.failed]
+
+
+def without_names(names: Iterable[str], text: str) -> list[LeftOut]:
+    """Returns images with a reason, without the name where a message says that first."""
+    return [LeftOut(name, text.removeprefix(f"image '{name}': ")) for name in names]

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The phases of a bake, one by one: what is read, decided, and told."""
+
+from pathlib import Path
+
+import bpy
+import pytest
+import scenes
+
+
+@pytest.fixture
+def request_of(addon):
+    """Returns a function that asks for a bake with the settings given as keywords."""
+
+    def make(image, *objects, **settings):
+        chosen = addon("mipmaps.choices").Settings(**settings)
+        return addon("mipmaps.reading").Request(image, objects, chosen, scenes.depsgraph())
+
+    return make
+
+
+@pytest.fixture
+def without_surface(addon):
+    """Returns a function that gives an image as it is baked, on no surface."""
+
+    def make(image, settings, content):
+        picture, found = addon("bridge.images").read(image), addon("bridge.meshes").ImageSurfaces()
+        return addon("mipmaps.source").on_surfaces(picture, found, settings, content)
+
+    return make
+
+
+def test_what_is_read_of_an_image(addon, request_of, tmp_path):
+    reading = addon("mipmaps.reading")
+    image = scenes.image("Paint", scenes.noise(8, 4))
+    found = reading.read_level_0(request_of(image, filepath=str(tmp_path / "paint.exr")))
+    assert (found.numbers, found.content, found.is_encoded) == ([], "color", True)
+    assert found.targets == [tmp_path / "paint.exr"]
+    assert [one.shape[:2] for one in found.pictures] == [(8, 4)]
+    data = scenes.image("Data", scenes.noise(4, 4), colorspace="Non-Color")
+    found = reading.read_level_0(request_of(data))
+    assert (found.targets, found.content, found.is_encoded) == ([], "data", False)
+    with pytest.raises(ValueError, match="nothing to write"):
+        reading.read_level_0(request_of(data, use_images=False))
+
+
+def test_blocks_become_a_format(addon, request_of):
+    reading = addon("mipmaps.reading")
+    request = request_of(scenes.image("Paint", scenes.noise(4, 4)), texture_format="blocks")
+    made = reading.with_format(request, reading.read_level_0(request))
+    assert (made.settings.texture_format, made.may_lose_channels) == ("bc7", True)
+    plain = request_of(request.image, texture_format="bc1")
+    assert reading.with_format(plain, reading.read_level_0(plain)) is plain
+
+
+def test_roughness_is_of_normal_maps(addon, request_of):
+    reading = addon("mipmaps.reading")
+    image = scenes.image("Paint", scenes.noise(4, 4))
+    request = request_of(image, roughness="Rough")
+    level_0 = reading.read_level_0(request)
+    rough = reading.read_roughness(request, level_0)
+    assert (rough.roughness, rough.target) == (None, None)
+    (told,) = reading.odd_uses(request, level_0, rough)
+    assert told == "roughness 'Rough' is left out: 'Paint' is no normal map"
+    request = request_of(image, roughness="Rough", content="color")
+    with pytest.raises(ValueError, match="with the content 'color'"):
+        reading.read_roughness(request, reading.read_level_0(request))
+
+
+@pytest.mark.parametrize(
+    ("settings", "extensions", "expected", "is_told"),
+    [
+        ({}, [], ("repeat", "repeat"), False),
+        ({}, ["EXTEND"], ("clamp", "clamp"), False),
+        ({"wrap_v": "border"}, ["EXTEND"], ("clamp", "border"), False),
+        ({}, ["EXTEND", "REPEAT"], ("clamp", "clamp"), True),
+        ({}, ["MIRROR"], None, True),
+        ({"wrap": "border"}, ["EXTEND", "REPEAT"], ("border", "border"), False),
+    ],
+)
+def test_the_wrap_mode(addon, settings, extensions, expected, is_told):
+    chosen = addon("mipmaps.choices").Settings(**settings)
+    wrap, told = addon("mipmaps.source").chosen_wrap(chosen, extensions)
+    assert expected in (None, wrap)
+    assert [f"filtered as '{wrap[0]}'" in one for one in told] == [True] * is_told
+
+
+@pytest.mark.parametrize(
+    ("budget", "filter_name", "content", "expected"),
+    [
+        (0.01, "pam-bilinear", "color", True),
+        (0.01, "pam-bilinear", "data", True),
+        (0.01, "pam-bilinear", "normal", False),
+        (0.01, "box", "color", False),
+        (0.0, "pam-bilinear", "color", False),
+    ],
+)
+def test_what_heeds_seams(addon, without_surface, budget, filter_name, content, expected):
+    image = scenes.image("Paint", scenes.noise(4, 4))
+    settings = addon("mipmaps.choices").Settings(seam_budget=budget, filter=filter_name)
+    source = addon("mipmaps.source").on_surfaces(
+        addon("bridge.images").read(image),
+        addon("bridge.meshes").ImageSurfaces(),
+        settings,
+        content,
+    )
+    assert addon("mipmaps.levels").heeds_seams(source) is expected
+
+
+def test_the_line_that_says_what_was_baked(addon, without_surface):
+    image = scenes.image("Paint", scenes.noise(4, 4))
+    bake = addon("mipmaps.bake")
+    settings = addon("mipmaps.choices").Settings(filter="box")
+    source = addon("mipmaps.source").on_surfaces(
+        addon("bridge.images").read(image),
+        addon("bridge.meshes").ImageSurfaces(),
+        settings,
+        "cutout",
+    )
+    summary = bake.summary(source, bake.Outputs(Path("/out/paint.dds")), ["a", "b"])
+    assert summary.startswith("Baked 'Paint' as Cut-Out with Box into 2 level images and ")
+    assert "paint.dds" in summary
+    assert bake.summary(source, bake.Outputs(None), []).endswith("it has no further level")
+
+
+def test_what_is_told_of_a_model(addon):
+    results = addon("mipmaps.model.results").Results([])
+    left = addon("mipmaps.model.plan").LeftOut
+    results.left_out += [left("A", "no pixels"), left("B", "no pixels"), left("C", "a movie")]
+    results.fail(["D"], ValueError("image 'D': is broken"))
+    results.fail(["E"], MemoryError())
+    lines = ["Left out, no pixels: 'A', 'B'", "Left out, a movie: 'C'"]
+    reasons = ["image 'D' is not baked: is broken", "image 'E' is not baked: MemoryError"]
+    assert results.nothing() == ["no image was baked", *reasons, *lines]
+    with pytest.raises(ValueError, match="no image was baked"):
+        results.outcome()
+    results.baked.append("F")
+    results.outcomes.append(addon("core.outcome").Outcome("", files=["/out/f.dds"], warnings=["w"]))
+    told = results.outcome()
+    assert told.summary == "Baked 1 of 3 images into 1 file in '/out'; not baked: 'D', 'E'"
+    assert (told.warnings, told.notes) == ([*reasons, "w"], lines)
+
+
+def test_a_normal_map_and_a_roughness_of_another_size_are_parted(addon):
+    plan, preparing = addon("mipmaps.model.plan"), addon("mipmaps.model.preparing")
+    for name, side in (("Bumps", 8), ("Rough", 4)):
+        scenes.image(name, scenes.noise(side, side), colorspace="Non-Color")
+    bumps = plan.Item("Bumps", "Bumps", (), (), "normal")
+    rough = plan.Item("Rough", "Rough", (), (), "data", normal_map="Bumps")
+    job = plan.Job(bumps, rough)
+    pair = preparing.pair_of(job)
+    assert (pair.normal_map.name, pair.rough.name, pair.fits) == ("Bumps", "Rough", False)
+    first, second = preparing.parted(job, pair)
+    assert (first.item, first.roughness) == (bumps, None)
+    assert second.item.image == "Rough"
+    assert "whose size is 8 x 8, and its own 4 x 4" in second.item.notes[-1]
+    bpy.data.images["Rough"].scale(8, 8)
+    assert preparing.pair_of(job).fits
+    alone = preparing.pair_of(plan.Job(rough, normal_map="Bumps"))
+    assert (alone.normal_map.name, alone.rough.name) == ("Bumps", "Rough")
+    assert preparing.pair_of(plan.Job(bumps)).rough is None
