@@ -30,7 +30,7 @@ set(CMAKE_CXX_COMPILER_TARGET ${platform_target})
 # zig keeps them, unlike gcc and clang, and has a register less.
 set(CMAKE_C_FLAGS_INIT -fomit-frame-pointer)
 set(CMAKE_CXX_FLAGS_INIT -fomit-frame-pointer)
-# Zig keeps what it compiled by itself, and has no use for headers that CMake has precompiled.
+# Zig takes a precompiled header for an object, which it cannot link.
 set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
 if(emulator)
   set(CMAKE_CROSSCOMPILING_EMULATOR ${emulator})
