@@ -7,16 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ...bridge import images
-from ...bridge.files import pictures, staging
 from ...core import command, presets
 from ...core.flags import add_flags, given, tables
 from ...core.options import check
-from ...core.wording import either
 from ..choices import CORNERS, ResampleSettings
-from ..new_picture import read
 from ..properties import RESAMPLE
 from ..resampling import Resampling
+from . import files
 
 _HELP = "scale, rotate, or warp a picture between corners"
 _SIZES = ("width", "height")
@@ -29,14 +26,12 @@ _TRANSFORM = {
     "--offset-y": "offset_y",
 }
 _WITHOUT_DEFAULT = ("rotation", "scale_x", "scale_y", "offset_x", "offset_y", *_SIZES)
-_NOTES = """\
+_NOTES = f"""\
 Corners are eight numbers, x and y of the lower left, lower right, upper right and upper left one:
 shares of the width and height of OUTPUT, or for --rectify and where the size is fitted those of
 INPUT; with --pixels they are pixels. x goes to the right and y upwards.
 
-INPUT is any picture that Blender reads. Colors are filtered as light, with alpha as coverage. PNG
-files get 8 bits, or 16 where INPUT has more than 8, and straight alpha; OpenEXR files are
-scene-linear, with premultiplied alpha.
+{files.NOTE}
 
 examples:
   prefilter resample photo.png turned.png --rotate 30 --scale 0.5
@@ -47,15 +42,7 @@ examples:
 def add(commands: Any) -> None:
     """Adds the command."""
     parser = command.add_command(commands, "resample", _HELP, *tables(ResampleSettings), _NOTES)
-    parser.add_argument("source", metavar="INPUT", help="a picture file")
-    parser.add_argument(
-        "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
-    )
-    parser.add_argument(
-        "--data",
-        action="store_true",
-        help="filter values as they are stored, each channel by itself: roughness, masks, normals",
-    )
+    files.add_arguments(parser)
     parser.add_argument(
         "--corners",
         nargs=8,
@@ -79,10 +66,9 @@ def add(commands: Any) -> None:
 
 
 def _resample(options: argparse.Namespace) -> None:
-    command.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
+    files.check_target(options)
     settings = _settings(options)
-    target = staging.check_output(options.target)
-    picture = read(images.load("INPUT", options.source, is_data=options.data))
+    picture, target = files.read_source(options)
     command.tell(command.done(Resampling(picture, settings, target=target)))
 
 

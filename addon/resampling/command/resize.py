@@ -5,22 +5,17 @@
 import argparse
 from typing import Any
 
-from ...bridge import images
-from ...bridge.files import pictures, staging
 from ...core import command, presets
 from ...core.flags import add_flags, given, tables
-from ...core.wording import either
 from ..choices import ResizeSettings
-from ..new_picture import read
 from ..properties import RESIZE
 from ..resizing import Resizing
+from . import files
 
 _HELP = "make a picture larger or smaller"
 _SIZES = ("percent", "width", "height")
-_NOTES = """\
-INPUT is any picture that Blender reads. Colors are filtered as light, with alpha as coverage. PNG
-files get 8 bits, or 16 where INPUT has more than 8, and straight alpha; OpenEXR files are
-scene-linear, with premultiplied alpha.
+_NOTES = f"""\
+{files.NOTE}
 
 examples:
   prefilter resize photo.png small.png --percent 25 --filter least-squares
@@ -31,30 +26,21 @@ examples:
 def add(commands: Any) -> None:
     """Adds the command."""
     parser = command.add_command(commands, "resize", _HELP, *tables(ResizeSettings), _NOTES)
-    parser.add_argument("source", metavar="INPUT", help="a picture file")
-    parser.add_argument(
-        "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
-    )
-    parser.add_argument(
-        "--data",
-        action="store_true",
-        help="filter values as they are stored, each channel by itself: roughness, masks, normals",
-    )
+    files.add_arguments(parser)
     presets.add_flag(parser)
     add_flags(parser, ResizeSettings, without_default=_SIZES)
     parser.set_defaults(execute=_resize, usage_error=parser.error)
 
 
 def _resize(options: argparse.Namespace) -> None:
-    command.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
+    files.check_target(options)
     found = given(options, ResizeSettings)
     sizes = [name for name in _SIZES if name in found]
     if not sizes and "size" not in presets.values_named(options, RESIZE):
         options.usage_error("no size: give --percent, --width or --height")
     if "percent" in sizes and len(sizes) > 1:
         options.usage_error("--percent: not allowed with --width and --height")
-    target = staging.check_output(options.target)
-    picture = read(images.load("INPUT", options.source, is_data=options.data))
+    picture, target = files.read_source(options)
     if sizes == ["height"]:
         height, width = picture.shape[:2]
         found["width"] = max(1, round(width * found["height"] / height))

@@ -12,14 +12,13 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import addon_utils
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
 import window as windows
-from window import RedoPanel, idle, play, refused, region, until
+from window import RedoPanel, begun, idle, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
@@ -27,39 +26,22 @@ windows.SECONDS_PER_STEP = 0.05
 
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
-    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
-    # A panel that is closed is not drawn.
-    panel = bpy.types.PREFILTER_PT_resize
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
-    window = bpy.context.window_manager.windows[0]
-    area = max(window.screen.areas, key=lambda area: area.width * area.height)
-    area.type = "IMAGE_EDITOR"
-    area.spaces.active.show_region_ui = True
+    stage = begun("IMAGE_EDITOR", opened="PREFILTER_PT_resize")
+    space = stage.area.spaces.active
     yield
-    override = {"window": window, "area": area, "region": region(area, "WINDOW")}
     found = {}
-    with bpy.context.temp_override(**override):
+    with bpy.context.temp_override(**stage.override):
         found["polls_without_image"] = bpy.ops.prefilter.resize_image.poll()
-    area.spaces.active.image = scenes.image("Paint", scenes.noise(64, 96))
-    sidebar = region(area, "UI")
-    yield from until(lambda: sidebar.active_panel_category != "UNSUPPORTED")
-    sidebar.active_panel_category = "Prefilter"
+    space.image = scenes.image("Paint", scenes.noise(64, 96))
+    yield from stage.open_tab()
     for size in ("percent", "pixels"):
         bpy.context.scene.prefilter_resize.size = size
-        area.tag_redraw()
-        yield
-        yield
-    found["tab"] = sidebar.active_panel_category
-    with bpy.context.temp_override(**override):
-        bpy.ops.wm.call_menu(name="PREFILTER_MT_image")
-    yield
-    window.event_simulate(type="ESC", value="PRESS")
-    yield
+        yield from stage.redrawn()
+    found["tab"] = stage.tab
+    yield from stage.menus("PREFILTER_MT_image")
 
     bpy.ops.ed.undo_push(message="before")
-    with bpy.context.temp_override(**override):
+    with bpy.context.temp_override(**stage.override):
         found["started"] = list(
             bpy.ops.prefilter.resize_image(
                 "INVOKE_DEFAULT", True, size="pixels", width=32, filter="box"
@@ -68,22 +50,22 @@ def session() -> Iterator[None]:
         found["refused_while_running"] = refused(bpy.ops.prefilter.resize_image)
     yield from until(idle)
     yield
-    found["shown"] = area.spaces.active.image.name
-    if region(area, "HUD").height < 40:
-        yield from RedoPanel(window, area).unfolded()
-    yield from RedoPanel(window, area).step("filter")
-    found["filter"] = RedoPanel(window, area).operator.properties.filter
+    found["shown"] = space.image.name
+    yield from stage.redo_panel()
+    panel = RedoPanel(stage.window, stage.area)
+    yield from panel.step("filter")
+    found["filter"] = panel.operator.properties.filter
     found["after_redo"] = names()
-    found["shown_after_redo"] = area.spaces.active.image.name
+    found["shown_after_redo"] = space.image.name
     bpy.ops.ed.undo()
     yield
     found["undone"] = names()
 
-    area.spaces.active.image = scenes.image("Big", scenes.noise(1024, 1024))
-    with bpy.context.temp_override(**override):
+    space.image = scenes.image("Big", scenes.noise(1024, 1024))
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.resize_image("INVOKE_DEFAULT", percent=390, filter="radial3")
     found["works"] = not idle()
-    window.event_simulate(type="ESC", value="PRESS")
+    stage.escape()
     yield from until(idle)
     found["cancelled"] = names()
     RESULT.write_text(json.dumps(found))

@@ -2,19 +2,9 @@
 
 """Panels, redo and the modal operators of resampling and tables, in a window that nobody sees."""
 
-import json
 from pathlib import Path
 
-import pytest
-
 SESSION = Path(__file__).with_name("resample_session.py")
-
-
-@pytest.fixture(scope="module")
-def found(in_window, tmp_path_factory):
-    result = tmp_path_factory.mktemp("resample") / "result.json"
-    in_window(SESSION, result)
-    return json.loads(result.read_text())
 
 
 def test_panel(found):

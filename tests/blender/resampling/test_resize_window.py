@@ -2,19 +2,9 @@
 
 """Panel, menu, redo and the modal operator of resizing, in a window that nobody sees."""
 
-import json
 from pathlib import Path
 
-import pytest
-
 SESSION = Path(__file__).with_name("resize_session.py")
-
-
-@pytest.fixture(scope="module")
-def found(in_window, tmp_path_factory):
-    result = tmp_path_factory.mktemp("resize") / "result.json"
-    in_window(SESSION, result)
-    return json.loads(result.read_text())
 
 
 def test_panel(found):

@@ -2,19 +2,9 @@
 
 """Panel, menus, redo and the modal operator of scans, in a window that nobody sees."""
 
-import json
 from pathlib import Path
 
-import pytest
-
 SESSION = Path(__file__).with_name("scan_session.py")
-
-
-@pytest.fixture(scope="module")
-def found(in_window, tmp_path_factory):
-    result = tmp_path_factory.mktemp("scans") / "result.json"
-    in_window(SESSION, result)
-    return json.loads(result.read_text())
 
 
 def test_panel(found):

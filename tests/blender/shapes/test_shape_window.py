@@ -2,16 +2,12 @@
 
 """Panels, menus and modal operators of shapes, in a window that nobody sees."""
 
-import json
 from pathlib import Path
 
 SESSION = Path(__file__).with_name("shape_session.py")
 
 
-def test_panels_and_modal_operators(in_window, tmp_path):
-    result = tmp_path / "result.json"
-    in_window(SESSION, result)
-    found = json.loads(result.read_text())
+def test_panels_and_modal_operators(found):
     assert found["tab"] == "Prefilter"
     assert found["started"] == found["started_again"] == ["RUNNING_MODAL"]
     assert "press Esc to cancel" in found["refused_while_running"]

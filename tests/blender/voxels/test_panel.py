@@ -2,16 +2,12 @@
 
 """Panels, menus and modal operators of voxels, in a window that nobody sees."""
 
-import json
 from pathlib import Path
 
 SESSION = Path(__file__).with_name("voxel_session.py")
 
 
-def test_panels_and_modal_operators(in_window, tmp_path):
-    result = tmp_path / "result.json"
-    in_window(SESSION, result)
-    found = json.loads(result.read_text())
+def test_panels_and_modal_operators(found):
     vertices = 642
     assert found["tab_of_a_text"] == "Prefilter"
     assert found["started"] == ["RUNNING_MODAL"]

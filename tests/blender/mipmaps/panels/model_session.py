@@ -10,13 +10,12 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import addon_utils
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import idle, play, refused, until
+from window import begun, idle, play, refused, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 FOLDER = RESULT.parent / "levels"
@@ -24,15 +23,12 @@ FOLDER = RESULT.parent / "levels"
 
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
-    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
-    for obj in list(bpy.data.objects):
-        bpy.data.objects.remove(obj)
+    without_objects()
     for name in ("First", "Second", "Third"):
         scenes.textured_quad(scenes.image(name, scenes.noise(512, 512)), name)
     bpy.ops.ed.undo_push(message="Scene")
-    window = bpy.context.window_manager.windows[0]
-    area = max(window.screen.areas, key=lambda area: area.width * area.height)
-    area.type = "VIEW_3D"
+    stage = begun("VIEW_3D")
+    window, area = stage.window, stage.area
     area.spaces.active.show_region_ui = True
     yield
     sidebar = next(region for region in area.regions if region.type == "UI")

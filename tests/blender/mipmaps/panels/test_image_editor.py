@@ -2,16 +2,12 @@
 
 """The panel and the modal operator, in a window that nobody sees."""
 
-import json
 from pathlib import Path
 
 SESSION = Path(__file__).with_name("window_session.py")
 
 
-def test_panel_and_modal_bake(in_window, tmp_path):
-    result = tmp_path / "result.json"
-    in_window(SESSION, result)
-    found = json.loads(result.read_text())
+def test_panel_and_modal_bake(found):
     assert found["tab"] == "Prefilter"
     assert not found["polls_without_image"]
     assert found["polls_with_image"]

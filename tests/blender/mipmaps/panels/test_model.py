@@ -2,17 +2,13 @@
 
 """The bake of all images in a window that nobody sees: Esc leaves nothing, undo takes it back."""
 
-import json
 from pathlib import Path
 
 SESSION = Path(__file__).with_name("model_session.py")
 NAMES = ["First", "Second", "Third"]
 
 
-def test_modal_bake_of_all_images(in_window, tmp_path):
-    result = tmp_path / "result.json"
-    in_window(SESSION, result)
-    found = json.loads(result.read_text())
+def test_modal_bake_of_all_images(found):
     assert found["tab"] == "Prefilter"
     assert found["started"] == ["RUNNING_MODAL"]
     assert "press Esc to cancel" in found["refused_while_running"]

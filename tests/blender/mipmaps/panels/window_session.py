@@ -13,114 +13,94 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import addon_utils
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import cancelled, idle, play, refused, until
+from window import Stage, begun, cancelled, idle, largest, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
 
+found: dict[str, object] = {}
+ENDLESS = {"image": "Big", "use_frames": True, "frame_end": 10**6}
+
+
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
-    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
     image = scenes.image("Paint", scenes.noise(512, 512))
     scenes.textured_quad(image)
     scenes.textured_quad(scenes.image("Big", scenes.noise(1024, 1024)), "Big")
-    window = bpy.context.window_manager.windows[0]
-    area = max(window.screen.areas, key=lambda area: area.width * area.height)
-    area.type = "IMAGE_EDITOR"
-    area.spaces.active.show_region_ui = True
+    stage = begun("IMAGE_EDITOR")
     yield
+    with bpy.context.temp_override(**stage.override):
+        found["polls_without_image"] = bpy.ops.prefilter.bake_mipmaps.poll()
+    stage.area.spaces.active.image = image
+    yield from stage.open_tab()
+    found["tab"] = stage.tab
+    yield from stage.menus("IMAGE_MT_image")
+    yield from baked(stage)
+    yield from baked_over_frames(stage)
+    yield from interrupted_by_files(stage)
+    RESULT.write_text(json.dumps(found))
 
-    override = {"window": window, "area": area}
-    with bpy.context.temp_override(**override):
-        polls_without_image = bpy.ops.prefilter.bake_mipmaps.poll()
-    area.spaces.active.image = image
-    sidebar = next(region for region in area.regions if region.type == "UI")
-    sidebar.active_panel_category = "Prefilter"
-    yield
-    yield
-    tab = sidebar.active_panel_category
 
-    with bpy.context.temp_override(**override):
-        bpy.ops.wm.call_menu(name="IMAGE_MT_image")
-    yield
-    window.event_simulate(type="ESC", value="PRESS")
-    yield
-
-    with bpy.context.temp_override(**override):
-        polls_with_image = bpy.ops.prefilter.bake_mipmaps.poll()
-        started = bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", levels=4)
-        refused_while_running = refused(bpy.ops.prefilter.bake_mipmaps)
+def baked(stage: Stage) -> Iterator[None]:
+    """Bakes an image, and cancels the bake of another."""
+    with bpy.context.temp_override(**stage.override):
+        found["polls_with_image"] = bpy.ops.prefilter.bake_mipmaps.poll()
+        found["started"] = list(bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", levels=4))
+        found["refused_while_running"] = refused(bpy.ops.prefilter.bake_mipmaps)
     yield from until(idle)
-    after_bake = image_names()
-
-    with bpy.context.temp_override(**override):
+    found["after_bake"] = image_names()
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
-    window.event_simulate(type="ESC", value="PRESS")
+    stage.escape()
     yield from until(idle)
-    after_cancel = image_names()
+    found["after_cancel"] = image_names()
 
+
+def baked_over_frames(stage: Stage) -> Iterator[None]:
+    """Cancels a bake that reads frame after frame, and has one read few of them."""
     scene = bpy.context.scene
     scene.frame_set(9)
-    endless = {"image": "Big", "use_frames": True, "frame_end": 10**6}
-    with bpy.context.temp_override(**override):
-        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", **endless)
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", **ENDLESS)
     yield
-    frame_while_reading = scene.frame_current
-    yield from cancelled(window, area)
+    found["frame_while_reading"] = scene.frame_current
+    yield from cancelled(stage.window, stage.area)
     yield from until(idle)
-    frame_after_cancel = scene.frame_current
-    with bpy.context.temp_override(**override):
+    found["frame_after_cancel"] = scene.frame_current
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.bake_mipmaps(
             "INVOKE_DEFAULT", image="Big", levels=2, use_frames=True, frame_end=3
         )
     yield from until(idle)
-    after_frames = image_names()
+    found["after_frames"] = image_names()
 
-    with bpy.context.temp_override(**override):
-        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", **endless)
+
+def interrupted_by_files(stage: Stage) -> Iterator[None]:
+    """Loads files while an image is read, and while another is computed."""
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", **ENDLESS)
     yield
     bpy.ops.wm.read_homefile(use_empty=True)
     yield
-    area = max(
-        bpy.context.window_manager.windows[0].screen.areas,
-        key=lambda area: area.width * area.height,
-    )
-    area.type = "IMAGE_EDITOR"
-    area.spaces.active.image = scenes.image("Big", scenes.noise(1024, 1024))
-    scenes.textured_quad(area.spaces.active.image)
+    stage = largest("IMAGE_EDITOR")
+    space = stage.area.spaces.active
+    space.image = scenes.image("Big", scenes.noise(1024, 1024))
+    scenes.textured_quad(space.image)
     yield
-    with bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area):
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
     bpy.ops.wm.read_homefile(use_empty=True)
     yield
     scenes.image("Next", scenes.noise(2, 2))
     yield
-    status = bpy.types.STATUSBAR_HT_header.draw.__module__
-    RESULT.write_text(
-        json.dumps(
-            {
-                "polls_without_image": polls_without_image,
-                "polls_with_image": polls_with_image,
-                "started": list(started),
-                "tab": tab,
-                "refused_while_running": refused_while_running,
-                "after_bake": after_bake,
-                "after_cancel": after_cancel,
-                "frame_while_reading": frame_while_reading,
-                "frame_after_cancel": frame_after_cancel,
-                "after_frames": after_frames,
-                "status": status,
-                "polls_in_next_file": bpy.ops.prefilter.bake_mipmaps.poll(),
-                "in_next_file": image_names(),
-            }
-        )
-    )
+    found["status"] = bpy.types.STATUSBAR_HT_header.draw.__module__
+    found["polls_in_next_file"] = bpy.ops.prefilter.bake_mipmaps.poll()
+    found["in_next_file"] = image_names()
 
 
 def image_names() -> list[str]:
