@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 
-#include "prefilter/base/elementary.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/wavelet/column_height.h"
 #include "prefilter/wavelet/leaf_surface.h"
@@ -15,8 +14,6 @@ namespace prefilter {
 namespace {
 
 // All lengths are in cells.
-constexpr double kMostCurved = 0.12;
-constexpr double kMostOff = 0.004;        // of nine heights from their quadratic
 constexpr double kGoesOn = 0.9;           // cosine: 26 degrees
 constexpr double kNearlyParallel = 0.94;  // 20 degrees
 constexpr double kJoins = 0.3;
@@ -44,43 +41,6 @@ void for_around(const CellCoordinates& at, int reach, const Visit& visit) {
   }
 }
 }  // namespace
-
-double OccupancySurface::Patch::above(const Vector3& point, Vector3* gradient) const {
-  const Vector3 offset = point - centre;
-  const int first = (axis + 1) % 3;
-  const int second = (axis + 2) % 3;
-  const double s = offset[first];
-  const double t = offset[second];
-  const double surface = height + slopes[0] * s + slopes[1] * t + twist * s * t +
-                         curvatures[0] / 2.0 * (s * s - 1.0 / 12.0) +
-                         curvatures[1] / 2.0 * (t * t - 1.0 / 12.0);
-  if (gradient != nullptr) {
-    (*gradient)[axis] = is_up ? 1.0 : -1.0;
-    (*gradient)[first] = -(slopes[0] + curvatures[0] * s + twist * t);
-    (*gradient)[second] = -(slopes[1] + curvatures[1] * t + twist * s);
-  }
-  return (is_up ? offset[axis] : -offset[axis]) - surface;
-}
-
-Vector3 OccupancySurface::Patch::projected(Vector3 point, Vector3* gradient) const {
-  for (int step = 0; step < 3; ++step) {
-    const double over = above(point, gradient);
-    point = point - (over / dot(*gradient, *gradient)) * *gradient;
-  }
-  return point;
-}
-
-Vector3 OccupancySurface::Patch::foot() const {
-  Vector3 foot = centre;
-  foot[axis] += is_up ? height : -height;
-  return foot;
-}
-
-Vector3 OccupancySurface::Patch::normal() const {
-  Vector3 gradient;
-  above(centre, &gradient);
-  return (1.0 / length(gradient)) * gradient;
-}
 
 OccupancySurface::OccupancySurface(const ContourTree& tree, const RootFrame& frame,
                                    const SurfaceVertices& vertices, const Progress& progress,
@@ -150,7 +110,7 @@ bool OccupancySurface::fit(SurfaceCell* cell) const {
       }
     }
   }
-  Patch& patch = cell->patch;
+  HeightPatch& patch = cell->patch;
   for (int a = 1; a < 3; ++a) {
     if (std::abs(gradient[a]) > std::abs(gradient[patch.axis])) patch.axis = a;
   }
@@ -170,41 +130,7 @@ bool OccupancySurface::fit(SurfaceCell* cell) const {
       heights[i][j] = static_cast<double>(*height) - 0.5;
     }
   }
-  // Least squares of nine heights.
-  double sum = 0.0;
-  double sum_first = 0.0;
-  double sum_second = 0.0;
-  patch.slopes = {};
-  patch.twist = 0.0;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double h = heights[i][j];
-      sum += h;
-      if (i != 1) sum_first += h;
-      if (j != 1) sum_second += h;
-      patch.slopes[0] += (i - 1) * h / 6.0;
-      patch.slopes[1] += (j - 1) * h / 6.0;
-      patch.twist += (i - 1) * (j - 1) * h / 4.0;
-    }
-  }
-  patch.curvatures = {sum_first - 2.0 / 3.0 * sum, sum_second - 2.0 / 3.0 * sum};
-  patch.height = sum / 9.0 - (patch.curvatures[0] + patch.curvatures[1]) / 3.0;
-  const double stretch = elementary::pow(
-      1.0 + patch.slopes[0] * patch.slopes[0] + patch.slopes[1] * patch.slopes[1], 1.5);
-  for (const double curvature : {patch.curvatures[0], patch.curvatures[1], patch.twist}) {
-    if (std::abs(curvature) > kMostCurved * stretch) return false;
-  }
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double s = i - 1;
-      const double t = j - 1;
-      const double expected = patch.height + patch.slopes[0] * s + patch.slopes[1] * t +
-                              patch.twist * s * t + patch.curvatures[0] / 2.0 * s * s +
-                              patch.curvatures[1] / 2.0 * t * t;
-      if (std::abs(heights[i][j] - expected) > kMostOff) return false;
-    }
-  }
-  return true;
+  return fit_heights(heights, &patch);
 }
 
 const OccupancySurface::SurfaceCell* OccupancySurface::find(const CellCoordinates& at) const {
@@ -389,7 +315,7 @@ std::optional<SourcePoint> OccupancySurface::nearest(const Vector3& point, doubl
   const Vector3 start = to_cells(point);
   CellCoordinates at;
   for (std::size_t a = 0; a < 3; ++a) at[a] = static_cast<std::int32_t>(std::floor(start[a]));
-  const Patch* patch = nullptr;
+  const HeightPatch* patch = nullptr;
   double least = 0.0;
   std::int32_t region = -1;
   for_around(at, kReach + 1, [&](const CellCoordinates& place) {
@@ -410,95 +336,109 @@ std::optional<SourcePoint> OccupancySurface::nearest(const Vector3& point, doubl
   return result;
 }
 
+// The nearest point of any of these regions on the line of a vertex through the middles of two
+// cells, where the surface rises the way that the occupancies do.
+std::optional<OccupancySurface::Hit> OccupancySurface::hit_on_line(
+    const std::vector<Candidate>& near, const CellCoordinates& at, int face, double rises,
+    const Vector3& start) const {
+  constexpr double kLeastSlope = 1e-3;
+  const int axis = face / 2;
+  const double forward = (face & 1) != 0 ? 1.0 : -1.0;
+  std::optional<Hit> best;
+  double least = kMostMoved;
+  for (const Candidate& candidate : near) {
+    const HeightPatch& patch = cells_[candidate.cell].patch;
+    Vector3 point = start;
+    Vector3 gradient;
+    for (int step = 0; step < 3; ++step) {
+      const double above = patch.above(point, &gradient);
+      if (gradient[axis] * rises < kLeastSlope) break;
+      point[axis] -= above / gradient[axis];
+    }
+    const double from_centre = (point[axis] - at[static_cast<std::size_t>(axis)] - 0.5) * forward;
+    if (gradient[axis] * rises < kLeastSlope || from_centre < -0.2 || from_centre > 1.2) continue;
+    const double moved = std::abs(point[axis] - start[axis]);
+    if (moved >= least) continue;
+    least = moved;
+    best = {candidate.region, point, gradient};
+  }
+  return best;
+}
+
+// The nearest point of any of these regions.
+std::optional<OccupancySurface::Hit> OccupancySurface::hit_beside(
+    const std::vector<Candidate>& near, const Vector3& start) const {
+  std::optional<Hit> best;
+  double least = kMostMoved;
+  for (const Candidate& candidate : near) {
+    Vector3 gradient;
+    const Vector3 point = cells_[candidate.cell].patch.projected(start, &gradient);
+    const double moved = length(point - start);
+    if (moved >= least) continue;
+    least = moved;
+    best = {candidate.region, point, gradient};
+  }
+  return best;
+}
+
+std::optional<OccupancySurface::Found> OccupancySurface::sample_face(
+    const SurfaceCell& cell, const std::vector<Candidate>& near, int face, std::size_t vertex,
+    const Vector3& position) const {
+  const auto axis = static_cast<std::size_t>(face / 2);
+  const bool is_high = (face & 1) != 0;
+  CellCoordinates beyond = cell.at;
+  beyond[axis] += is_high ? 1 : -1;
+  if (!cell.is_smooth && !explains(near, beyond)) return std::nullopt;
+  const CellTree& tree = tree_.cells();
+  const bool is_fuller = static_cast<double>(occupancy_at(tree, depth_, cell.at)) >
+                         static_cast<double>(occupancy_at(tree, depth_, beyond));
+  const Vector3 start = to_cells(position);
+  const double rises = is_fuller == is_high ? 1.0 : -1.0;
+  const std::optional<Hit> hit = hit_on_line(near, cell.at, face, rises, start);
+  if (!hit) {
+    // The sides of leaves are those of their occupancies, not of their centres: beside edges the
+    // line may miss the surface.
+    const std::optional<Hit> beside = hit_beside(near, start);
+    if (!beside) return std::nullopt;
+    const SourcePoint sample = {to_frame(beside->point), normal_in_frame(beside->gradient), -1,
+                                beside->region};
+    return Found{vertex, sample, position, 0.0F};
+  }
+  const double offset = hit->point[axis] - cell.at[axis] - 0.5;
+  Vector3 on_line = position;
+  on_line[axis] = frame_.crossing(face, cell.at[axis] + 0.5,
+                                  std::clamp(is_high ? offset : -offset, 0.0, 1.0), 1.0, depth_);
+  return Found{vertex, {on_line, normal_in_frame(hit->gradient), -1, hit->region}, on_line, 1.0F};
+}
+
+void OccupancySurface::sample_cell(const SurfaceCell& cell, const std::vector<Vector3>& positions,
+                                   std::vector<Found>* found) const {
+  if (!cell.is_beside_edge) return;
+  const auto number = static_cast<std::size_t>(&cell - cells_.data());
+  std::vector<Candidate> near;
+  if (cell.is_smooth) {
+    near = {{cell.region, number, 0.0}};
+  } else {
+    near = near_[number];
+    if (near.empty() || !explains(near, cell.at)) return;
+  }
+  std::size_t vertex = cell.first_vertex;
+  for (unsigned faces = cell.faces; faces != 0; faces &= faces - 1, ++vertex) {
+    const std::optional<Found> one =
+        sample_face(cell, near, std::countr_zero(faces), vertex, positions[vertex]);
+    if (one) found->push_back(*one);
+  }
+}
+
 VertexSamples OccupancySurface::sample_vertices(const Progress& progress, int threads,
                                                 SurfaceVertices* vertices) const {
-  struct Found {
-    std::size_t vertex;
-    SourcePoint sample;
-    Vector3 on_line;
-    float facing;
-  };
   const auto count = static_cast<std::int64_t>(cells_.size());
   std::vector<std::vector<Found>> tasks(
       static_cast<std::size_t>(range_count(count, kCellsPerTask)));
-  const auto sample_cell = [&](const SurfaceCell& cell, std::vector<Found>* found) {
-    if (!cell.is_beside_edge) return;
-    std::vector<Candidate> near;
-    if (cell.is_smooth) {
-      near = {{cell.region, static_cast<std::size_t>(&cell - cells_.data()), 0.0}};
-    } else {
-      near = near_[static_cast<std::size_t>(&cell - cells_.data())];
-      if (near.empty() || !explains(near, cell.at)) return;
-    }
-    std::size_t vertex = cell.first_vertex;
-    for (unsigned faces = cell.faces; faces != 0; faces &= faces - 1, ++vertex) {
-      const int face = std::countr_zero(faces);
-      const int axis = face / 2;
-      const double forward = (face & 1) != 0 ? 1.0 : -1.0;
-      const Vector3 start = to_cells(vertices->positions()[vertex]);
-      CellCoordinates beyond = cell.at;
-      beyond[static_cast<std::size_t>(axis)] += (face & 1) != 0 ? 1 : -1;
-      if (!cell.is_smooth && !explains(near, beyond)) continue;
-      const double rises = static_cast<double>(occupancy_at(tree_.cells(), depth_, cell.at)) >
-                                   static_cast<double>(occupancy_at(tree_.cells(), depth_, beyond))
-                               ? forward
-                               : -forward;
-      const Candidate* best = nullptr;
-      Vector3 at{};
-      Vector3 normal{};
-      double least = kMostMoved;
-      for (const Candidate& candidate : near) {
-        const Patch& patch = cells_[candidate.cell].patch;
-        Vector3 point = start;
-        Vector3 gradient;
-        for (int step = 0; step < 3; ++step) {
-          const double above = patch.above(point, &gradient);
-          if (gradient[axis] * rises < 1e-3) break;
-          point[axis] -= above / gradient[axis];
-        }
-        const double from_centre =
-            (point[axis] - cell.at[static_cast<std::size_t>(axis)] - 0.5) * forward;
-        if (gradient[axis] * rises < 1e-3 || from_centre < -0.2 || from_centre > 1.2) continue;
-        const double moved = std::abs(point[axis] - start[axis]);
-        if (moved >= least) continue;
-        least = moved;
-        best = &candidate;
-        at = point;
-        normal = gradient;
-      }
-      if (best == nullptr) {
-        // The sides of leaves are those of their occupancies, not of their centres: beside edges
-        // the line may miss the surface.
-        least = kMostMoved;
-        for (const Candidate& candidate : near) {
-          Vector3 gradient;
-          const Vector3 point = cells_[candidate.cell].patch.projected(start, &gradient);
-          const double moved = length(point - start);
-          if (moved >= least) continue;
-          least = moved;
-          best = &candidate;
-          at = point;
-          normal = gradient;
-        }
-        if (best == nullptr) continue;
-        found->push_back({vertex,
-                          {to_frame(at), normal_in_frame(normal), -1, best->region},
-                          vertices->positions()[vertex],
-                          0.0F});
-        continue;
-      }
-      const double t = (at[axis] - cell.at[static_cast<std::size_t>(axis)] - 0.5) * forward;
-      Vector3 position = vertices->positions()[vertex];
-      position[axis] = frame_.crossing(face, cell.at[static_cast<std::size_t>(axis)] + 0.5,
-                                       std::clamp(t, 0.0, 1.0), 1.0, depth_);
-      found->push_back(
-          {vertex, {position, normal_in_frame(normal), -1, best->region}, position, 1.0F});
-    }
-  };
   parallel_ranges(count, kCellsPerTask, threads, progress,
                   [&](std::int64_t begin, std::int64_t end) {
                     for (std::int64_t i = begin; i < end; ++i) {
-                      sample_cell(cells_[static_cast<std::size_t>(i)],
+                      sample_cell(cells_[static_cast<std::size_t>(i)], vertices->positions(),
                                   &tasks[static_cast<std::size_t>(begin / kCellsPerTask)]);
                     }
                   });

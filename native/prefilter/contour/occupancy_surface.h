@@ -16,6 +16,7 @@
 #include "prefilter/base/disjoint_sets.h"
 #include "prefilter/contour/contour_tree.h"
 #include "prefilter/contour/feature_surface.h"
+#include "prefilter/contour/height_patch.h"
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/sharp_vertices.h"
 #include "prefilter/contour/surface_vertices.h"
@@ -44,23 +45,6 @@ class OccupancySurface final : public FeatureSurface {
   FeatureCorner corner(std::size_t) const override { return {}; }
 
  private:
-  // A quadratic over the side of a cell, in cells of the root.
-  struct Patch {
-    Vector3 centre{};
-    int axis = 0;
-    bool is_up = true;
-    double height = 0.0;
-    std::array<double, 2> slopes{};
-    std::array<double, 2> curvatures{};
-    double twist = 0.0;
-
-    /// How far a point is above, along the axis, and its derivatives: the normal's direction.
-    double above(const Vector3& point, Vector3* gradient) const;
-    /// The point next to another that is on it, with the gradient there.
-    Vector3 projected(Vector3 point, Vector3* gradient) const;
-    Vector3 normal() const;
-    Vector3 foot() const;
-  };
   struct SurfaceCell {
     CellCoordinates at;
     std::size_t first_vertex;
@@ -69,13 +53,27 @@ class OccupancySurface final : public FeatureSurface {
     bool is_deep = false;  // and so are all around it
     bool is_beside_edge = false;
     std::int32_t region = -1;
-    Patch patch;
+    HeightPatch patch;
   };
   // A region near a cell, by its most telling patch.
   struct Candidate {
     std::int32_t region;
     std::size_t cell;
     double score;
+  };
+
+  // A place of a region's surface, in cells.
+  struct Hit {
+    std::int32_t region;
+    Vector3 point;
+    Vector3 gradient;
+  };
+  // A vertex with its sample, as VertexSamples has them.
+  struct Found {
+    std::size_t vertex;
+    SourcePoint sample;
+    Vector3 on_line;
+    float facing;
   };
 
   void gather(const CellNode& node, const CellCoordinates& at, const SurfaceVertices& vertices);
@@ -86,6 +84,13 @@ class OccupancySurface final : public FeatureSurface {
   const SurfaceCell* find(const CellCoordinates& at) const;
   std::vector<Candidate> candidates(const CellCoordinates& at) const;
   bool explains(const std::vector<Candidate>& all, const CellCoordinates& at) const;
+  std::optional<Hit> hit_on_line(const std::vector<Candidate>& near, const CellCoordinates& at,
+                                 int face, double rises, const Vector3& start) const;
+  std::optional<Hit> hit_beside(const std::vector<Candidate>& near, const Vector3& start) const;
+  std::optional<Found> sample_face(const SurfaceCell& cell, const std::vector<Candidate>& near,
+                                   int face, std::size_t vertex, const Vector3& position) const;
+  void sample_cell(const SurfaceCell& cell, const std::vector<Vector3>& positions,
+                   std::vector<Found>* found) const;
   Vector3 to_cells(const Vector3& point) const;
   Vector3 to_frame(const Vector3& point) const;
   Vector3 normal_in_frame(const Vector3& normal) const;

@@ -306,52 +306,46 @@ std::vector<std::int64_t> trace_labels(const SourceSurface& surface, int threads
   return triangles;
 }
 
-// The contour of a tree whose root is split.
-TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options,
-                           std::vector<std::int64_t>* origins) {
-  constexpr double kPlacing = 0.98;
-  constexpr double kSmallest = 1e-30;  // unit of length that may be multiplied
-  const double simplifying = options.adaptivity > 0.0 ? 0.4 : kPlacing;
-  const double cleaning = options.clean_up ? 0.3 * simplifying : simplifying;
-  const Progress cutting = options.progress.part(0.0, cleaning);
-  ContourTree tree(cells, options.isovalue, cutting.part(0.0, 0.1), options.threads);
-  const bool fits = options.isovalue == 0.5F && (options.interpolant == Interpolant::kPlane ||
-                                                 options.interpolant == Interpolant::kSharp);
-  const bool is_sharp = fits && options.interpolant == Interpolant::kSharp;
-  if (fits) settle_sides(cutting.part(0.1, 0.2), options.threads, &tree);
-  const RootFrame frame(root);
-  std::optional<SourceSurface> surface;
-  std::optional<PartSides> part_sides;
-  if (is_sharp && !options.sources.empty()) {
-    surface.emplace(options.sources, frame, frame.cell(0, cells.depth()), cutting.part(0.2, 0.3),
-                    options.threads);
-    if (surface->has_meetings()) {
-      part_sides.emplace(tree, frame, *surface, cutting.part(0.3, 0.33));
-      part_sides->settle(cutting.part(0.33, 0.35), options.threads, &tree);
-    }
-  }
-  SurfaceVertices vertices(tree, frame, options.interpolant, cutting.part(0.35, 0.45),
-                           options.threads);
-  if (fits) {
-    fit_vertices(tree, frame, cutting.part(0.45, 0.5), options.threads, &vertices);
-  }
-  std::optional<OccupancySurface> smooth_parts;  // where there are no sources
+// Where the edges of a contour are: a surface, and what the vertices know of it.
+struct EdgeSource {
+  std::optional<SourceSurface> meshes;
+  std::optional<PartSides> part_sides;           // where several meshes meet
+  std::optional<OccupancySurface> smooth_parts;  // where there are no meshes
   VertexSamples samples;
-  std::vector<Vector3> crossings;
-  std::optional<Division> division;
-  if (surface) {
-    crossings = vertices.positions();
-    samples = sample_vertices(tree, frame, *surface, part_sides ? &*part_sides : nullptr,
-                              cutting.part(0.5, 0.6), options.threads, &vertices);
-    division.emplace(*surface, samples);
-  } else if (is_sharp) {
-    crossings = vertices.positions();
-    smooth_parts.emplace(tree, frame, vertices, cutting.part(0.5, 0.55), options.threads);
-    samples = smooth_parts->sample_vertices(cutting.part(0.55, 0.6), options.threads, &vertices);
-    division.emplace(*smooth_parts, samples);
+  std::vector<Vector3> crossings;  // the vertices before they were sampled
+
+  const FeatureSurface* surface() const {
+    if (meshes) return &*meshes;
+    return smooth_parts ? &*smooth_parts : nullptr;
   }
+};
+
+void read_sources(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
+                  const Progress& progress, ContourTree* tree, EdgeSource* edges) {
+  edges->meshes.emplace(options.sources, frame, frame.cell(0, cells.depth()),
+                        progress.part(0.0, 0.66), options.threads);
+  if (!edges->meshes->has_meetings()) return;
+  edges->part_sides.emplace(*tree, frame, *edges->meshes, progress.part(0.66, 0.86));
+  edges->part_sides->settle(progress.part(0.86, 1.0), options.threads, tree);
+}
+
+void sample_edges(const ContourTree& tree, const RootFrame& frame, const Progress& progress,
+                  int threads, SurfaceVertices* vertices, EdgeSource* edges) {
+  edges->crossings = vertices->positions();
+  if (edges->meshes) {
+    edges->samples = sample_vertices(tree, frame, *edges->meshes,
+                                     edges->part_sides ? &*edges->part_sides : nullptr, progress,
+                                     threads, vertices);
+    return;
+  }
+  edges->smooth_parts.emplace(tree, frame, *vertices, progress.part(0.0, 0.5), threads);
+  edges->samples = edges->smooth_parts->sample_vertices(progress.part(0.5, 1.0), threads, vertices);
+}
+
+LoopedMesh make_loops(const ContourTree& tree, const Division* division, const Progress& progress,
+                      int threads, SurfaceVertices* vertices) {
   const DualCells dual(tree);
-  const TriangleMaker maker(vertices, division ? &*division : nullptr);
+  const TriangleMaker maker(*vertices, division);
   const auto parts = static_cast<std::int64_t>(dual.part_count());
   std::vector<TaskTriangles> tasks(static_cast<std::size_t>(range_count(parts, kPartsPerTask)));
   const auto make_some = [&](std::int64_t begin, std::int64_t end) {
@@ -361,24 +355,63 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
                     [&](const Meeting& leaves) { maker.add(leaves, &task); });
     }
   };
-  parallel_ranges(parts, kPartsPerTask, options.threads, cutting.part(0.6, 0.8), make_some);
-  LoopedMesh looped = join(cutting.part(0.8, 0.85), &vertices, &tasks);
-  FacetedMesh mesh;
-  if (division) {
-    mesh = sharpen(std::move(looped), crossings, division->surface, samples,
-                   cutting.part(0.85, 1.0), options.threads);
-    const std::vector<std::int32_t> used = leave_out_unused(&mesh);
-    for (std::size_t i = 0; i < used.size() && !mesh.kinds.empty(); ++i) {
-      mesh.kinds[i] = mesh.kinds[static_cast<std::size_t>(used[i])];
-    }
-    mesh.kinds.resize(std::min(mesh.kinds.size(), used.size()));
-  } else {
-    mesh.positions = std::move(looped.positions);
-    mesh.triangles = std::move(looped.triangles);
+  parallel_ranges(parts, kPartsPerTask, threads, progress.part(0.0, 0.8), make_some);
+  return join(progress.part(0.8, 1.0), vertices, &tasks);
+}
+
+FacetedMesh sharpened(LoopedMesh looped, const EdgeSource& edges, const Progress& progress,
+                      int threads) {
+  FacetedMesh mesh = sharpen(std::move(looped), edges.crossings, *edges.surface(), edges.samples,
+                             progress, threads);
+  const std::vector<std::int32_t> used = leave_out_unused(&mesh);
+  for (std::size_t i = 0; i < used.size() && !mesh.kinds.empty(); ++i) {
+    mesh.kinds[i] = mesh.kinds[static_cast<std::size_t>(used[i])];
   }
-  std::vector<std::int64_t> triangles_of_labels;
-  if (origins != nullptr && surface)
-    triangles_of_labels = trace_labels(*surface, options.threads, &mesh);
+  mesh.kinds.resize(std::min(mesh.kinds.size(), used.size()));
+  return mesh;
+}
+
+// The full contour, in the frame. With `sources_of_labels`, all triangles get labels, of each of
+// which that is a triangle.
+FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
+                     const Progress& progress, std::vector<std::int64_t>* sources_of_labels) {
+  const int threads = options.threads;
+  ContourTree tree(cells, options.isovalue, progress.part(0.0, 0.1), threads);
+  const bool fits = options.isovalue == 0.5F && (options.interpolant == Interpolant::kPlane ||
+                                                 options.interpolant == Interpolant::kSharp);
+  const bool is_sharp = fits && options.interpolant == Interpolant::kSharp;
+  if (fits) settle_sides(progress.part(0.1, 0.2), threads, &tree);
+  EdgeSource edges;
+  if (is_sharp && !options.sources.empty()) {
+    read_sources(cells, frame, options, progress.part(0.2, 0.35), &tree, &edges);
+  }
+  SurfaceVertices vertices(tree, frame, options.interpolant, progress.part(0.35, 0.45), threads);
+  if (fits) fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
+  if (!is_sharp) {
+    LoopedMesh looped = make_loops(tree, nullptr, progress.part(0.6, 0.85), threads, &vertices);
+    return {std::move(looped.positions), std::move(looped.triangles), {}, {}};
+  }
+  sample_edges(tree, frame, progress.part(0.5, 0.6), threads, &vertices, &edges);
+  const Division division = {*edges.surface(), edges.samples};
+  LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
+  FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 1.0), threads);
+  if (sources_of_labels != nullptr && edges.meshes) {
+    *sources_of_labels = trace_labels(*edges.meshes, threads, &mesh);
+  }
+  return mesh;
+}
+
+// The contour of a tree whose root is split.
+TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options,
+                           std::vector<std::int64_t>* origins) {
+  constexpr double kPlacing = 0.98;
+  constexpr double kSmallest = 1e-30;  // unit of length that may be multiplied
+  const double simplifying = options.adaptivity > 0.0 ? 0.4 : kPlacing;
+  const double cleaning = options.clean_up ? 0.3 * simplifying : simplifying;
+  const RootFrame frame(root);
+  std::vector<std::int64_t> sources_of_labels;
+  FacetedMesh mesh = cut_tree(cells, frame, options, options.progress.part(0.0, cleaning),
+                              origins != nullptr ? &sources_of_labels : nullptr);
   double cell = frame.cell(0, cells.depth());
   for (int a = 1; a < 3; ++a) cell = std::min(cell, frame.cell(a, cells.depth()));
   // Where rounding may let triangles meet, what changes them has to see the positions that come
@@ -400,7 +433,7 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   }
   if (origins != nullptr) {
     for (const std::int32_t label : mesh.labels) {
-      origins->push_back(triangles_of_labels[static_cast<std::size_t>(label)]);
+      origins->push_back(sources_of_labels[static_cast<std::size_t>(label)]);
     }
   }
   if (!places_first) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Vertices left out, their holes filled by dynamic programming (Klincsek 1980), and edges flipped,
-// whatever of it makes the fewest and the least narrow triangles.
+// Vertices left out, their holes filled, and edges flipped, whatever of it makes the fewest and the
+// least narrow triangles.
 #include "prefilter/remesh/patch_editor.h"
 
 #include <algorithm>
@@ -13,8 +13,6 @@ namespace {
 
 using Triangle = std::array<std::int32_t, 3>;
 
-constexpr double kSine = 0.2756373558169992;  // of 16 degrees
-constexpr float kNarrow = static_cast<float>(kSine * kSine);
 // What a change has to gain in faults, so that changes come to an end.
 constexpr double kLeastGain = 0.05;
 // How far normals may be from the mean one, unless others were before: 20 degrees.
@@ -32,9 +30,6 @@ double squared(const Vector3& v) { return dot(v, v); }
 Vector3 normal_of(const Vector3& a, const Vector3& b, const Vector3& c) {
   return cross(b - a, c - a);
 }
-
-// From 1 to 2 for a narrow triangle.
-double fault_of(double width) { return width < kNarrow ? 2.0 - width / kNarrow : 0.0; }
 
 bool has(const Triangle& triangle, std::int32_t vertex) {
   return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
@@ -195,6 +190,31 @@ bool PatchEditor::is_edge(std::int32_t a, std::int32_t b) const {
                      [&](std::uint32_t t) { return has(edited_.mesh.triangles[t], other); });
 }
 
+// The label of some triangles of a fan that follow each other; nothing where they have several.
+std::optional<std::int32_t> PatchEditor::label_of_all(const Fan& fan, std::size_t begin,
+                                                      std::size_t count) const {
+  std::int32_t label = kNoLabel;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t other = label_of(fan.triangles[(begin + i) % fan.count]);
+    if (other == kNoLabel || other == label) continue;
+    if (label != kNoLabel) return std::nullopt;
+    label = other;
+  }
+  return label;
+}
+
+// The least cosine between the normals of some triangles of a fan and a direction.
+double PatchEditor::least_cosine(const Fan& fan, std::size_t begin, std::size_t count,
+                                 const Vector3& direction) const {
+  double least = kFlatCosine;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [a, b, c] = edited_.mesh.triangles[fan.triangles[(begin + i) % fan.count]];
+    const Vector3 normal = normal_of(point(a), point(b), point(c));
+    least = std::min(least, dot(normal, direction) / std::sqrt(squared(normal)));
+  }
+  return std::max(least, kLeastCosine);
+}
+
 // Adds the best triangles for a part of a fan's ring, from `begin` to `end` inclusive, which may be
 // beyond its last one: the ring is counted on.
 bool PatchEditor::fill(const Fan& fan, std::size_t begin, std::size_t end, std::size_t* made,
@@ -206,15 +226,9 @@ bool PatchEditor::fill(const Fan& fan, std::size_t begin, std::size_t end, std::
     ring[i] = fan.ring[(begin + i) % fan.count];
     points[i] = point(ring[i]);
   }
-  const bool is_whole = count == fan.count;
-  const std::size_t steps = is_whole ? count : count - 1;
-  std::int32_t label = kNoLabel;
-  for (std::size_t i = 0; i < steps; ++i) {
-    const std::int32_t other = label_of(fan.triangles[(begin + i) % fan.count]);
-    if (other == kNoLabel || other == label) continue;
-    if (label != kNoLabel) return false;
-    label = other;
-  }
+  const std::size_t steps = count == fan.count ? count : count - 1;
+  const std::optional<std::int32_t> label = label_of_all(fan, begin, steps);
+  if (!label) return false;
   Vector3 mean = {};
   for (std::size_t i = 2; i < count; ++i) {
     mean = mean + normal_of(points[0], points[i - 1], points[i]);
@@ -224,74 +238,76 @@ bool PatchEditor::fill(const Fan& fan, std::size_t begin, std::size_t end, std::
   change->area += 0.5 * mean_length;
   const double unit = 1.0 / mean_length;
   const Vector3 direction = {unit * mean[0], unit * mean[1], unit * mean[2]};
-  std::array<std::array<double, kMostAround>, kMostAround> squares;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t j = i + 1; j < count; ++j) squares[i][j] = squared(points[j] - points[i]);
+  const auto corners = std::span<const Vector3>(points).first(count);
+  RingTriangles found;
+  if (!triangulate_ring(corners, direction, unit, kFlatCosine, &found)) {
+    const double least = least_cosine(fan, begin, steps, direction);
+    if (!(least < kFlatCosine)) return false;
+    if (!triangulate_ring(corners, direction, unit, least, &found)) return false;
   }
-  const auto sides_of = [&](std::size_t i, std::size_t j, std::size_t k) {
-    const double u = squares[i][j];
-    const double v = squares[j][k];
-    const double w = squares[i][k];
-    return std::max({u, v, w}) * std::max(std::min(u, v), std::min(std::max(u, v), w));
-  };
+  change->fault += found.fault;
+  for (std::size_t i = 0; i < found.count; ++i) {
+    const auto [a, b, c] = found.triangles[i];
+    change->labels[*made] = *label;
+    change->triangles[(*made)++] = {ring[a], ring[b], ring[c]};
+  }
+  return true;
+}
 
-  struct Best {
-    double cost;
-    double fault;
-    std::size_t apex;
-  };
-  std::array<std::array<Best, kMostAround>, kMostAround> best;
-  constexpr double kForbidden = 1e30;
-  constexpr double kFaultCost = 1e3;
-  const auto find_best = [&](double least) {
-    for (std::size_t i = 0; i + 1 < count; ++i) best[i][i + 1] = {0.0, 0.0, 0};
-    for (std::size_t span = 2; span < count; ++span) {
-      for (std::size_t i = 0; i + span < count; ++i) {
-        const std::size_t j = i + span;
-        Best found = {kForbidden, 0.0, i + 1};
-        for (std::size_t k = i + 1; k < j; ++k) {
-          const double below = best[i][k].cost + best[k][j].cost;
-          if (!(below < found.cost)) continue;
-          const Vector3 normal = normal_of(points[i], points[k], points[j]);
-          const double along = dot(normal, direction);
-          const double area = squared(normal);
-          if (!(along > 0.0) || !(along * along > least * least * area)) continue;
-          const double sides = sides_of(i, k, j);
-          const double fault = area < kNarrow * sides ? fault_of(area / sides) : 0.0;
-          const double squares_sum = squares[i][k] + squares[k][j] + squares[i][j];
-          const double cost = below + (unit * along) * (unit * squares_sum) + kFaultCost * fault;
-          if (cost < found.cost) found = {cost, best[i][k].fault + best[k][j].fault + fault, k};
-        }
-        best[i][j] = found;
-      }
-    }
-    return best[0][count - 1].cost < kForbidden;
-  };
-  if (!find_best(kFlatCosine)) {
-    double least = kFlatCosine;
-    for (std::size_t i = 0; i < steps; ++i) {
-      const std::uint32_t t = fan.triangles[(begin + i) % fan.count];
-      const auto& [a, b, c] = edited_.mesh.triangles[t];
-      const Vector3 normal = normal_of(point(a), point(b), point(c));
-      least = std::min(least, dot(normal, direction) / std::sqrt(squared(normal)));
-    }
-    least = std::max(least, kLeastCosine);
-    if (!(least < kFlatCosine) || !find_best(least)) return false;
+// The places in the ring that creases lead to; nothing where not just two or none meet.
+std::optional<PatchEditor::CreasePlaces> PatchEditor::crease_places(std::int32_t vertex,
+                                                                    const Fan& fan) const {
+  CreasePlaces creases;
+  if (edited_.mesh.labels.empty() && edited_.mesh.kinds.empty()) return creases;
+  for (std::size_t i = 0; i < fan.count; ++i) {
+    const std::size_t last = (i + fan.count - 1) % fan.count;
+    if (!is_crease(vertex, fan.ring[i], fan.triangles[i], fan.triangles[last])) continue;
+    if (creases.count == 2) return std::nullopt;
+    creases.at[creases.count++] = i;
   }
-  const Best& whole = best[0][count - 1];
-  change->fault += whole.fault;
-  // Depth first.
-  std::array<std::array<std::size_t, 2>, kMostAround> waiting;
-  std::size_t waiting_count = 0;
-  waiting[waiting_count++] = {0, count - 1};
-  while (waiting_count > 0) {
-    const auto [i, j] = waiting[--waiting_count];
-    if (j - i < 2) continue;
-    const std::size_t k = best[i][j].apex;
-    change->labels[*made] = label;
-    change->triangles[(*made)++] = {ring[i], ring[k], ring[j]};
-    waiting[waiting_count++] = {i, k};
-    waiting[waiting_count++] = {k, j};
+  if (creases.count == 1) return std::nullopt;
+  return creases;
+}
+
+// Whether the crease through a vertex goes straight on, between ends that are on creases, with
+// triangles on both sides.
+bool PatchEditor::goes_straight_on(std::int32_t vertex, const Fan& fan,
+                                   const CreasePlaces& creases) const {
+  const auto [low, high] = creases.at;
+  const std::int32_t from = fan.ring[low];
+  const std::int32_t to = fan.ring[high];
+  if (kind_of(from) == VertexKind::kSurface || kind_of(to) == VertexKind::kSurface) return false;
+  if (high - low < 2 || low + fan.count - high < 2) return false;
+  const Vector3 chord = point(to) - point(from);
+  const Vector3 way = point(vertex) - point(from);
+  const double tolerance = edited_.crease_tolerance;
+  return squared(cross(chord, way)) <= tolerance * tolerance * squared(chord) &&
+         dot(way, chord) > 0.0 && dot(way, chord) < squared(chord);
+}
+
+// Whether diagonals are not there yet, and vertices keep three triangles.
+bool PatchEditor::leaves_manifold(const Fan& fan, const Change& change, std::size_t made) const {
+  const auto place_in_ring = [&](std::int32_t corner) {
+    const auto* const found = std::find(fan.ring.begin(), fan.ring.begin() + fan.count, corner);
+    return static_cast<std::size_t>(found - fan.ring.begin());
+  };
+  std::array<int, kMostAround> uses{};
+  for (std::size_t i = 0; i < made; ++i) {
+    for (const std::int32_t corner : change.triangles[i]) ++uses[place_in_ring(corner)];
+  }
+  for (std::size_t i = 0; i < fan.count; ++i) {
+    if (uses[i] > 1) continue;
+    const std::int32_t corner = fan.ring[i];
+    if (!is_own(corner) || triangles_of(corner).size() < 4) return false;
+  }
+  for (std::size_t i = 0; i < made; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::int32_t a = change.triangles[i][k];
+      const std::int32_t b = change.triangles[i][(k + 1) % 3];
+      if (fan.ring[(place_in_ring(a) + 1) % fan.count] == b) continue;  // of the ring
+      if (!is_own(a) && !is_own(b)) return false;
+      if (is_edge(a, b)) return false;
+    }
   }
   return true;
 }
@@ -305,46 +321,25 @@ void PatchEditor::find_removal(std::int32_t vertex, Change* change) const {
   for (std::size_t i = 0; i < fan.count; ++i) {
     before += fault_of(edited_.widths[fan.triangles[i]]);
   }
-  // The places in the ring where creases lead to.
-  std::array<std::size_t, 2> creases = {0, 0};
-  std::size_t crease_count = 0;
-  if (!edited_.mesh.labels.empty() || !edited_.mesh.kinds.empty()) {
-    for (std::size_t i = 0; i < fan.count; ++i) {
-      const std::size_t last = (i + fan.count - 1) % fan.count;
-      if (!is_crease(vertex, fan.ring[i], fan.triangles[i], fan.triangles[last])) continue;
-      if (crease_count == 2) return;
-      creases[crease_count++] = i;
-    }
-    if (crease_count == 1) return;
-  }
+  const std::optional<CreasePlaces> creases = crease_places(vertex, fan);
+  if (!creases) return;
   change->vertex = vertex;
   change->fault = 0.0;
   change->area = 0.0;
   change->places = fan.triangles;
   std::size_t made = 0;
-  if (crease_count == 0) {
+  if (creases->count == 0) {
     if (!fill(fan, 0, fan.count - 1, &made, change)) return;
   } else {
-    const auto [low, high] = creases;
-    const std::int32_t from = fan.ring[low];
-    const std::int32_t to = fan.ring[high];
-    if (kind_of(from) == VertexKind::kSurface || kind_of(to) == VertexKind::kSurface) return;
-    if (high - low < 2 || low + fan.count - high < 2) return;
-    const Vector3 chord = point(to) - point(from);
-    const Vector3 way = point(vertex) - point(from);
-    const double tolerance = edited_.crease_tolerance;
-    if (!(squared(cross(chord, way)) <= tolerance * tolerance * squared(chord)) ||
-        !(dot(way, chord) > 0.0) || !(dot(way, chord) < squared(chord))) {
-      return;
-    }
-    if (!fill(fan, low, high, &made, change) || !fill(fan, high, low + fan.count, &made, change))
-      return;
+    const auto [low, high] = creases->at;
+    if (!goes_straight_on(vertex, fan, *creases)) return;
+    if (!fill(fan, low, high, &made, change)) return;
+    if (!fill(fan, high, low + fan.count, &made, change)) return;
   }
   change->old_count = fan.count;
   change->gain = before - change->fault;
   if (!(change->gain > kLeastGain)) return;
-
-  // The volume between before and after, and the area.
+  // The volume between before and after.
   const Vector3& top = point(vertex);
   double volume = 0.0;
   for (std::size_t i = 0; i < made; ++i) {
@@ -353,32 +348,7 @@ void PatchEditor::find_removal(std::int32_t vertex, Change* change) const {
   }
   change->depth = std::abs(volume) / (change->area * std::sqrt(change->area));
   if (!(change->depth < kMostDepth)) return;
-
-  // Diagonals must not be there yet, and vertices keep three triangles.
-  std::array<int, kMostAround> uses{};
-  for (std::size_t i = 0; i < made; ++i) {
-    for (const std::int32_t corner : change->triangles[i]) {
-      const auto* const found = std::find(fan.ring.begin(), fan.ring.begin() + fan.count, corner);
-      ++uses[static_cast<std::size_t>(found - fan.ring.begin())];
-    }
-  }
-  for (std::size_t i = 0; i < fan.count; ++i) {
-    if (uses[i] > 1) continue;
-    const std::int32_t corner = fan.ring[i];
-    if (!is_own(corner) || triangles_of(corner).size() < 4) return;
-  }
-  for (std::size_t i = 0; i < made; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::int32_t a = change->triangles[i][k];
-      const std::int32_t b = change->triangles[i][(k + 1) % 3];
-      const auto* const found = std::find(fan.ring.begin(), fan.ring.begin() + fan.count, a);
-      const auto place = static_cast<std::size_t>(found - fan.ring.begin());
-      if (fan.ring[(place + 1) % fan.count] == b) continue;  // of the ring
-      if (!is_own(a) && !is_own(b)) return;
-      if (is_edge(a, b)) return;
-    }
-  }
-  change->count = made;
+  if (leaves_manifold(fan, *change, made)) change->count = made;
 }
 
 bool PatchEditor::is_crease(std::int32_t a, std::int32_t b, std::uint32_t left,

@@ -6,10 +6,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "prefilter/remesh/faceted_mesh.h"
+#include "prefilter/remesh/ring_triangles.h"
 
 namespace prefilter {
 
@@ -47,8 +49,6 @@ class PatchEditor {
   const std::vector<std::uint32_t>& narrow() const { return narrow_; }
 
  private:
-  static constexpr std::size_t kMostAround = 12;
-
   // The triangles around a vertex, which `ring` has the other corners of, counter-clockwise.
   struct Fan {
     std::size_t count = 0;
@@ -68,6 +68,12 @@ class PatchEditor {
     double gain = 0.0;   // the faults before less those after
     double area = 0.0;   // as seen from above
     double depth = 0.0;  // of what it cuts off or fills, as a share of the root of the area
+  };
+
+  // In the ring of a vertex, in order.
+  struct CreasePlaces {
+    std::array<std::size_t, 2> at = {0, 0};
+    std::size_t count = 0;  // 0 or 2
   };
 
   const Vector3& point(std::int32_t vertex) const {
@@ -96,6 +102,13 @@ class PatchEditor {
   void find_removal(std::int32_t vertex, Change* change) const;
   void find_flip(std::int32_t a, std::int32_t b, Change* change) const;
   void keep_better();
+  std::optional<CreasePlaces> crease_places(std::int32_t vertex, const Fan& fan) const;
+  bool goes_straight_on(std::int32_t vertex, const Fan& fan, const CreasePlaces& creases) const;
+  bool leaves_manifold(const Fan& fan, const Change& change, std::size_t made) const;
+  std::optional<std::int32_t> label_of_all(const Fan& fan, std::size_t begin,
+                                           std::size_t count) const;
+  double least_cosine(const Fan& fan, std::size_t begin, std::size_t count,
+                      const Vector3& direction) const;
   bool fill(const Fan& fan, std::size_t begin, std::size_t end, std::size_t* made,
             Change* change) const;
   bool is_edge(std::int32_t a, std::int32_t b) const;
