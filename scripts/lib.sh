@@ -273,6 +273,27 @@ ensure_reader() {
   mv "$reader_dir.new" "$reader_dir"
 }
 
+# ensure_decoders TAG: installs what scripts/decoders.txt lists for a Python, such as cp313. Sets decoders; empty where
+# they cannot be had, and tests skip.
+ensure_decoders() {
+  local folder log=$log_dir/decoders-$1.log
+  folder=$cache_dir/decoders-$1-$(sha256sum <scripts/decoders.txt | cut -c 1-12)
+  decoders=$folder
+  lock "$cache_dir/.decoders.lock"
+  if [[ ! -e $folder ]]; then
+    mkdir -p "$log_dir"
+    rm -rf "$folder.new"
+    if /usr/bin/python3 -m pip install --disable-pip-version-check --no-deps --require-hashes --only-binary :all: \
+      --python-version "3.${1#cp3}" --target "$folder.new" --requirement scripts/decoders.txt >"$log" 2>&1; then
+      mv "$folder.new" "$folder"
+    else
+      note "scripts/decoders.txt cannot be installed for Python 3.${1#cp3}: $(tail -n 1 "$log")"
+      decoders=
+    fi
+  fi
+  unlock "$cache_dir/.decoders.lock"
+}
+
 ensure_root() {
   local stamp=$root_dir/.prefilter-packages missing packages
   read -ra packages <<<"${root_packages[$suite]}"

@@ -92,6 +92,13 @@ def test_charts_end_at_seams_of_any_map():
         assert len(set(charts[sides(BOX) == side])) == 1
 
 
+def test_an_edge_of_three_faces_is_a_seam():
+    positions = np.array([(0, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (-1, -1, 0)], np.float32)
+    triangles = np.array([(0, 1, 2), (1, 0, 3), (0, 1, 4)])
+    assert list(prefilter.uv_charts(positions, triangles, [])) == [0, 1, 2]
+    assert list(prefilter.uv_charts(positions, triangles[:2], [])) == [0, 0]
+
+
 def test_vertices_at_one_place_are_no_seam():
     split = BOX.positions[BOX.triangles].reshape(-1, 3)
     charts = prefilter.uv_charts(split, np.arange(36).reshape(12, 3), [])

@@ -249,7 +249,7 @@ def test_damaged_pcd_files(tmp_path, contents, message):
         b"",  # nothing
         b"\x23" + b"a" * 35,  # more copied than was said
         b"\x1f" + b"a" * 32,  # fewer
-        b"\x20\x00" * 9,  # what repeats is before the first
+        b"\x20\x00" * 12,  # what repeats is before the first
         b"\x00a\x20\x01" + b"\x05aaaaaa" * 5,
         b"\x1f" + b"a" * 31,  # ends within a run
         b"\x00a\xe0",

@@ -204,12 +204,31 @@ def test_laz_files_whose_chunks_do_not_agree(laspy, tmp_path):
         (with_number(begin, len(contents), 8), f"their table at {len(contents)}, and it has"),
         (with_number(record + 12, 1 << 30, 4), "a chunk of 1073741824 points; at most 16777216"),
         (with_number(record + 12, COUNT // 2, 4), f"points for the {COUNT} in its header"),
+        (with_number(table + 4, 100_000, 4), "too short for the 100000 chunks of its table"),
         (with_number(record, 1, 2), "compressor 1 is not one of 2, 3"),
         (with_number(record + 32, 0, 2), "its compressed points have 0 bytes"),
     ]:
         path.write_bytes(broken)
         with pytest.raises(ValueError, match=f"cloud.laz'.*{message}"):
             prefilter.read_points(path)
+
+
+def test_laz_files_whose_layers_leave_no_room_for_their_sizes(laspy, tmp_path):
+    pytest.importorskip("lazrs", reason="lazrs cannot be imported")
+    path = tmp_path / "cloud.laz"
+    las = laspy.create(point_format=6)
+    las.x, las.y, las.z = random_points(count=100).T
+    las.write(path)
+    contents = path.read_bytes()
+    begin = int.from_bytes(contents[96:100], "little") + 8
+    size = int.from_bytes(contents[begin - 8 : begin], "little") - begin
+    sizes = begin + 30 + 4
+    layers = [int.from_bytes(contents[at : at + 4], "little") for at in range(sizes, sizes + 36, 4)]
+    assert 30 + 4 + 36 + sum(layers) == size
+    last = size - sum(layers[:-1])
+    path.write_bytes(contents[: sizes + 32] + last.to_bytes(4, "little") + contents[sizes + 36 :])
+    with pytest.raises(ValueError, match=f"chunk 0 has {size} bytes, and its layers {size}"):
+        prefilter.read_points(path)
 
 
 def e57_scan(seed, *, with_color=True, **more):

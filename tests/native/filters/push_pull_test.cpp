@@ -44,6 +44,29 @@ TEST(FillHoles, StaysBetweenTheValuesAround) {
   }
 }
 
+TEST(FillHoles, CountsAQuarterThatIsFullLikeOneOfASingleTexel) {
+  Image image(4, 4, 1);
+  std::vector<float> weights(16, 0.0F);
+  weights[0] = 1.0F;  // of value 0
+  for (const int at : {2, 3, 6, 7}) {
+    image.data[static_cast<std::size_t>(at)] = 1.0F;
+    weights[static_cast<std::size_t>(at)] = 1.0F;
+  }
+  fill_holes(weights, {}, 1, Progress(), 1, &image);
+  // The last quarter has no texel: it gets the mean of the quarters that have.
+  EXPECT_NEAR(image.texel(3, 3)[0], 0.5F, 1e-6);
+}
+
+TEST(FillHoles, ReadsAcrossTheEdgesOfARepeatedImage) {
+  for (const Wrap mode : {Wrap::kRepeat, Wrap::kClamp}) {
+    Image image(4, 1, 1);
+    image.texel(3, 0)[0] = 1.0F;
+    fill_holes({0.0F, 1.0F, 0.0F, 1.0F}, {mode, mode}, 1, Progress(), 1, &image);
+    // The first texel is a quarter of a coarse one from the edge, beyond which the last one is.
+    EXPECT_EQ(image.texel(0, 0)[0], mode == Wrap::kRepeat ? 0.25F : 0.0F);
+  }
+}
+
 TEST(FillHoles, LeavesAnImageWithoutAnyWeight) {
   Image image(4, 4, 1, 7.0F);
   fill_holes(std::vector<float>(16, 0.0F), {}, 1, Progress(), 1, &image);

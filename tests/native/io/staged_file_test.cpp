@@ -43,6 +43,19 @@ TEST(StagedFile, HasItsNameInAnyLanguage) {
   EXPECT_EQ(to_text(found.filename()), kName);
 }
 
+TEST(StagedFile, HasTheModeOfTheFileThatItReplaces) {
+  namespace fs = std::filesystem;
+  const TestFolder folder;
+  const std::string path = folder.path("file");
+  write(path, "before");
+#ifndef _WIN32
+  const fs::perms mode = fs::perms::owner_read | fs::perms::owner_write | fs::perms::group_write;
+  fs::permissions(to_path(path), mode);
+  write(path, "after");
+  EXPECT_EQ(fs::status(to_path(path)).permissions(), mode);
+#endif
+}
+
 TEST(StagedFile, ReplacesAFileThatIsRead) {
   const TestFolder folder;
   const std::string path = folder.path("file");

@@ -401,7 +401,7 @@ TEST(CollapseCheck, FindsTheNearestTriangleOrOneThatIsVeryNear) {
   EXPECT_EQ(near({-4, 3, 0.9}, spoke, 1.0), left);
   EXPECT_NEAR(farthest, 0.81, 1e-12);
   EXPECT_EQ(near({-4, 3, 0.1}, as_index(below), 1.0), left);
-  EXPECT_EQ(near({-0.4, 0.4, 0.1}, as_index(below), 1.0), left);  // 0.58: not near enough
+  EXPECT_EQ(near({-0.4, 0.4, 0.1}, as_index(below), 1.0), left);   // 0.58: not near enough
   EXPECT_EQ(near({-0.1, 0.1, 0.1}, as_index(below), 1.0), below);  // 0.17 away: near enough
   EXPECT_EQ(near({0, 0, 1.1}, spoke, 1.0), -1);
   EXPECT_NEAR(farthest, 0.81, 1e-12);

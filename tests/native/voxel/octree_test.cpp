@@ -248,6 +248,63 @@ TEST(Resample, KeepsTheVolumeOfWhatItCovers) {
   EXPECT_NEAR(volume(regridded(noise, around, 4, Progress(), 1)), volume(noise), 5e-5);
 }
 
+// Whether a leaf that is larger than the finest cells has another value beside it, by the dense
+// cells.
+bool is_beside_a_border(const Octree& octree, const std::vector<float>& cells, int level,
+                        std::array<int, 3> place) {
+  const int n = 1 << octree.depth;
+  const int width = n >> level;
+  std::array<int, 3> low;
+  std::array<int, 3> high;
+  for (std::size_t a = 0; a < 3; ++a) {
+    low[a] = std::max(place[a] * width - 1, 0);
+    high[a] = std::min((place[a] + 1) * width + 1, n);
+  }
+  const auto at = [&](int x, int y, int z) {
+    return cells[(static_cast<std::size_t>(z) * n + static_cast<std::size_t>(y)) * n + x];
+  };
+  for (int z = low[2]; z < high[2]; ++z) {
+    for (int y = low[1]; y < high[1]; ++y) {
+      for (int x = low[0]; x < high[0]; ++x) {
+        if (at(x, y, z) != at(low[0], low[1], low[2])) return true;
+      }
+    }
+  }
+  return false;
+}
+
+TEST(Resample, CellsOnBothSidesOfABorderAreFine) {
+  // Faces on borders of cells of depth 1 to 3: all cells are uniform.
+  const Octree box = voxelized(box_mesh({0.25, 0.5, 0.125}, {0.75, 1.0, 0.5}), 5);
+  const Octree made = regridded(box, kUnit, 5, Progress(), 1);
+  const std::vector<float> cells = dense(made);
+  ASSERT_EQ(cells, dense(box));
+  const auto visit = [&](const auto& self, int level, std::size_t block,
+                         std::array<int, 3> place) -> void {
+    const TreeLevel& blocks = made.cells.levels[static_cast<std::size_t>(level)];
+    for (int o = 0; o < 8; ++o) {
+      const std::array<int, 3> octant = {2 * place[0] + (o & 1), 2 * place[1] + ((o >> 1) & 1),
+                                         2 * place[2] + (o >> 2)};
+      if (blocks.is_split(block, o)) {
+        self(self, level + 1, blocks.child(block, o), octant);
+      } else if (level + 1 < made.depth) {
+        EXPECT_FALSE(is_beside_a_border(made, cells, level + 1, octant));
+      }
+    }
+  };
+  visit(visit, 0, 0, {0, 0, 0});
+}
+
+TEST(Resample, LatticesThatAgreeButForRoundingHaveTheSameCells) {
+  const Octree ball = voxelized(sphere_mesh({0.5, 0.5, 0.45}, 0.4, 20), 5);
+  for (const double shift : {-1e-13, 1e-13}) {
+    const Box nearly = {{shift, shift, shift}, {1.0 + shift, 1.0 + shift, 1.0 + shift}};
+    const Octree made = regridded(ball, nearly, 5, Progress(), 1);
+    const Octree same = regridded(ball, kUnit, 5, Progress(), 1);
+    EXPECT_EQ(made.cells.cell_count(), same.cells.cell_count());
+  }
+}
+
 TEST(Resample, MovesPlanesExactly) {
   const Mesh half = box_mesh({-1.0, -1.0, -1.0}, {2.0, 2.0, 0.4371});
   const Box around = {{-0.31, -0.17, -0.37}, {1.2, 1.33, 1.13}};

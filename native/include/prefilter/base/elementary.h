@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Elementary functions whose results have the same bits everywhere: those of C libraries differ, also
-// between processors. They err by less than 1 unit in the last place.
+// Elementary functions whose results have the same bits everywhere: those of C libraries differ,
+// also between processors. They err by less than 1 unit in the last place.
 #pragma once
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 """Scans: oriented points to closed surfaces."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeAlias, cast
 
@@ -117,18 +117,8 @@ def reconstruct(
         OSError: A file cannot be read, or a temporary one not written.
         Cancelled: `progress` returned False.
     """
+    options = _options(locals())
     _check_report(report)
-    options = _options(
-        depth=depth,
-        cell_size=cell_size,
-        wavelet=wavelet,
-        smooth=smooth,
-        isovalue=isovalue,
-        fit=fit,
-        trim=trim,
-        memory_limit=memory_limit,
-        threads=threads,
-    )
     sources = sources_in(points)
     if sources is None:
         cloud = array_cloud(
@@ -194,21 +184,11 @@ def reconstruct_file(
         MemoryError: Points have no normals, and would not fit into memory.
         Cancelled: `progress` returned False.
     """
+    options = _options(locals())
     place = as_target(target)
     if place.suffix.lower() != ".ply":
         raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
-    options = _options(
-        depth=depth,
-        cell_size=cell_size,
-        wavelet=wavelet,
-        smooth=smooth,
-        isovalue=isovalue,
-        fit=fit,
-        trim=trim,
-        memory_limit=memory_limit,
-        folder=os.fsencode(place.parent),
-        threads=threads,
-    )
+    options.folder = os.fsencode(place.parent)
     # What is no list of sources is refused as a path.
     cloud = joined_cloud(sources_in(source) or [cast("Source", source)], progress, threads)
     options.are_sides_known = cloud.are_sides_known
@@ -243,7 +223,6 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
     "fit": bool,
     "trim": lambda trim: as_number("trim", trim),
     "memory_limit": _as_bytes,
-    "folder": bytes,
     "threads": as_threads,
 }
 
@@ -251,11 +230,12 @@ _CHECKS: dict[str, Callable[[Any], object]] = {
 _MAY_BE_NONE = {"cell_size", "trim", "memory_limit"}
 
 
-def _options(**given: object) -> _native.ReconstructOptions:
+def _options(arguments: Mapping[str, object]) -> _native.ReconstructOptions:
+    """The options among the arguments of a function, by the names that the native module has."""
     options = _native.ReconstructOptions()
-    for name, value in given.items():
-        if value is not None or name not in _MAY_BE_NONE:
-            setattr(options, name, _CHECKS[name](value))
+    for name, check in _CHECKS.items():
+        if arguments[name] is not None or name not in _MAY_BE_NONE:
+            setattr(options, name, check(arguments[name]))
     return options
 
 
