@@ -2,6 +2,7 @@
 
 """The list of faults that tests are to see: each can be planted, and names tests that are there."""
 
+import fnmatch
 import re
 from pathlib import Path
 
@@ -26,7 +27,7 @@ def test_every_test_is_there():
     suites = set(re.findall(r"^TEST(?:_[FP])?\((\w+),", text, re.MULTILINE))
     for fault in FAULTS:
         for name in filter(None, fault.native.split(":")):
-            assert name.split(".")[0].strip("*") in suites, fault
+            assert fnmatch.filter(suites, name.split(".")[0]), fault
         if fault.python:
             assert (ROOT / fault.python.split()[0]).exists(), fault
 
