@@ -107,9 +107,10 @@ def test_one_compiler_makes_all_wheels() -> None:
     wheels = tomllib.loads((CHECKOUT / "pyproject.toml").read_text())["tool"]["cibuildwheel"]
     pinned = re.findall(r"ziglang==\S+", (CHECKOUT / "scripts/toolchain.txt").read_text())
     assert re.findall(r"ziglang==\S+", wheels["before-build"]) == pinned
-    toolchain = (CHECKOUT / "native/cross/zig.cmake").read_text()
+    platforms = tomllib.loads((CHECKOUT / "scripts/platforms.toml").read_text())
+    targets = {one["target"] for one in platforms.values() if isinstance(one, dict)}
     for override in wheels["overrides"]:
         for name, part in (("CC", "cc"), ("CXX", "c++")):
             command = override["environment"][name]
             assert command.startswith(f"python -m ziglang {part} -target ")
-            assert f"set(triple {command.split()[-1]})" in toolchain
+            assert command.split()[-1] in targets
