@@ -51,7 +51,8 @@ struct ExampleFile {
 };
 
 std::vector<ExampleFile> examples() {
-  const std::string record = bytes_of<float>({1, 2, 3, 5}) + "abc" + bytes_of<float>({0, 0, 1});
+  std::string record = bytes_of<float>({1, 2, 3, 5});
+  record.append("abc").append(bytes_of<float>({0, 0, 1}));
   // 62 bytes: of zeros after the first, as one literal and one copy.
   const std::string packed =
       bytes_of<std::uint32_t>({5, 62}) + bytes_of<std::uint8_t>({0, 0, 7 << 5, 52, 0});
