@@ -2,6 +2,7 @@
 
 """Where files are written: regular files are replaced, through links; all else is left alone."""
 
+import io
 import os
 import re
 import stat
@@ -87,6 +88,16 @@ def test_a_device_that_takes_the_place_meanwhile_stays(tmp_path):
     assert path.is_fifo()
 
 
+@pytest.mark.parametrize("name", ["write_dds", "write_exr", "write_ktx2"])
+def test_an_open_file_gets_the_same_bytes(name, tmp_path):
+    write = WRITERS[name]
+    write(tmp_path / "out")
+    opened = io.BytesIO()
+    write(opened)
+    assert opened.getvalue() == (tmp_path / "out").read_bytes()
+    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+
+
 @pytest.mark.parametrize("is_there", [True, False])
 def test_what_a_link_leads_to_is_replaced(write, is_there, tmp_path):
     folder = tmp_path / "other"
@@ -123,7 +134,7 @@ def test_names_in_any_language(write, tmp_path):
 def test_a_target_that_is_open_is_told(write, tmp_path):
     target = tmp_path / "out"
     target.write_bytes(b"before")
-    message = f"path: '{target}' cannot be replaced: another program has it open"
+    message = f"'{target}' cannot be replaced: another program has it open"
     with target.open("rb"), pytest.raises(OSError, match=re.escape(message)):
         write(target)
     assert target.read_bytes() == b"before"

@@ -172,7 +172,7 @@ def stage(
     )
     if has_supercompression(target.name):
         write = partial(write, supercompression=supercompression)
-    return [staging.stage_with(target, write)]
+    return [staging.stage_bytes(target, write)]
 
 
 def _stage_numbered(
@@ -188,16 +188,14 @@ def _stage_numbered(
         for number, level in enumerate(linear_levels if picture.is_float else stored_levels):
             check()
             data = png.encoded(_png_pixels(picture, level), is_srgb=is_srgb)
-            staged.append(staging.stage_with(numbered(target, number), partial(_write, data=data)))
+            staged.append(
+                staging.stage_with(numbered(target, number), partial(Path.write_bytes, data=data))
+            )
     except BaseException:
         for file in staged:
             file.discard()
         raise
     return staged
-
-
-def _write(path: Path, data: bytes) -> None:
-    path.write_bytes(data)
 
 
 def _png_pixels(picture: Picture, level: FloatArray) -> np.ndarray[Any, Any]:

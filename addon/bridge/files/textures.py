@@ -21,7 +21,8 @@ import prefilter
 from ...core import alpha
 from .. import images, openimageio
 from ..images import FloatArray, Picture
-from .staging import StagedFile, check_place, stage_with
+from . import staging
+from .staging import StagedFile, stage_bytes, stage_with
 
 _OF_RENDERERS = (".exr", ".tif", ".tiff", ".tx")
 # Those that `engines` writes; the last one gets a file a level.
@@ -47,7 +48,7 @@ def check_target(path: str) -> Path:
             f"file '{path}': unsupported extension '{target.suffix}'; use {', '.join(EXTENSIONS)}"
         )
     for file in written(target):
-        check_place(path if file == target else str(file), file)
+        staging.check_target(file)
     return target
 
 
@@ -156,7 +157,7 @@ def _stage_exr(
         progress=go_on,
         threads=threads,
     )
-    return stage_with(target, write)
+    return stage_bytes(target, write)
 
 
 def _file_pixels(picture: Picture, level: images.Texels) -> images.Texels:

@@ -14,7 +14,6 @@ Cycles uses a file while its time of modification is that of the image file, in 
 import glob
 import os
 import re
-import secrets
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -248,7 +247,7 @@ def stage(texture: Texture, levels: Sequence[FloatArray], check: Check) -> stagi
     time = os.stat(texture.path).st_mtime_ns
     # OpenImageIO chooses the format by the extension.
     extension = ".exr" if texture.is_float else ".tif"
-    temporary = texture.path.with_name(f".prefilter-{secrets.token_hex(4)}{extension}")
+    temporary = staging.beside(texture.path, extension)
     staged = staging.StagedFile(temporary, texture.path)
     try:
         full = reader.read_image(0, 0, 0, spec.nchannels, spec.format)

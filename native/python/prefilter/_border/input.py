@@ -1,10 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Files that are opened to be read."""
+"""Paths, and files that are opened to be read."""
 
 import errno
 import os
 from typing import BinaryIO
+
+
+def as_path(path: str | os.PathLike[str]) -> str:
+    try:
+        given = os.fsdecode(path)
+    except TypeError:
+        given = "\0"
+    if "\0" in given:
+        raise ValueError(f"path: {path!r}; the path of a file is needed")
+    return given
 
 
 def open_file(path: str) -> BinaryIO:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
 from .._border.arrays import as_threads
-from .._border.output import as_target
+from .._border.staging import as_target
 from .scan_files import AttributeArray
 from .sources import Source, array_cloud, joined_cloud, sources_in
 

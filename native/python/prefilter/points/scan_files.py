@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import ProgressCallback, as_progress
-from .._border.output import as_path
+from .._border.input import as_path
 from .e57 import E57Reader
 from .las import LasReader
 from .reader import PointReader

@@ -13,8 +13,8 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
 from .._border.arrays import as_threads
-from .._border.input import open_file
-from .._border.output import as_path, as_target, replace_file
+from .._border.input import as_path, open_file
+from .._border.staging import as_target, write_output
 from ._shaders import gpu, osl
 from .levels import SAMPLING_FILTERS
 
@@ -182,7 +182,7 @@ class SamplingTable:
         def write(file: BinaryIO) -> None:
             file.write(text.encode())
 
-        replace_file(target, write)
+        write_output(target, write)
 
     @property
     def filter(self) -> str:

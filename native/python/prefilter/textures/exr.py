@@ -2,7 +2,6 @@
 
 """Mip-mapped OpenEXR files, for renderers and their texture systems."""
 
-import os
 import struct
 from collections.abc import Mapping, Sequence
 from typing import BinaryIO
@@ -13,7 +12,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, as_progress, is_srgb
 from .._border.arrays import as_threads
-from .._border.output import as_target, replace_file
+from .._border.staging import Output, as_output, write_output
 from .texel_formats import as_alpha, halving_levels
 
 _TILE_SIDE = _native.EXR_TILE_SIDE
@@ -27,7 +26,7 @@ _MIPMAP_ROUNDED_DOWN = 1
 
 
 def write_exr(
-    path: str | os.PathLike[str],
+    path: Output,
     levels: Sequence[npt.ArrayLike],
     *,
     format: str = "half",
@@ -44,7 +43,7 @@ def write_exr(
     any memory is needed besides the levels.
 
     Args:
-        path: The file; its folder must exist.
+        path: The file; its folder must exist. Or one that is open to write bytes, at its start.
         levels: (height, width, 1 to 4 channels) each, level 0 first, down to 1 x 1, row 0 at v = 0,
             the bottom; each has half the sides of the one before, rounded down. Floats are
             scene-linear. Some may be uint8 or uint16, such as an image of bytes whose other levels
@@ -70,7 +69,7 @@ def write_exr(
         raise ValueError(f"format: {format!r} is not one of {', '.join(_FORMATS)}")
     has_alpha = as_alpha(alpha) != "independent" and images[0].shape[2] in (2, 4)
     texts = _as_texts(attributes)
-    target = as_target(path)
+    output = as_output(path)
     report = as_progress(progress)
     count = as_threads(threads)
     columns_and_rows = [
@@ -107,7 +106,7 @@ def write_exr(
         file.seek(table)
         file.write(offsets.astype("<u8").tobytes())
 
-    replace_file(target, write_parts)
+    write_output(output, write_parts)
     if report is not None:
         report(1.0)
 

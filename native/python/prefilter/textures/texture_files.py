@@ -2,7 +2,6 @@
 
 """Texture files that engines and viewers read: DDS and KTX 2, with all levels."""
 
-import os
 from collections.abc import Sequence
 from typing import BinaryIO
 
@@ -11,7 +10,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, as_progress, is_srgb
 from .._border.arrays import as_threads
-from .._border.output import as_target, replace_file
+from .._border.staging import Output, as_output, write_output
 from .dds import DDS
 from .ktx2 import KTX2
 from .texel_formats import (
@@ -26,7 +25,7 @@ from .texel_formats import (
 
 
 def write_dds(
-    path: str | os.PathLike[str],
+    path: Output,
     levels: Sequence[npt.ArrayLike],
     *,
     format: str = "auto",
@@ -40,7 +39,7 @@ def write_dds(
     The file is written beside `path` and renamed, so a failure leaves what was there.
 
     Args:
-        path: The file; its folder must exist.
+        path: The file; its folder must exist. Or one that is open to write bytes.
         levels: (height, width, 1 to 4 channels) or (height, width) each, level 0 first, row 0 at
             v = 0, the bottom (the file holds the top row first); each has half the sides of the one
             before, rounded down. The last ones may be left out. Either uint8 or uint16, which stand
@@ -74,7 +73,7 @@ def write_dds(
 
 
 def write_ktx2(
-    path: str | os.PathLike[str],
+    path: Output,
     levels: Sequence[npt.ArrayLike],
     *,
     format: str = "auto",
@@ -114,7 +113,7 @@ def write_ktx2(
 
 
 def _write(
-    path: str | os.PathLike[str],
+    path: Output,
     levels: Sequence[npt.ArrayLike],
     format: str,
     encoding: str,
@@ -137,7 +136,7 @@ def _write(
             f"encoding: 'srgb' with the format '{texel_format.name}', which has no sRGB form in "
             f"{container.name} files; 'linear' or another format is needed"
         )
-    target = as_target(path)
+    output = as_output(path)
     report = as_progress(progress)
     count = as_threads(threads)
     height, width, channels = images[0].shape
@@ -182,7 +181,7 @@ def _write(
         for part in container.parts(texture):
             file.write(part)
 
-    replace_file(target, write_parts)
+    write_output(output, write_parts)
     if report is not None:
         report(1.0)
 

@@ -12,8 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.input import open_file
-from .._border.output import as_path, as_target, replace_file
+from .._border.input import as_path, open_file
+from .._border.staging import as_target, write_output
 
 if TYPE_CHECKING:
     import zipfile
@@ -42,7 +42,7 @@ def write_octree(path: str | os.PathLike[str], octree: _native.Octree) -> None:
     def write(file: BinaryIO) -> None:
         np.savez_compressed(file, **arrays)
 
-    replace_file(as_target(path), write)
+    write_output(as_target(path), write)
 
 
 def read_octree(path: str | os.PathLike[str]) -> _native.Octree:

@@ -37,7 +37,7 @@ def test_only_regular_files_are_replaced(addon, tmp_path, make, module, check, n
     make(path)
     before = path.stat().st_mode
     ending = [path.suffix] if check == "check_plain_target" else []
-    with pytest.raises(OSError, match=rf"'.*{name}' is a device or a pipe; only regular files"):
+    with pytest.raises(OSError, match=rf"'.*{name}' is a (device|pipe); a regular file"):
         getattr(addon(f"bridge.files.{module}"), check)(str(path), *ending)
     assert path.stat().st_mode == before
 
@@ -46,10 +46,23 @@ def test_a_bake_leaves_a_pipe(bake, tmp_path):
     path = tmp_path / "out.01.png"
     os.mkfifo(path)
     image = scenes.image("Paint", scenes.noise(4, 4))
-    with pytest.raises(OSError, match=r"out\.01\.png' is a device or a pipe"):
+    with pytest.raises(OSError, match=r"out\.01\.png' is a pipe"):
         bake(image, filter="box", filepath=str(tmp_path / "out.png"))
     assert stat.S_ISFIFO(path.stat().st_mode)
     assert os.listdir(tmp_path) == ["out.01.png"]
+
+
+@pytest.mark.parametrize("name", ["out.dds", "out.exr"])
+def test_a_texture_is_staged_once(bake, tmp_path, monkeypatch, name):
+    original, renamed = os.replace, []
+
+    def replace(source, target):
+        renamed.append(os.path.basename(target))
+        original(source, target)
+
+    monkeypatch.setattr(os, "replace", replace)
+    bake(scenes.image("Paint", scenes.noise(4, 4)), filter="box", filepath=str(tmp_path / name))
+    assert renamed == [name]
 
 
 def fail_at(monkeypatch, staging, count, *, for_good=False):

@@ -9,8 +9,7 @@ from typing import Any
 from xml.etree.ElementTree import Element
 from xml.parsers import expat
 
-from ..._border.input import open_file
-from ..._border.output import as_path
+from ..._border.input import as_path, open_file
 
 SVG = "http://www.w3.org/2000/svg"
 XLINK_HREF = "{http://www.w3.org/1999/xlink}href"
