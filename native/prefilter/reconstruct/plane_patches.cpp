@@ -83,7 +83,7 @@ struct Guess {
   double weight = 0.0;
 };
 
-// Whether there are samples in the neighbours of cells that are asked for in row-major order.
+// Whether there are samples in the neighbors of cells that are asked for in row-major order.
 class Neighbours {
  public:
   explicit Neighbours(const std::vector<CellKey>& keys) : keys_(keys) {}

@@ -17,8 +17,8 @@ namespace prefilter {
 /// The coordinates of a cell, from 0 to 4095, in cells of its depth.
 using CellPosition = std::array<std::int32_t, 3>;
 
-/// Where a cell is in row-major order: z first, x last. Between neighbours of any two cells there
-/// is room, so that keys of neighbours outside of the root name no cell.
+/// Where a cell is in row-major order: z first, x last. Between neighbors of any two cells there
+/// is room, so that keys of neighbors outside of the root name no cell.
 using CellKey = std::uint64_t;
 
 inline constexpr int kRowShift = 13;

@@ -52,7 +52,7 @@ SampleLevel coarser(SampleLevel* level, std::size_t attribute_count) {
   return result;
 }
 
-// Of the cells, those with enough neighbours. As keys are in row-major order, so are the nine rows
+// Of the cells, those with enough neighbors. As keys are in row-major order, so are the nine rows
 // around them: one cursor for each goes through all keys once.
 void mark_met(const std::vector<CellKey>& keys, SampleLevel* level) {
   std::array<CellKey, 9> rows;

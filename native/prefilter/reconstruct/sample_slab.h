@@ -3,7 +3,7 @@
 // Samples between two heights, at all depths: where they tell of a surface, and how much of it.
 //
 // Area per sample follows section 4.2, with corrections. A cell counts where at least three of its
-// neighbours of the same depth have samples as well; what counts in none counts in the next larger
+// neighbors of the same depth have samples as well; what counts in none counts in the next larger
 // one. A plane of normal n meets |n_x| + |n_y| + |n_z| cells per cell side squared, so each cell
 // stands for one over that, not for one. Cells that the surface merely grazes may have no sample:
 // their share follows from the number of samples per cell that has some. Both are taken over cells
@@ -22,7 +22,7 @@ namespace prefilter {
 struct SampleLevel {
   SampleCells samples;
   std::vector<std::uint32_t> parents;  // of each, its index on the level above; none on the first
-  std::vector<std::uint8_t> is_met;    // whether enough neighbours have samples
+  std::vector<std::uint8_t> is_met;    // whether enough neighbors have samples
   std::vector<std::int8_t> leaf;  // the depth at which its samples count, if not at a larger one
   std::vector<float> unit_area;   // of the surface, in finest cells, per unit of weight
 

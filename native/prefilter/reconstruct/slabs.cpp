@@ -40,7 +40,7 @@ void Slabs::bring(int begin, int end, SlabStage stage) {
   if (stage == SlabStage::kNone) return;
   begin = std::max(begin, 0);
   end = std::min(end, count());
-  // Neighbours tell which cells are met, and their patches leave through the sides.
+  // Neighbors tell which cells are met, and their patches leave through the sides.
   if (stage == SlabStage::kMet) bring(begin - 1, end + 1, SlabStage::kLevels);
   if (stage == SlabStage::kCoefficients) bring(begin - 1, end + 1, SlabStage::kMet);
   bring(begin, end, static_cast<SlabStage>(static_cast<int>(stage) - 1));

@@ -217,7 +217,7 @@ std::optional<LeafSurface> LeafSurface::find(const CellTree& tree, int depth, co
   }
   const double steepest = gradient[surface.axis_];
   if (std::sqrt(dot(gradient, gradient)) < kLeastGradient) return std::nullopt;
-  // A plane through a cell leaves the neighbours on its two sides full and empty. Where none is,
+  // A plane through a cell leaves the neighbors on its two sides full and empty. Where none is,
   // the occupancy fades over many cells, as winding numbers do across the holes of a mesh.
   if (!touches_full || !touches_empty) return std::nullopt;
   surface.is_up_ = steepest < 0.0;

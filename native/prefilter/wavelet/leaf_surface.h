@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The surface within a leaf of an occupancy octree, as the leaf and its neighbours fix it.
+// The surface within a leaf of an occupancy octree, as the leaf and its neighbors fix it.
 //
 // Beyond the text, whose cells hold no more than a value. Sums of columns of occupancies are mean
 // heights of the surface (Cummins et al. 2005); those of three by three columns give a quadratic.
@@ -31,7 +31,7 @@ inline bool is_fraction(float occupancy) { return occupancy > 0.0F && occupancy 
 class LeafSurface {
  public:
   /// The surface within a leaf of `tree` at a place of a depth, of an occupancy in (0, 1). None
-  /// where the neighbours tell no side from the other: in sheets thinner than the leaf, in noise.
+  /// where the neighbors tell no side from the other: in sheets thinner than the leaf, in noise.
   ///
   /// `parts` by `parts` by `parts` boxes of the leaf hold its occupancy together.
   static std::optional<LeafSurface> find(const CellTree& tree, int depth, const LeafPlace& at,
@@ -59,7 +59,7 @@ class LeafSurface {
   bool has_heights(const CellTree& tree, int depth, const LeafPlace& at);
   void fit_height(double occupancy, int parts);
 
-  // Heights count from the leaf's centre along the axis, towards the outside.
+  // Heights count from the leaf's center along the axis, towards the outside.
   int axis_ = 0;
   bool is_up_ = true;
   double height_ = 0.0;  // the mean over the leaf

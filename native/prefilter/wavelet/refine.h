@@ -15,7 +15,7 @@ bool has_coarse_surface(const CellTree& tree);
 /// A tree in which the surface passes through cells of `depth` alone: coarser leaves that are
 /// neither full nor empty are split to where their LeafSurface puts the surface, and so are full
 /// ones beside empty ones. Leaves keep their occupancy, as the mean of what they are split to;
-/// those of depth or finer stay as they are. Leaves whose neighbours fix no surface keep their
+/// those of depth or finer stay as they are. Leaves whose neighbors fix no surface keep their
 /// occupancy everywhere, and are split where another begins.
 ///
 /// Preconditions: occupancies in [0, 1], and a depth up to kMaxTreeDepth. Throws Error(kCancelled).

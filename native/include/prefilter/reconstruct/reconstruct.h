@@ -60,7 +60,7 @@ struct ReconstructReport {
 
 /// The surface of oriented points: where a function that is 1 inside and 0 outside takes the
 /// iso-value. Wavelet coefficients of the function are sums over the points (equation 4.2), each of
-/// the area that follows from its neighbours; the octree they make is contoured on its dual grid.
+/// the area that follows from its neighbors; the octree they make is contoured on its dual grid.
 ///
 /// Untrimmed, the mesh is closed and two-manifold; the outside is where triangles are
 /// counter-clockwise. It is the same for any number of threads and any limit of memory, and to

@@ -8,7 +8,7 @@
 
 namespace prefilter {
 
-/// The points of a range scan as its scanner saw them. Those of neighboring places are neighbours
+/// The points of a range scan as its scanner saw them. Those of neighboring places are neighbors
 /// on the surface, or on both sides of an edge that hides one from the other.
 struct RangeGrid {
   std::int64_t rows = 0;
