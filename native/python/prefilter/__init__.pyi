@@ -55,8 +55,8 @@ from .sampling.stochastic import pick_texels as pick_texels
 from .sampling.stochastic import sample_stochastic as sample_stochastic
 from .shapes._svg.warnings import SvgWarning as SvgWarning
 from .shapes.rasterization import RASTER_FILTERS as RASTER_FILTERS
-from .shapes.rasterization import Shape as Shape
 from .shapes.rasterization import rasterize as rasterize
+from .shapes.shape import Shape as Shape
 from .shapes.svg import SvgDrawing as SvgDrawing
 from .shapes.svg import read_svg as read_svg
 from .textures.exr import write_exr as write_exr

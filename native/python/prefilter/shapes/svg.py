@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from .._border.arguments import ProgressCallback, as_progress
 from .._native import Cancelled
 from ._svg.warnings import SvgWarning, Warnings
-from .rasterization import Shape
+from .shape import Shape
 
 if TYPE_CHECKING:
     from ._svg.drawing import Drawing

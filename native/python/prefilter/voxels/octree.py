@@ -118,19 +118,19 @@ class Octree(_native.Octree):
             ValueError: `other` is no Octree, or the box would need a depth of more than 12.
             Cancelled: `progress` returned False.
         """
-        return self._combined(other, "union", progress, threads)
+        return _combined(self, other, "union", progress, threads)
 
     def intersection(
         self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
     ) -> "Octree":
         """What is inside of both: min(a, b), cell by cell, in this one's bounds. See `union`."""
-        return self._combined(other, "intersection", progress, threads)
+        return _combined(self, other, "intersection", progress, threads)
 
     def difference(
         self, other: "Octree", *, progress: ProgressCallback | None = None, threads: int = 0
     ) -> "Octree":
         """What is inside of this one alone: min(a, 1 - b), in this one's bounds. See `union`."""
-        return self._combined(other, "difference", progress, threads)
+        return _combined(self, other, "difference", progress, threads)
 
     def contour(
         self,
@@ -263,18 +263,15 @@ class Octree(_native.Octree):
 
         return cls(read_octree(path))
 
-    def _combined(
-        self,
-        other: "Octree",
-        operation: str,
-        progress: ProgressCallback | None,
-        threads: int,
-    ) -> "Octree":
-        if not isinstance(other, _native.Octree):
-            raise ValueError(f"other: a {type(other).__name__}; an Octree is needed")
-        return Octree(
-            _native.combine(self, other, operation, as_progress(progress), as_threads(threads))
-        )
+
+def _combined(
+    one: Octree, other: Octree, operation: str, progress: ProgressCallback | None, threads: int
+) -> Octree:
+    if not isinstance(other, _native.Octree):
+        raise ValueError(f"other: a {type(other).__name__}; an Octree is needed")
+    return Octree(
+        _native.combine(one, other, operation, as_progress(progress), as_threads(threads))
+    )
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ... import _native
-from ..rasterization import Shape
+from ..shape import Shape
 from .basic_shapes import BASIC_SHAPES, read_shape
 from .document import Document, SvgElement
 from .groups import Box, Groups, carried

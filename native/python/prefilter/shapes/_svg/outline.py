@@ -10,7 +10,7 @@ from itertools import chain, pairwise
 import numpy as np
 
 from ... import _native
-from ..rasterization import Shape
+from ..shape import Shape
 from .values import NUMBER, leading_numbers
 
 _COMMAND = re.compile(r"([MmZzLlHhVvCcSsQqTtAa])([^MmZzLlHhVvCcSsQqTtAa]*)")

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ... import _native
-from ..rasterization import Shape
+from ..shape import Shape
 from .document import Document, SvgElement
 from .lengths import Units, read_length
 from .styles import StyleSheets

@@ -1,0 +1,254 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Shapes: contours, and what fills them."""
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import as_name, as_number
+from .._border.arrays import as_array
+from .arguments import Stop, as_color, as_matrix, as_point, as_stops, determinant
+from .contours import Contours
+
+_FILL_RULES = ("nonzero", "evenodd")
+
+
+class Shape(Contours):
+    """What an outline encloses, with a color: contours of lines, Bezier curves and conics.
+
+    Coordinates are pixels; pixel (i, j) is [i, i + 1) x [j, j + 1), and row 0 is the bottom row. A
+    contour that is left open is filled as if a line closed it.
+
+    Args:
+        fill_rule: Which points are inside: "nonzero", where contours wind round a point a number of
+            times that is not 0, or "evenodd", where that number is odd.
+        color: One to four values, which a pixel takes as far as the shape covers it. Four are
+            red, green and blue multiplied by alpha, and alpha. Filtering needs scene-linear
+            values.
+        winds_once: Contours are known to wind once, counter-clockwise, round what they fill. No
+            overlaps are looked for then, which saves time where there are many curves; where there
+            are some, a place counts as often as contours wind round it.
+
+    Raises:
+        ValueError: `fill_rule` is no such name, or `color` not one to four finite numbers.
+    """
+
+    def __init__(
+        self,
+        fill_rule: str = "nonzero",
+        color: Sequence[float] = (1.0,),
+        *,
+        winds_once: bool = False,
+    ) -> None:
+        super().__init__()
+        name = as_name("fill_rule", fill_rule)
+        if name not in _FILL_RULES:
+            raise ValueError(f"fill_rule: '{name}' is not one of {', '.join(_FILL_RULES)}")
+        self._fill_rule = name
+        self._winds_once = bool(winds_once)
+        self.color = color
+
+    @property
+    def fill_rule(self) -> str:
+        return self._fill_rule
+
+    @property
+    def channels(self) -> int:
+        """The number of values that its color has."""
+        return self._channels
+
+    @property
+    def color(self) -> tuple[float, ...] | None:
+        """The values everywhere inside, or None where a gradient has been set."""
+        return self._color
+
+    @color.setter
+    def color(self, color: Sequence[float]) -> None:
+        values = as_color("color", color)
+        none = [0.0] * len(values)
+        self._paint = _native.Paint(list(values), none, none)
+        self._color: tuple[float, ...] | None = values
+        self._channels = len(values)
+
+    def gradient(
+        self, value: Sequence[float], along_x: Sequence[float], along_y: Sequence[float]
+    ) -> None:
+        """Colors the shape by value + x * along_x + y * along_y at (x, y).
+
+        Args:
+            value: One to four values at the origin, as `color` has them.
+            along_x: What they change by in a pixel along x.
+            along_y: What they change by in a pixel along y.
+
+        Raises:
+            ValueError: The three are not as long as each other, or not finite.
+        """
+        values = as_color("value", value)
+        slopes = as_color("along_x", along_x), as_color("along_y", along_y)
+        for name, slope in zip(("along_x", "along_y"), slopes, strict=True):
+            if len(slope) != len(values):
+                raise ValueError(f"{name}: {len(slope)} values; {len(values)}, as value has")
+        self._paint = _native.Paint(list(values), list(slopes[0]), list(slopes[1]))
+        self._color = None
+        self._channels = len(values)
+
+    def linear_gradient(
+        self,
+        start: Sequence[float],
+        end: Sequence[float],
+        stops: Iterable[Stop],
+        *,
+        spread: str = "pad",
+        transform: npt.ArrayLike | None = None,
+    ) -> None:
+        """Colors the shape along a line.
+
+        Args:
+            start: The point (x, y) of offset 0.
+            end: The point of offset 1; another one.
+            stops: Pairs (offset, color) with rising offsets in [0, 1]; between two of them colors
+                change linearly. At least one.
+            spread: What comes before offset 0 and after 1: "pad", the outermost colors; "repeat";
+                or "reflect", there and back.
+            transform: (2, 3), from the coordinates of `start` and `end` to those of the shape.
+
+        Raises:
+            ValueError: An argument is not as said.
+        """
+        begin, finish = as_point("start", start), as_point("end", end)
+        if begin == finish:
+            raise ValueError(f"end: {finish}; another point than start is needed")
+        self._set_stops(False, begin, 0.0, finish, 0.0, stops, spread, transform)
+
+    def radial_gradient(
+        self,
+        center: Sequence[float],
+        radius: float,
+        stops: Iterable[Stop],
+        *,
+        focus: Sequence[float] | None = None,
+        focus_radius: float = 0.0,
+        spread: str = "pad",
+        transform: npt.ArrayLike | None = None,
+    ) -> None:
+        """Colors the shape from a focus outwards.
+
+        Within a pixel the color is taken for a polynomial of degree 2: where it jumps at a stop, a
+        pixel may be some hundredths off.
+
+        Args:
+            center: The center (x, y) of the circle of offset 1.
+            radius: Its radius, above 0.
+            stops: As for `linear_gradient`.
+            focus: The center of the circle of offset 0; None for `center`.
+            focus_radius: Its radius, 0 or above.
+            spread: As for `linear_gradient`.
+            transform: As for `linear_gradient`.
+
+        Raises:
+            ValueError: An argument is not as said.
+        """
+        middle = as_point("center", center)
+        size, inner = as_number("radius", radius), as_number("focus_radius", focus_radius)
+        if not 0.0 < size < np.inf:
+            raise ValueError(f"radius: {radius!r}; a finite number above 0 is needed")
+        if not 0.0 <= inner < np.inf:
+            raise ValueError(f"focus_radius: {focus_radius!r}; a finite number of at least 0")
+        begin = middle if focus is None else as_point("focus", focus)
+        self._set_stops(True, begin, inner, middle, size, stops, spread, transform)
+
+    def transformed(self, matrix: npt.ArrayLike) -> "Shape":
+        """The shape where an affine map puts it; its color goes along.
+
+        Args:
+            matrix: (2, 3): a point (x, y) goes to matrix @ (x, y, 1). Of rank 2.
+
+        Raises:
+            ValueError: `matrix` is not as said.
+        """
+        numbers = as_matrix("matrix", matrix)
+        moved = self._with(self._outline.transformed(numbers), self._paint.transformed(numbers))
+        # What a map turns over winds the other way.
+        moved._winds_once = self._winds_once and determinant(numbers) > 0.0
+        return moved
+
+    def stroked(
+        self,
+        width: float,
+        *,
+        join: str = "miter",
+        cap: str = "butt",
+        miter_limit: float = 4.0,
+        dashes: Sequence[float] = (),
+        dash_offset: float = 0.0,
+        tolerance: float = 1e-3,
+    ) -> "Shape":
+        """What a pen covers along the contours, with the same color. Lengths are pixels.
+
+        Args:
+            width: The pen's, 0 or more.
+            join: What fills the gap outside of a corner: "miter", "round" or "bevel".
+            cap: How open contours and dashes end: "butt", "round" or "square".
+            miter_limit: A miter longer than this, in widths, becomes a bevel; 1 or more.
+            dashes: Lengths along the curve of dashes and gaps in turns; none for a solid stroke. An
+                odd number of them is gone through twice. Every contour begins anew.
+            dash_offset: How far into the dashes a contour begins.
+            tolerance: How far off curves beside curves may be, above 0. Lines stay lines, and round
+                joins and caps are arcs.
+
+        Raises:
+            ValueError: An argument is not as said.
+        """
+        pattern = as_array("dashes", dashes)
+        if pattern.ndim != 1 or (pattern.size and pattern.dtype.kind not in "fiu"):
+            raise ValueError(f"dashes: {dashes!r}; lengths are needed")
+        reach = as_number("tolerance", tolerance)
+        if not 0.0 < reach < np.inf:
+            raise ValueError(f"tolerance: {tolerance!r}; a finite number above 0 is needed")
+        outline = self._outline.stroked(
+            as_number("width", width),
+            as_name("join", join),
+            as_name("cap", cap),
+            as_number("miter_limit", miter_limit),
+            [float(length) for length in pattern],
+            as_number("dash_offset", dash_offset),
+            reach,
+        )
+        drawn = self._with(outline, self._paint)
+        drawn._fill_rule, drawn._winds_once = "nonzero", True
+        return drawn
+
+    def _with(self, outline: _native.Outline, paint: _native.Paint) -> "Shape":
+        shape = Shape.__new__(Shape)
+        shape.__dict__.update(self.__dict__)
+        shape._outline, shape._paint = outline, paint
+        return shape
+
+    def __copy__(self) -> "Shape":
+        return self._with(self._outline.copy(), self._paint)
+
+    def __deepcopy__(self, memo: object) -> "Shape":
+        return self.__copy__()
+
+    def _set_stops(
+        self,
+        is_radial: bool,
+        start: tuple[float, float],
+        start_radius: float,
+        end: tuple[float, float],
+        end_radius: float,
+        stops: Iterable[Stop],
+        spread: str,
+        transform: npt.ArrayLike | None,
+    ) -> None:
+        pairs = as_stops(stops)
+        matrix = as_matrix("transform", np.eye(2, 3) if transform is None else transform)
+        name = as_name("spread", spread)
+        self._paint = _native.Paint(
+            is_radial, start, start_radius, end, end_radius, pairs, name, matrix
+        )
+        self._color = None
+        self._channels = len(pairs[0][1])
