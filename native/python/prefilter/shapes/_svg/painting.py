@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What an outline is filled and stroked with."""
+
+import numpy as np
+
+from .context import Context, Sources
+from .document import SvgElement
+from .outline import Outline
+from .paint_servers import GRADIENTS, Gradient
+from .painted import Stroke
+from .tags import OTHER_PAINTS
+from .values import Color, Paint
+
+_MOST_DASHES = 100_000
+
+
+def resolved(
+    element: SvgElement,
+    context: Context,
+    outline: Outline,
+    paint: Paint,
+    opacity: float,
+    sources: Sources,
+) -> tuple[float, ...] | Gradient | None:
+    """What to paint with; None for nothing."""
+    found: Gradient | Color | None = None
+    is_here = paint.server.startswith("#")
+    server = sources.document.ids.get(paint.server[1:]) if is_here else None
+    if server is not None and server.tag in GRADIENTS:
+        bounds = outline.bounds()
+        found = sources.servers.resolve(server, opacity, context.units, bounds)
+    elif server is not None:
+        is_paint = server.tag in OTHER_PAINTS
+        tell = sources.warnings.unsupported if is_paint else sources.warnings.broken
+        tell(f"<{server.tag}> as paint", "left out", element.line)
+    elif paint.server:
+        sources.warnings.broken(f"url({paint.server[:60]})", "not there", element.line)
+    if isinstance(found, Gradient):
+        return found
+    if found is None:
+        color = context.style.color if isinstance(paint.color, str) else paint.color
+        if color is None:
+            return None
+        found = (*color[:3], color[3] * opacity)
+    if found[3] == 0.0:
+        return None
+    return sources.colors.premultiplied(np.array([found]))[0]
+
+
+def stroke_of(
+    element: SvgElement, context: Context, outline: Outline, sources: Sources
+) -> Stroke | None:
+    """How an outline is stroked; None where it is not."""
+    style = context.style
+    if style.stroke.color is None and not style.stroke.server:
+        return None
+    units = context.units
+    width = units.pixels(style.stroke_width, "stroke-width")
+    if width <= 0.0:
+        return None
+    join = style.stroke_linejoin
+    if join in ("miter-clip", "arcs"):
+        sources.warnings.unsupported(f"stroke-linejoin '{join}'", "drawn as miter", element.line)
+        join = "miter"
+    dashes = [units.pixels(length, "stroke-dasharray") for length in style.stroke_dasharray]
+    if sum(dashes) <= 0.0:
+        dashes = []
+    elif outline.length() * len(dashes) > _MOST_DASHES * sum(dashes):
+        sources.warnings.broken("stroke-dasharray", "ignored: too many dashes", element.line)
+        dashes = []
+    elif "pathLength" in sources.sheets.declared(element):
+        sources.warnings.unsupported("pathLength", "ignored", element.line)
+    if len(dashes) % 2:
+        dashes += dashes
+    return Stroke(
+        width,
+        style.stroke_linecap,
+        join,
+        style.stroke_miterlimit,
+        tuple(dashes),
+        units.pixels(style.stroke_dashoffset, "stroke-dashoffset"),
+    )
+
+
+def paint_order(text: str) -> tuple[str, str]:
+    """Which of fill and stroke comes first, by the property of that name."""
+    named = [name for name in text.split() if name in ("fill", "stroke")]
+    return ("stroke", "fill") if named[:1] == ["stroke"] else ("fill", "stroke")
