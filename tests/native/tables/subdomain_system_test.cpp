@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/tables/subdomain_system.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "prefilter/tables/filter_products.h"
+
+namespace prefilter {
+namespace {
+
+// Calls visit(x, y, f, weight) for the middles of small cells of a subdomain that is a box.
+template <typename Visit>
+void for_middles(const Subdomain& subdomain, int steps, const Visit& visit) {
+  const auto at = [steps](double low, double high, int i) {
+    return low + (high - low) * (i + 0.5) / steps;
+  };
+  for (int i = 0; i < steps; ++i) {
+    for (int j = 0; j < steps; ++j) {
+      for (int k = 0; k < steps; ++k) {
+        visit(at(subdomain.x_low(), subdomain.x_high(), i),
+              at(subdomain.y_low(), subdomain.y_high(), j),
+              at(subdomain.f_low(), subdomain.f_high(), k),
+              subdomain.volume() / steps / steps / steps);
+      }
+    }
+  }
+}
+
+double polynomial(const OrthonormalBasis& basis, int p, double x, double y, double f) {
+  const Terms terms = terms_at(x, y, f);
+  double value = 0.0;
+  for (int q = 0; q < kMostTerms; ++q) value += basis.coefficients[p][q] * terms[q];
+  return value;
+}
+
+// Index 1 is off the diagonal of the folded square, so it is a box.
+TEST(SubdomainSystem, IsEquationSixFourByTheMiddlesOfSmallCells) {
+  for (const char* filter : {"tent", "lanczos2"}) {
+    const TableShape shape{filter, 4, 4, 2, 2, 0.0};
+    TableSection section;
+    section.levels = 3;
+    section.slices = 2;
+    const Kernel& kernel = *find_kernel(filter);
+    const SubdomainSystem system(kernel, shape, section, 1);
+    const Subdomain subdomain(shape, section, 1);
+    const FilterProducts filters(kernel, 3);
+    ASSERT_EQ(system.polynomials(), 10);
+    ASSERT_GT(system.candidates(), 20);
+    double filter_square = 0.0;
+    std::vector<double> sides(static_cast<std::size_t>(system.candidates()) * 10);
+    for_middles(subdomain, 16, [&](double x, double y, double f, double weight) {
+      filter_square += weight * filters.of_sample(x, f) * filters.of_sample(y, f);
+      for (int i = 0; i < system.candidates(); ++i) {
+        const TexelOffset& texel = system.texels[i];
+        const double product = weight * filters.with_sample(texel.finer, texel.x, x, f) *
+                               filters.with_sample(texel.finer, texel.y, y, f);
+        for (int p = 0; p < 10; ++p) {
+          sides[i * 10 + p] += product * polynomial(system.basis, p, x, y, f);
+        }
+      }
+    });
+    EXPECT_NEAR(system.filter_square, filter_square, 5e-3 * filter_square);
+    double largest = 0.0;
+    for (const double side : sides) largest = std::max(largest, std::abs(side));
+    for (int i = 0; i < system.candidates(); ++i) {
+      for (int p = 0; p < 10; ++p) {
+        EXPECT_NEAR(system.right_side_of(i)[p], sides[i * 10 + p], 5e-3 * largest)
+            << i << ", " << p;
+      }
+      for (int j = 0; j < system.candidates(); ++j) {
+        const TexelOffset& a = system.texels[i];
+        const TexelOffset& b = system.texels[j];
+        EXPECT_NEAR(system.products_of(i)[j],
+                    filters.of_texels(a.finer, a.x, b.finer, b.x) *
+                        filters.of_texels(a.finer, a.y, b.finer, b.y),
+                    1e-12);
+      }
+    }
+  }
+}
+
+// What the ramps add is the squared distance between a sample and the weighted centre of its
+// texels.
+TEST(SubdomainSystem, RampsAddTheDistanceFromTheWeightedCentre) {
+  TableShape shape{"tent", 3, 4, 2, 2, 0.0};
+  TableSection section;
+  section.levels = 3;
+  section.slices = 2;
+  const Kernel& kernel = *find_kernel("tent");
+  const SubdomainSystem plain(kernel, shape, section, 1);
+  shape.ramp_weight = 3.0;
+  const SubdomainSystem ramped(kernel, shape, section, 1);
+  const Subdomain subdomain(shape, section, 1);
+  const std::vector<int> members = {2, 7, 11};
+  const FittedSet set = fit_set(ramped, members);
+  double distance = 0.0;
+  for_middles(subdomain, 16, [&](double x, double y, double f, double weight) {
+    double off_x = x;
+    double off_y = y;
+    for (std::size_t m = 0; m < set.members.size(); ++m) {
+      const TexelOffset& texel = ramped.texels[set.members[m]];
+      double value = 0.0;
+      for (int p = 0; p < 10; ++p)
+        value += set.weights[m * 10 + p] * polynomial(ramped.basis, p, x, y, f);
+      off_x -= value * std::ldexp(texel.x + 0.5, -texel.finer);
+      off_y -= value * std::ldexp(texel.y + 0.5, -texel.finer);
+    }
+    distance += weight * (off_x * off_x + off_y * off_y);
+  });
+  EXPECT_NEAR(set.error - ramped.filter_error(set), 3.0 * distance, 2e-2 * 3.0 * distance + 1e-9);
+  // Without ramps equation 6.4 is all there is, and no other weights are better by it.
+  const FittedSet best = fit_set(plain, members);
+  EXPECT_NEAR(plain.filter_error(best), best.error, 1e-12);
+  EXPECT_LE(best.error, ramped.filter_error(set) + 1e-12);
+}
+
+}  // namespace
+}  // namespace prefilter
