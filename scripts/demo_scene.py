@@ -154,7 +154,7 @@ def texels_of(
 
 
 def pattern(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns sRGB colours of points: wavy bands, each with its own stripes or dots."""
+    """Returns sRGB colors of points: wavy bands, each with its own stripes or dots."""
     x, y, z = points.T
     height = 3.2 * (z + 0.07 * np.sin(6 * x) + 0.3 * y)
     band = np.floor(height).astype(int) % len(PALETTE)
@@ -197,7 +197,7 @@ def add_material(obj: bpy.types.Object, image: bpy.types.Image) -> bpy.types.Nod
 
 
 def set_up_render() -> None:
-    """Adds light and camera, and chooses a small render in true colours."""
+    """Adds light and camera, and chooses a small render in true colors."""
     scene = bpy.context.scene
     sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
     sun.data.energy = 2.2
@@ -234,7 +234,7 @@ def render(folder: Path) -> Array:
     with quiet():
         bpy.ops.render.render(write_still=True)
     try:
-        # OpenImageIO associates alpha with the encoded colours on reading.
+        # OpenImageIO associates alpha with the encoded colors on reading.
         pixels = oiio.ImageBuf(str(path)).get_pixels("float")
     finally:
         path.unlink(missing_ok=True)
@@ -328,7 +328,7 @@ def place(page: Array, left: int, top: int, pixels: Array) -> None:
 
 
 def write(page: Array, x: int, y: int, text: str, size: int, ink: float = INK) -> None:
-    """Writes text centred at x, with its base line at y, in Blender's own font."""
+    """Writes text centered at x, with its base line at y, in Blender's own font."""
     font = str(Path(bpy.utils.system_resource("DATAFILES", path="fonts")) / "Inter.woff2")
     buffer = oiio.ImageBuf(page)
     color = (ink, ink, ink)

@@ -9,7 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-# Rec. 709, as Blender makes a number of a colour.
+# Rec. 709, as Blender makes a number of a color.
 _LUMINANCE = (0.2126, 0.7152, 0.0722)
 # What weights may be.
 _DOMAINS = frozenset({"POINT", "FACE", "CORNER"})
@@ -74,7 +74,7 @@ def face_materials(mesh: bpy.types.Mesh, slots: int) -> NDArray[np.int32]:
 def read_weights(
     object_name: str, mesh: bpy.types.Mesh, evaluated: bpy.types.Object | None, name: str
 ) -> Weights | None:
-    """Returns a vertex group, or an attribute of numbers or colours, as weights.
+    """Returns a vertex group, or an attribute of numbers or colors, as weights.
 
     Args:
         object_name: For messages.

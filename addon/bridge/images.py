@@ -4,13 +4,13 @@
 
 What Blender keeps in `Image.pixels` (rows from the bottom, always four channels):
 
-* a byte image: display values of the image's colour space, with straight alpha. Even with the
+* a byte image: display values of the image's color space, with straight alpha. Even with the
   alpha mode Premultiplied: Blender divides by alpha on load;
 * a float image: scene-linear values, with associated alpha. Blender converts on load.
 
-Alpha is coverage unless the alpha mode is Channel Packed or None or the colour space is data; then
+Alpha is coverage unless the alpha mode is Channel Packed or None or the color space is data; then
 the four channels are independent. But a material may use the alpha of a Channel Packed image as
-coverage all the same, as those of Blender's glTF importer do: colours are straight then, of
+coverage all the same, as those of Blender's glTF importer do: colors are straight then, of
 floats too, as such an image is not converted on load.
 """
 
@@ -53,7 +53,7 @@ _LINEAR_REC709_NAMES = frozenset({"Linear", "Linear Rec.709"})
 
 
 class Encoding(Enum):
-    """How stored colour relates to scene-linear colour."""
+    """How stored color relates to scene-linear color."""
 
     NONE = "none"
     SRGB = "srgb"
@@ -72,8 +72,8 @@ class Picture:
         is_float: Whether the datablock holds floats instead of bytes.
         is_integer: Whether the values come from integers, of bytes or of a file of more bits.
         encoding: How `texels` relate to scene-linear values.
-        colorspace: The name of the datablock's colour space.
-        is_data: Whether the colour space says that the values are no colours.
+        colorspace: The name of the datablock's color space.
+        is_data: Whether the color space says that the values are no colors.
         alpha_mode: The datablock's alpha mode.
         linear_space: The name of Blender's scene-linear space.
         ocio_config: Path of Blender's OpenColorIO configuration.
@@ -114,7 +114,7 @@ class Picture:
 
     @property
     def alpha_is_straight(self) -> bool:
-        """Whether colours have to be multiplied by alpha before they are filtered."""
+        """Whether colors have to be multiplied by alpha before they are filtered."""
         return self.alpha_is_coverage and (not self.is_float or self.alpha_mode in _INDEPENDENT)
 
 
@@ -374,7 +374,7 @@ def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:
         check: Called between the parts of a conversion that takes long.
 
     Raises:
-        ValueError: The colour space cannot be decoded.
+        ValueError: The color space cannot be decoded.
         OSError: It needs OpenImageIO's Python module, which is missing.
     """
     texels = picture.texels
@@ -408,7 +408,7 @@ def encoded(picture: Picture, linear: FloatArray, check: Check = lambda: None) -
         check: Called between the parts of a conversion that takes long.
 
     Raises:
-        ValueError: The colour space cannot be encoded.
+        ValueError: The color space cannot be encoded.
         OSError: It needs OpenImageIO's Python module, which is missing.
     """
     return _convert(picture, linear, check, decode=False)

@@ -56,9 +56,9 @@ def stage_levels(picture: Picture, levels: Sequence[FloatArray]) -> StagedLevels
     Deeper levels of an earlier bake are kept. Every image keeps a fake user, as Blender
     saves no unused datablock.
 
-    A byte level has the picture's colour space, and straight alpha where the picture's is
+    A byte level has the picture's color space, and straight alpha where the picture's is
     Premultiplied. A float level is scene-linear (or data, like the picture), with associated alpha.
-    Only these survive packing, saving and loading: Blender's packing does not convert colours, and
+    Only these survive packing, saving and loading: Blender's packing does not convert colors, and
     its loading does.
 
     Args:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Triangles to Blender: meshes with materials and colours, and the objects that show them."""
+"""Triangles to Blender: meshes with materials and colors, and the objects that show them."""
 
 import math
 from collections.abc import Sequence

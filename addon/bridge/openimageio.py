@@ -49,10 +49,10 @@ def module() -> ModuleType:
 def color_convert(
     colors: FloatArray, source: str, target: str, config: str, check: Check
 ) -> FloatArray:
-    """Converts (h, w, 3) colours between two spaces of an OpenColorIO configuration.
+    """Converts (h, w, 3) colors between two spaces of an OpenColorIO configuration.
 
     Args:
-        colors: The colours.
+        colors: The colors.
         source: The space that they are in.
         target: The space to convert them to.
         config: Path of the configuration.

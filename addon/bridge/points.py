@@ -30,7 +30,7 @@ class Carried:
 
     Attributes:
         data_type: FLOAT, FLOAT_COLOR or BYTE_COLOR.
-        values: (n, 1) float32, or (n, 4) scene-linear colours.
+        values: (n, 1) float32, or (n, 4) scene-linear colors.
     """
 
     data_type: str
@@ -47,7 +47,7 @@ class Points:
         attributes: By name.
         name: What they are called.
         materials: Those of the object's slots.
-        active_color: The name of the active colour attribute; empty for none.
+        active_color: The name of the active color attribute; empty for none.
         render_color: The name of the one that renders use.
     """
 
@@ -135,12 +135,12 @@ def _copied(shown: bpy.types.Object, matrix: object, name: str, origin: FloatArr
 
 
 def _shown_colors(data: bpy.types.ID, carried: dict[str, Carried]) -> tuple[str, str]:
-    """Returns the names of the active colour attribute and of the one that renders use."""
+    """Returns the names of the active color attribute and of the one that renders use."""
     colors = data.color_attributes
     if isinstance(data, bpy.types.Mesh):
         index = colors.render_color_index
         return colors.active_color_name or "", colors[index].name if index >= 0 else ""
-    # Point clouds have colours, but none of them is active.
+    # Point clouds have colors, but none of them is active.
     first = next((name for name, one in carried.items() if one.data_type in _COLORS), "")
     return first, first
 

@@ -37,7 +37,7 @@ class Roughness:
 
 
 def resolved(content: str, picture: Picture, *, is_normal_map: bool) -> str:
-    """Returns the content, "auto" decided by use and colour space."""
+    """Returns the content, "auto" decided by use and color space."""
     if content != "auto":
         return content
     if is_normal_map:
@@ -48,7 +48,7 @@ def resolved(content: str, picture: Picture, *, is_normal_map: bool) -> str:
 def as_content(picture: Picture, content: str) -> Picture:
     """Returns the picture with its values taken for what the content says that they are."""
     if content in {"normal", "data"}:
-        # Blender keeps a float image as light whatever its colour space; a level has to say so.
+        # Blender keeps a float image as light whatever its color space; a level has to say so.
         space = picture.linear_space if picture.is_float else picture.colorspace
         changed = replace(picture, encoding=Encoding.NONE, is_data=True, colorspace=space)
         return picture if picture.is_data else changed
@@ -84,7 +84,7 @@ def plain_levels(
     progress: Progress,
     **options: Any,
 ) -> list[FloatArray]:
-    """Returns the levels above 0 of colour or data, of light or of bytes."""
+    """Returns the levels above 0 of color or data, of light or of bytes."""
     return prefilter.coarser_levels(
         texels,
         surfaces,
@@ -104,7 +104,7 @@ def cutout_levels(
     progress: Progress,
     **options: Any,
 ) -> list[FloatArray]:
-    """Returns the levels of colour whose alpha test keeps the surface that it keeps at level 0.
+    """Returns the levels of color whose alpha test keeps the surface that it keeps at level 0.
 
     Without an alpha channel, the image itself is what is tested.
     """

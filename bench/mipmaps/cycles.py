@@ -5,7 +5,7 @@
 Usage: blender --background --python-exit-code 1 --python bench/mipmaps/cycles.py -- [MODEL...]
        (--help lists the options; Blender 5.2 or later is needed)
 
-Each model gets an emission shader with its base colour, and is rendered from four sides by an
+Each model gets an emission shader with its base color, and is rendered from four sides by an
 orthographic camera with a box pixel filter: without the cache (the reference), with Blender's, and
 with that of `prefilter.bake_texture_cache`. The figure is the RMSE against the reference, in
 scene-linear values, over the pixels that the model covers fully in it. Ends with status 1 if a
@@ -44,7 +44,7 @@ CACHES = ("box", "PAM")
 
 @dataclass(frozen=True)
 class Frame:
-    """A render: (height, width, 3) scene-linear colours, and the covered share of each pixel."""
+    """A render: (height, width, 3) scene-linear colors, and the covered share of each pixel."""
 
     colors: Texels
     coverage: Texels
@@ -173,7 +173,7 @@ def load(folder: Path) -> list[bpy.types.Object]:
 def base_colors(
     objects: Sequence[bpy.types.Object],
 ) -> list[tuple[bpy.types.Material, bpy.types.Image]]:
-    """Returns the materials whose base colour is a picture that was gathered, and that picture."""
+    """Returns the materials whose base color is a picture that was gathered, and that picture."""
     found = {}
     for obj in objects:
         for material in obj.data.materials:

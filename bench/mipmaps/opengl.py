@@ -5,7 +5,7 @@
 Usage: PYTHONPATH=PACKAGE python3 bench/mipmaps/opengl.py [MODEL...] [--filters FILTER...]
        (--help lists the options; bench/mipmaps/opengl_models.py has to be run before, in Blender)
 
-A model wears its base colour, unlit, and turns through 12 frames of 0.4 degrees. The reference
+A model wears its base color, unlit, and turns through 12 frames of 0.4 degrees. The reference
 looks up the full image (level 0, bilinear) at 16 x 16 points of each pixel. Against it are lookups
 of the levels: one a pixel, 4 x 4 samples a pixel, and one with 16x anisotropy. The error is the
 RMSE over the pixels that the model covers fully and the channels, in scene-linear values; flicker
@@ -221,7 +221,7 @@ def references(renderer: Renderer, model: Model, options: argparse.Namespace) ->
 
 
 def true_frame(renderer: Renderer, textures: list, size: int, angle: float) -> Texels:
-    """Returns colours, coverage, and 1 where a pixel has one piece."""
+    """Returns colors, coverage, and 1 where a pixel has one piece."""
     filters = opengl_renderer.FULL
     samples = renderer.draw(textures, angle, REFERENCE * size, filters=filters)
     places = renderer.draw(textures, angle, PIECES * size, result=opengl_renderer.PLACE)
@@ -268,7 +268,7 @@ def measure(
 
 
 def shown(renderer: Renderer, textures: list, size: int, mode: Mode, angle: float) -> Texels:
-    """Returns the colours of a frame."""
+    """Returns the colors of a frame."""
     samples = renderer.draw(
         textures,
         angle,

@@ -9,7 +9,7 @@ Models are imported by Blender's own importers, and read through the add-on's br
 has to be installed and enabled. For each, FOLDER/MODEL.npz has images (`image_0`, ...: (height,
 width, 3) scene-linear, row 0 at v = 0), their names and wrap modes, and triangles: `corners`
 (m, 3, 3) in space, `uvs` (m, 3, 2), and `used` (m,), the number of the image that a triangle wears
-as its base colour, or -1.
+as its base color, or -1.
 """
 
 import sys

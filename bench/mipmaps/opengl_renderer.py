@@ -150,7 +150,7 @@ class Model:
 
 
 class Renderer:
-    """Draws a model, with its textured part centred, in perspective from a little above."""
+    """Draws a model, with its textured part centered, in perspective from a little above."""
 
     def __init__(self, model: Model) -> None:
         """Sends the triangles to OpenGL."""
@@ -199,7 +199,7 @@ class Renderer:
         anisotropy: float = 1.0,
         result: str = LOOKUP,
     ) -> Texels:
-        """Returns (size, size, 4) colours and coverage, row 0 at the bottom.
+        """Returns (size, size, 4) colors and coverage, row 0 at the bottom.
 
         Args:
             textures: Of `textures`.

@@ -125,7 +125,7 @@ def measure(
 
 
 def hidden_lines(subject: Subject, lines: sampling.SeamLines) -> sampling.SeamLines:
-    """Returns the seams along which the image has about the same colours on both sides."""
+    """Returns the seams along which the image has about the same colors on both sides."""
     points = sampling.random_points(subject.corners, subject.uvs, POINTS)
     variance = sampling.lookup(subject.image, points, subject.wrap).var(axis=0).mean()
     return lines.where(lines.squares(subject.image, subject.wrap) <= HIDDEN**2 * variance)
@@ -185,7 +185,7 @@ def add_best_trades(
 ) -> None:
     """Adds the least contrast that the budget can buy, at levels of few texels.
 
-    Of all levels within the bounds, those that minimise error^2 + multiplier contrast^2 have the
+    Of all levels within the bounds, those that minimize error^2 + multiplier contrast^2 have the
     lowest contrast for their error. So the multiplier that spends the budget gives the best trade.
     """
     points = sampling.random_points(subject.corners, subject.uvs, POINTS)

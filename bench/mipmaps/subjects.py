@@ -43,7 +43,7 @@ class Subject:
     Attributes:
         name: What to call it.
         picture: The image as the add-on reads it.
-        image: Its scene-linear values, row 0 at the bottom; where alpha is coverage, colours are
+        image: Its scene-linear values, row 0 at the bottom; where alpha is coverage, colors are
             multiplied by it.
         surfaces: What the add-on gives the library.
         wrap: The wrap mode that the materials ask for, or that of --wrap.
@@ -69,7 +69,7 @@ class Subject:
         return replace(self, name=name, image=image)
 
     def rounded(self, level: Texels) -> Texels:
-        """Returns a level as an 8-bit image datablock of the picture's colour space keeps it."""
+        """Returns a level as an 8-bit image datablock of the picture's color space keeps it."""
         if self.picture.alpha_is_straight:
             alpha = level[..., 3:]
             colors = np.divide(
@@ -153,7 +153,7 @@ def read(
 
 
 def linear_values(picture: images.Picture) -> Texels:
-    """Returns scene-linear values; colours are multiplied by alpha where that is coverage."""
+    """Returns scene-linear values; colors are multiplied by alpha where that is coverage."""
     values = images.scene_linear(picture)
     if picture.alpha_is_straight:
         values = np.concatenate([values[..., :3] * values[..., 3:], values[..., 3:]], axis=2)
@@ -206,7 +206,7 @@ def touched_texels(uvs: Floats, width: int, height: int, wrap: str) -> NDArray[n
 
 
 def dilated(mask: NDArray[np.bool_], wrap: str) -> NDArray[np.bool_]:
-    """Returns the mask with the eight neighbours of each texel."""
+    """Returns the mask with the eight neighbors of each texel."""
     height, width = mask.shape
     rows, columns = np.nonzero(mask)
     result = mask.copy()

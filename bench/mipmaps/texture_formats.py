@@ -95,7 +95,7 @@ def packed_size(image: Bytes, texture_format: str, folder: Path) -> int:
 
 
 def encoding_of(texture_format: str) -> str:
-    """Of images of colours, where the format has it."""
+    """Of images of colors, where the format has it."""
     return "linear" if FORMATS[texture_format].vulkan[1] is None else "srgb"
 
 

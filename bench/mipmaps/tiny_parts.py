@@ -30,7 +30,7 @@ PALETTE = ((0.45, 0.47, 0.5), (0.75, 0.75, 0.72), (0.3, 0.05, 0.03), (0.12, 0.14
 
 @dataclass(frozen=True)
 class Face:
-    """A quadrilateral (4, 3), its sides in texels, and the colour it is made of."""
+    """A quadrilateral (4, 3), its sides in texels, and the color it is made of."""
 
     corners: Floats
     width: int
@@ -67,7 +67,7 @@ def main(folder: Path) -> None:
 
 
 def boxes(random: np.random.Generator) -> list[tuple[Floats, Floats, tuple[float, float, float]]]:
-    """Returns centres, sides and colours: slices of the hull, and parts on its deck."""
+    """Returns centers, sides and colors: slices of the hull, and parts on its deck."""
     found = []
     slices = 20
     for k in range(slices):

@@ -122,7 +122,7 @@ def check_scans(report: Report, conf: Path) -> None:
         others = np.concatenate([points for k, (points, _) in enumerate(placed) if k != index])
         distances, _ = KDTree(others).query(placed[index][0])
         report.verdict(
-            np.median(distances) < 5e-4,  # The step of the grid, in metres.
+            np.median(distances) < 5e-4,  # The step of the grid, in meters.
             f"{path.name}: median distance to the other scans {1e3 * np.median(distances):.3f} mm",
         )
 

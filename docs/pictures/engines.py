@@ -52,7 +52,7 @@ def main(folder: Path) -> None:
 
 
 def texture() -> Bytes:
-    """Straight RGBA: letters, discs of any colour, a soft gradient, and a round edge."""
+    """Straight RGBA: letters, discs of any color, a soft gradient, and a round edge."""
     random = np.random.default_rng(7)
     y, x = np.mgrid[0 : 1 : SIZE * 1j, 0 : 1 : SIZE * 1j]
     waves = [np.sin(5 * x + 3 * y + c) * np.cos(4 * y - 2 * x + 2 * c) for c in range(3)]
@@ -72,7 +72,7 @@ def texture() -> Bytes:
 
 
 def over_grey(rgba: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The colours over the grey that an error of zero has."""
+    """The colors over the gray that an error of zero has."""
     alpha = rgba[..., 3:] / 255
     return rgba[..., :3] * alpha + 128 * (1 - alpha)
 

@@ -49,7 +49,7 @@ def main(target: str) -> None:
 
 
 def drawn(weights: np.ndarray) -> np.ndarray:
-    """Returns weights as colours, over two stops to either side of the average."""
+    """Returns weights as colors, over two stops to either side of the average."""
     used = weights > 0
     stops = np.log2(np.where(used, weights, 1.0)) / 4 + 0.5
     place = np.clip(stops, 0, 1) * (len(COLORS) - 1)

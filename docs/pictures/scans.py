@@ -88,7 +88,7 @@ class Subject:
     add: Callable[[View], bpy.types.Object]
 
 
-# The bunny's are of its points in metres, turned to have z upwards.
+# The bunny's are of its points in meters, turned to have z upwards.
 BUNNY_VIEWS = (
     View((-0.017, 0.0, 0.11), 0.2, -12, 8, dot=0.0011),
     View((-0.062, 0.0, 0.137), 0.075, -38, 8, dot=0.0026),
@@ -138,7 +138,7 @@ def shots(subjects: Sequence[Subject], views: Sequence[View], folder: Path) -> l
 
 
 def bunny(conf: Path) -> list[Subject]:
-    """The ten range scans, each in a colour, and what becomes of them."""
+    """The ten range scans, each in a color, and what becomes of them."""
     placed = [range_scans.placed(*scan) for scan in range_scans.placements(conf)]
     points, normals = (np.concatenate(parts) for parts in zip(*placed, strict=True))
     colors = np.concatenate(
@@ -183,7 +183,7 @@ def uneven(source: Mesh) -> list[Subject]:
 
 
 def dots(title: str, points: Floats, normals: Floats, colors: Floats) -> Subject:
-    """Points, in one colour or in one each."""
+    """Points, in one color or in one each."""
     each = np.broadcast_to(colors, points.shape)
     return Subject(
         title,
@@ -266,7 +266,7 @@ def add_surface(mesh: Mesh, *, wires: float = 0.0) -> bpy.types.Object:
 
 
 def add_points(points: Floats, normals: Floats, colors: Floats, radius: float) -> bpy.types.Object:
-    """Adds points as dots of sRGB colours, lit as the surface that they are on would be."""
+    """Adds points as dots of sRGB colors, lit as the surface that they are on would be."""
     obj = new_object(points, np.empty((0, 3), np.int32))
     sun = next(obj for obj in bpy.context.scene.objects if obj.type == "LIGHT")
     to_sun = np.array(sun.matrix_world.to_3x3().col[2])

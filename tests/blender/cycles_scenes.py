@@ -66,7 +66,7 @@ def set_up(scene: bpy.types.Scene) -> None:
 
 
 def render(scene: bpy.types.Scene, size: int, path: Path) -> Array:
-    """Returns a render of (size, size, 3) scene-linear colours, row 0 at the bottom."""
+    """Returns a render of (size, size, 3) scene-linear colors, row 0 at the bottom."""
     scene.render.resolution_x = scene.render.resolution_y = size
     scene.render.resolution_percentage = 100
     scene.render.filepath = str(path)

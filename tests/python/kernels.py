@@ -49,7 +49,7 @@ def folded(weights, reach, size, wrap):
 
 
 def weights_at(filter, centres, width, size, wrap):
-    """Of the texels along an axis, a row for each centre, where the unit is `width` texels wide."""
+    """Of the texels along an axis, a row for each center, where the unit is `width` texels wide."""
     centre = np.atleast_1d(np.asarray(centres, float))[:, None]
     reach = int(np.ceil(3 * max(width, 1) + abs(centre).max())) + 1
     texel = np.arange(-reach, size + reach)

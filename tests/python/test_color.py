@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Colour encodings against the standard's formulas."""
+"""Color encodings against the standard's formulas."""
 
 import numpy as np
 import prefilter

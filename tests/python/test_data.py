@@ -65,7 +65,7 @@ def test_light_has_a_lower_bound_only():
 @pytest.mark.parametrize("premultiplied", [True, False])
 @pytest.mark.parametrize("peak", [1.0, 800.0])
 def test_both_kinds_of_alpha_give_the_same_light(premultiplied, peak):
-    """Means over the surface of what is seen, colour times alpha, by quadrature."""
+    """Means over the surface of what is seen, color times alpha, by quadrature."""
     mesh = scenes.random_soup(8, 9)
     straight = scenes.random_image(9, 16, 16, 4)
     straight[..., :3] *= peak

@@ -144,7 +144,7 @@ def test_doubling_a_chart_doubles_its_weight():
 
 
 def test_half_the_surface_in_a_sixteenth_of_the_texture():
-    """Figure 7.2: two colours share a plane evenly, and the texture unevenly."""
+    """Figure 7.2: two colors share a plane evenly, and the texture unevenly."""
     green, blue = (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
     image = np.full((64, 64, 3), blue, np.float32)
     image[:16, :16] = green
@@ -300,7 +300,7 @@ def test_straight_alpha_weighs_colours():
             associated, mesh.surface, filter=filter, premultiplied=True, bounds=None
         )
         if filter in ("ls-bilinear", "pam-bilinear", "pam-trilinear"):
-            continue  # Its bounds are part of the problem; the constant colour below is its test.
+            continue  # Its bounds are part of the problem; the constant color below is its test.
         for straight, product in zip(levels[1:], expected[1:], strict=True):
             alpha = product[..., 3:]
             assert np.abs(straight[..., 3:] - np.clip(alpha, 0, 1)).max() < 1e-5

@@ -245,7 +245,7 @@ def test_trilinear_levels_solve_the_normal_equations_together(size, wrap):
     assert [level.shape[:2] for level in levels] == halved(*size)
     for _, gradient in trilinear_gradient(levels, mesh, image, wrap, 200):
         assert np.abs(gradient).max() < TOLERANCE
-    if "border" not in wrap:  # There a lookup fades to 0 away from the only texel's centre.
+    if "border" not in wrap:  # There a lookup fades to 0 away from the only texel's center.
         mean = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=None)[-1]
         np.testing.assert_allclose(levels[-1], mean, atol=1e-5)
 

@@ -44,7 +44,7 @@ SAMPLES = {
 
 
 def waves(height: int, width: int, channels: int = 4) -> list:
-    """Levels in bytes, as a photograph has them: light and shadow, two colours, and an edge."""
+    """Levels in bytes, as a photograph has them: light and shadow, two colors, and an edge."""
     levels = []
     strengths = np.array([80, 60, 45, 25])[:channels]
     while True:

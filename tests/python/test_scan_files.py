@@ -273,7 +273,7 @@ def test_a_range_scan(tmp_path):
     grid = read_range_grid(path)
     assert grid.shape == (400, 512)
     np.testing.assert_array_equal(np.sort(grid[grid >= 0]), np.arange(40256))
-    # Neighbours in the grid are neighbours in space.
+    # Neighbors in the grid are neighbors in space.
     both = (grid[:, :-1] >= 0) & (grid[:, 1:] >= 0)
     steps = expected[grid[:, 1:][both]] - expected[grid[:, :-1][both]]
     assert np.median(np.linalg.norm(steps, axis=1)) < 0.001

@@ -103,7 +103,7 @@ def seam_matrix(left, right, shape, count=20_000):
 
 
 def without_contrast(image, *lines):
-    """The image with one colour in all texels that are read along the lines: none differs there."""
+    """The image with one color in all texels that are read along the lines: none differs there."""
     changed = image.copy()
     for line in lines:
         taps, _ = bilinear_taps(line, *image.shape[:2], CLAMP)

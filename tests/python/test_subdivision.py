@@ -137,7 +137,7 @@ def slow_limit(points, faces, level, sharp=()):
 class TestPositions:
     @pytest.mark.parametrize("level", [1, 2, 4])
     def test_corner_of_a_cube(self, level):
-        """(9 v + 4 (sum of neighbours) + (sum of vertices across faces)) / 24 = v / 2."""
+        """(9 v + 4 (sum of neighbors) + (sum of vertices across faces)) / 24 = v / 2."""
         positions = limit(CUBE, CUBE_FACES, level=level).positions
         for corner in CUBE / 2:
             assert np.abs(positions - corner).max(axis=1).min() < 1e-14

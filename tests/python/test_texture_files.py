@@ -138,7 +138,7 @@ def test_first_channels_are_taken(tmp_path, kind, format):
 
 # What the samples of a block are, in KTX 2: the first bit and the number of them, and a channel.
 SAMPLES = {
-    "BC1": [((0, 64), 1)],  # Colour with a cut-out.
+    "BC1": [((0, 64), 1)],  # Color with a cut-out.
     "BC3": [((0, 64), 15), ((64, 64), 0)],
     "BC4": [((0, 64), 0)],
     "BC5": [((0, 64), 0), ((64, 64), 1)],
@@ -205,7 +205,7 @@ def smooth_chain(height: int, width: int, channels: int) -> list:
 def simple_error(block: np.ndarray) -> float:
     """The squared error of a block of a simple compressor: ends at the extremes of the main axis.
 
-    One channel has eight steps. Colours have four, and ends of 5, 6 and 5 bits.
+    One channel has eight steps. Colors have four, and ends of 5, 6 and 5 bits.
     """
     texels = block.reshape(-1, block.shape[2]).astype(float)
     if texels.shape[1] == 1:

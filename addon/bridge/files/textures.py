@@ -3,7 +3,7 @@
 """Mip-mapped files for renderers.
 
 * OpenEXR: scene-linear, associated alpha, 16-bit floats unless 32 are asked for.
-* TIFF (.tif, .tiff, .tx): a byte image stays 8-bit and in its colour space, a float image is
+* TIFF (.tif, .tiff, .tx): a byte image stays 8-bit and in its color space, a float image is
   written as scene-linear 32-bit floats; associated alpha, as texture readers expect.
 
 A file always holds every level down to 1 x 1, in tiles of 64 x 64. OpenEXR files are written by

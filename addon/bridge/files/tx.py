@@ -4,9 +4,9 @@
 
 What a file holds (Blender 5.2): tiles of 64 x 64, 1 or 4 channels, every level down to 1 x 1, in a
 TIFF for integers and an OpenEXR for floats, in both cases named `<image file>.<version>-<MD5>.tx`.
-Colours are scene-linear, or sRGB-encoded where Cycles decodes them after its lookup, which it does
-for integers in a colour space like sRGB; alpha is associated where it is coverage. An image of one
-colour is one tile.
+Colors are scene-linear, or sRGB-encoded where Cycles decodes them after its lookup, which it does
+for integers in a color space like sRGB; alpha is associated where it is coverage. An image of one
+color is one tile.
 
 Cycles uses a file while its time of modification is that of the image file, in whole seconds.
 """
@@ -49,8 +49,8 @@ class Source:
 
     Attributes:
         path: The image file.
-        colorspace: The datablock's colour space.
-        is_data: Whether that space says that the values are no colours.
+        colorspace: The datablock's color space.
+        is_data: Whether that space says that the values are no colors.
         alpha_mode: The datablock's alpha mode.
         cache_folder: Where the user keeps cache files: empty for a folder beside the image, else
             absolute, or relative to the image.
@@ -69,7 +69,7 @@ class Source:
 
     @property
     def alpha_is_associated(self) -> bool:
-        """Whether the colours of a cache file are multiplied by its fourth channel."""
+        """Whether the colors of a cache file are multiplied by its fourth channel."""
         return not self.is_data and self.alpha_mode in {"STRAIGHT", "PREMUL"}
 
 
@@ -80,9 +80,9 @@ class Texture:
     Attributes:
         path: The file.
         stored: Level 0 as it is stored: (height, width, 1 or 4), row 0 at the bottom.
-        is_encoded: Whether colours are sRGB-encoded.
+        is_encoded: Whether colors are sRGB-encoded.
         is_float: Whether the file holds floats.
-        is_constant: Whether the image has one colour only, and the file one tile of it.
+        is_constant: Whether the image has one color only, and the file one tile of it.
     """
 
     path: Path

@@ -2,7 +2,7 @@
 
 """A sheet for figures: lines, rectangles and letters, drawn by `prefilter.rasterize`.
 
-Positions are in pixels, with y upwards and row 0 at the bottom, as images have it. Colours are sRGB
+Positions are in pixels, with y upwards and row 0 at the bottom, as images have it. Colors are sRGB
 values, and are blended in linear light.
 """
 
@@ -55,7 +55,7 @@ class Canvas:
 
         Args:
             points: (n, 2) positions.
-            color: Its colour.
+            color: Its color.
             width: Its width.
             dashes: The length of dashes and of the gaps between them; None draws through.
         """
@@ -79,7 +79,7 @@ class Canvas:
         Args:
             letters: Those of a `bridge.lettering.Lettering`.
             matrix: (2, 3), from their space to the sheet.
-            color: Their colour.
+            color: Their color.
         """
         placed = np.vstack([matrix, [0.0, 0.0, 1.0]]).T
         for letter in letters:

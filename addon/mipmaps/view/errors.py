@@ -85,7 +85,7 @@ def measure(source: Source, filters: Sequence[str], progress: Progress) -> Error
     Raises:
         prefilter.Cancelled: `progress` returned False.
         ValueError: No filter is asked for, or the library refuses the image or the surfaces.
-        OSError: The colour space needs a module that is missing.
+        OSError: The color space needs a module that is missing.
     """
     if not filters:
         raise ValueError("filters: none is chosen; at least one is needed")

@@ -28,7 +28,7 @@ _TICK, _GAP = 8.0, 12.0
 _ROW, _SAMPLE = 38.0, 52.0  # A row of the legend, and its piece of line.
 _INTERVALS = 5  # About as many along the axis of errors.
 
-# Colours that stay apart for the colour-blind (Okabe and Ito), the first ones as in figure 7.7.
+# Colors that stay apart for the color-blind (Okabe and Ito), the first ones as in figure 7.7.
 COLORS: dict[str, Color] = {
     "box": (0.0, 0.447, 0.698),
     "pam-box": (0.835, 0.369, 0.0),

@@ -27,7 +27,7 @@ class Preview:
     Attributes:
         image_uid: The image's session_uid.
         settings: What the levels were computed with.
-        levels: By filter, level 0 first: (height, width, 3 or 4) scene-linear values, with colours
+        levels: By filter, level 0 first: (height, width, 3 or 4) scene-linear values, with colors
             multiplied by alpha where that is coverage.
         wrap: What lookups read outside of the image along u and v.
         blends: Whether alpha is coverage.

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The weights of texels as colours."""
+"""The weights of texels as colors."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -13,13 +13,13 @@ if TYPE_CHECKING:
     from ...bridge.images import FloatArray
 
 OCTAVES = 4
-"""Colours span weights from 2^-OCTAVES to 2^OCTAVES; what is beyond has the colour of the end."""
+"""Colors span weights from 2^-OCTAVES to 2^OCTAVES; what is beyond has the color of the end."""
 
 _STRIPE = 1 / 64  # The period of the hatching, as a share of the longer side.
 _STRIPES = ((0.32, 0.32, 0.32), (0.22, 0.22, 0.22))
 
 # A path through OKLab (Ottosson, 2020): lightness is linear, so equal ratios of weights look
-# equally far apart, and grey prints keep the order. The hue goes from blue over red to yellow.
+# equally far apart, and gray prints keep the order. The hue goes from blue over red to yellow.
 _LIGHTNESS = (0.28, 0.96)
 _HUE = (-95.0, 105.0)  # In degrees.
 _CHROMA = 0.13
@@ -48,7 +48,7 @@ class Weights:
 
 
 def colors(weights: ArrayLike) -> NDArray[np.float32]:
-    """Returns (..., 3) sRGB colours of weights above 0, by their logarithm."""
+    """Returns (..., 3) sRGB colors of weights above 0, by their logarithm."""
     octave = np.log2(np.maximum(np.asarray(weights, float), 2.0 ** -(OCTAVES + 1)))
     place = np.clip(octave / (2 * OCTAVES) + 0.5, 0.0, 1.0)
     lightness = _LIGHTNESS[0] + place * (_LIGHTNESS[1] - _LIGHTNESS[0])
@@ -61,7 +61,7 @@ def colors(weights: ArrayLike) -> NDArray[np.float32]:
 
 
 def picture(weights: NDArray[np.float32]) -> "FloatArray":
-    """Returns (height, width, 4) sRGB colours; texels of weight 0 are hatched in grey."""
+    """Returns (height, width, 4) sRGB colors; texels of weight 0 are hatched in gray."""
     height, width = weights.shape
     rgba = np.ones((height, width, 4), np.float32)
     rgba[..., :3] = colors(weights)
@@ -74,5 +74,5 @@ def picture(weights: NDArray[np.float32]) -> "FloatArray":
 
 
 def unused_color() -> tuple[float, float, float]:
-    """Returns the mean colour of the hatching."""
+    """Returns the mean color of the hatching."""
     return tuple(np.mean(_STRIPES, axis=0))

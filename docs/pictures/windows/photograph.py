@@ -140,7 +140,7 @@ def cropped(pixels: np.ndarray, region: list[int]) -> np.ndarray:
 
 
 def save(pixels: np.ndarray, told: dict[str, object], target: Path) -> None:
-    """Writes a small PNG file of at most 256 colours, with what the panels draw as text."""
+    """Writes a small PNG file of at most 256 colors, with what the panels draw as text."""
     picture = Image.fromarray(np.ascontiguousarray(pixels))
     # Pillow dithers with a given palette only.
     small = picture.quantize(palette=picture.quantize(256), dither=Image.Dither.FLOYDSTEINBERG)

@@ -23,7 +23,7 @@ bc7enc_compress_block_params parameters() {
 }
 
 /// Whether a block of mode 6 for opaque texels has ends of alpha 254: the bits that both ends share
-/// between their channels are free then, and follow the colours.
+/// between their channels are free then, and follow the colors.
 bool has_alpha_254(const std::uint8_t* block) {
   const bool is_mode_6 = (block[0] & 0x7f) == 0x40;
   return is_mode_6 && ((block[7] & 0x80) == 0 || (block[8] & 1) == 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The fitting is etcpak's: both halves of a block, and a plane, and the modes T and H of ETC2 where
-// its heuristics expect them to be better. But blocks of one colour, which it cuts to five bits,
+// its heuristics expect them to be better. But blocks of one color, which it cuts to five bits,
 // are the best of ETC1's differential mode here (Khronos Data Format 1.3, section 21.1).
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ bool is_of_one_color(const std::uint8_t* rgba) {
   return true;
 }
 
-/// The nearest block to a colour, one base for both halves.
+/// The nearest block to a color, one base for both halves.
 std::array<std::uint8_t, 8> block_of_color(const std::uint8_t* rgb) {
   constexpr int kModifiers[8][2] = {{2, 8},   {5, 17},  {9, 29},   {13, 42},
                                     {18, 60}, {24, 80}, {33, 106}, {47, 183}};

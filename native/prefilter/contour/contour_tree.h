@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// A tree of cell means as contours see it: leaves inside and outside, and their neighbours.
+// A tree of cell means as contours see it: leaves inside and outside, and their neighbors.
 #pragma once
 
 #include <algorithm>
@@ -103,7 +103,7 @@ inline CellCoordinates octant_at(const CellCoordinates& at, int o) {
 /// numbered 2 a for the one across axis a at its low side, and 2 a + 1 for that at its high side.
 using FaceNeighbours = std::array<CellNode, 6>;
 
-/// The neighbours of an octant, from the neighbours of the cell.
+/// The neighbors of an octant, from the neighbors of the cell.
 inline FaceNeighbours octant_neighbours(const ContourTree& tree, const CellNode& cell,
                                         const FaceNeighbours& of_cell, int octant) {
   FaceNeighbours result;

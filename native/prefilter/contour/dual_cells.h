@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The dual grid of an octree's leaves: around every corner of a leaf there is a cell with the
-// centres of the eight leaves, or fewer, that meet there (Ju, Losasso, Schaefer and Warren 2002;
+// centers of the eight leaves, or fewer, that meet there (Ju, Losasso, Schaefer and Warren 2002;
 // Schaefer and Warren 2004).
 #pragma once
 
@@ -211,7 +211,7 @@ inline DualCells::DualCells(const ContourTree& tree, const HeightRange& heights)
   const int side = 1 << tree.cells().depth();
   const Layer within = {0, side};
   const Layer below = {-side, side};
-  // Around an edge or a corner of the root its neighbours are cells of their own.
+  // Around an edge or a corner of the root its neighbors are cells of their own.
   const auto surroundings = [](std::size_t number) {
     CellNode cell = kSurroundings;
     cell.block = static_cast<std::uint32_t>(number);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Where the surface cuts the line between the centres of two cells (section 5.2).
+// Where the surface cuts the line between the centers of two cells (section 5.2).
 #pragma once
 
 #include <cmath>
@@ -18,8 +18,8 @@ inline float empty_sample(float isovalue) {
 /// function takes it.
 float linear_crossing(float a, float b, float isovalue);
 
-/// Where the line that divides two neighbouring unit squares, so that shares a and b of them are
-/// inside, cuts the line between their centres: t from 0 at the centre of a to 1 at that of b.
+/// Where the line that divides two neighboring unit squares, so that shares a and b of them are
+/// inside, cuts the line between their centers: t from 0 at the center of a to 1 at that of b.
 /// Exact where there is such a line (equations 5.2, 5.4, 5.6 and 5.8, chosen as in 5.2.5). One of a
 /// and b is below 1/2, the other is not, and both are in [0, 1].
 float occupancy_crossing(float a, float b);

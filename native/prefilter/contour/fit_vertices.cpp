@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The tree is read in bricks of cells of one depth, made dense with what is around them, so that
-// neighbours are found by adding strides.
+// neighbors are found by adding strides.
 #include "prefilter/contour/fit_vertices.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The interpolant "plane": vertices moved to the surface that preserves the volume of the
-// neighbouring cells.
+// neighboring cells.
 #pragma once
 
 #include "prefilter/base/progress.h"
@@ -9,11 +9,11 @@
 
 namespace prefilter {
 
-/// Occupancies this close to 1/2 do not tell which side their cell's centre is on.
+/// Occupancies this close to 1/2 do not tell which side their cell's center is on.
 inline constexpr float kDoubt = 0.05F;
 
-/// Puts leaves whose occupancy is close to 1/2 on the side that their centre is on, by
-/// height_over_centre: on a curved surface the two differ, and triangles between such a centre and
+/// Puts leaves whose occupancy is close to 1/2 on the side that their center is on, by
+/// height_over_centre: on a curved surface the two differ, and triangles between such a center and
 /// the surface would be inside out. Throws Error(kCancelled).
 void settle_sides(const Progress& progress, int threads, ContourTree* tree);
 

@@ -129,7 +129,7 @@ class TreeBuilder {
       if (octant.is_split) split |= 1U << o;
     }
     // Equal samples are one leaf, but not beside the surface: a vertex is half-way between two
-    // centres, and those have to be the samples' own.
+    // centers, and those have to be the samples' own.
     if (split == 0 &&
         std::all_of(values.begin(), values.end(),
                     [&](float value) { return value == values[0]; }) &&

@@ -62,7 +62,7 @@ int steepest_axis(const float* cell, const float* neighbour,
   return steepest;
 }
 
-// The surface over a cell: its height over the centre, and how it runs on to both sides.
+// The surface over a cell: its height over the center, and how it runs on to both sides.
 struct LocalSurface {
   float height;
   Profile first;
@@ -75,7 +75,7 @@ std::optional<LocalSurface> surface_over(const float* cell, std::ptrdiff_t up,
   if (!height) return std::nullopt;
   const Profile first = profile(cell, across[0], up, *height);
   const Profile second = profile(cell, across[1], up, *height);
-  // From the mean over the column to the height at its centre.
+  // From the mean over the column to the height at its center.
   const float at_centre = *height - (first.curvature + second.curvature) / 24.0F - 0.5F;
   return LocalSurface{at_centre, first, second};
 }

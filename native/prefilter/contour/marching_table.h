@@ -7,9 +7,9 @@
 // along axis (a + 2) % 3.
 //
 // On a face the segments depend on the signs of its four corners alone: each run of inside corners
-// around the face is cut off by itself. Neighbours see the same segments, in opposite directions,
+// around the face is cut off by itself. Neighbors see the same segments, in opposite directions,
 // so the surface is closed. Diagonals of a loop of segments must not lie in faces of the cube: such
-// a one could be a diagonal, or a segment, of the neighbour's too, and belong to four triangles.
+// a one could be a diagonal, or a segment, of the neighbor's too, and belong to four triangles.
 #pragma once
 
 #include <array>

@@ -396,7 +396,7 @@ std::optional<OccupancySurface::Found> OccupancySurface::sample_face(
   const double rises = is_fuller == is_high ? 1.0 : -1.0;
   const std::optional<Hit> hit = hit_on_line(near, cell.at, face, rises, start);
   if (!hit) {
-    // The sides of leaves are those of their occupancies, not of their centres: beside edges the
+    // The sides of leaves are those of their occupancies, not of their centers: beside edges the
     // line may miss the surface.
     const std::optional<Hit> beside = hit_beside(near, start);
     if (!beside) return std::nullopt;

@@ -18,7 +18,7 @@ constexpr int kMajority = 10;  // times as many as against
 // Along an axis of a brick. Not a divisor of its cells: samples are off the planes of coordinates.
 constexpr int kSamples = 3;
 constexpr int kShares = 4;  // samples of a leaf along an axis
-constexpr int kClose = 5;   // samples, from half of them, where the centre decides
+constexpr int kClose = 5;   // samples, from half of them, where the center decides
 constexpr std::int64_t kLeavesPerTask = 64;
 
 float value_at(const ContourTree& tree, const RootFrame& frame, const Vector3& point) {

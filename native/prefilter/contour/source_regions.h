@@ -121,7 +121,7 @@ struct SourceRegions {
 };
 
 /// Vertices at one place count as one. Regions of less than four faces of a cell join the
-/// neighbour with which they share the longest border, and edges within a region count only where
+/// neighbor with which they share the longest border, and edges within a region count only where
 /// those that hang together are eight cells long: what is smaller is roughness. `cell` is the side
 /// of a cell.
 ///

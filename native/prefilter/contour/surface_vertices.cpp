@@ -31,15 +31,15 @@ bool meets_surface(const Visit& visit) {
   return sides == kBothSides;
 }
 
-// Whether the vertex between a leaf and its neighbour across a face, if there is one, is the
+// Whether the vertex between a leaf and its neighbor across a face, if there is one, is the
 // leaf's.
 bool owns(const CellNode& leaf, const CellNode& neighbour, int face) {
   if (neighbour.is_split) return false;
   return neighbour.depth < leaf.depth || (face & 1) != 0;
 }
 
-// On the way from a leaf's centre to its neighbour's, in sides of the leaf: where the surface is,
-// and where the neighbour's centre is.
+// On the way from a leaf's center to its neighbor's, in sides of the leaf: where the surface is,
+// and where the neighbor's center is.
 struct Crossing {
   float t;
   float distance;
@@ -50,13 +50,13 @@ Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode&
   const float a = tree.value(leaf);
   const float b = tree.value(neighbour);
   const float isovalue = tree.isovalue();
-  // A side that was not settled by the value: the surface is close to that centre.
+  // A side that was not settled by the value: the surface is close to that center.
   if ((a >= isovalue) == (b >= isovalue)) {
     return {std::abs(a - isovalue) < std::abs(b - isovalue) ? 0.0F : 1.0F, 1.0F};
   }
   const bool are_occupancies = a >= 0.0F && a <= 1.0F && b >= 0.0F && b <= 1.0F && isovalue == 0.5F;
   // A coarser leaf that is full or empty holds cells of this size that are; between fractions of
-  // different cells there is but the line through the centres.
+  // different cells there is but the line through the centers.
   const bool is_fraction = b > 0.0F && b < 1.0F;
   if (is_fraction && neighbour.depth < leaf.depth) {
     const float apart = 0.5F * (1.0F + static_cast<float>(1 << (leaf.depth - neighbour.depth)));

@@ -31,7 +31,7 @@ struct VertexPlace {
 };
 
 /// A pair belongs to the finer of its leaves; of two of the same size, to the one at the low side.
-/// Its vertex lies on the line through that leaf's centre across the face that they share, where
+/// Its vertex lies on the line through that leaf's center across the face that they share, where
 /// the other leaf, if it is coarser, has a cell of the same size. Positions are the frame's.
 class SurfaceVertices {
  public:

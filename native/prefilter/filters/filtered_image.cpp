@@ -142,7 +142,7 @@ ValueRange FilteredImage::solved_range(int channel, ValueRange bounds) const {
 void FilteredImage::divide_by_alpha(WrapModes wrap, const Progress& progress, int threads,
                                     Image* level) const {
   if (!is_multiplied_) return;
-  // What is covered less than this cannot be seen, and its colour is mostly rounding.
+  // What is covered less than this cannot be seen, and its color is mostly rounding.
   constexpr float kLeastAlpha = 1e-3F;
   std::vector<float> weights(level->view().texel_count());
   parallel_for(level->height, threads, progress.part(0.0, 0.5), [&](std::int64_t row) {

@@ -26,7 +26,7 @@ class FilteredImage {
     // multiplied by yet; none where every channel is filtered as it stands.
     std::optional<int> alpha;
     // Whether what is filtered is opaque where the image is: not where a border of nothing counts.
-    // Colours are multiplied by alpha, and divided, only where it may be less than 1.
+    // Colors are multiplied by alpha, and divided, only where it may be less than 1.
     bool stays_opaque = true;
     // Whether bytes have to be floats, also where alpha plays no part.
     bool needs_floats = true;
@@ -44,16 +44,16 @@ class FilteredImage {
   /// The same; no data where bytes are read as they are.
   const ImageView& floats() const { return floats_; }
 
-  /// Whether colours were multiplied by an alpha that is not 1 everywhere, or does not stay so.
+  /// Whether colors were multiplied by an alpha that is not 1 everywhere, or does not stay so.
   bool is_multiplied() const { return is_multiplied_; }
 
   /// What a channel may be while it is solved for, `bounds` being what it may be in the end. Where
-  /// colours were multiplied by alpha, a colour that is seen lies within the bounds and within the
+  /// colors were multiplied by alpha, a color that is seen lies within the bounds and within the
   /// image's own range: it is the quotient of two solutions, and where little is covered a small
   /// error of either would make it anything.
   ValueRange solved_range(int channel, ValueRange bounds) const;
 
-  /// Divides the colours of a level by its alpha where those of the image were multiplied by it.
+  /// Divides the colors of a level by its alpha where those of the image were multiplied by it.
   /// Those of texels with hardly any alpha come from around them.
   void divide_by_alpha(WrapModes wrap, const Progress& progress, int threads, Image* level) const;
 

@@ -50,7 +50,7 @@ void push_row(const Image& coarse, WrapModes wrap, int channels, int y, Layer* f
   };
   for (int x = 0; x < fine->image.width; ++x) {
     if (fine->weights[static_cast<std::size_t>(y) * fine->image.width + x] > 0.0F) continue;
-    // A fine texel's centre is a quarter of a coarse texel off the centre of the one above it.
+    // A fine texel's center is a quarter of a coarse texel off the center of the one above it.
     const int columns[2] = {x / 2, x / 2 + (x % 2 == 0 ? -1 : 1)};
     const int rows[2] = {y / 2, y / 2 + (y % 2 == 0 ? -1 : 1)};
     float* target = fine->image.texel(x, y);

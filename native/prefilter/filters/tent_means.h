@@ -11,7 +11,7 @@
 namespace prefilter {
 
 /// Each texel becomes the mean of the interpolated image under its tent: of it and its eight
-/// neighbours, 2/3 and 1/6 along each axis. Texels that are not `read` (0) do not count, and stay
+/// neighbors, 2/3 and 1/6 along each axis. Texels that are not `read` (0) do not count, and stay
 /// as they are; an empty `read` stands for all. Neither does what lies beyond a border.
 Image tent_means(const ImageView& image, const std::vector<unsigned char>& read, WrapModes wrap,
                  int threads);

@@ -20,7 +20,7 @@ class WindowedJinc {
 
   double radius() const { return radius_; }
 
-  /// The filter at a distance from its centre; 0 from the radius on.
+  /// The filter at a distance from its center; 0 from the radius on.
   double operator()(double distance) const;
 
  private:

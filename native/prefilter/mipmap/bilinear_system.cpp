@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::ptrdiff_t kTexelsPerReport = 1 << 16;
 
-// Integrals over one axis of a dual cell (between two texel centres) of the products of the two
+// Integrals over one axis of a dual cell (between two texel centers) of the products of the two
 // tents there, low x low, low x high and high x high, from the moments.
 void tent_products(const double* moments, int stride, double* products) {
   const double m0 = moments[0];

@@ -48,7 +48,7 @@ struct EquationShares {
   double known = 0.0;
 };
 
-/// Minimises, over the texels t of a level and for each channel,
+/// Minimizes, over the texels t of a level and for each channel,
 ///   integral over the surface of (sum_j b_j t_j - I)^2  +  kPull * m * sum_j (t_j - p_j)^2
 /// where I is the image, or another target; b_j are the bilinear basis functions, m is the mean of
 /// the integrals of b_j^2 over the texels in use, and p_j is the mean of the image under b_j. The
@@ -79,7 +79,7 @@ class BilinearSystem {
     int sweeps = 0;
   };
 
-  /// Adds, to what is minimised, the square of each link, which counts its strip's area in space
+  /// Adds, to what is minimized, the square of each link, which counts its strip's area in space
   /// times `texels_by_area`, and a weight that `solve` finds. To be called once all blocks are
   /// there.
   void add_links(const std::vector<SeamLink>& links, double texels_by_area,
@@ -120,7 +120,7 @@ class BilinearSystem {
   // level's.
   ChannelSums square_of_target(const TargetShares& target, const ChannelSums& own_finer) const;
   void add_dual_cell(const CellMoments<C>& moments, int column, int row);
-  // The texel at corner k, [2 * y + x], of a cell between texel centres; -1 for the border.
+  // The texel at corner k, [2 * y + x], of a cell between texel centers; -1 for the border.
   std::ptrdiff_t corner(int column, int row, int k) const;
 
   WrapModes wrap_;

@@ -13,7 +13,7 @@ namespace prefilter {
 /// threshold.
 ///
 /// `weights` is a grid over the unit square, of any size: each cell holds the surface's area in it,
-/// in any unit, taken to be spread evenly over the cell. Lookups are made at the centres of
+/// in any unit, taken to be spread evenly over the cell. Lookups are made at the centers of
 /// `samples` x `samples` parts of every cell that holds some. Values of alpha that are not finite
 /// count as 0. Throws Error where an image has not one channel, `samples` is less than 1, or no
 /// weight is positive; and, from the progress callback, when cancelled.

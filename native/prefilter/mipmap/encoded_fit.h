@@ -15,11 +15,11 @@
 
 namespace prefilter {
 
-/// Minimises, over the encoded texels t of a level and for each colour channel,
+/// Minimizes, over the encoded texels t of a level and for each color channel,
 ///   integral over the surface of (decode(sum_j b_j t_j) - I)^2
 ///     + kPull * m * sum_j (t_j - s_j)^2
 /// with b_j and m as for BilinearSystem, m scaled by the curve's slope, and s the start.
-/// Gauss-Newton with quadrature: each cell between texel centres is read at the four points of
+/// Gauss-Newton with quadrature: each cell between texel centers is read at the four points of
 /// FourPointRule.
 template <int C>
 class EncodedFit {
@@ -39,7 +39,7 @@ class EncodedFit {
 
   /// Improves on `start`, encoded texels within the ranges, which are encoded too. A fourth channel
   /// stays as it is. `used` has 1 for each texel that the surface reads. With links the error of
-  /// the colours rises by no more than the budget allows. Can be called once.
+  /// the colors rises by no more than the budget allows. Can be called once.
   Image solve(const Image& start, const std::vector<unsigned char>& used,
               const SolveOptions& options, SeamBudget* budget, const Progress& progress);
 
@@ -48,7 +48,7 @@ class EncodedFit {
 
   struct Cell {
     int column, row;
-    float x[2], y[2];      // of the points, from the centre of texel (column, row)
+    float x[2], y[2];      // of the points, from the center of texel (column, row)
     float same, opposite;  // weights
     std::array<std::array<float, kColours>, 4> image;  // integrals at the points
   };
@@ -61,7 +61,7 @@ class EncodedFit {
   // What links of this weight add to it.
   ColourSums link_squares(double weight) const;
   // A difference of encoded values counts as the decoded one that the curve's mean slope makes of
-  // it: of the slopes at the start, so that all rounds minimise the same.
+  // it: of the slopes at the start, so that all rounds minimize the same.
   Lanes link_weights(double weight) const;
   // The sums of squares of the texels as they are, with those of links of this weight; assembles.
   ColourSums sums_with_links(double weight, int threads, const Progress& progress);

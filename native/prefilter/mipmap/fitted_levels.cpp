@@ -114,7 +114,7 @@ std::vector<Image> solve_together(const FilteredImage& image,
   return levels;
 }
 
-// Fits the colours of a level to a reader that decodes, from those that are fitted to another one.
+// Fits the colors of a level to a reader that decodes, from those that are fitted to another one.
 template <int C>
 Image fit_encoded(EncodedFit<C>* fit, const Image& level, const std::vector<unsigned char>& used,
                   SolveOptions solve, SeamBudget* budget, const Progress& progress) {

@@ -27,7 +27,7 @@ constexpr int kRowsAtOnce = 32;
 }  // namespace
 
 int LevelCoupling::Axis::first(int texel) const {
-  // The texel's tent begins at the centre of the texel before.
+  // The texel's tent begins at the center of the texel before.
   const double begin = (texel - 0.5) * next_size / size - 0.5;
   return static_cast<int>(std::floor(begin + 1e-9));
 }

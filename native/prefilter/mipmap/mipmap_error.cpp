@@ -176,7 +176,7 @@ std::vector<double> measure(const std::vector<ImageView>& levels, const ImageVie
   return errors_at(mip_values, squares, triangles.total_mass * C);
 }
 
-// The decoded lookup at a place of the image, in its texels, of a level whose colours are encoded.
+// The decoded lookup at a place of the image, in its texels, of a level whose colors are encoded.
 template <int C>
 std::array<double, C> decoded_lookup(const ImageView& level, const ImageView& image, WrapModes wrap,
                                      double u, double v) {

@@ -23,7 +23,7 @@
 namespace prefilter {
 namespace {
 
-// A texel of neutral grey decodes to a vector of this length at most, for 8 bits a channel.
+// A texel of neutral gray decodes to a vector of this length at most, for 8 bits a channel.
 constexpr double kNoDirection = 0.02;
 
 // Calls change(texel) for each texel.

@@ -15,7 +15,7 @@
 namespace prefilter {
 namespace {
 
-// Of cells or texels, the surface's mass, and mass times colour.
+// Of cells or texels, the surface's mass, and mass times color.
 struct MassSums {
   Image image;
   std::vector<float> masses;

@@ -101,7 +101,7 @@ double texel_length(const std::array<TextureCoordinate, 2>& ends, int width, int
   return elementary::hypot((ends[1].u - ends[0].u) * width, (ends[1].v - ends[0].v) * height);
 }
 
-// Where a line from one coordinate, in texels, to another crosses the centres of texels, as
+// Where a line from one coordinate, in texels, to another crosses the centers of texels, as
 // fractions of its length.
 void add_stops(double from, double to, std::vector<double>* stops) {
   const double low = std::min(from, to);
@@ -132,7 +132,7 @@ double sum_of_squares(Lanes value) {
   return sum;
 }
 
-// Calls use(point) for the centres of n * n equal triangles that a triangle is cut into.
+// Calls use(point) for the centers of n * n equal triangles that a triangle is cut into.
 template <typename Use>
 void for_each_part(const std::array<TextureCoordinate, 3>& triangle, int n, const Use& use) {
   const auto at = [&](double b1, double b2) {
@@ -178,7 +178,7 @@ double variance_on(const std::vector<const Surface*>& surfaces, const ImageView&
   return variance;
 }
 
-// Where either side of a seam passes the centre of a texel along an axis, from 0 to 1: between
+// Where either side of a seam passes the center of a texel along an axis, from 0 to 1: between
 // these the difference of the lookups is quadratic.
 std::vector<double> stops_of(const SeamEdge& seam, int width, int height) {
   std::vector<double> stops = {0.0, 1.0};

@@ -57,7 +57,7 @@ void weigh_seams(const ImageView& image, const std::vector<const Surface*>& surf
 
 /// Links along all of the seams for a level of width x height texels. Sums over them of
 /// squares of differences, times length, are exact: Gauss's rule of three points between the places
-/// where either side passes a texel's centre, along which the lookups are quadratic.
+/// where either side passes a texel's center, along which the lookups are quadratic.
 std::vector<SeamLink> link_seams(const std::vector<SeamEdge>& seams, int width, int height,
                                  WrapModes wrap, const Progress& progress);
 

@@ -17,7 +17,7 @@ namespace prefilter {
 Image filter_level(const ImageView& image, int level, const Kernel& kernel, WrapModes wrap,
                    const Progress& progress, int threads);
 
-/// The same over covered texels alone, renormalised: filter(image * covered) / filter(covered). A
+/// The same over covered texels alone, renormalized: filter(image * covered) / filter(covered). A
 /// texel with no covered texel in its square is filled by push-pull. Where a kernel with negative
 /// lobes leaves less than a tenth of the weight, the box over the texel's square takes its place.
 /// Uncovered texels are not read, and may be anything. `covered` has 0 or 1 a texel.

@@ -15,7 +15,7 @@
 
 namespace prefilter {
 
-/// Minimises the integral over the mip values from 0 to the last level, and over the surface, of
+/// Minimizes the integral over the mip values from 0 to the last level, and over the surface, of
 /// the squared difference between the trilinear lookup and the image. Level 0 is the image, the
 /// last one, of 1 x 1 texel, its mean over the surface; those between are solved for, with the pull
 /// of BilinearSystem. Over one interval the products of the two levels' weights integrate to 1/3,

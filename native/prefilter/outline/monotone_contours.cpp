@@ -107,7 +107,7 @@ void MonotoneContours::cut(Contour* contour) {
   contour->cut_pieces = keep(cut_);
 }
 
-// Parts that are points are left out; their neighbours in the segment take over their parameters.
+// Parts that are points are left out; their neighbors in the segment take over their parameters.
 void MonotoneContours::cut_segment(const Curve& curve, std::uint32_t segment) {
   if (curve.degree() == 1 || is_monotone(curve.controls)) {
     if (curve.begin() == curve.end()) return;

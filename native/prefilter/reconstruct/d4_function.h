@@ -24,7 +24,7 @@ struct D4Function {
 
 /// Of slabs that are all at SlabStage::kLeaves. Reads the source once. Cells are split where they,
 /// or neighbors of theirs, hold leaves of samples smaller than themselves; values are the
-/// function's at the cells' centres.
+/// function's at the cells' centers.
 D4Function make_d4_function(PointSource* source, const SampleGrid& grid, const Slabs& slabs,
                             const Progress& progress, int threads);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// In passes: each divides the mesh into patches of neighbouring triangles, which are simplified by
+// In passes: each divides the mesh into patches of neighboring triangles, which are simplified by
 // themselves, and each divides it elsewhere, so that the vertices that patches share get their
 // turn.
 #include "prefilter/remesh/simplify.h"

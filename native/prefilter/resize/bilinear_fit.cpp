@@ -37,7 +37,7 @@ class TentAxis {
   const AxisTaps& mean_taps() const { return taps_; }
   /// The integral of a target texel's tent.
   double mass(int i) const { return masses_[static_cast<std::size_t>(i)]; }
-  /// Cells lie between the centres of target texels k and k + 1, from the first to the last.
+  /// Cells lie between the centers of target texels k and k + 1, from the first to the last.
   int first_cell() const { return repeat_ ? 0 : -1; }
   int last_cell() const { return size() - 1; }
   /// Integrals of the products of a cell's two tents, low x low, low x high and high x high, over

@@ -10,7 +10,7 @@
 
 namespace prefilter {
 
-/// The image c of width x height texels that minimises, within the ranges of `solve`,
+/// The image c of width x height texels that minimizes, within the ranges of `solve`,
 ///   integral over the image of (I(x) - sum_i c_i b_i(x))^2 dx
 /// where I are the source's texels as squares, and b_i are the tents that interpolate c bilinearly,
 /// wrapped around the image as the wrap mode says (section 1.1 with the bilinear basis). With

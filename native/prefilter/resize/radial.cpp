@@ -50,7 +50,7 @@ class RadialTable {
   std::array<std::array<double, 4>, kPieces> pieces_;
 };
 
-// Which source texels a target texel reads along an axis. Target texels whose centres lie alike
+// Which source texels a target texel reads along an axis. Target texels whose centers lie alike
 // between source texels are of the same phase.
 class Axis {
  public:
@@ -67,7 +67,7 @@ class Axis {
   /// The first source texel, of taps() many.
   int first(int target) const { return first_of_phase(phase(target)) + target / phases_ * step_; }
   int taps() const { return static_cast<int>(std::floor(2.0 * reach_)) + 1; }
-  /// The square of how far tap `tap` of a phase is from the centre.
+  /// The square of how far tap `tap` of a phase is from the center.
   double squared_distance(int phase, int tap) const {
     const double away = (first_of_phase(phase) + tap + 0.5 - centre(phase)) / unit_;
     return away * away;

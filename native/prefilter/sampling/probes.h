@@ -12,8 +12,8 @@
 
 namespace prefilter {
 
-/// Isotropic Gaussians along the major axis of an ellipse, centred on it, whose weighted sum comes
-/// close to the elliptical one. Probe k lies (k - (count - 1) / 2) * spacing from the centre and
+/// Isotropic Gaussians along the major axis of an ellipse, centered on it, whose weighted sum comes
+/// close to the elliptical one. Probe k lies (k - (count - 1) / 2) * spacing from the center and
 /// has the weight exp(-falloff * that distance squared), but for a common factor.
 struct ProbeRow {
   int count = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Section 6.2: texels that are the filter itself, at whole mip values and texel centres.
+// Section 6.2: texels that are the filter itself, at whole mip values and texel centers.
 #include "prefilter/sampling/sampling_levels.h"
 
 #include <algorithm>

@@ -185,7 +185,7 @@ class Metric {
     return gradient;
   }
 
-  // The rows of the curvature's normals as products with the points: for each point, its neighbours
+  // The rows of the curvature's normals as products with the points: for each point, its neighbors
   // and what they count. Rows begin with the point itself.
   struct Row {
     std::vector<std::pair<std::uint32_t, double>> weights;

@@ -46,7 +46,7 @@ class HolePatch {
 
   /// Makes triangles smaller, until no flip makes the two at an edge smaller; and among those of
   /// the same area flips to the greater smallest angle (Delaunay). What is folded back onto its
-  /// neighbour, or onto the surface around, counts as larger. With `bends`, only by the
+  /// neighbor, or onto the surface around, counts as larger. With `bends`, only by the
   /// angles, and across an edge where the patch bends by more than 60 degrees only if it is folded
   /// there. Looks at the edges of these triangles first, or at all of them.
   void flip(std::span<const std::uint32_t> first, bool bends, const Progress& progress);

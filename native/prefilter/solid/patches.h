@@ -34,7 +34,7 @@ struct Patches {
   std::vector<std::uint8_t> is_turned;  // of each triangle: whether it is to be turned
 };
 
-/// The patches, with each triangle turned so that it goes with its neighbours, and each patch so
+/// The patches, with each triangle turned so that it goes with its neighbors, and each patch so
 /// that less of its area is turned than not.
 Patches find_patches(const MeshView<std::int32_t>& mesh, const Progress& progress, int threads);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The smallest triangulation by dynamic programming: G. Barequet, M. Sharir, Filling gaps in the
-// boundary of a polyhedron (1995); that it heeds the angles to its neighbours as well: P. Liepa,
+// boundary of a polyhedron (1995); that it heeds the angles to its neighbors as well: P. Liepa,
 // Filling holes in meshes (2003). Points are left out and put in again by their distance from a
 // chord: D. Douglas, T. Peucker (1973).
 #include "prefilter/solid/span_loop.h"

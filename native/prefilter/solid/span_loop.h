@@ -15,7 +15,7 @@ namespace prefilter {
 
 /// A patch of about the smallest area over a loop of three points and more, all within a box of
 /// about 1. Of loops of up to 400 points it is the smallest but for one thing: what lies folded
-/// back onto its neighbour, or onto the surface around, counts twice more. Longer ones are spanned
+/// back onto its neighbor, or onto the surface around, counts twice more. Longer ones are spanned
 /// between 400 of their points first, and the others put in one by one. `normals`: the unit normals
 /// of the surface at each edge, from a point to the next; zero where there is none. Throws
 /// Error(kCancelled).

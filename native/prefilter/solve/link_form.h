@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Sums of shares of a few texels, wherever they are, whose squares a system minimises too.
+// Sums of shares of a few texels, wherever they are, whose squares a system minimizes too.
 #pragma once
 
 #include <array>

@@ -273,7 +273,7 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
   const Lanes typical = typical_values();
 
   // A row is relaxed while it or a row beside it still moves; the slot past the last row is for a
-  // row that is not there. Rows of one colour, 0 and 1 in turn, are not beside each other, so they
+  // row that is not there. Rows of one color, 0 and 1 in turn, are not beside each other, so they
   // can move at the same time; of an odd number that repeats, the last is beside the first, and
   // comes by itself.
   std::vector<unsigned char> moves(static_cast<std::size_t>(height_) + 1, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Linear systems between the texels of one level in which each texel meets its eight neighbours,
+// Linear systems between the texels of one level in which each texel meets its eight neighbors,
 // and their solution within ranges.
 #pragma once
 
@@ -40,7 +40,7 @@ class NinePointSystem {
   int width() const { return width_; }
   int height() const { return height_; }
 
-  /// Integrals, over a cell between four texel centres, of the products of the tents there: those
+  /// Integrals, over a cell between four texel centers, of the products of the tents there: those
   /// along x of low x low, low x high and high x high, for the same along y, at [3 * y + x].
   using TentProducts = std::array<Entry, 9>;
   /// Integrals of what stands on the right, times the tents: low and high along x, at [2 * y + x].
@@ -82,9 +82,9 @@ class NinePointSystem {
   void make_texels() { texels_.assign(stencils_.size(), LaneValues{}); }
 
   /// Moves the texels to the solution within the ranges, from where they are: projected
-  /// Gauss-Seidel, by rows of alternating colour, so the result is the same for any number of
+  /// Gauss-Seidel, by rows of alternating color, so the result is the same for any number of
   /// threads. Where the system is all but singular, as under charts that shrink to points, texels
-  /// may stop some way from it: moving them on would change the minimised form by next to nothing.
+  /// may stop some way from it: moving them on would change the minimized form by next to nothing.
   /// Returns the number of sweeps.
   int solve(const SolveOptions& options, const Progress& progress);
 
@@ -97,7 +97,7 @@ class NinePointSystem {
   Image take_image(int channels);
 
  private:
-  // Entries of a texel with itself and with its neighbours east, north, north-east and north-west.
+  // Entries of a texel with itself and with its neighbors east, north, north-east and north-west.
   struct Stencil {
     Entry centre{};
     Entry east{};
@@ -127,7 +127,7 @@ class NinePointSystem {
   int height_;
   WrapModes wrap_;
   // Rows are one texel longer than the level, and there is one more of them: entries of zero, which
-  // are what texels at the edge of a clamped or bordered level have as neighbours.
+  // are what texels at the edge of a clamped or bordered level have as neighbors.
   int stride_;
   std::vector<Stencil> stencils_;
   std::vector<LaneValues> right_side_;

@@ -233,7 +233,7 @@ void NearestPoints::Tree::search(const Vector3& point, std::optional<std::int32_
 std::vector<SurfacePoint> NearestPoints::Tree::find(std::span<const Vector3> points,
                                                     const Progress& progress, int threads) const {
   check_points(points, "points: row", kLargest);
-  // Along the curve a point's neighbours come before it: the triangle nearest to them is a good
+  // Along the curve a point's neighbors come before it: the triangle nearest to them is a good
   // first guess, and what was read for them is at hand.
   const std::vector<CurvePlace> order = along_curve(
       points.size(), [&](std::size_t i) { return points[i]; }, progress.part(0.0, 0.1), threads);

@@ -2,8 +2,8 @@
 
 // Equation 6.4 for a subdomain: which of its texels, with which weights.
 //
-// What is minimised is that, plus TableShape::ramp_weight times the squared distance between the
-// sample and the weighted centre of its texels, integrated over the subdomain. As weights sum to 1
+// What is minimized is that, plus TableShape::ramp_weight times the squared distance between the
+// sample and the weighted center of its texels, integrated over the subdomain. As weights sum to 1
 // the distance is a weighted sum too, and products and right sides hold both.
 //
 // In polynomials that are orthonormal over the subdomain the weights' equations come apart: one
@@ -22,7 +22,7 @@
 
 namespace prefilter {
 
-/// The best weights of a set of texels, and what is minimised. Infinite, without weights, where
+/// The best weights of a set of texels, and what is minimized. Infinite, without weights, where
 /// texels of the set make up another one of it.
 struct FittedSet {
   std::vector<int> members;     // candidates, in rising order

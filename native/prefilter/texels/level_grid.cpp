@@ -11,7 +11,7 @@
 namespace prefilter {
 namespace {
 
-// Centres of texels of two levels are at fractions with denominators of twice their sizes: they are
+// Centers of texels of two levels are at fractions with denominators of twice their sizes: they are
 // the same, or farther apart than this up to sizes of 2^16.
 constexpr double kSameLine = 1e-10;
 

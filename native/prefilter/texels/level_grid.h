@@ -2,8 +2,8 @@
 
 // Lines that cut a texture into cells on which the bilinear interpolants of levels are polynomials.
 //
-// The interpolant of a level is bilinear between the centres of its texels. The cells of level l
-// here are cut along the centres of level l and of all coarser levels, so that on each of them all
+// The interpolant of a level is bilinear between the centers of its texels. The cells of level l
+// here are cut along the centers of level l and of all coarser levels, so that on each of them all
 // these interpolants are one bilinear polynomial, and a cell of level l + 1 is a block of whole
 // cells of level l. For sides that are powers of two these are the half-texel grids of figure 7.4;
 // for others, whose levels do not nest, they are the union of the levels' grids, and still about
@@ -16,7 +16,7 @@
 
 namespace prefilter {
 
-/// A cell among the texel centres of a level, along one axis: it lies between the centres of texels
+/// A cell among the texel centers of a level, along one axis: it lies between the centers of texels
 /// `texel` and `texel` + 1 (-1 and the size stand for those beyond the edges), and the coordinate x
 /// in the cell is at placement.offset + placement.scale * x of the way.
 struct CellPlace {

@@ -175,8 +175,8 @@ class Patch {
   std::array<Texel, kSide * kSide> texels_;
 };
 
-// Integrals of I and x I over a texel along one axis, for a bilinear I with values at the centres
-// of the texel and its two neighbours.
+// Integrals of I and x I over a texel along one axis, for a bilinear I with values at the centers
+// of the texel and its two neighbors.
 constexpr double kTexelStencil[2][3] = {{6.0 / 48.0, 36.0 / 48.0, 6.0 / 48.0},
                                         {1.0 / 48.0, 18.0 / 48.0, 5.0 / 48.0}};
 
@@ -205,11 +205,11 @@ void add_uniform_texel(const Patch<C>& patch, int x, int y, double density,
   }
 }
 
-// The values of an image at the four texel centres around a cell, at [2 * y + x].
+// The values of an image at the four texel centers around a cell, at [2 * y + x].
 template <int C>
 using Corners = std::array<std::array<double, C>, 4>;
 
-// Moments of a cell between four texel centres of an image; `in_x`, `in_y` say where.
+// Moments of a cell between four texel centers of an image; `in_x`, `in_y` say where.
 template <int C>
 CellMoments<C> moments_between(const WeightMoments& w, const Corners<C>& corners,
                                const Placement& in_x, const Placement& in_y) {
@@ -252,7 +252,7 @@ CellMoments<C> cell_moments(const WeightMoments& w, const Patch<C>& patch, const
                             in_x.placement, in_y.placement);
 }
 
-// The same of an image whose colours are encoded, and decoded after the lookup.
+// The same of an image whose colors are encoded, and decoded after the lookup.
 template <int C>
 CellMoments<C> decoded_cell_moments(const WeightMoments& w, const Patch<C>& patch,
                                     const CellWindow& texels, const CellPlace& in_x,

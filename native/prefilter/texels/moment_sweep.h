@@ -44,7 +44,7 @@ struct MomentBlock {
   const CellPlace* y_places(int of) const { return y_cells->places(level, of).data() + y0; }
 };
 
-/// Calls use(moments, column, row) for each cell between the texel centres (column, row) and
+/// Calls use(moments, column, row) for each cell between the texel centers (column, row) and
 /// (column
 /// + 1, row + 1) of a block's level that some of the surface in the block lies in, with the moments
 /// of that part in the coordinates of this cell.
@@ -79,7 +79,7 @@ void for_each_dual_cell(const MomentBlock<C>& block, const Use& use) {
 struct SweepOptions {
   int first_level = 1;  // 0 or 1: the finest level that is visited
   int last_level = 1;
-  // With kSrgbAfter the colours of the image are encoded, and its moments are those of the decoded
+  // With kSrgbAfter the colors of the image are encoded, and its moments are those of the decoded
   // lookup: by FourPointRule in each of the finest cells.
   Reader reader = Reader::kLinear;
   // [k] is an image of level k's size, which is what all coarser levels see in place of the one

@@ -32,8 +32,8 @@ void for_each_tile(const MassTriangle& triangle, int columns, int rows, const Us
 
 }  // namespace
 
-// Colours 0 and 1 in turn. The last one is beside the first around the edge, and may be so narrow
-// that the one before it comes near the first too: they have colours of their own.
+// Colors 0 and 1 in turn. The last one is beside the first around the edge, and may be so narrow
+// that the one before it comes near the first too: they have colors of their own.
 int tile_colour(int tile, int count, int size) {
   const bool narrow = size % Tiles::kSize != 0;
   if (count > 1 && tile == count - 1 && (narrow || count % 2 == 1)) return 2;

@@ -13,7 +13,7 @@
 
 namespace prefilter {
 
-/// Numbers of tiles along an axis, coloured so that those of one colour are a whole tile apart,
+/// Numbers of tiles along an axis, colored so that those of one color are a whole tile apart,
 /// even around the edge.
 inline constexpr int kTileColours = 4;
 int tile_colour(int tile, int count, int size);
@@ -38,7 +38,7 @@ class Tiles {
   const std::uint32_t* begin(std::int64_t tile) const { return members_.data() + starts_[tile]; }
   const std::uint32_t* end(std::int64_t tile) const { return members_.data() + starts_[tile + 1]; }
 
-  /// Calls body(tile) for all tiles in parallel, in passes: tiles of one pass are not neighbours,
+  /// Calls body(tile) for all tiles in parallel, in passes: tiles of one pass are not neighbors,
   /// not even around the image's edges.
   void for_each_apart(int threads, const Progress& progress,
                       const std::function<void(std::int64_t)>& body) const;

@@ -39,7 +39,7 @@ std::vector<Means> transform(std::vector<Differences> differences,
                              std::vector<std::vector<BrickPosition>> needed,
                              const Progress& progress, int threads);
 
-/// The function at the centres of the cells of a brick, [z][y][x]: the sum of means times phi.
+/// The function at the centers of the cells of a brick, [z][y][x]: the sum of means times phi.
 std::array<float, 64> function_at(const Means& means, const BrickPosition& brick);
 
 }  // namespace prefilter::d4

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The bake, by what it must give: colour, alpha, wrap, levels, and nothing after a failure."""
+"""The bake, by what it must give: color, alpha, wrap, levels, and nothing after a failure."""
 
 import bpy
 import numpy as np

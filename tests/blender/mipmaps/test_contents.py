@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Images that are no colour: normal maps and their roughness, cut-outs, masks."""
+"""Images that are no color: normal maps and their roughness, cut-outs, masks."""
 
 import bpy
 import numpy as np
@@ -365,7 +365,7 @@ def test_color_of_a_data_image_has_coverage(bake):
 @pytest.mark.parametrize("alpha_mode", ["CHANNEL_PACKED", "NONE"])
 @pytest.mark.parametrize("filter", ["box", "pam-bilinear"])
 def test_packed_channels_are_independent(bake, alpha_mode, filter):
-    """The same colours with another fourth channel give the same colours."""
+    """The same colors with another fourth channel give the same colors."""
     values = scenes.noise(8, 8, alpha=True)
     other = values.copy()
     other[..., 3] = scenes.noise(8, 8, seed=9)[..., 0]

@@ -40,7 +40,7 @@ def torus_colors(points):
 
 @pytest.fixture
 def scan(tmp_path):
-    """Writes points of a torus with normals and colours."""
+    """Writes points of a torus with normals and colors."""
     points, normals = clouds.torus()
     return write_ply(tmp_path / "scan.ply", points, normals, torus_colors(points))
 

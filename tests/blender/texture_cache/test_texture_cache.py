@@ -350,7 +350,7 @@ def test_levels_fall_no_deeper_than_the_image(scene, tmp_path):
 
 @needs_cache
 def test_deep_integers_stay_within_one(scene, tmp_path):
-    """Blender caches a 16-bit file of another colour space as floats."""
+    """Blender caches a 16-bit file of another color space as floats."""
     pixels = np.ones((64, 64, 3), np.float32)
     pixels[:, ::5] = 0
     image = cycles.write_picture(tmp_path / "deep.png", pixels, "uint16")

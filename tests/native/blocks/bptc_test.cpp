@@ -66,7 +66,7 @@ Halves through_bc6h(const Halves& texels, int width, int height) {
   });
 }
 
-/// A half float as a whole number in its order; neighbours differ by 1.
+/// A half float as a whole number in its order; neighbors differ by 1.
 int rank_of(HalfBits half) { return half & kMinus ? -(half & 0x7fff) : half; }
 
 double rms_error(const Bytes& found, const Bytes& wanted, int first, int end) {
@@ -80,7 +80,7 @@ double rms_error(const Bytes& found, const Bytes& wanted, int first, int end) {
   return std::sqrt(sum / (static_cast<double>(wanted.size()) / 4 * (end - first)));
 }
 
-/// Waves of their own in each channel, which no line of colours follows.
+/// Waves of their own in each channel, which no line of colors follows.
 double wave(int x, int y, int c) {
   return std::sin(0.08 * x + 0.4 * c) * std::cos(0.06 * y + 0.9 * c);
 }

@@ -47,7 +47,7 @@ double decoded_channel(const std::uint8_t* block, int i) {
   return ((6 - index) * low + (index - 1) * high) / 5;
 }
 
-/// The colour of texel `i` in a block of BC1, after its definition.
+/// The color of texel `i` in a block of BC1, after its definition.
 Color decoded_color(const std::uint8_t* block, int i) {
   const auto end = [block](int at) {
     const int packed = block[at] | block[at + 1] << 8;
@@ -160,7 +160,7 @@ TEST(CompressBlocks, TexelsOfBc1RgbAreOpaqueWhateverTheirAlpha) {
 }
 
 // Four texels at a corner, and a whole block of each of them four times, have the same best
-// colours.
+// colors.
 TEST(CompressBlocks, TexelsBeyondTheEdgeDoNotCount) {
   const Bytes corner = random_texels(2, 2, 7);
   Bytes whole;
@@ -177,7 +177,7 @@ TEST(CompressBlocks, TexelsBeyondTheEdgeDoNotCount) {
 }
 
 TEST(CompressBlocks, WeighColorsByAlpha) {
-  // Colours on no line, of which one can be met only at the cost of the others.
+  // Colors on no line, of which one can be met only at the cost of the others.
   Bytes texels;
   for (int i = 0; i < 16; ++i) {
     const Bytes color = i < 4    ? Bytes{255, 0, 0, 255}

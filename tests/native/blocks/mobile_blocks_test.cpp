@@ -89,7 +89,7 @@ TEST(MobileBlocks, AreTheSameForAnyNumberOfThreads) {
   }
 }
 
-// Decoders round colours of sRGB otherwise, so the nearest block may be another.
+// Decoders round colors of sRGB otherwise, so the nearest block may be another.
 TEST(MobileBlocks, OfAstcHeedTheEncoding) {
   const Bytes texels = random_texels<std::uint8_t>(48, 48, 255, 4);
   BlockOptions options = options_of(BlockFormat::kAstc4x4);

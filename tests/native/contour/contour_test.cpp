@@ -42,7 +42,7 @@ TEST(EdgeCrossing, IsExactForLines) {
   while (count < 20000) {
     const double a = uniform(random);
     const double b = uniform(random);
-    // Through the line between the centres (1/2, 1/2) and (3/2, 1/2).
+    // Through the line between the centers (1/2, 1/2) and (3/2, 1/2).
     const double t = std::abs(uniform(random));
     const double c = a * (0.5 + t) + b * 0.5;
     const double first = share_below(0.0, 0.0, a, b, c);

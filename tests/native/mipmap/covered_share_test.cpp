@@ -47,7 +47,7 @@ TEST(CoveredShare, WrapModesReachOverTheEdges) {
   Image alpha(4, 1, 1);
   *alpha.texel(0, 0) = 1.0F;
   const Image weights(4, 1, 1, 1.0F);
-  // To the right, half of the gap between centres; to the left, the rest of the texel, or half of
+  // To the right, half of the gap between centers; to the left, the rest of the texel, or half of
   // the gap to what the mode says.
   EXPECT_NEAR(share(alpha, weights, 0.5F, 16), 1.0 / 4.0, 1e-12);
   EXPECT_NEAR(share(alpha, weights, 0.75F, 16), 0.75 / 4.0, 1e-12);

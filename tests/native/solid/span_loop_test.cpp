@@ -79,7 +79,7 @@ TEST(SpanLoop, IsTheSmallestOfAllThereAre) {
       EXPECT_EQ(patch.triangles().size(), count - 2);
       const double best = smallest_area(loop, 0, count - 1);
       EXPECT_GE(area_of(patch), best * (1.0 - 1e-9));
-      // What lies folded onto its neighbour counts more.
+      // What lies folded onto its neighbor counts more.
       EXPECT_LE(area_of(patch), best * 1.05);
     }
   }

@@ -13,7 +13,7 @@ namespace prefilter {
 
 struct BlockOptions {
   BlockFormat format = BlockFormat::kBc1;
-  /// Whether colours of texels with little alpha count little, for kBc3 and ASTC.
+  /// Whether colors of texels with little alpha count little, for kBc3 and ASTC.
   bool weigh_by_alpha = false;
   /// Whether red, green and blue are sRGB-encoded, for ASTC, whose decoders then round otherwise.
   bool is_srgb = false;

@@ -13,11 +13,11 @@ namespace prefilter {
 float srgb_to_linear(float encoded);
 float linear_to_srgb(float linear);
 
-/// The image with its colour channels decoded or encoded. A fourth channel is alpha and stays.
+/// The image with its color channels decoded or encoded. A fourth channel is alpha and stays.
 Image decode_srgb(const ImageView& image, int threads);
 Image encode_srgb(const ImageView& image, int threads);
 
-/// What bytes stand for: a 255th each, and for the colour channels of an image with `srgb` what
+/// What bytes stand for: a 255th each, and for the color channels of an image with `srgb` what
 /// that is decoded. A fourth channel is alpha.
 ByteValues byte_values(bool srgb);
 

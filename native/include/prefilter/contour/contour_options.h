@@ -13,7 +13,7 @@ namespace prefilter {
 
 enum class Interpolant {
   kOccupancy,  // a line that leaves each of two cells its share: chapter 5
-  kPlane,      // the surface that preserves neighbouring cells
+  kPlane,      // the surface that preserves neighboring cells
   kLinear,     // samples of a smooth function: marching cubes
   kSharp,      // kPlane, with the edges and corners of the shape
 };

@@ -11,7 +11,7 @@
 
 namespace prefilter {
 
-/// Samples at [(x * size[1] + y) * size[2] + z], at the centres of cells (x + 1/2, y + 1/2, z +
+/// Samples at [(x * size[1] + y) * size[2] + z], at the centers of cells (x + 1/2, y + 1/2, z +
 /// 1/2).
 struct GridView {
   const float* values = nullptr;

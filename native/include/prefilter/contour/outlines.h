@@ -11,7 +11,7 @@
 
 namespace prefilter {
 
-/// Samples at [x * size[1] + y], at the centres of cells (x + 1/2, y + 1/2).
+/// Samples at [x * size[1] + y], at the centers of cells (x + 1/2, y + 1/2).
 struct PlaneView {
   const float* values = nullptr;
   std::array<int, 2> size{};  // cells along the axes, 1 to 4096

@@ -15,7 +15,7 @@ inline constexpr int kExrTileSide = 64;
 struct ExrTileOptions {
   bool half = true;         // 16-bit floats, or 32-bit ones
   bool has_alpha = false;   // whether the last channel, of two or four, is alpha
-  bool multiplies = false;  // whether colours are to be multiplied by alpha
+  bool multiplies = false;  // whether colors are to be multiplied by alpha
   int threads = 0;          // 0 = all processors
 };
 

@@ -73,7 +73,7 @@ struct Taps {
 };
 
 /// Taps of a kernel at `centre`, in texels of the source, where its unit is `width` texels wide: it
-/// is taken at the texels' centres, and never narrower than they are. Where it jumps it is
+/// is taken at the texels' centers, and never narrower than they are. Where it jumps it is
 /// integrated over each texel, at any width: the box gives the mean over its square.
 Taps kernel_taps(const Kernel& kernel, double centre, double width);
 

@@ -15,7 +15,7 @@ namespace prefilter {
 struct CoverageOptions {
   double threshold = 0.5;  // the alpha that is still shown; above 0, at most 1
   WrapModes wrap;
-  bool premultiplied = false;  // whether colours are multiplied by alpha, and change along with it
+  bool premultiplied = false;  // whether colors are multiplied by alpha, and change along with it
   int threads = 0;             // 0 = all processors
   Progress progress;
 };

@@ -50,7 +50,7 @@ struct MipmapOptions {
 /// Levels of an image: 0 is the image itself, each other half as wide and high, rounded down, and
 /// never less than 1.
 ///
-/// A level of SurfaceFilter::kBilinear minimises the integral over the surface of the squared
+/// A level of SurfaceFilter::kBilinear minimizes the integral over the surface of the squared
 /// difference between the bilinear lookups of the level and of the image, subject to the bounds;
 /// those of SurfaceFilter::kTrilinear the integral over all mip values too, of trilinear lookups,
 /// with the mean over the surface as the last level. SurfaceFilter::kUnitSquare takes the unit

@@ -16,7 +16,7 @@ struct ResizeOptions {
   bool constrained = false;
   WrapModes wrap;
   // False: the last of two or four channels is coverage, in [0, 1], and the others are not
-  // multiplied by it yet. They are multiplied, filtered and divided again; colours then stay within
+  // multiplied by it yet. They are multiplied, filtered and divided again; colors then stay within
   // the range of those that the image shows, and alpha in [0, 1]. True: every channel is filtered
   // as it stands.
   bool premultiplied = false;
@@ -30,7 +30,7 @@ struct ResizeOptions {
 /// Kernels work along each axis, in units of the wider ones of old and new texels, and leave an
 /// axis alone whose size stays. The box is the mean of the old texels, as squares, over the new
 /// texel's square. Radial filters weigh texels by their distance, in the same units. All weights
-/// are scaled to a sum of 1. Least squares minimise the integral, over the image, of the squared
+/// are scaled to a sum of 1. Least squares minimize the integral, over the image, of the squared
 /// difference between the old texels, as squares, and the new ones, interpolated bilinearly
 /// (section 1.1).
 ///

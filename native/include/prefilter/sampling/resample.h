@@ -18,7 +18,7 @@ namespace prefilter {
 /// its texels. Pixel i spans [i, i + 1).
 using Homography = std::array<double, 9>;
 
-/// Where the centre of a pixel lies in an image, and how it is spread there.
+/// Where the center of a pixel lies in an image, and how it is spread there.
 struct PixelPlace {
   bool is_visible = false;  // w > 0, and everything finite
   TexturePlace coordinates{};

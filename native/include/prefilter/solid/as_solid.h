@@ -46,7 +46,7 @@ struct Solid {
 ///
 /// A mesh whose edges are all run through as often one way as the other, which holds no face twice
 /// and whose parts are right side out or cavities in others is unchanged. Others get, in this
-/// order: vertices that count as one, each face once, faces turned to go with their neighbours,
+/// order: vertices that count as one, each face once, faces turned to go with their neighbors,
 /// closed parts turned right side out.
 ///
 /// Throws Error as voxelize does for a mesh that is no mesh; for a cell that is not finite and

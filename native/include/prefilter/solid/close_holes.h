@@ -43,7 +43,7 @@ struct Caps {
 /// in the surface's plane, bent as little as possible: a hole in a sphere is closed by its missing
 /// part. Where surface and soap film meet at more than 75 degrees, as around a box without a lid,
 /// the border is a crease. Holes of up to 6 edges get a fan. So do those of kFlat and kSmooth whose
-/// loops are traversed twice, around faces that are turned against their neighbours.
+/// loops are traversed twice, around faces that are turned against their neighbors.
 ///
 /// With `leaves_losses` some loops stay open:
 /// - that around a sheet, whose cap would be the sheet turned over: a part that, closed, would have

@@ -16,7 +16,7 @@ constexpr int kLastUdimTile = 9999;
 /// Triangles are cut exactly at the tile's edges; a part has its share of the triangle's area, also
 /// where texture coordinates are degenerate. A triangle that is a line or a point in the texture
 /// and lies just on an edge between tiles belongs to the tile right of or above it. Parts of
-/// neighbours share the vertices that were cut into their common edge. The result has no triangle
+/// neighbors share the vertices that were cut into their common edge. The result has no triangle
 /// where nothing lies in the tile.
 ///
 /// Throws Error for a number that is not in 1001 to 9999.

@@ -38,7 +38,7 @@ struct TableShape {
   int grid = 4;                     // parts of a cell along x, and along y
   int slices = 2;                   // parts from one level to the next
   int degree = 1;                   // of the weights in x, y and f: 1, or 2
-  // How much it counts, when a table is built, that the weighted centre of a sample's texels is
+  // How much it counts, when a table is built, that the weighted center of a sample's texels is
   // where the sample is: its squared distance in cells, against equation 6.3. Ramps then come out
   // as they are, and do not step from subdomain to subdomain. 0 to kMostRampWeight.
   double ramp_weight = 5.0;
@@ -62,7 +62,7 @@ struct TableSection {
   std::vector<double> coefficients;  // [subdomain][texel][term]; of a term they sum to 1 or to 0
   std::vector<double> errors;        // [subdomain]: equation 6.3, integrated over the subdomain
   std::vector<double> trilinear_errors;  // of trilinear interpolation, likewise
-  std::vector<double> gaps;  // [subdomain]: how much lower what is minimised may still be for
+  std::vector<double> gaps;  // [subdomain]: how much lower what is minimized may still be for
                              // another set, as a share of it; 0 where proven optimal; empty if not
                              // certified
 };

@@ -10,7 +10,7 @@ enum class Reader {
   kSrgbAfter,  // filters sRGB-encoded texels, then decodes: Cycles on 8-bit sRGB images
 };
 
-/// Channels of an image that are stored sRGB-encoded: its colours. A fourth channel is alpha.
+/// Channels of an image that are stored sRGB-encoded: its colors. A fourth channel is alpha.
 inline int encoded_channels(int channels) { return channels < 3 ? channels : 3; }
 
 }  // namespace prefilter

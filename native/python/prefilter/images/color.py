@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Colour encodings."""
+"""Color encodings."""
 
 import numpy.typing as npt
 

@@ -41,7 +41,7 @@ def keep_coverage(
         surface: One surface, or several that share the image.
         threshold: The alpha that is still shown; above 0, at most 1.
         wrap: As for `mipmaps`.
-        premultiplied: Whether colours are multiplied by alpha; then they change along with it.
+        premultiplied: Whether colors are multiplied by alpha; then they change along with it.
         progress: As for `mipmaps`.
         threads: As for `mipmaps`.
 

@@ -98,7 +98,7 @@ def mipmaps(
 ) -> FilteredLevels[np.float32] | FilteredLevels[np.uint16] | FilteredLevels[np.uint8]:
     """The levels of an image's mipmap, each fitted to the surface that uses it.
 
-    "pam-bilinear" minimises, level by level, the integral over the surface of the squared
+    "pam-bilinear" minimizes, level by level, the integral over the surface of the squared
     difference between a bilinear lookup of the level and one of the image (section 7.3), within
     the bounds. "pam-trilinear" does the same for all levels together and trilinear lookups,
     averaged over all mip values; level 0 is the image and the last level, of 1 x 1 texel, its mean
@@ -120,7 +120,7 @@ def mipmaps(
         bounds: (low, high) that texels of the levels may take; either may be None, and None stands
             for both. "pam-bilinear" and "pam-trilinear" solve under them, the others are clipped.
         levels: How many levels to return, level 0 included; None = down to 1 x 1.
-        premultiplied: Whether the colours of a 4-channel image are multiplied by alpha already, or
+        premultiplied: Whether the colors of a 4-channel image are multiplied by alpha already, or
             its fourth channel is no coverage: then every channel is filtered as it stands.
             Otherwise they are multiplied for filtering and divided afterwards.
         reader: What will look up the levels, for "pam-bilinear": "linear" decodes texels, then
@@ -128,7 +128,7 @@ def mipmaps(
             then decodes (Cycles on 8-bit sRGB images). The image and the levels are scene-linear in
             both cases, and what the image shows is defined by the reader too. The second is a
             bounded Gauss-Newton fit, started from the first.
-        encoding: Of an image of uint8 or uint16, and of its levels: with "srgb" its colours are
+        encoding: Of an image of uint8 or uint16, and of its levels: with "srgb" its colors are
             decoded to be filtered, and encoded again. The fourth of four channels is alpha, and
             linear.
         seam_budget: By how much, as a share, the error of each level may rise to hide UV seams, for

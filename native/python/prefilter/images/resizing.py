@@ -37,7 +37,7 @@ def resize(
     longer.
 
     "least-squares" gives the pixels that come closest to the image once they are enlarged
-    bilinearly: they minimise the integral, over the image, of the squared difference between the
+    bilinearly: they minimize the integral, over the image, of the squared difference between the
     old pixels, as squares, and the new ones, interpolated (figures 1.8 and 7.3).
 
     An image of the same size stays as it is, whatever the filter. So does a constant one at any
@@ -45,7 +45,7 @@ def resize(
 
     Args:
         image: (height, width, 1 to 4 channels) or (height, width), scene-linear, row 0 at the
-            bottom; encoded colours are decoded first (`to_linear`). Bytes (uint8) stand for a 255th
+            bottom; encoded colors are decoded first (`to_linear`). Bytes (uint8) stand for a 255th
             each, uint16 for a 65535th.
         width: Of the result, in pixels, 1 to 2^20.
         height: Of the result.
@@ -54,10 +54,10 @@ def resize(
             the results of the others are clipped to them.
         wrap: What lies outside of the image: "clamp" (its nearest pixel), "repeat" or "border"
             (zero), or a pair of these for x and y.
-        premultiplied: Whether the colours of an image of 2 or 4 channels are multiplied by alpha
+        premultiplied: Whether the colors of an image of 2 or 4 channels are multiplied by alpha
             already, or its last channel is no alpha: then every channel is filtered as it stands.
             Otherwise they are multiplied for filtering and divided afterwards; where alpha is not
-            1 everywhere, colours stay within the range that those of visible pixels have, and alpha
+            1 everywhere, colors stay within the range that those of visible pixels have, and alpha
             within [0, 1].
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. Results do not depend on it.

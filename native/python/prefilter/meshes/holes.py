@@ -45,7 +45,7 @@ def close_holes(
     `voxelize` takes open meshes, and what a hole does stays close to it; but there, the surface
     ends in steps. With caps, every edge is traversed as often one way as the other, so winding
     numbers are whole. Vertices at one place count as one. Faces that are turned against their
-    neighbours are made up for, too.
+    neighbors are made up for, too.
 
     A hole stays open where its cap would cancel the surface: around a sheet, whose cap would be the
     sheet turned over; between pieces that are close to each other and together enclose something;

@@ -50,7 +50,7 @@ def sampling_levels(
     """The levels that a sampling table of the same filter fits.
 
     Level k is the image under the kernel with its unit as wide as a texel of the level, which is
-    2^k texels of the image: what the exact filter gives at the texels' centres. Level 0 is the
+    2^k texels of the image: what the exact filter gives at the texels' centers. Level 0 is the
     image itself where the kernel interpolates ("box", "tent", "lanczos2", "lanczos3"); the others
     blur it. Nothing is clipped: kernels with negative lobes leave the range of the image.
 

@@ -50,8 +50,8 @@ def write_exr(
             are floats.
         format: "half" for 16-bit floats, "float" for 32-bit ones. Values beyond the range of halves
             are clipped to it.
-        encoding: How integers stand for colours: "linear" or "srgb". Alpha is linear always.
-        alpha: What the last of two or four channels is: "straight" (colours are multiplied by it),
+        encoding: How integers stand for colors: "linear" or "srgb". Alpha is linear always.
+        alpha: What the last of two or four channels is: "straight" (colors are multiplied by it),
             "premultiplied" (they are already) or "independent" (no alpha). In halves alpha is
             clipped to [0, 1].
         attributes: Texts for the file's header, such as {"wrapmodes": "periodic,periodic"}.

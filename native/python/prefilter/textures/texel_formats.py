@@ -15,7 +15,7 @@ from .._border.arrays import as_image, as_texels
 from ..images.color import to_linear
 
 Codes = tuple[int | None, int | None]
-"""What a container calls a format with linear and with sRGB colours; None where it has no word."""
+"""What a container calls a format with linear and with sRGB colors; None where it has no word."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class TexelFormat:
         unit_bytes: Of a texel, or of a block of texels.
         block: The columns and rows of a block that is compressed; None where texels are not.
         channel_type: Of a channel; of what is compressed for blocks.
-        dxgi: The DXGI_FORMAT of linear and of sRGB colours; None where there is none.
+        dxgi: The DXGI_FORMAT of linear and of sRGB colors; None where there is none.
         vulkan: The VkFormat of the same.
     """
 
@@ -56,7 +56,7 @@ class Texture:
     Attributes:
         texel_format: Of every level.
         code: What the container calls it.
-        is_srgb: Whether its colours are sRGB-encoded.
+        is_srgb: Whether its colors are sRGB-encoded.
         width: Of level 0, in texels.
         height: Of level 0, in texels.
         levels: Their texels or blocks, level 0 first, the top row first.
@@ -268,7 +268,7 @@ def _linear_floats(
 
 
 def _with_channels(texels: np.ndarray, channels: int) -> np.ndarray:
-    """The first channels; for four, grey becomes a colour, and what lacks is 0, but alpha 1."""
+    """The first channels; for four, gray becomes a color, and what lacks is 0, but alpha 1."""
     found = texels.shape[2]
     if found >= channels:
         return np.ascontiguousarray(texels[..., :channels])

@@ -49,16 +49,16 @@ def write_dds(
             from bytes, and "bc6h" from half floats. "auto" keeps bytes and channels of bytes, and
             stores others as "rgba16f". "r8" and "bc4" take the first channel, "rg8" and "bc5" two,
             "bc1-rgb" and "bc6h" three; in the others alpha is 1 where there is none. Where three or
-            four are stored, a single channel is grey. "bc1" knows an alpha of 0 or 1 only: below
+            four are stored, a single channel is gray. "bc1" knows an alpha of 0 or 1 only: below
             one half, texels become black and transparent. "bc6h" has no negative values: they
             become 0.
-        encoding: How bytes stand for colours: "linear" or "srgb". It holds for levels of uint8 and
+        encoding: How bytes stand for colors: "linear" or "srgb". It holds for levels of uint8 and
             uint16 and for formats in bytes and blocks: levels of floats are encoded (values beyond
             [0, 1] are clipped), and formats in floats and "bc6h" get decoded, linear values. The
             fourth channel is linear always.
-        alpha: What the fourth channel of four is: "straight", "premultiplied" (colours are
+        alpha: What the fourth channel of four is: "straight", "premultiplied" (colors are
             multiplied by it) or "independent" (no alpha). Values are stored as they are; the file
-            says it, but for "independent" in KTX 2, which has no word for that. Colours that
+            says it, but for "independent" in KTX 2, which has no word for that. Colors that
             straight alpha hides count little in the blocks of "bc3".
         progress: Called with the fraction done, in [0, 1]; may return False to stop.
         threads: How many to use; 0 = all processors. The file does not depend on it.

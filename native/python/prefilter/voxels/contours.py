@@ -28,7 +28,7 @@ def contour(
     """The surface of a 3D grid, or the outlines of a 2D one (chapter 5).
 
     Cell (i, j, k) spans origin + spacing x [i, i + 1) x [j, j + 1) x [k, k + 1), and its sample is
-    at its centre. What is outside of the grid is empty, so surfaces and outlines are closed. A
+    at its center. What is outside of the grid is empty, so surfaces and outlines are closed. A
     surface is two-manifold, whatever the samples.
 
     Args:

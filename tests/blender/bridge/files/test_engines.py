@@ -85,7 +85,7 @@ def test_other_color_spaces_become_srgb(bake, tmp_path, kind):
     bake(image, f"out.{kind}")
     file = READERS[kind](tmp_path / f"out.{kind}")
     assert file.is_srgb
-    # A saturated colour of Rec.2020 lies outside of Rec.709, and is clipped.
+    # A saturated color of Rec.2020 lies outside of Rec.709, and is clipped.
     assert not np.array_equal(file.levels[0][..., :3], as_bytes(values[..., :3]))
 
 

@@ -15,7 +15,7 @@ SESSION = Path(__file__).with_name("preview_session.py")
 # where it blends with what it wrote before.
 BYTE, DARK_BYTE = 4.5, 13.0
 BLENDED_BYTE = 10.0
-CHECKER = (0.2, 0.15)  # The theme's colours; squares of 8 pixels.
+CHECKER = (0.2, 0.15)  # The theme's colors; squares of 8 pixels.
 QUAD = prefilter.Surface(
     np.array([(x, y, 0.0) for x, y in scenes.UNIT_SQUARE]),
     np.array([(0, 1, 2), (0, 2, 3)]),
@@ -114,7 +114,7 @@ def difference(seen, expected, mask, name):
 @pytest.mark.parametrize("name", ["byte", "float", "alpha", "data"])
 @pytest.mark.parametrize("channels", ["COLOR_ALPHA", "COLOR", "ALPHA", "GREEN"])
 def test_display_is_the_editors_own(shown, stored, name, channels):
-    """The editor itself is the oracle for colours, channels and transparency."""
+    """The editor itself is the oracle for colors, channels and transparency."""
     pixels = stored[name]
     height, width = pixels.shape[:2]
     shot = f"{name}.plain.{channels}"
