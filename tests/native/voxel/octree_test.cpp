@@ -261,7 +261,7 @@ bool is_beside_a_border(const Octree& octree, const std::vector<float>& cells, i
     high[a] = std::min((place[a] + 1) * width + 1, n);
   }
   const auto at = [&](int x, int y, int z) {
-    return cells[(static_cast<std::size_t>(z) * n + static_cast<std::size_t>(y)) * n + x];
+    return cells[(static_cast<std::size_t>(x) * n + static_cast<std::size_t>(y)) * n + z];
   };
   for (int z = low[2]; z < high[2]; ++z) {
     for (int y = low[1]; y < high[1]; ++y) {
@@ -274,11 +274,11 @@ bool is_beside_a_border(const Octree& octree, const std::vector<float>& cells, i
 }
 
 TEST(Resample, CellsOnBothSidesOfABorderAreFine) {
-  // Faces on borders of cells of depth 1 to 3: all cells are uniform.
+  // Faces on borders of cells, before and after: all cells are uniform.
   const Octree box = voxelized(box_mesh({0.25, 0.5, 0.125}, {0.75, 1.0, 0.5}), 5);
-  const Octree made = regridded(box, kUnit, 5, Progress(), 1);
+  const Octree made = regridded(box, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.5}}, 6, Progress(), 1);
   const std::vector<float> cells = dense(made);
-  ASSERT_EQ(cells, dense(box));
+  ASSERT_EQ(volume(made), volume(box));
   const auto visit = [&](const auto& self, int level, std::size_t block,
                          std::array<int, 3> place) -> void {
     const TreeLevel& blocks = made.cells.levels[static_cast<std::size_t>(level)];
