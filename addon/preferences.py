@@ -35,7 +35,7 @@ class Preferences:
     file_format: str = one_of(
         ModelSettings.file_format,
         "File Format",
-        "Format of the files that bakes write, until another is chosen",
+        "Default format of the files that bakes write",
         FILE_FORMATS,
     )
 

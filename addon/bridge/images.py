@@ -267,9 +267,7 @@ def with_coverage(picture: Picture) -> Picture:
 def check_untiled(image: bpy.types.Image) -> None:
     """Raises ValueError where the image has UDIM tiles."""
     if image.source == "TILED":
-        raise ValueError(
-            f"image '{image.name}': it has UDIM tiles; an image of one tile is needed here"
-        )
+        raise ValueError(f"image '{image.name}': has UDIM tiles; an image without tiles is needed")
 
 
 def tile_numbers(image: bpy.types.Image) -> list[int]:
@@ -313,7 +311,9 @@ def files_of(image: bpy.types.Image) -> dict[int | None, Path]:
     if kind is not None:
         raise ValueError(f"image '{image.name}': found {kind}; a picture file is needed")
     if image.packed_files:
-        raise ValueError(f"image '{image.name}' is packed: unpack it, as Cycles caches files only")
+        raise ValueError(
+            f"image '{image.name}' is packed: unpack it, because Cycles caches only files"
+        )
     if image.is_dirty:
         raise ValueError(f"image '{image.name}': has changes that are not in its file; save it")
     numbers = tile_numbers(image)

@@ -186,7 +186,7 @@ def _uv_map(node: bpy.types.Node, source: bpy.types.NodeSocket) -> str:
     if node.type == "ATTRIBUTE" and node.attribute_type == "GEOMETRY" and node.attribute_name:
         return node.attribute_name
     raise _NotUvError(
-        f"gets its coordinates from '{node.name}' ({source.name}), where a UV map is needed"
+        f"gets its coordinates from '{node.name}' ({source.name}); a UV map is needed"
     )
 
 

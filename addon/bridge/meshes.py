@@ -113,7 +113,7 @@ def image_surfaces(
     if options.importance and found.surfaces and not found.weighted:
         names = ", ".join(f"'{name}'" for name in dict.fromkeys(found.objects))
         raise ValueError(
-            f"importance: found no vertex group or attribute named '{options.importance}' "
+            f"Importance: found no vertex group or attribute named '{options.importance}' "
             f"on {names}"
         )
     return found

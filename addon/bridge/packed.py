@@ -47,7 +47,9 @@ def unpack(image: bpy.types.Image) -> list[Path]:
     if image.is_dirty:
         raise ValueError(f"{who}: has changes that are not packed; save it")
     if not bpy.data.filepath:
-        raise OSError(f"{who} is packed; save the .blend file first, as it is unpacked beside it")
+        raise OSError(
+            f"{who} is packed; save the .blend file first, because images are unpacked beside it"
+        )
     folder = Path(bpy.path.abspath(f"//{FOLDER}"))
     folder.mkdir(exist_ok=True)
     tiles = {file.tile_number: file.packed_file.data for file in image.packed_files}

@@ -90,7 +90,7 @@ class Kind(NamedTuple):
         options = {key: (default, option) for key, default, option in self.options()}
         for key, value in found.items():
             if key not in options:
-                raise ValueError(f"preset '{name}': found '{key}', which is no setting")
+                raise ValueError(f"preset '{name}': '{key}' is not a setting")
             default, option = options[key]
             if not (_is_alike(value, default) and option.allows(value)):
                 raise ValueError(
@@ -123,7 +123,7 @@ class PresetsOperator:
 
     preset: StringProperty(
         name="Preset",
-        description="A preset, for the settings that a script leaves out",
+        description="Preset for the settings that are not given",
         options={"HIDDEN", "SKIP_SAVE"},
     )
 
@@ -202,7 +202,7 @@ def add_flag(parser: "argparse.ArgumentParser") -> None:
         "--preset",
         metavar="NAME",
         default="",
-        help="a preset: the settings of a purpose, such as 'Game asset'. Other arguments go first",
+        help="a preset, such as 'Game asset'; other arguments take precedence",
     )
 
 

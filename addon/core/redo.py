@@ -97,7 +97,7 @@ def in_place_of(replaced: int, context: bpy.types.Context, *, is_undoable: bool)
     if replaced:
         last = context.active_operator
         if last is None or last.as_pointer() != replaced:
-            raise ValueError("Not applied: something else has changed meanwhile")
+            raise ValueError("Not applied: something else has changed in the meantime")
         if is_undoable:
             bpy.ops.ed.undo()
             is_undone = True

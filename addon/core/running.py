@@ -29,7 +29,7 @@ class PREFILTER_PG_run(bpy.types.PropertyGroup):
     """
 
     use_cancel: BoolProperty(
-        name="Cancel", description="Stop, and keep nothing of the result. Esc does the same"
+        name="Cancel", description="Stop and discard the result. Esc does the same"
     )
 
 

@@ -18,7 +18,7 @@ _PAM = {
     ),
     "pam-trilinear": Choice(
         "PAM Trilinear",
-        "Best fit of all levels together: least error for one trilinear lookup a pixel",
+        "Best fit of all levels together: least error for one trilinear lookup per pixel",
     ),
     "pam-box": Choice("PAM Box", "Average of the surface under each texel"),
 }
@@ -74,7 +74,7 @@ BOUNDS = {
     ),
     "unit": Choice("0 to 1", "Values stay between 0 and 1"),
     "positive": Choice("0 and Up", "Values stay at or above 0"),
-    "none": Choice("None", "Values may leave the range of the image"),
+    "none": Choice("None", "Values may exceed the range of the image"),
 }
 
 READERS = {
@@ -110,12 +110,12 @@ LOOKUPS = {
 CONTENTS = {
     "auto": Choice(
         "Automatic",
-        "A normal map where a Normal Map node reads the image, data where its color space is "
-        "Non-Color, else color",
+        "Normal map if a Normal Map node reads the image, data if its color space is "
+        "Non-Color, otherwise color",
     ),
     "color": Choice("Color", "Filtered as light, with alpha as coverage"),
     "data": Choice(
-        "Data", "Roughness, masks, packed channels: values as they are stored, each by itself"
+        "Data", "Roughness, masks, packed channels: the stored values, each channel separately"
     ),
     "normal": Choice("Normal Map", "Filtered as vectors and renormalized"),
     "cutout": Choice(
@@ -134,7 +134,7 @@ MODEL_OBJECTS = {
 }
 RESULTS = {
     "preview": Choice(
-        "Preview", "Draw the levels in the Image editor, in the place of the image; nothing is kept"
+        "Preview", "Draw the levels in the Image editor, in place of the image; nothing is kept"
     ),
     "images": Choice(
         "Images",
@@ -149,62 +149,62 @@ MODEL_RESULTS = {
 FILE_FORMATS = {
     "ktx2": Choice("KTX 2", "For engines and web viewers"),
     "dds": Choice("DDS", "For engines"),
-    "exr": Choice("OpenEXR", "For renderers: scene-linear half floats, in tiles"),
-    "tx": Choice("TX", "For renderers: TIFF in tiles, with the numbers of the image"),
+    "exr": Choice("OpenEXR", "For renderers: tiled, scene-linear half floats"),
+    "tx": Choice("TX", "For renderers: tiled TIFF with the stored values of the image"),
     "tif": Choice("TIFF", "Like TX, with the extension .tif"),
     "png": Choice("PNG", "One file per level"),
 }
 TEXTURE_FORMATS = {
     "auto": Choice(
         "Automatic",
-        "Bytes for byte images, half floats for float images. For all images of a model, blocks "
-        "that suit what each image holds",
+        "8-Bit for byte images, Half Float for float images. With Bake All Images, blocks "
+        "that suit the content of each image",
     ),
     "blocks": Choice(
         "Blocks by Content",
-        "Compressed blocks that suit what the image holds: BC7 for color, BC5 for normal maps, BC4 "
-        "for grayscale data, BC6H for light beyond 1",
+        "Compressed blocks that suit the content of the image: BC7 for color, BC5 for "
+        "normal maps, BC4 for grayscale data, BC6H for light beyond 1",
     ),
-    "rgba8": Choice("8-Bit", "Four bytes a texel, uncompressed"),
-    "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes a texel, for high dynamic range"),
-    "rgba32f": Choice("Float", "Scene-linear, 16 bytes a texel"),
-    "bc1": Choice("BC1", "Compressed color, half a byte a texel; alpha is 0 or 1"),
-    "bc1-rgb": Choice("BC1 RGB", "Compressed color without alpha, half a byte a texel"),
-    "bc3": Choice("BC3", "Compressed color and alpha, a byte a texel"),
-    "bc4": Choice("BC4", "Compressed red channel, half a byte a texel: masks, roughness"),
-    "bc5": Choice("BC5", "Compressed red and green channels, a byte a texel: normal maps"),
+    "rgba8": Choice("8-Bit", "4 bytes per texel, uncompressed"),
+    "rgba16f": Choice("Half Float", "Scene-linear, 8 bytes per texel, for high dynamic range"),
+    "rgba32f": Choice("Float", "Scene-linear, 16 bytes per texel"),
+    "bc1": Choice("BC1", "Compressed color, half a byte per texel; alpha is 0 or 1"),
+    "bc1-rgb": Choice("BC1 RGB", "Compressed color without alpha, half a byte per texel"),
+    "bc3": Choice("BC3", "Compressed color and alpha, 1 byte per texel"),
+    "bc4": Choice("BC4", "Compressed red channel, half a byte per texel: masks, roughness"),
+    "bc5": Choice("BC5", "Compressed red and green channels, 1 byte per texel: normal maps"),
     "bc6h": Choice(
-        "BC6H", "Scene-linear, compressed, a byte a texel, for high dynamic range without alpha"
+        "BC6H", "Scene-linear, compressed, 1 byte per texel, for high dynamic range without alpha"
     ),
     "bc7": Choice(
-        "BC7", "Compressed color and alpha, a byte a texel; closer to the image than BC1 and BC3"
+        "BC7", "Compressed color and alpha, 1 byte per texel; closer to the image than BC1 and BC3"
     ),
     # These need KTX 2.
     "etc2-rgb": Choice(
-        "ETC2 RGB", "Phones, also old ones: color without alpha, half a byte a texel"
+        "ETC2 RGB", "Phones, even old ones: color without alpha, half a byte per texel"
     ),
-    "etc2-rgba": Choice("ETC2 RGBA", "Phones, also old ones: color and alpha, a byte a texel"),
+    "etc2-rgba": Choice("ETC2 RGBA", "Phones, even old ones: color and alpha, 1 byte per texel"),
     "eac-r11": Choice(
-        "EAC R11", "Phones, also old ones: red channel, half a byte a texel: masks, roughness"
+        "EAC R11", "Phones, even old ones: red channel, half a byte per texel: masks, roughness"
     ),
     "eac-rg11": Choice(
-        "EAC RG11", "Phones, also old ones: red and green channels, a byte a texel: normal maps"
+        "EAC RG11", "Phones, even old ones: red and green channels, 1 byte per texel: normal maps"
     ),
     "astc-4x4": Choice(
-        "ASTC 4x4", "Phones and tablets: color and alpha, a byte a texel; for normal maps, too"
+        "ASTC 4x4", "Phones and tablets: color and alpha, 1 byte per texel; also for normal maps"
     ),
-    "astc-6x6": Choice("ASTC 6x6", "Phones and tablets: color and alpha, 0.44 bytes a texel"),
+    "astc-6x6": Choice("ASTC 6x6", "Phones and tablets: color and alpha, 0.44 bytes per texel"),
     "astc-8x8": Choice(
-        "ASTC 8x8", "Phones and tablets: color and alpha, a quarter of a byte a texel"
+        "ASTC 8x8", "Phones and tablets: color and alpha, a quarter of a byte per texel"
     ),
     "astc-4x4-hdr": Choice(
-        "ASTC 4x4 HDR", "Scene-linear, a byte a texel, for phones that have ASTC HDR"
+        "ASTC 4x4 HDR", "Scene-linear, 1 byte per texel, for phones that support ASTC HDR"
     ),
     "astc-6x6-hdr": Choice(
-        "ASTC 6x6 HDR", "Scene-linear, 0.44 bytes a texel, for phones that have ASTC HDR"
+        "ASTC 6x6 HDR", "Scene-linear, 0.44 bytes per texel, for phones that support ASTC HDR"
     ),
     "uastc": Choice(
-        "UASTC", "Web: a byte a texel, turned into what the device has when it is loaded"
+        "UASTC", "Web: 1 byte per texel; loaders transcode it to a format that the device supports"
     ),
 }
 SUPERCOMPRESSIONS = {
@@ -241,16 +241,16 @@ class Settings:
     lookups: str = one_of(
         "auto",
         "Lookups",
-        "How many lookups renderers average for a pixel. Fitted filters heed it, with the reader "
-        "Linear Light",
+        "How many lookups renderers average per pixel. Used by the fitted filters with the "
+        "reader Linear Light",
         LOOKUPS,
         metavar="LOOKUPS",
     )
     wrap: str = one_of(
-        "auto", "Wrap U", "What lookups outside the image read along U", WRAPS, metavar="MODE"
+        "auto", "Wrap U", "What lookups outside the image return along U", WRAPS, metavar="MODE"
     )
     wrap_v: str = one_of(
-        "same", "Wrap V", "What lookups outside the image read along V", WRAPS_V, metavar="MODE"
+        "same", "Wrap V", "What lookups outside the image return along V", WRAPS_V, metavar="MODE"
     )
     content: str = one_of(
         "auto",
@@ -301,7 +301,11 @@ class Settings:
         metavar="N",
     )
     objects: str = one_of(
-        "all", "Objects", "Whose surfaces decide how much each texel counts", OBJECTS, flag=""
+        "all",
+        "Objects",
+        "Objects whose surfaces decide how much each texel counts",
+        OBJECTS,
+        flag="",
     )
     importance: str = text(
         "",
@@ -325,26 +329,24 @@ class Settings:
     use_subdivision_limit: bool = switch(
         True,
         "Subdivision Limit",
-        "Treat objects whose last modifier is a Catmull-Clark subdivision as the smooth limit of "
-        "infinite subdivision",
+        "Treat objects whose last modifier is a Catmull-Clark subdivision as their smooth "
+        "limit surface",
     )
     use_frames: bool = switch(
         False,
         "Frame Range",
-        "Average over frames of the animation instead of the current one only",
+        "Average over frames of the animation instead of using only the current one",
         flag="",
     )
     frame_start: int = number(1, "Start", "The first frame of the average", flag="")
     frame_end: int = number(250, "End", "The last frame of the average", flag="")
-    frame_step: int = number(
-        1, "Step", "Number of frames from one frame of the average to the next", low=1, flag=""
-    )
+    frame_step: int = number(1, "Step", "Step between the frames of the average", low=1, flag="")
     use_images: bool = switch(True, "", "Keep each level as a packed image", flag="")
     filepath: str = text(
         "",
         "File",
-        "File for all levels; its ending is that of the format. If empty, it is named after the "
-        "image and written beside the .blend file",
+        "File for all levels; its extension is that of the format. If empty, it is named "
+        "after the image and written beside the .blend file",
         subtype="FILE_PATH",
         flag="--output",
         flag_description="File for all levels: .exr, .tif or .tx for renderers, .dds or "
@@ -380,11 +382,11 @@ class Settings:
 
 @dataclass(frozen=True)
 class ResultSettings:
-    """What to make of the levels of an image; commands know it from their other flags."""
+    """What to do with the levels of an image; commands know it from their other flags."""
 
-    result: str = one_of("images", "Result", "What to make of the levels", RESULTS, flag="")
+    result: str = one_of("images", "Result", "What to do with the levels", RESULTS, flag="")
     file_format: str = one_of(
-        "ktx2", "Format", "What the file is", FILE_FORMATS, flag="", preference="file_format"
+        "ktx2", "Format", "File format", FILE_FORMATS, flag="", preference="file_format"
     )
 
 
@@ -404,7 +406,7 @@ class ModelSettings:
     objects: str = one_of(
         "scene",
         "Objects",
-        "Whose images are baked; the surfaces of these objects decide how much each texel counts",
+        "Objects whose images are baked, and whose surfaces decide how much each texel counts",
         MODEL_OBJECTS,
         flag="",
     )
@@ -415,18 +417,18 @@ class ModelSettings:
         metavar="NAME",
         flag_description="with --all, bake only the images of this material",
     )
-    result: str = one_of("file", "Result", "What to make of the levels", MODEL_RESULTS, flag="")
+    result: str = one_of("file", "Result", "What to do with the levels", MODEL_RESULTS, flag="")
     folder: str = text(
         "//mipmaps/",
         "Folder",
-        "Folder for a file of each image, named after it. It is made if it is missing",
+        "Folder for the files, one per image and named after it. It is created if it is missing",
         subtype="DIR_PATH",
         flag="",
     )
     file_format: str = one_of(
         "ktx2",
         "Format",
-        "What the files in the folder are",
+        "Format of the files in the folder",
         FILE_FORMATS,
         flag="--format",
         metavar="FORMAT",
@@ -437,11 +439,11 @@ class ModelSettings:
 
 REMOVED = {
     "preview": Choice("Preview", "The levels that the editors draw"),
-    "images": Choice("Images", "The level images; what uses one then uses the image itself"),
+    "images": Choice("Images", "The level images; their users then use the image itself"),
     "cache": Choice(
         "Texture Cache",
-        "The files of Cycles' texture cache that have baked levels. Cycles makes its own again; "
-        "undo does not bring them back",
+        "The files in Cycles' texture cache that have baked levels. Cycles generates its "
+        "own again; this cannot be undone",
     ),
 }
 
@@ -452,7 +454,7 @@ class RemoveSettings:
 
     kinds: tuple[str, ...] = one_of(("preview", "images"), "Levels", "What to remove", REMOVED)
     use_all: bool = switch(
-        False, "All Images", "Remove the levels of all images of this file, not only of one"
+        False, "All Images", "Remove the levels of all images in this file, not just one"
     )
 
 

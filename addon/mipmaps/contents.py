@@ -67,12 +67,12 @@ def check_cutout(picture: Picture) -> None:
 def check_roughness(picture: Picture, roughness: Picture) -> None:
     """Raises ValueError unless a roughness image fits the normal map."""
     if roughness.full_name == picture.full_name:
-        raise ValueError(f"roughness: '{roughness.name}' is the normal map itself")
+        raise ValueError(f"Roughness: '{roughness.name}' is the normal map itself")
     (height, width), (high, wide) = picture.shape[:2], roughness.shape[:2]
     if (high, wide) != (height, width):
         raise ValueError(
-            f"roughness: '{roughness.name}' has {wide} x {high} texels; the {width} x {height} of "
-            f"'{picture.name}' are needed"
+            f"Roughness: '{roughness.name}' has {wide} x {high} texels, and "
+            f"'{picture.name}' has {width} x {height}; they must be the same"
         )
 
 

@@ -51,7 +51,5 @@ def surfaces_over(
 def chosen(settings: Settings) -> range:
     """Returns the frames to average over; raises ValueError if there are none."""
     if settings.frame_end < settings.frame_start:
-        raise ValueError(
-            f"End: found {settings.frame_end}, which is before Start, {settings.frame_start}"
-        )
+        raise ValueError(f"End: {settings.frame_end} is before Start, {settings.frame_start}")
     return range(settings.frame_start, settings.frame_end + 1, settings.frame_step)

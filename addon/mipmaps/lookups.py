@@ -8,7 +8,7 @@ from ..bridge.files import engines
 from .choices import FITTED_FILTERS, Settings
 
 _FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0, "anisotropic": 1.5}
-_WORDS = {0.0: "", 1.0: "for one lookup a pixel", 1.5: "for anisotropic lookups"}
+_WORDS = {0.0: "", 1.0: "for one lookup per pixel", 1.5: "for anisotropic lookups"}
 
 
 def resolved(settings: Settings) -> Settings:

@@ -133,7 +133,7 @@ def read_level_0(request: Request) -> Level0:
     numbers = images.tile_numbers(image)
     targets = [textures.check_target(path) for path in udim.paths(settings.filepath, numbers)]
     if not targets and not settings.use_images and request.writes_image:
-        raise ValueError("nothing to write: neither level images nor a file are asked for")
+        raise ValueError("nothing to write: choose level images or a file")
     pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
     for picture in pictures:
         _check_levels(picture, settings.levels)
@@ -149,8 +149,8 @@ def read_level_0(request: Request) -> Level0:
             contents.check_cutout(picture)
     if numbers and settings.roughness:
         raise ValueError(
-            f"roughness: found '{settings.roughness}' for the tiled image '{image.name}'; it "
-            f"goes with images of one tile"
+            f"Roughness: '{settings.roughness}' cannot be used, because '{image.name}' has "
+            "UDIM tiles"
         )
     return Level0(numbers, pictures, targets, content, is_encoded)
 
@@ -206,7 +206,7 @@ def read_surfaces(request: Request) -> Generator[float, None, meshes.ImageSurfac
         raise NoSurfaceError(message, found.problems)
     if settings.importance and found.surfaces and not any(s.area for s in found.surfaces):
         raise ValueError(
-            f"importance: '{settings.importance}' is 0 wherever objects "
+            f"Importance: '{settings.importance}' is 0 wherever objects "
             f"{listed(dict.fromkeys(found.objects))} use the image"
         )
     return found
@@ -236,19 +236,20 @@ def odd_uses(request: Request, level_0: Level0, rough: Rough) -> list[str]:
     settings, picture, told = request.settings, level_0.pictures[0], []
     if level_0.content == "normal" and level_0.is_encoded:
         told.append(
-            f"image '{request.image.name}' has the color space {picture.colorspace}; a shader "
-            f"reads normals right in Non-Color only"
+            f"image '{request.image.name}' has the color space {picture.colorspace}; "
+            "shaders read normals correctly only in Non-Color"
         )
     if settings.reader != "linear":
         told.extend(_odd_readers(picture, level_0.targets))
         if settings.lookups in {"one-lookup", "anisotropic"} and reads_encoded(picture):
             told.append(
-                f"lookups: readers of encoded texels are supersampled, so '{picture.name}' is "
-                f"baked for that"
+                "Lookups: readers of encoded texels are always supersampled, so "
+                f"'{picture.name}' is baked for that"
             )
     if settings.roughness and rough.roughness is None:
         told.append(
-            f"roughness '{settings.roughness}' is left out: '{request.image.name}' is no normal map"
+            f"Roughness: '{settings.roughness}' is not used, because '{request.image.name}' "
+            "is not a normal map"
         )
     return told
 
@@ -262,9 +263,11 @@ def _blocks(pictures: Sequence[Picture], content: str) -> str:
 def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:
     """Returns warnings where nothing that is baked is read as encoded."""
     if not reads_encoded(picture):
-        return [f"reader: '{picture.name}' is no 8-bit sRGB image, so it is read as linear light"]
+        return [
+            f"Reader: '{picture.name}' is not an 8-bit sRGB image, so it is read as linear light"
+        ]
     return [
-        f"reader: '{target}' is read as linear light, but its levels are for encoded texels"
+        f"Reader: '{target}' is read as linear light, but its levels are for encoded texels"
         for target in targets
         if target.suffix.lower() in {".exr", ".dds", ".ktx2"}
     ]
@@ -274,7 +277,7 @@ def _check_levels(picture: Picture, levels: int) -> None:
     height, width = picture.shape[:2]
     full = max(width, height).bit_length()
     if levels > full:
-        raise ValueError(f"levels: found {levels}; an image of {width} x {height} has 1 to {full}")
+        raise ValueError(f"Levels: found {levels}; an image of {width} x {height} has 1 to {full}")
 
 
 def read_roughness(request: Request, level_0: Level0) -> Rough:
@@ -282,25 +285,24 @@ def read_roughness(request: Request, level_0: Level0) -> Rough:
     settings = request.settings
     if not settings.roughness:
         if settings.roughness_filepath:
-            raise ValueError("roughness file: needs the name of a roughness image, found none")
+            raise ValueError("Roughness File: choose a Roughness image too")
         return Rough()
     if level_0.content != "normal":
         if settings.content == "auto":
             return Rough()
         raise ValueError(
-            f"roughness: found '{settings.roughness}' with the content '{level_0.content}'; it is "
-            f"for normal maps only"
+            f"Roughness: '{settings.roughness}' needs a normal map, and the content is "
+            f"'{level_0.content}'"
         )
     if not settings.use_images and not settings.roughness_filepath:
         raise ValueError(
-            "nothing to write the roughness to: neither level images nor a roughness file are "
-            "asked for"
+            "nothing to write the roughness to: choose level images or a Roughness File"
         )
     target = None
     if settings.roughness_filepath:
         target = textures.check_target(settings.roughness_filepath)
         if target in level_0.targets:
-            raise ValueError(f"roughness file: '{target}' is the file of the normal map")
+            raise ValueError(f"Roughness File: '{target}' is the file of the normal map")
     picture = images.read(images.find(settings.roughness))
     contents.check_roughness(level_0.pictures[0], picture)
     chosen = request.roughness_texture_format or roughness_format(settings, picture)

@@ -26,7 +26,7 @@ def images_to_bake(objects: Sequence[bpy.types.Object]) -> tuple[list[bpy.types.
     """
     used = meshes.images_of_objects(objects)
     if not used:
-        raise ValueError("--image: needed, as the meshes use none")
+        raise ValueError("--image: needed, because the meshes use no image")
     shown_by = meshes.materials_of_objects(objects)
     colors = [
         image

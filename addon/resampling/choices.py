@@ -19,8 +19,8 @@ FILTERS = {
     "mitchell": Choice("Mitchell", "A compromise between blur, ringing and aliasing"),
     "least-squares": Choice(
         "Least Squares",
-        "Closest to the image once it is enlarged again by interpolation, as renderers and viewers "
-        "do. Sharp. For making images smaller",
+        "Closest to the image when the result is enlarged again by interpolation, as "
+        "renderers and viewers do. Sharp. For reducing images",
     ),
     "radial3": Choice(
         "Radial 3", "Cuts off fine detail equally in all directions. Sharp, and slower"
@@ -46,7 +46,7 @@ WARPS = {
     ),
 }
 RESULT_SIZES = {
-    "fit": Choice("Fit", "As large as what comes out"),
+    "fit": Choice("Fit", "Just large enough for the whole result"),
     "image": Choice("Image", "As large as the image"),
     "pixels": Choice("Pixels", "A width and a height"),
 }
@@ -56,19 +56,19 @@ TABLE_FILTERS = {
 }
 METHODS = {
     "exact": Choice("Exact", "Every pixel under the filter. The best, and the slowest"),
-    "8": Choice("8 Texels", "8 texels of the mipmap a pixel, weighted by a sampling table"),
-    "6": Choice("6 Texels", "6 texels a pixel, with a sampling table"),
-    "4": Choice("4 Texels", "4 texels a pixel, with a sampling table"),
-    "table": Choice("Table File", "Texels and weights of a table that Make Sampling Table saved"),
+    "8": Choice("8 Texels", "8 texels of the mipmap per pixel, weighted by a sampling table"),
+    "6": Choice("6 Texels", "6 texels per pixel, weighted by a sampling table"),
+    "4": Choice("4 Texels", "4 texels per pixel, weighted by a sampling table"),
+    "table": Choice("Table File", "Texels and weights from a table saved by Make Sampling Table"),
     "trilinear": Choice(
-        "Trilinear", "8 texels of the mipmap, interpolated as graphics cards do, to compare"
+        "Trilinear", "8 texels of the mipmap, interpolated as on graphics cards, for comparison"
     ),
 }
 LANGUAGES = {
     "glsl": Choice("GLSL", "Shader code for OpenGL and Vulkan"),
     "hlsl": Choice("HLSL", "Shader code for Direct3D"),
-    "osl": Choice("OSL", "Shader code for renderers that have Open Shading Language"),
-    "json": Choice("Table", "The table itself, to be loaded again"),
+    "osl": Choice("OSL", "Shader code for renderers with Open Shading Language"),
+    "json": Choice("Table", "The table itself, to load again"),
 }
 CORNERS = ("lower_left", "lower_right", "upper_right", "upper_left")
 """The options that are corners, in their order around the image."""
@@ -113,7 +113,7 @@ def _corner(default: tuple[float, float], label: str) -> Any:
     return numbers(
         default,
         label,
-        "Where this corner is, as shares of the width and height, from the lower left",
+        "Position of this corner, as shares of the width and height from the lower left",
         low=-1e6,
         high=1e6,
         display={"soft_min": -1.0, "soft_max": 2.0, "precision": 3, "step": 1},
@@ -166,9 +166,9 @@ class ResizeSettings:
     use_constrained: bool = switch(
         False,
         "Limit Values",
-        "Keep values between 0 and 1. Least Squares is solved within these limits, the results of "
-        "other filters are clipped. Byte images always have them",
-        flag_description="Keep values between 0 and 1; pictures of bytes always are",
+        "Keep values between 0 and 1. Least Squares is solved within these limits, the "
+        "results of other filters are clipped. Byte images are always limited",
+        flag_description="Keep values between 0 and 1; byte pictures are always limited",
     )
     wrap: str = one_of("clamp", "Wrap", "What lies outside the image", WRAPS, metavar="MODE")
     threads: int = threads()
@@ -186,9 +186,9 @@ class ResizeSettings:
 class ResampleSettings:
     """What `prefilter.resample` does, and where the image goes."""
 
-    warp: str = one_of("affine", "Warp", "How to move the pixels", WARPS, flag="")
-    scale_x: float = _factor("Scale X", "The factor along x; below 0 mirrors")
-    scale_y: float = _factor("Scale Y", "The factor along y; below 0 mirrors")
+    warp: str = one_of("affine", "Warp", "How to transform the image", WARPS, flag="")
+    scale_x: float = _factor("Scale X", "Scale factor along x; negative values mirror")
+    scale_y: float = _factor("Scale Y", "Scale factor along y; negative values mirror")
     rotation: float = number(
         0.0,
         "Rotation",
@@ -208,7 +208,7 @@ class ResampleSettings:
     use_pixels: bool = switch(
         False, "", "Corners are in pixels, from the lower left, instead of in shares of the size"
     )
-    size: str = one_of("fit", "Size", "How large the result is", RESULT_SIZES, metavar="SIZE")
+    size: str = one_of("fit", "Size", "Size of the result", RESULT_SIZES, metavar="SIZE")
     width: int = number(1024, "Width", "The width of the result in pixels", **_SIDE)
     height: int = number(1024, "Height", "The height of the result in pixels", **_SIDE)
     filter: str = one_of(
@@ -221,23 +221,23 @@ class ResampleSettings:
     method: str = one_of(
         "exact",
         "Method",
-        "What the filter is computed from",
+        "How the filter is evaluated",
         METHODS,
         metavar="METHOD",
     )
     table: str = text(
         "",
         "Table",
-        "The file of the table, for Table File. The filter is that of the table",
+        "Sampling table for the method Table File. Its filter is used",
         subtype="FILE_PATH",
         metavar="FILE",
     )
     max_probes: int = number(
         1,
         "Max Probes",
-        "How many samples in a row may make up a pixel where the image is squeezed more in one "
-        "direction than in the other, as toward a horizon. 1 blurs there, more are sharper. Only "
-        "for Gaussian",
+        "Maximum number of samples in a row per pixel, where the image is squeezed more in "
+        "one direction than in the other, as toward a horizon. 1 blurs there, more are "
+        "sharper. Only for Gaussian",
         low=1,
         high=256,
         display={"soft_max": 32},
@@ -252,12 +252,12 @@ class TableSettings:
     """What `prefilter.SamplingTable.build` does, and what is made of the table."""
 
     filter: str = one_of(
-        "lanczos2", "Filter", "The filter that is reproduced", TABLE_FILTERS, metavar="FILTER"
+        "lanczos2", "Filter", "Filter to reproduce", TABLE_FILTERS, metavar="FILTER"
     )
     texels: int = number(
         8,
         "Texels",
-        "How many texels of the mipmap make up a sample. Trilinear interpolation reads 8",
+        "Number of texels of the mipmap per sample. Trilinear interpolation reads 8",
         low=2,
         high=16,
         metavar="N",
@@ -265,8 +265,7 @@ class TableSettings:
     grid: int = number(
         4,
         "Parts",
-        "Into how many parts a texel is divided along x and along y. Each part has a set of texels "
-        "of its own",
+        "Number of parts of a texel along x and along y. Each part has its own set of texels",
         low=1,
         high=16,
         metavar="N",
@@ -274,7 +273,7 @@ class TableSettings:
     slices: int = number(
         2,
         "Slices",
-        "Into how many parts the step from one level to the next is divided",
+        "Number of parts of the step from one level to the next",
         low=1,
         high=16,
         metavar="N",
@@ -282,7 +281,7 @@ class TableSettings:
     degree: int = number(
         1,
         "Degree",
-        "Of the weights, as polynomials of the place and the scale: 1 is linear, 2 quadratic",
+        "Degree of the weights, polynomials in the place and the scale: 1 is linear, 2 quadratic",
         low=1,
         high=2,
         metavar="N",
@@ -290,8 +289,8 @@ class TableSettings:
     ramp_weight: float = number(
         5.0,
         "Ramp Weight",
-        "How much it counts that smooth gradients come out as they are, against the error of the "
-        "filter. With 0 samples of gradients step where the set of texels changes",
+        "How much exact smooth gradients count against the error of the filter. At 0, "
+        "samples of gradients step where the set of texels changes",
         low=0.0,
         high=1e6,
         display={"soft_max": 100.0, "precision": 2},
@@ -300,20 +299,20 @@ class TableSettings:
     use_certify: bool = switch(
         False,
         "Certify",
-        "Prove how far from the best the sets of texels are at most. May take minutes",
+        "Prove a bound on how far the sets of texels are from the best ones. May take minutes",
     )
-    language: str = one_of("glsl", "Language", "What to write", LANGUAGES, flag="")
+    language: str = one_of("glsl", "Language", "Language or format to write", LANGUAGES, flag="")
     filepath: str = text(
         "",
         "File",
-        "The file to write; a text of this .blend file if empty",
+        "File to write; if empty, a text of this .blend file",
         subtype="FILE_PATH",
         flag="",
     )
     table: str = text(
         "",
         "Load",
-        "A table that was saved, to write it in another language; a table is built if empty",
+        "Saved table to write in another language; if empty, a table is built",
         subtype="FILE_PATH",
         metavar="FILE",
     )
@@ -334,7 +333,7 @@ class PlaneSettings:
     filter: str = one_of(
         "lanczos2",
         "Filter",
-        "How the levels of the mipmap are made, and what the table reproduces",
+        "Filter of the mipmap's levels, which the table reproduces",
         TABLE_FILTERS,
         flag="",
     )

@@ -147,8 +147,8 @@ def check_convex(corners: ArrayLike) -> None:
     if not (np.all(turns > least) or np.all(turns < -least)):
         shown = ", ".join(f"({x:.4g}, {y:.4g})" for x, y in points)
         raise ValueError(
-            f"Corners: found {shown}; they must go around a quadrilateral without dents, in the "
-            "order lower left, lower right, upper right, upper left"
+            f"Corners: found {shown}; they must form a convex quadrilateral, in the order "
+            "lower left, lower right, upper right, upper left"
         )
 
 

@@ -17,8 +17,8 @@ WAVELETS = {
     "haar": Choice("Haar", "Fastest, and needs the least memory"),
     "d4": Choice(
         "D4",
-        "More points count for each value: smoother where Fit to Points is off. Slower, and needs "
-        "more memory",
+        "Each value depends on more points: smoother if Fit to Points is off. Slower, and "
+        "needs more memory",
     ),
 }
 ISOVALUES = {
@@ -54,21 +54,22 @@ class ScanSettings:
     voxel_size: float = number(
         0.01,
         "Voxel Size",
-        "The greatest side of a cell in world space: the cube around the points is halved until "
+        "Largest side of a cell in world space: the cube around the points is halved until "
         "cells are no larger",
         low=1e-6,
         subtype="DISTANCE",
         display={"soft_min": 0.001, "precision": 4, "step": 1},
-        flag_description="The greatest side of a cell, instead of a depth",
+        flag_description="largest side of a cell, instead of a depth",
         metavar="LENGTH",
     )
     wavelet: str = one_of(
-        "haar", "Wavelet", "Which basis the surface is made in", WAVELETS, metavar="NAME"
+        "haar", "Wavelet", "Basis in which the surface is computed", WAVELETS, metavar="NAME"
     )
     use_smooth: bool = switch(
         True,
         "Smoothing",
-        "Smooth what is inside and outside before the surface is taken: fewer bumps from noise",
+        "Smooth the values inside and outside before the surface is extracted: fewer bumps "
+        "from noise",
     )
     use_fit: bool = switch(
         True,
@@ -87,7 +88,7 @@ class ScanSettings:
     isovalue: str = one_of(
         "auto",
         "Iso-Value",
-        "At which value the surface is, between 0 outside and 1 inside",
+        "Value at which the surface lies, between 0 outside and 1 inside",
         ISOVALUES,
         metavar="NAME",
     )
@@ -102,7 +103,7 @@ class ScanSettings:
         metavar="VALUE",
     )
     points: str = one_of(
-        "hide", "Points", "What to do with the objects that have the points", POINTS, flag=""
+        "hide", "Points", "What to do with the objects that contain the points", POINTS, flag=""
     )
     use_smooth_shading: bool = switch(
         True,

@@ -23,11 +23,11 @@ _BLEND = ".blend"
 _SOURCES = (*SOURCES, _BLEND)
 _WANTED = "visible object with points and no faces"
 _NOTES = """\
-Several SOURCEs are put together as one cloud. Points without normals get estimated ones, and are
-read into memory for that. To a .ply file all other points go piece by piece, and so does the
-surface, so that neither has to fit into memory; with --memory-limit, what does not fit goes to
-temporary files. For other targets the surface is made in memory. Of a .blend file, the objects that
-have points and no faces count.
+Several SOURCEs count as one cloud. Points without normals are read into memory, and their normals
+are estimated. All other points are read, and surfaces are written to .ply files, piece by piece, so
+that neither has to fit into memory; with --memory-limit, the rest goes to temporary files. For
+other targets the surface is made in memory. In a .blend file, objects with points and no faces are
+used.
 
 examples:
   prefilter reconstruct scan.ply surface.ply
@@ -64,7 +64,7 @@ def _reconstruct(options: argparse.Namespace) -> None:
     ending = command.check_ending(options, "TARGET", options.target, scenes.TARGETS)
     has_blend = _BLEND in endings
     if has_blend and len(set(endings)) > 1:
-        options.usage_error("SOURCE: .blend files cannot be put together with others")
+        options.usage_error("SOURCE: .blend files cannot be combined with others")
     if options.object and not has_blend:
         options.usage_error("--object: only .blend files have objects")
     target = staging.check_output(options.target)

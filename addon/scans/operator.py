@@ -20,8 +20,9 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
     bl_idname = "prefilter.reconstruct"
     bl_label = "Reconstruct Surface"
     bl_description = (
-        "Make a closed surface of the points of all selected scans together: meshes without faces "
-        "and point clouds. Points without the attribute 'normal' get estimated normals"
+        "Make one closed surface from the points of all selected scans: meshes without "
+        "faces and point clouds. Normals are estimated for points without the attribute "
+        "'normal'"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Reconstructing"

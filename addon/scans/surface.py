@@ -148,11 +148,14 @@ def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
     if report.dropped:
         dropped = amount(report.dropped, "point")
         found.append(
-            f"left out, as they have no normal, no finite position or no weight: {dropped}"
+            f"left out, because they have no normal, no finite position or no weight: {dropped}"
         )
     if report.outliers > _FEW:
         outliers = f"{100.0 * report.outliers:.2g} % of the points"
-        found.append(f"left out, as they lie much thinner than the others: {outliers}")
+        found.append(
+            "left out as outliers, because they are sampled much more sparsely than the rest: "
+            f"{outliers}"
+        )
     if report.is_flipped:
-        found.append("most normals point inward; the opposite ones were used")
+        found.append("most normals point inward; all were flipped")
     return found

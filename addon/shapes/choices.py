@@ -21,16 +21,16 @@ FILTERS = {
     "box": Choice("Box", "The exact share of each pixel that a shape covers"),
     "tent": Choice("Tent", "Soft"),
     "bspline2": Choice("Quadratic B-Spline", "Softer"),
-    "gaussian": Choice("Gaussian", "Softer, the same in all directions"),
+    "gaussian": Choice("Gaussian", "Isotropic; softer"),
     "mitchell": Choice("Mitchell", "A little softer than Box, with fewer stairs; little ringing"),
     "lanczos2": Choice("Lanczos 2", "Sharper than Mitchell, with some ringing"),
     "lanczos3": Choice("Lanczos 3", "Sharpest, with ringing around edges"),
-    "radial2": Choice("Radial 2", "As Lanczos 2, the same in all directions"),
-    "radial3": Choice("Radial 3", "As Lanczos 3, the same in all directions"),
+    "radial2": Choice("Radial 2", "Like Lanczos 2, but isotropic"),
+    "radial3": Choice("Radial 3", "Like Lanczos 3, but isotropic"),
 }
 RESOLUTIONS = {
     "size": Choice("Size", "An image of this size, into which the shapes are fitted"),
-    "density": Choice("Pixels per Unit", "As many pixels as the shapes are large, and the margin"),
+    "density": Choice("Pixels per Unit", "Fit the image to the shapes, plus the margin"),
 }
 VIEWS = {
     "object": Choice("Active Object", "Along the Z axis of the active object"),
@@ -54,7 +54,7 @@ BACKGROUNDS = {
 OVERLAPS = {
     "cover": Choice("Cover", "The nearer shape hides the other, as far as it is opaque"),
     "add": Choice(
-        "Add", "Colors and alpha are added. Faster, and right where shapes do not overlap"
+        "Add", "Colors and alpha are added. Faster, and correct if shapes do not overlap"
     ),
 }
 PIXEL_TYPES = {
@@ -75,9 +75,9 @@ ALPHAS = {
 class RasterizeSettings:
     """What `prefilter.rasterize` does."""
 
-    source: str = one_of("auto", "Source", "What to make an image of", SOURCES, flag="")
+    source: str = one_of("auto", "Source", "What to rasterize", SOURCES, flag="")
     filepath: str = text(
-        "", "SVG File", "The SVG file, if the source is one", subtype="FILE_PATH", flag=""
+        "", "SVG File", "File for the source SVG File", subtype="FILE_PATH", flag=""
     )
     filter: str = one_of(
         "box",
@@ -104,7 +104,7 @@ class RasterizeSettings:
     density: float = number(
         512.0,
         "Pixels per Unit",
-        "How many pixels a unit of the world has, or one of an SVG file",
+        "Number of pixels per unit of the world, or of the SVG file",
         low=0.0,
         is_above=True,
         display={"soft_max": 4096.0, "precision": 2},
@@ -122,7 +122,7 @@ class RasterizeSettings:
         metavar="PIXELS",
     )
     view: str = one_of(
-        "object", "View", "From where curves and texts are seen", VIEWS, metavar="VIEW"
+        "object", "View", "Direction from which curves and texts are seen", VIEWS, metavar="VIEW"
     )
     tile: int = number(
         1001,
@@ -148,7 +148,7 @@ class RasterizeSettings:
         "cover", "Overlap", "What shows where shapes overlap", OVERLAPS, metavar="MODE"
     )
     pixel_type: str = one_of(
-        "byte", "Pixel Type", "The numbers that a pixel has", PIXEL_TYPES, metavar="TYPE"
+        "byte", "Pixel Type", "Type of the numbers in a pixel", PIXEL_TYPES, metavar="TYPE"
     )
     alpha: str = one_of(
         "auto", "Alpha", "How colors are stored where alpha is below 1", ALPHAS, metavar="ALPHA"
@@ -156,8 +156,8 @@ class RasterizeSettings:
     use_bleed: bool = switch(
         True,
         "Bleed",
-        "Let colors flow outward where alpha is 0, so that lookups between pixels do not darken "
-        "edges. For straight alpha",
+        "Fill pixels whose alpha is 0 with the colors around them, so that lookups between "
+        "pixels do not darken edges. For straight alpha",
     )
     image_name: str = text(
         "",

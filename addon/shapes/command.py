@@ -25,9 +25,9 @@ _SOURCES = (_SVG, *scenes.SOURCES)
 _CURVES = "visible curve or text"
 _MESHES = "visible mesh with a UV map"
 _NOTES = """\
-Of other files than .svg, all visible curves and texts count, or with --uv one mesh. Shapes are
-fitted into the size with the margin around them; --density has their size decide. PNG files have 8
-bits with --pixel-type byte, else 16, and straight alpha; OpenEXR files are scene-linear, with
+From files other than .svg, all visible curves and texts are used, or with --uv one mesh. Shapes are
+fitted into the size, inside the margin; with --density, their size decides. PNG files have 8 bits
+with --pixel-type byte, otherwise 16, and straight alpha; OpenEXR files are scene-linear, with
 premultiplied alpha.
 
 examples:
@@ -79,7 +79,7 @@ def _mesh(options: argparse.Namespace) -> bpy.types.Object:
     (objects,) = scenes.load([options.source], _is_wanted(has_uv_map), _MESHES)
     found = scenes.chosen(objects, options.object, _MESHES)
     if len(found) > 1:
-        options.usage_error(f"--object: name one of the {len(found)} meshes, as --uv takes one")
+        options.usage_error(f"--object: choose one of the {len(found)} meshes; --uv takes one")
     return found[0]
 
 

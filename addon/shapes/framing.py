@@ -121,8 +121,8 @@ def fitted_frame(box: FloatArray, settings: RasterizeSettings) -> Frame:
         sides = np.ceil(size * scale + 2.0 * settings.margin - 1e-6)
         if np.any(sides > LARGEST_SIDE):
             raise ValueError(
-                f"Pixels per Unit: {scale:g} makes an image of {sides[0]:.0f} x {sides[1]:.0f} "
-                f"pixels; {LARGEST_SIDE} are allowed"
+                f"Pixels per Unit: {scale:g} would make an image of {sides[0]:.0f} x "
+                f"{sides[1]:.0f} pixels; the limit is {LARGEST_SIDE}"
             )
         width, height = (max(1, int(side)) for side in sides)
     else:

@@ -229,7 +229,7 @@ def _problems(found: Sequence[Curves]) -> list[str]:
         count = sum(curves.open_splines for curves in found)
         splines = "1 open spline of" if count == 1 else f"{count} open splines of"
         warnings.append(
-            f"left out, as Blender fills closed ones only: {splines} {listed(open_splines)}"
+            f"left out, because Blender fills only closed ones: {splines} {listed(open_splines)}"
         )
     for problem in dict.fromkeys(one for curves in found for one in curves.problems):
         names = listed(curves.name for curves in found if problem in curves.problems)

@@ -116,8 +116,8 @@ class CacheBake:
         notes: list[str] = []
         if scene.render.engine != _CYCLES:
             warnings.append(
-                f"scene '{scene.name}' is not rendered by Cycles, which alone reads the texture "
-                f"cache: set Render Engine to Cycles"
+                f"scene '{scene.name}' is not rendered by Cycles, and only Cycles reads the "
+                "texture cache: set Render Engine to Cycles"
             )
         viewers = rendered.viewers(scene, depsgraph)
         files: dict[bpy.types.Image, dict[int | None, tx.Source]] = {}
@@ -226,7 +226,7 @@ class CacheBake:
                     raise ValueError(f"{worn.who}: {worn.obstacle}")
                 file = _staged(tx.read(path), worn, advance, threads)
             except ValueError as error:
-                problems[index] = f"{error}; its levels are Blender's"
+                problems[index] = f"{error}; it keeps Blender's levels"
             else:
                 if file is None:
                     constant.append(index)
@@ -363,7 +363,8 @@ def _wrap(worn: _Worn) -> str:
     modes = list(dict.fromkeys(worn.extensions))
     if (len(modes) > 1 or "MIRROR" in modes) and not _is_inside(worn.surfaces):
         raise ValueError(
-            f"{worn.who}: UVs leave it, where Image Texture nodes go on by {', '.join(modes)}"
+            f"{worn.who}: some UVs lie outside the image, where Image Texture nodes extend "
+            f"it by {', '.join(modes)}"
         )
     return materials.WRAP_OF_EXTENSION[modes[0]]
 

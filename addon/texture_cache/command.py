@@ -20,8 +20,8 @@ from .choices import CacheSettings
 _HELP = "bake PAM into Cycles' texture cache, for every image of a scene"
 _NOTES = """\
 Blender makes the cache files, in the folder of its preferences or beside the images; their levels
-are then replaced. Files that are there are overwritten. When an image file changes, Blender makes
-its cache file anew, and it has to be baked again. Needs Blender 5.2 LTS or later.
+are then replaced. Existing files are overwritten. When an image file changes, Blender generates its
+cache file again, and you need to bake again. Needs Blender 5.2 LTS or later.
 
 example:
   prefilter bake-cache scene.blend --save"""
@@ -37,8 +37,8 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--unpack",
         action="store_true",
-        help="write packed images to the folder textures beside FILE first, and bake these; FILE "
-        "uses them if it is saved",
+        help="write packed images to the folder textures beside FILE first, and bake these; with "
+        "--save, FILE uses them",
     )
     add_flags(parser, CacheSettings)
     parser.add_argument(

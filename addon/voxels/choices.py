@@ -16,12 +16,12 @@ RESOLUTIONS = {
 }
 HOLES = {
     "smooth": Choice("Smooth", "Patches that continue the surface around each hole"),
-    "flat": Choice("Flat", "Patches of the least area"),
+    "flat": Choice("Flat", "Patches of the smallest area"),
     "fan": Choice("Fan", "Triangles to the center of the border"),
 }
 INTERPOLANTS = {
     "sharp": Choice(
-        "Sharp", "As Plane, with the edges and corners of the meshes, and where they meet"
+        "Sharp", "Like Plane, and keeps sharp edges and corners, including where meshes meet"
     ),
     "plane": Choice(
         "Plane", "A plane fitted to each cell and its neighbors: the most exact vertices"
@@ -105,7 +105,7 @@ class VoxelSettings:
     gap: float = number(
         2.0,
         "Largest Gap",
-        "Where faces enclose nothing by their orientation, inside is what the outside does not "
+        "Where the orientation of faces encloses nothing, fill what the outside does not "
         "reach through gaps of this width, in cells",
         low=0.0,
         high=100.0,
@@ -117,7 +117,7 @@ class VoxelSettings:
         "Close Holes",
         "Close the holes of the mesh first. If off, the surface ends in steps there",
     )
-    holes: str = one_of("smooth", "Holes", "What holes are closed with", HOLES, metavar="NAME")
+    holes: str = one_of("smooth", "Holes", "How holes are closed", HOLES, metavar="NAME")
     use_cleanup: bool = switch(
         True,
         "Clean Up",
@@ -126,12 +126,12 @@ class VoxelSettings:
     use_materials: bool = switch(
         True,
         "Materials",
-        "Triangles get the material of the face that they come from",
+        "Each triangle keeps the material of its source face",
     )
     use_uv_maps: bool = switch(
         True,
         "UV Maps",
-        "Corners get UVs of the surface. No triangle crosses a seam",
+        "Keep UV maps. No triangle crosses a seam",
     )
     use_colors: bool = switch(
         True,
@@ -161,7 +161,7 @@ class VoxelSettings:
 class VoxelizeSettings(VoxelSettings):
     """What `prefilter.voxelize` does."""
 
-    output: str = one_of("mesh", "Output", "What to make", OUTPUTS, flag="")
+    output: str = one_of("mesh", "Output", "Type of the result", OUTPUTS, flag="")
     filepath: str = text(
         "",
         "File",
@@ -177,7 +177,7 @@ class BooleanSettings(VoxelSettings):
     """What `prefilter.boolean` does."""
 
     operation: str = one_of(
-        "difference", "Operation", "What to keep", OPERATIONS, metavar="OPERATION"
+        "difference", "Operation", "How to combine the objects", OPERATIONS, metavar="OPERATION"
     )
     operands: str = one_of(
         "hide", "Others", "What to do with the other selected objects", OPERANDS, flag=""

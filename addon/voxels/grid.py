@@ -75,8 +75,8 @@ def choose_grid(box: Box, settings: VoxelSettings) -> Grid:
     if needed > most:
         least = extent / (most - 2 * _MARGIN - 1)
         raise ValueError(
-            f"Voxel Size: {size:g} makes {needed:.0f} cells along an axis, and at most {most} are "
-            f"allowed; use {least:.3g} or more"
+            f"Voxel Size: {size:g} would need {needed:.0f} cells per axis; the limit is "
+            f"{most}. Use {least:.3g} or more"
         )
     depth = max(1, math.ceil(math.log2(needed)))
     side = size * (1 << depth)

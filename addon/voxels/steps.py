@@ -188,8 +188,8 @@ def contoured(
     positions, triangles, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
     if len(triangles) == 0:
         raise ValueError(
-            "the result is empty: no cell is at least half full. Parts that are thinner than a "
-            "cell, or enclose nothing, have no voxels"
+            "the result is empty: no cell is at least half full. Parts that are thinner "
+            "than a cell, or enclose nothing, disappear"
         )
     transfer = Transfer(sources, positions, triangles, origins, settings.threads)
     face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
@@ -262,7 +262,7 @@ class Told:
         rows = [
             (solid.thickened_parts, "part", "thinner than a cell got the minimum thickness"),
             (solid.filled_parts, "part", "filled where the outside does not reach"),
-            (solid.turned_faces, "face", "turned to go with the neighbors"),
+            (solid.turned_faces, "face", "flipped to agree with their neighbors"),
             (solid.welded_vertices, "vertex", "welded"),
             (solid.duplicate_faces, "duplicate face", "dropped"),
         ]

@@ -360,7 +360,7 @@ ROWS = [
     (
         "mipmaps",
         {"encoding": "srgb"},
-        ["encoding: 'srgb' goes with images of uint8 or uint16", "decode others with to_linear"],
+        ["encoding: 'srgb' requires images of uint8 or uint16", "decode others with to_linear"],
     ),
     (
         "mipmaps",
@@ -408,7 +408,7 @@ ROWS = [
     (
         "mipmaps",
         {"reader": "srgb-after", "filter": "pam-trilinear"},
-        ["reader: 'srgb-after' goes with pam-bilinear", "use linear for pam-trilinear"],
+        ["reader: 'srgb-after' requires pam-bilinear", "use linear for pam-trilinear"],
     ),
     *(
         ("mipmaps", {"threads": threads}, [f"threads: {threads!r}", THREADS])
@@ -429,7 +429,7 @@ ROWS = [
     (
         "mipmaps",
         {"surface": AWAY, "wrap": "border"},
-        ["surface: none of it lies inside of the image"],
+        ["surface: none of it lies inside the image"],
     ),
     (
         "mipmaps",
@@ -523,7 +523,7 @@ ROWS = [
     (
         "texel_weights",
         {"surface": AWAY, "wrap": "border"},
-        ["surface: none of it lies inside of the image"],
+        ["surface: none of it lies inside the image"],
     ),
     (
         "fill_unused",
@@ -542,7 +542,7 @@ ROWS = [
     (
         "fill_unused",
         {"surface": AWAY, "wrap": "border"},
-        ["surface: none of it lies inside of the image"],
+        ["surface: none of it lies inside the image"],
     ),
     *(
         ("resize", arguments, words)

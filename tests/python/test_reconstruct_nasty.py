@@ -237,5 +237,5 @@ def test_normals_that_cancel_each_other_everywhere_are_an_error() -> None:
     cloud = sphere(3000)
     points = np.concatenate([cloud.points, cloud.points])
     normals = np.concatenate([cloud.normals, -cloud.normals])
-    with pytest.raises(ValueError, match="normals: they cancel each other in all cells"):
+    with pytest.raises(ValueError, match="normals: they contradict each other everywhere"):
         prefilter.reconstruct(points, normals, depth=3)

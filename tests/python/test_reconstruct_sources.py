@@ -204,7 +204,11 @@ SCAN = prefilter.ScanPoints(TORUS.points, TORUS.normals)
         (SCAN, {"cell_size": 0.0}, "cell_size: 0; a length above 0 is needed"),
         (SCAN, {"cell_size": float("nan")}, "cell_size: nan"),
         (SCAN, {"cell_size": "1"}, "cell_size: '1'"),
-        (SCAN, {"cell_size": 1e-6}, "cell_size: 1e-06 makes more than 4096 cells .* use 0.00.* or"),
+        (
+            SCAN,
+            {"cell_size": 1e-6},
+            "cell_size: 1e-06 would need more than 4096 cells .* use 0.00.* or",
+        ),
     ],
 )
 def test_refusals(source: object, options: dict[str, object], words: str) -> None:

@@ -130,9 +130,9 @@ def vertices(form="ascii", properties=XYZ, rows=CORNERS):
 @pytest.mark.parametrize(
     ("contents", "message"),
     [
-        (b"", "is no PLY file: it begins with ''"),
-        (b"plywood", "is no PLY file: it begins with 'plyw'"),
-        (b"\x89PNG\r\n", r"is no PLY file: it begins with '\?PNG'"),
+        (b"", "is not a PLY file: it begins with ''"),
+        (b"plywood", "is not a PLY file: it begins with 'plyw'"),
+        (b"\x89PNG\r\n", r"is not a PLY file: it begins with '\?PNG'"),
         (b"ply\n", "ends within the header, after line 1"),
         (vertices()[:38], "ends within the header, after line"),
         (vertices().replace(b"ascii", b"text"), "line 2: format 'text'; ascii, binary_little"),
@@ -175,7 +175,7 @@ def test_damaged_ply_files(tmp_path, contents, message):
 def test_what_is_too_long_for_text(tmp_path):
     with pytest.raises(ValueError, match=r"line 131.*: the header is longer than 1 MiB"):
         read(tmp_path, b"ply\nformat ascii 1.0\n" + b"comment\n" * 200_000)
-    with pytest.raises(ValueError, match="line 10 is longer than 16 MiB; this is no text"):
+    with pytest.raises(ValueError, match="line 10 is longer than 16 MiB; this is not a text file"):
         read(tmp_path, vertices()[:-5] + b" " * 40_000_000)
 
 

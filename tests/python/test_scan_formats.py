@@ -106,9 +106,9 @@ def test_large_coordinates_are_doubles(tmp_path):
         ("3\n1 2 3\n", "line 2: ends after 1 of the 3 points that were announced"),
         ("2\n1 2 3\n3\n", "line 3: ends after 1 of the 2 points that were announced"),
         ("1\n1 2 3\n4 5 6\n", "line 3: more points than the 1 that were announced"),
-        ("-1\n1 2 3\n", "line 1: found a single number that is no count; a point needs x, y"),
-        ("1.5\n1 2 3\n", "line 1: found a single number that is no count"),
-        ("nan\n1 2 3\n", "line 1: found a single number that is no count"),
+        ("-1\n1 2 3\n", "line 1: found a single number that is not a count; a point needs x, y"),
+        ("1.5\n1 2 3\n", "line 1: found a single number that is not a count"),
+        ("nan\n1 2 3\n", "line 1: found a single number that is not a count"),
         ("1 2 3\n" * 5000 + "1 2\n", "line 5001: found 2 numbers; 3 are needed, as before"),
     ],
     ids=lambda each: each[:20],
@@ -203,8 +203,8 @@ def cloud(data="ascii", **lines):
 @pytest.mark.parametrize(
     ("contents", "message"),
     [
-        (b"", " is no PCD file: there is no line DATA"),
-        (b"\x89PNG\r\n", r": line 1: '\?PNG' of nothing"),
+        (b"", " is not a PCD file: there is no line DATA"),
+        (b"\x89PNG\r\n", r": line 1: '\?PNG' without a value"),
         (cloud().split(b"DATA")[0], ": there is no line DATA"),
         (cloud(FIELDS=None, SIZE=None, TYPE=None, COUNT=None), ": there is no line FIELDS"),
         (cloud(WIDTH=None, POINTS=None), ": there is no line WIDTH or POINTS"),
@@ -233,7 +233,7 @@ def cloud(data="ascii", **lines):
         ),
         (cloud("binary_compressed")[:-1], ": .. bytes of compressed points are announced; .. fol"),
         (cloud("binary_compressed", DATA="binary_compressed\n\0\0\0\0\0\0"), ": 3 points of 12"),
-        (b"VERSION 0.7\n" + b"# comment\n" * 200_000, " is no PCD file: there is no line DATA"),
+        (b"VERSION 0.7\n" + b"# comment\n" * 200_000, " is not a PCD file: there is no line DATA"),
     ],
     ids=lambda each: each[-50:] if isinstance(each, str) else None,
 )

@@ -113,9 +113,9 @@ def test_damaged_las_files(laspy, tmp_path):
     assert len(prefilter.read_points(path).positions) == 50
     records = contents[:100] + b"\xff\xff\xff\xff" + contents[104:]
     for damaged, message in [
-        (b"", "is no LAS file: it begins with b''"),
-        (b"garbage" * 1000, "is no LAS file: it begins with b'garb'"),
-        (contents[:200], "is no LAS file"),
+        (b"", "is not a LAS file: it begins with b''"),
+        (b"garbage" * 1000, "is not a LAS file: it begins with b'garb'"),
+        (contents[:200], "is not a LAS file"),
         (contents[:-100], r"too short for the 50 points in its header: \d+ bytes follow it"),
         (records, "too short for the records that its header announces"),
         (contents[:104] + b"\x7f" + contents[105:], "cannot be read as a LAS file"),

@@ -142,7 +142,7 @@ def test_windings_of_open_shapes_are_drawn() -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"filter": "tent"}, "filter: 'tent'; the method wavelet has box only"),
+        ({"filter": "tent"}, "filter: 'tent'; the method wavelet supports only box"),
         ({"depth": 8}, "depth: found 8; an image of 100 x 30 pixels has depths from 0 to 7"),
         ({"depth": -1}, "depth: -1; a whole number of at least 0 is needed, or None"),
         ({"depth": 2.0}, "depth: 2.0; a whole number of at least 0 is needed, or None"),

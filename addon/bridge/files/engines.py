@@ -81,38 +81,40 @@ def checked(
     if target is None or not has_formats(target.name):
         return []
     chosen = _chosen(picture, texture_format)
-    who = f"texture format: {_label(chosen)}"
+    who = f"Texture Format: {_label(chosen)}"
     if chosen.startswith(_KTX2_ONLY) and not has_supercompression(target.name):
         raise ValueError(f"{who} needs a .ktx2 file; found '{target.name}'")
     if chosen in _FEW_CHANNELS and not picture.is_float and picture.encoding is not Encoding.NONE:
         raise ValueError(
-            f"{who} has no sRGB form, and image '{picture.name}' has the color space "
-            f"{picture.colorspace}; Non-Color or another format is needed"
+            f"{who} has no sRGB variant, and image '{picture.name}' has the color space "
+            f"{picture.colorspace}; set Non-Color, or choose another format"
         )
     told = []
     height, width, channels = picture.shape
     if chosen.startswith("bc") and (width % _BLOCK_SIDE or height % _BLOCK_SIDE):
         told.append(f"{who} of {width} x {height} texels: Direct3D needs sides divisible by 4")
     if chosen in _FEW_CHANNELS and not may_lose_channels:
-        told.append(f"{who} keeps {_FEW_CHANNELS[chosen]} of '{picture.name}' only")
+        told.append(f"{who} keeps only {_FEW_CHANNELS[chosen]} of '{picture.name}'")
     elif chosen in _THREE_CHANNELS and channels == 4:
         if picture.alpha_is_coverage or not may_lose_channels:
-            told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
+            told.append(f"{who} drops the fourth channel of '{picture.name}'")
     elif chosen == "bc1" and channels == 4:
         if not picture.alpha_is_coverage:
             if not may_lose_channels:
-                told.append(f"{who} leaves the fourth channel of '{picture.name}' out")
+                told.append(f"{who} drops the fourth channel of '{picture.name}'")
         elif threshold is None:
-            told.append(f"{who} knows no alpha of '{picture.name}' between 0 and 1")
+            told.append(f"{who} stores only alpha 0 and 1; '{picture.name}' has values in between")
         elif threshold != _CUT_OUT_ALPHA:
-            told.append(f"{who} cuts alpha at {_CUT_OUT_ALPHA}, not at {threshold:g}")
+            told.append(
+                f"{who} cuts alpha off at {_CUT_OUT_ALPHA}, not at the threshold {threshold:g}"
+            )
     if chosen in _NO_NEGATIVES and not picture.is_float:
         closer = "BC7" if chosen == "bc6h" else "ASTC"
         told.append(f"{who} is for float images; {closer} is closer to '{picture.name}'")
     if picture.is_float:
         finite = picture.stored[np.isfinite(picture.stored)]
         if chosen not in _FLOATS and finite.size and (finite.min() < 0 or finite.max() > 1):
-            told.append(f"{who} clips values of '{picture.name}' beyond 0 and 1")
+            told.append(f"{who} clips values of '{picture.name}' outside 0 to 1")
         elif chosen in _NO_NEGATIVES and finite.size and finite.min() < 0:
             told.append(f"{who} clips values of '{picture.name}' below 0")
     return told

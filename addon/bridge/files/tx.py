@@ -291,7 +291,9 @@ def _open(path: Path) -> tuple[Any, Any]:
     software = spec.getattribute("Software") or ""
     if not software.startswith("Blender maketx"):
         reader.close()
-        raise OSError(f"'{path}' is not of Blender's texture cache: found Software '{software}'")
+        raise OSError(
+            f"'{path}' was not made by Blender's texture cache: its Software is '{software}'"
+        )
     return reader, spec
 
 
@@ -299,7 +301,7 @@ def _source_space(path: Path, spec: Any) -> str:
     found = _SOURCE_SPACE.search(spec.getattribute("DocumentName") or "")
     if found is None:
         raise OSError(
-            f"'{path}' does not tell its colour space, as Blender 5.2's texture cache does"
+            f"'{path}' does not name its color space, as files of Blender 5.2's texture cache do"
         )
     return found[1]
 

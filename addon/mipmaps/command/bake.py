@@ -25,15 +25,13 @@ from .bake_all import bake_all
 
 _HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
 _NOTES = """\
-With --all, what each image holds is found from the nodes of the materials: color, normals,
-roughness and other data, cut-outs. In --output, {name} stands for the name of the image; the
-extension of a file comes before that of --format. .dds and .ktx2 files get block formats by
-content.
+With --all, the nodes of the materials tell what each image holds: color, normals, roughness and
+other data, cut-outs. In --output, {name} stands for the name of the image; the extension of a file
+takes precedence over --format. .dds and .ktx2 files get block formats by content.
 
-Without --image, the images are baked that are base colors of the meshes' materials; or all that
-the materials show where none is. Of several, each gets a file: texture.exr becomes
-texture.NAME.exr. A picture file that no material uses is taken as the texture of all faces, with
-the active UV map.
+Without --image, the base colors of the meshes' materials are baked, or all their images if none is
+a base color. If there are several, each gets a file: texture.exr becomes texture.NAME.exr. A
+picture file that no material uses is treated as the texture of all faces, with the active UV map.
 
 examples:
   prefilter bake helmet.gltf --all --list
@@ -66,8 +64,8 @@ def add(commands: Any) -> None:
     parser.add_argument(
         "--all",
         action="store_true",
-        help="bake every image of the model, each as what it is, to files of its own in the folder "
-        "that --output names",
+        help="bake every image of the model, each according to its content, to separate files in "
+        "the folder that --output names",
     )
     add_flags(parser, ModelSettings)
     parser.add_argument(
@@ -114,7 +112,9 @@ def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
         staging.check_writable(Path(path))
     chosen, is_picture = source.images_of(options.image, objects, settings.content)
     if len(chosen) > 1 and (settings.roughness or settings.roughness_filepath):
-        raise ValueError(f"--roughness: needs --image, as {len(chosen)} images are baked without")
+        raise ValueError(
+            f"--roughness: give --image too; without it, {len(chosen)} images are baked"
+        )
     targets = unnamed.output_paths(settings.filepath, chosen)
     for image, target in zip(chosen, targets, strict=True):
         for file in udim.paths(target, images.tile_numbers(image)):

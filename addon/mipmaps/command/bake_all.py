@@ -64,7 +64,7 @@ def _pattern(options: argparse.Namespace, chosen: ModelSettings) -> file_names.P
     """Returns where files go; without --output, what the names of files would be."""
     output = given(options, Settings).get("filepath", "")
     if "file_format" in given(options, ModelSettings) and file_names.is_texture(output):
-        options.usage_error(f"--format: not with the extension of --output, '{output}'")
+        options.usage_error(f"--format: not allowed with the extension of --output, '{output}'")
     if not output and options.list and not options.save:
         output = "."
     return file_names.Pattern.of(output, f".{chosen.file_format}")
@@ -72,11 +72,11 @@ def _pattern(options: argparse.Namespace, chosen: ModelSettings) -> file_names.P
 
 def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.Pattern) -> None:
     if options.image is not None:
-        options.usage_error("--image: not with --all, which bakes every image")
+        options.usage_error("--image: not allowed with --all, which bakes every image")
     for name in given(options, Settings):
         if name in NOT_OF_MODELS and name != "filepath":
             flag = f"--{name.replace('_', '-')}".replace("filepath", "output")
-            options.usage_error(f"{flag}: not with --all, which finds it for each image")
+            options.usage_error(f"{flag}: not allowed with --all, which finds it for each image")
     if not (options.save or options.list or pattern.text):
         options.usage_error("nothing to write: give --output FOLDER, --save or --list")
     if pattern.text and not file_names.is_texture(pattern.text):

@@ -25,8 +25,8 @@ _PLOTTED = ("wrap", "wrap_v", "bounds", "reader")
 _HELP = "plot the error of filters over the mip value, on the meshes that use an image"
 _NOTES = """\
 The figure is that of the dissertation (7.7): solid lines are the root mean square errors over the
-surface at each mip value, dashed ones those over all mip values. The image is chosen as for bake,
-and has to be named where that would bake several.
+surface at each mip value, dashed ones those over all mip values. The image is chosen as
+for bake; name one if bake would bake several.
 
 examples:
   prefilter plot spot.obj --image spot.png --output error.png
@@ -60,7 +60,7 @@ def _plot(options: argparse.Namespace) -> None:
     chosen, is_picture = source.images_of(options.image, objects, "auto")
     if len(chosen) > 1:
         found = listed(image.name for image in chosen)
-        raise ValueError(f"--image: needed, as the meshes use {found}")
+        raise ValueError(f"--image: choose one; the meshes use {found}")
     image = chosen[0]
     images.check_untiled(image)
     depsgraph = bpy.context.evaluated_depsgraph_get()

@@ -272,8 +272,9 @@ def _item(image: bpy.types.Image, known: _Found) -> Item:
             )
     if item.content == "color" and roles and not any(_may_be_color(role) for role in roles):
         notes.append(
-            f"has the color space {image.colorspace_settings.name}, though shaders read no color "
-            f"of it: {', '.join(item.uses)}; if its values are data, set Non-Color"
+            f"has the color space {image.colorspace_settings.name}, though shaders do not "
+            f"read it as a color: {', '.join(item.uses)}; if its values are data, set "
+            "Non-Color"
         )
     maps = {use.uv_map for places in known.places.values() for use in places}
     if len(maps) > 1:
@@ -314,7 +315,7 @@ def _partner(
     normal_maps = {one.normal_maps for one in shaders}
     if normal_maps == {()}:
         return _Partner(None)
-    who = "its levels do not compensate for those of a normal map"
+    who = "does not compensate for detail lost in normal map levels"
     if len(normal_maps) > 1 or len(next(iter(normal_maps))) > 1:
         names = listed(sorted({one.name for maps in normal_maps for one in maps}))
         none = ", or with none" if () in normal_maps else ""

@@ -61,7 +61,7 @@ class PREFILTER_OT_bake_mipmaps(
             set_unset(self, {"result": "file"})
         alone = bool(self.roughness_filepath) and not self.roughness
         if alone and given("roughness_filepath") and not self.options.is_repeat:
-            raise ValueError("roughness file: needs the name of a roughness image, found none")
+            raise ValueError("Roughness File: choose a Roughness image too")
         found = file_names.format_of(self.filepath or self.roughness_filepath)
         if found:
             set_unset(self, {"file_format": found})

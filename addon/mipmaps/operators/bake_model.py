@@ -26,8 +26,8 @@ class PREFILTER_OT_bake_model(
     bl_label = "Bake All Images"
     bl_description = (
         "Make the mipmap levels of every image of the scene, of the selected meshes or of a "
-        "material, weighted by the surface that shows it. What an image holds is found from the "
-        "nodes: color, normals, roughness and other data, cut-outs"
+        "material, weighted by the surface that shows it. The nodes tell what an image "
+        "holds: color, normals, roughness and other data, cut-outs"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking all images"

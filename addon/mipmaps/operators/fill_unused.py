@@ -26,15 +26,15 @@ class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
     bl_idname = "prefilter.fill_unused"
     bl_label = "Fill Unused Texels"
     bl_description = (
-        "Make a copy of the image in which the texels that no lookup on the meshes reads "
-        "continue those that are read, so that no filter or compressor sees the background"
+        "Make a copy of the image in which unused texels are filled from the used ones "
+        "around them, so that no filter or compressor sees the background"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Filling texels"
 
     use_in_place: BoolProperty(
         name="Use Copy Everywhere",
-        description="Have materials, and whatever else uses the image, use the copy instead",
+        description="Make materials and all other users of the image use the copy instead",
         default=False,
     )
 

@@ -22,8 +22,8 @@ class PREFILTER_OT_preview_levels(WorkOperator, SurfaceOperator, bpy.types.Opera
     bl_idname = "prefilter.preview_levels"
     bl_label = "Preview Levels"
     bl_description = (
-        "Compute the levels of the image with the settings of the bake, and draw them at full size "
-        "in its place. The image itself is left as it is"
+        "Compute the levels of the image with the settings of the bake, and draw them at "
+        "full size in its place. The image itself does not change"
     )
     bl_options = {"REGISTER"}
     doing = "Computing levels"

@@ -49,7 +49,7 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
 
     bl_idname = "prefilter.show_source"
     bl_label = "Back to Image"
-    bl_description = "Show the image again that this picture is made of"
+    bl_description = "Show the image from which this picture was made"
     bl_options = {"REGISTER"}
 
     @classmethod
@@ -58,7 +58,7 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
         from ...bridge import derived
 
         if derived.source_of(getattr(context.space_data, "image", None)) is None:
-            cls.poll_message_set("The editor shows no picture that was made of an image")
+            cls.poll_message_set("The editor shows no picture that was made from an image")
             return False
         return True
 

@@ -88,7 +88,7 @@ def measure(source: Source, filters: Sequence[str], progress: Progress) -> Error
         OSError: The color space needs a module that is missing.
     """
     if not filters:
-        raise ValueError("filters: none is chosen; at least one is needed")
+        raise ValueError("Filters: choose at least one")
     linear = source.linear(progress)
     errors = []
     for name, part in zip(filters, parts(progress, len(filters)), strict=True):

@@ -16,14 +16,14 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
 
     use_preview: BoolProperty(
         name="Show Level",
-        description="Draw a level in the place of the image",
+        description="Draw a level in place of the image",
         default=True,
         update=editors.redraw_on_change,
     )
     mip_value: FloatProperty(
         name="Mip Value",
-        description="The level that is drawn: 0 is the image, 1 has half its sides. Between two "
-        "levels it is a mixture of both, as on a GPU",
+        description="Level that is drawn: 0 is the image, 1 has half its width and height. Values "
+        "in between mix two levels, as on a GPU",
         default=1.0,
         min=0.0,
         max=16.0,
@@ -40,7 +40,7 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
     )
     wipe: FloatProperty(
         name="Position",
-        description="Where the wipe is, from the left to the right edge of the editor",
+        description="Position of the wipe, from the left to the right edge of the editor",
         subtype="FACTOR",
         default=0.5,
         min=0.0,

@@ -28,8 +28,8 @@ _TRANSFORM = {
 _WITHOUT_DEFAULT = ("rotation", "scale_x", "scale_y", "offset_x", "offset_y", *_SIZES)
 _NOTES = f"""\
 Corners are eight numbers, x and y of the lower left, lower right, upper right and upper left one:
-shares of the width and height of OUTPUT, or for --rectify and where the size is fitted those of
-INPUT; with --pixels they are pixels. x goes to the right and y upwards.
+shares of the width and height of OUTPUT, or of INPUT for --rectify and if the size is fitted; with
+--pixels they are in pixels. x points to the right and y up.
 
 {files.NOTE}
 

@@ -22,7 +22,7 @@ class NewImageOperator(ImageOperator, MakesImage):
 
     use_in_place: BoolProperty(
         name="Use Copy Everywhere",
-        description="Have materials, and whatever else uses the image, use the copy instead",
+        description="Make materials and all other users of the image use the copy instead",
         default=False,
     )
 

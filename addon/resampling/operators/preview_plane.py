@@ -20,8 +20,8 @@ class PREFILTER_OT_preview_plane(ImageOperator, BackgroundOperator, bpy.types.Op
     bl_idname = "prefilter.preview_plane"
     bl_label = "Preview Plane"
     bl_description = (
-        "Draw a plane that is tiled with the image: to the left by trilinear interpolation of its "
-        "mipmap, to the right by a sampling table. The image itself is left as it is"
+        "Draw a plane tiled with the image: to the left by trilinear interpolation of its "
+        "mipmap, to the right by a sampling table. The image itself does not change"
     )
     bl_options = {"REGISTER"}
     doing = "Computing levels"

@@ -23,8 +23,8 @@ class PREFILTER_OT_resample_image(
     bl_idname = "prefilter.resample_image"
     bl_label = "Resample Image"
     bl_description = (
-        "Make a copy of the image that is scaled and rotated, pinned by its corners or freed from "
-        "perspective, filtered in linear light, with colors weighted by alpha"
+        "Make a copy of the image that is scaled and rotated, pinned by its corners or "
+        "rectified, filtered in linear light, with colors weighted by alpha"
     )
     bl_options = {"REGISTER", "UNDO"}
     presets = RESAMPLE

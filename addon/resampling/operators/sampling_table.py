@@ -19,8 +19,8 @@ class PREFILTER_OT_sampling_table(TableProperties, WorkOperator, bpy.types.Opera
     bl_idname = "prefilter.sampling_table"
     bl_label = "Make Sampling Table"
     bl_description = (
-        "Find which few texels of a mipmap make up a filter of any place and size, and write that "
-        "as shader code, or as a file to use later"
+        "Find the few texels of a mipmap that best reproduce a filter at any place and "
+        "scale, and write them as shader code, or as a file to use later"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Making a sampling table"

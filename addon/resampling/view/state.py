@@ -26,14 +26,14 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
     filter: single_property(PlaneSettings, "filter")
     texels: EnumProperty(
         name="Table",
-        description="How many texels of the mipmap make up a pixel to the right of the line",
+        description="Number of texels of the mipmap per pixel, to the right of the line",
         items=items({key: METHODS[key] for key in ("8", "6", "4")}),
         default="8",
         update=editors.redraw_on_change,
     )
     tilt: FloatProperty(
         name="Tilt",
-        description="Of the plane, away from the viewer",
+        description="Angle of the plane away from the viewer",
         subtype="ANGLE",
         default=math.radians(75),
         min=0.0,
@@ -42,15 +42,15 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
     )
     rotation: FloatProperty(
         name="Rotation",
-        description="Of the image in the plane",
+        description="Angle of the image in the plane",
         subtype="ANGLE",
         default=0.0,
         update=editors.redraw_on_change,
     )
     tiles: FloatProperty(
         name="Tiles",
-        description="How many times the image is repeated over the height of the editor, without "
-        "the tilt",
+        description="Number of repetitions of the image over the height of the editor, "
+        "without the tilt",
         default=2.0,
         min=0.01,
         soft_min=0.1,
@@ -60,7 +60,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
     )
     wipe: FloatProperty(
         name="Position",
-        description="Where the line between the two halves is, from left to right",
+        description="Position of the line between the two halves, from left to right",
         subtype="FACTOR",
         default=0.5,
         min=0.0,

@@ -28,8 +28,8 @@ class PREFILTER_OT_rasterize(
     bl_idname = "prefilter.rasterize"
     bl_label = "Rasterize"
     bl_description = (
-        "Make a crisp image of what the selected curves and texts fill; without any, a mask of "
-        "what the faces of the active mesh cover in its UV map"
+        "Make an exact image of the selected curves and texts; if none are selected, a mask "
+        "of the area that the faces of the active mesh cover in its UV map"
     )
     bl_options = {"REGISTER", "UNDO"}
     presets = RASTERIZE

@@ -22,7 +22,7 @@ class PREFILTER_OT_rasterize_svg(
 
     bl_idname = "prefilter.rasterize_svg"
     bl_label = "Rasterize SVG"
-    bl_description = "Make a crisp image of an SVG file, of any size"
+    bl_description = "Make an exact image of an SVG file, at any size"
     bl_options = {"REGISTER", "UNDO"}
     presets = RASTERIZE
     source_drawn = "svg"

@@ -19,8 +19,9 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
     bl_idname = "prefilter.voxelize"
     bl_label = "Voxelize"
     bl_description = (
-        "Give each selected object a closed surface, made from the exact share of every voxel that "
-        "it fills. Open, leaky and self-intersecting meshes will do. Modifiers are applied"
+        "Give each selected object a closed surface, computed from the exact share of every "
+        "voxel that it fills. Works on open, leaky and self-intersecting meshes. Modifiers "
+        "are applied"
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Voxelizing"

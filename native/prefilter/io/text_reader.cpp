@@ -42,7 +42,7 @@ bool TextReader::next_line(std::string_view* line) {
     }
     searched = found.size();
     if (searched > kLongestLine) {
-      throw_invalid(where() + " is longer than 16 MiB; this is no text");
+      throw_invalid(where() + " is longer than 16 MiB; this is not a text file");
     }
     found = bytes_.peek(std::max<std::size_t>(2 * searched, 256));
     if (found.size() == searched) {

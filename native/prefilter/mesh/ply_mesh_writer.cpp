@@ -118,8 +118,8 @@ void PlyMeshWriter::Files::add_vertices(std::span<const Vector3> positions,
   assert(attributes.size() == count * width);
   if (count > kMostVertices - vertex_count_) {
     throw_invalid(staged_.file().name() +
-                  ": a mesh of more than 4294967295 vertices; PLY files "
-                  "number no more");
+                  ": a mesh of more than 4294967295 vertices; PLY files cannot "
+                  "number more");
   }
   std::size_t size = 3 * (is_double_ ? sizeof(double) : sizeof(float));
   for (const PointAttribute& each : attributes_) size += each.is_byte ? 1 : sizeof(float);

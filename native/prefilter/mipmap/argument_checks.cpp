@@ -25,8 +25,8 @@ void check_mapped(const TexelTriangles& triangles) {
 
 void throw_outside() {
   throw_invalid(
-      "surface: none of it lies inside of the image, and with the wrap mode border only what "
-      "does counts; use clamp or repeat, or move the uvs");
+      "surface: none of it lies inside the image, and with the wrap mode border nothing else "
+      "counts; use clamp or repeat, or move the uvs");
 }
 
 }  // namespace prefilter

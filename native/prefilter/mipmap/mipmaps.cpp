@@ -234,8 +234,8 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
   }
   if (options.footprint != 0.0 && (!is_fit(options.filter) || options.reader != Reader::kLinear)) {
     throw_invalid("footprint: " + to_text(options.footprint) +
-                  "; others than 0 go with least squares (" + fit_names() +
-                  ") for the linear reader");
+                  "; values other than 0 require least squares (" + fit_names() +
+                  ") and the linear reader");
   }
   if (options.threads < 0) {
     throw_invalid("threads: " + std::to_string(options.threads) +
@@ -244,7 +244,7 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
   if (options.filter == MipmapFilter(SurfaceFilter::kTrilinear) &&
       options.reader != Reader::kLinear) {
     throw_invalid(
-        "reader: 'srgb-after' goes with pam-bilinear: such readers do not interpolate between "
+        "reader: 'srgb-after' requires pam-bilinear: such readers do not interpolate between "
         "levels; use linear for pam-trilinear");
   }
   if (!needs_surface(options.filter)) return;

@@ -59,12 +59,12 @@ void check_wavelet_options(std::span<const Shape> shapes, const RasterOptions& o
                   " pixels has depths from 0 to " + std::to_string(most));
   }
   if (options.filter != "box") {
-    throw_invalid("filter: '" + options.filter + "'; the method wavelet has box only");
+    throw_invalid("filter: '" + options.filter + "'; the method wavelet supports only box");
   }
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     if (shapes[i].paint.kind != Paint::Kind::kConstant) {
       throw_invalid("shapes: shape " + std::to_string(i) +
-                    " has a gradient; the method wavelet has constant colors only");
+                    " has a gradient; the method wavelet supports only constant colors");
     }
   }
 }

@@ -59,8 +59,8 @@ int depth_for(const Box& box, const ReconstructOptions& options) {
   for (int depth = 1; depth <= kMaxTreeDepth; ++depth) {
     if (cell_at(depth) <= *options.cell_size * (1.0 + kSizeRounding)) return depth;
   }
-  throw_invalid("cell_size: " + to_text(*options.cell_size) + " makes more than " +
-                std::to_string(1 << kMaxTreeDepth) + " cells along an axis; use " +
+  throw_invalid("cell_size: " + to_text(*options.cell_size) + " would need more than " +
+                std::to_string(1 << kMaxTreeDepth) + " cells per axis; use " +
                 to_text(cell_at(kMaxTreeDepth) * (1.0 + 1e-5)) + " or more");  // not rounded down
 }
 
@@ -105,7 +105,8 @@ FunctionFindings find_function(PointSource* source, const SampleGrid& grid,
     found.is_inward = slabs->coarse.root < 0.0F;
   }
   if (slabs->coarse.is_empty()) {
-    throw_invalid("normals: they cancel each other in all cells; ones that agree are needed");
+    throw_invalid(
+        "normals: they contradict each other everywhere; recalculate them, or have them estimated");
   }
   return found;
 }

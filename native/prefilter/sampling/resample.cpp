@@ -50,7 +50,7 @@ void check_arguments(const ImageView& image, const Homography& transform, int wi
       options.kernel->name() != "gaussian") {
     throw_invalid("max_probes: " + std::to_string(options.max_probes) + " with exact and filter '" +
                   std::string(options.kernel->name()) +
-                  "'; 1 is needed, as only 'gaussian' is exact in other shapes than squares");
+                  "'; 1 is needed, because only 'gaussian' has exact filters that are not square");
   }
   const double pixels = static_cast<double>(width) * height;
   constexpr double kCopies = 3.0;  // of the image, with its levels

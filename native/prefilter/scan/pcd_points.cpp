@@ -67,14 +67,15 @@ class HeaderReader {
       if (keyword.empty() || keyword.front() == '#') continue;
       words_.clear();
       for (std::string_view word; !(word = take_word(&line)).empty();) words_.push_back(word);
-      if (words_.empty()) throw_invalid(text_->where() + ": " + quoted(keyword) + " of nothing");
+      if (words_.empty())
+        throw_invalid(text_->where() + ": " + quoted(keyword) + " without a value");
       take(keyword);
       if (keyword == "DATA") {
         check();
         return std::move(header_);
       }
     }
-    throw_invalid(text_->name() + (header_.fields.empty() ? " is no PCD file" : "") +
+    throw_invalid(text_->name() + (header_.fields.empty() ? " is not a PCD file" : "") +
                   ": there is no line DATA");
   }
 

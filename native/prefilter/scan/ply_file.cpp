@@ -81,7 +81,7 @@ void PlyFile::read_header() {
   const std::string_view first(reinterpret_cast<const char*>(magic.data()),
                                std::min<std::size_t>(magic.size(), 4));
   if (first != "ply\n" && first != "ply\r") {
-    throw_invalid(name() + " is no PLY file: it begins with " + quoted(first));
+    throw_invalid(name() + " is not a PLY file: it begins with " + quoted(first));
   }
   std::string_view line;
   bool has_format = false;

@@ -180,7 +180,7 @@ class TextPoints final : public PointSource {
     check_count();
     if (!(values_[0] >= 0.0 && values_[0] < 9e15 && std::floor(values_[0]) == values_[0])) {
       throw_invalid(text_.where() +
-                    ": found a single number that is no count; a point needs x, y and z");
+                    ": found a single number that is not a count; a point needs x, y and z");
     }
     if (!has_count_ && found_ > 0) {
       throw_invalid(text_.where() + ": found 1 number; " + std::to_string(width_) +

@@ -333,7 +333,7 @@ class TestImportance:
     @pytest.mark.parametrize(
         ("kind", "domain", "message"),
         [
-            (None, None, "importance: found no vertex group or attribute named 'Care' on 'Quad'"),
+            (None, None, "Importance: found no vertex group or attribute named 'Care' on 'Quad'"),
             ("FLOAT", "EDGE", "attribute 'Care' is on the domain EDGE; POINT, FACE or CORNER"),
             ("FLOAT_VECTOR", "POINT", "attribute 'Care' is of the type FLOAT_VECTOR; a number"),
         ],

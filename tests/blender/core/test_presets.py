@@ -113,7 +113,7 @@ def test_bad_presets(kind, tmp_path, monkeypatch):
     paths = bpy.utils.preset_paths
     monkeypatch.setattr(bpy.utils, "preset_paths", lambda sub: [*paths(sub), str(tmp_path)])
     for text, message in [
-        ("settings.colour = 1", "'colour', which is no setting"),
+        ("settings.colour = 1", "'colour' is not a setting"),
         ("settings.depth = 99", "Depth: found 99; allowed: 1 to 12"),
         ("settings.depth = '9'", "Depth: found '9'"),
         ("settings.depth = True", "Depth: found True"),
@@ -191,7 +191,7 @@ def test_game_asset(model, tmp_path):
     """DDS with all levels, in blocks by content, fitted to one lookup a pixel."""
     result = run("bake", model, "--all", "--output", tmp_path / "out", "--preset", "Game asset")
     assert result.returncode == 0, result.stderr
-    assert "for one lookup a pixel" in result.stdout
+    assert "for one lookup per pixel" in result.stdout
     found = {path.name: read_dds(path) for path in (tmp_path / "out").iterdir()}
     assert {name: file.format for name, file in found.items()} == {
         "color.dds": "BC7_SRGB",

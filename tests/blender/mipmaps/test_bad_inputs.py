@@ -126,22 +126,22 @@ ROWS = {
         named="Light",
     ),
     "too many levels": Row(
-        ["levels: found 9", "8 x 8 has 1 to 4"],
+        ["Levels: found 9", "8 x 8 has 1 to 4"],
         {"levels": 9},
     ),
     "no folder": Row(["there is no folder", "nowhere"], {"filepath": "nowhere/out.exr"}),
     "folder": Row(["folder.exr", "is a folder"], {"filepath": "folder.exr"}),
     "read-only file": Row(["kept.exr", "is read-only"], {"filepath": "kept.exr"}),
     "frames": Row(
-        ["End: found 1", "before Start, 5"],
+        ["End: 1 is before", "before Start, 5"],
         {"use_frames": True, "frame_start": 5, "frame_end": 1},
     ),
     "importance": Row(
-        ["importance: found no vertex group or attribute named 'Care'", "'Quad'"],
+        ["Importance: found no vertex group or attribute named 'Care'", "'Quad'"],
         {"importance": "Care"},
     ),
     "importance of 0": Row(
-        ["importance: 'Care' is 0 wherever", "'Quad'"],
+        ["Importance: 'Care' is 0 wherever", "'Quad'"],
         {"importance": "Care"},
         change=with_care(0.0),
     ),
@@ -156,7 +156,7 @@ ROWS = {
         change=with_vectors,
     ),
     "reader": Row(
-        ["reader: 'srgb-after' goes with pam-bilinear"],
+        ["reader: 'srgb-after' requires pam-bilinear"],
         {"reader": "srgb-after", "filter": "pam-trilinear"},
     ),
     "cut-out": Row(
@@ -166,16 +166,16 @@ ROWS = {
         ["no image named 'Rough'"], {"content": "normal", "roughness": "Rough"}
     ),
     "roughness of another size": Row(
-        ["roughness: 'Rough' has 4 x 4 texels", "8 x 8"],
+        ["Roughness: 'Rough' has 4 x 4 texels", "8 x 8"],
         {"content": "normal", "roughness": "Rough"},
         change=with_a_small_roughness,
     ),
     "roughness is the normal map": Row(
-        ["roughness: 'Paint' is the normal map itself"],
+        ["Roughness: 'Paint' is the normal map itself"],
         {"content": "normal", "roughness": "Paint"},
     ),
     "roughness file alone": Row(
-        ["roughness file: needs the name of a roughness image"],
+        ["Roughness File: choose a Roughness image"],
         {"content": "normal", "roughness_filepath": "rough.exr"},
     ),
     **{
@@ -247,8 +247,8 @@ def test_operator(name, folder):
         (["bake", "scene.blend", "--save", "--reader", "gpu"], ["--reader", "srgb-after"], 2),
         (["bake", "scene.blend", "--save", "--image", "Pain"], ["'Pain'", "'Paint'"], 1),
         (["bake", "scene.blend", "--save", "--object", "Qua"], ["'Qua'", "'Quad'"], 1),
-        (["bake", "scene.blend", "--save", "--levels", "9"], ["levels: found 9", "1 to 4"], 1),
-        (["bake", "quad.obj", "--output", "out.exr"], ["--image: needed", "none"], 1),
+        (["bake", "scene.blend", "--save", "--levels", "9"], ["Levels: found 9", "1 to 4"], 1),
+        (["bake", "quad.obj", "--output", "out.exr"], ["--image: needed", "no image"], 1),
         (["bake", "scene.blend", "--output", "no/out.exr"], ["there is no folder"], 1),
         (["bake", "scene.blend", "--output", "kept.exr"], ["kept.exr", "read-only"], 1),
         (["plot", "scene.blend"], ["nothing to write", "--output", "--table"], 2),

@@ -219,7 +219,7 @@ def test_levels_limit_the_images_and_not_the_file(bake, tmp_path):
 def test_too_many_levels(bake, calls, tmp_path, filepath):
     image = scenes.image("Paint", scenes.noise(16, 16))
     filepath = filepath and str(tmp_path / filepath)
-    with pytest.raises(ValueError, match=r"levels.*6"):
+    with pytest.raises(ValueError, match=r"Levels.*6"):
         bake(image, filter="box", levels=6, filepath=filepath)
     assert calls == []
     assert list(tmp_path.iterdir()) == []
@@ -436,7 +436,7 @@ def test_importance_moves_the_mean(bake):
     care.data.foreach_set("value", [0.0, 0.0])
     # Blender 4.2 would not look at the mesh again.
     pair.data.update()
-    with pytest.raises(ValueError, match="importance: 'Care' is 0 wherever objects 'Pair' use"):
+    with pytest.raises(ValueError, match="Importance: 'Care' is 0 wherever objects 'Pair' use"):
         bake(picture, [pair], importance="Care")
 
 

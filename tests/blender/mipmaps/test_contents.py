@@ -482,14 +482,17 @@ def test_light_may_pass_one(bake):
     ("settings", "message"),
     [
         ({"content": "cutout"}, "'Paint': has no alpha, and is not a grayscale mask"),
-        ({"content": "color", "roughness": "Rough"}, "roughness: found 'Rough' with the content"),
+        (
+            {"content": "color", "roughness": "Rough"},
+            "Roughness: 'Rough' needs a normal map, and the content is",
+        ),
         ({"content": "normal", "roughness": "Gone"}, "found no image named 'Gone'"),
         ({"content": "normal", "roughness": "Paint"}, "'Paint' is the normal map itself"),
         (
             {"content": "normal", "roughness": "Small"},
-            "'Small' has 4 x 4 texels; the 8 x 8 of 'Paint' are needed",
+            "'Small' has 4 x 4 texels, and 'Paint' has 8 x 8",
         ),
-        ({"content": "normal", "roughness_filepath": "/r.exr"}, "roughness file: needs the name"),
+        ({"content": "normal", "roughness_filepath": "/r.exr"}, "Roughness File: choose"),
         ({"content": "cutout", "threshold": 0.0}, "Threshold: found 0; allowed: above 0, up to 1"),
     ],
 )
@@ -518,7 +521,7 @@ def test_roughness_left_out_is_said(bake):
     image = scenes.image("Paint", scenes.noise(8, 8))
     scenes.image("Rough", gray(8, 8), colorspace="Non-Color")
     outcome = bake(image, filter="box", roughness="Rough")
-    assert any("'Rough' is left out" in warning for warning in outcome.warnings)
+    assert any("'Rough' is not used" in warning for warning in outcome.warnings)
     assert outcome.images == ["Paint.mip01", "Paint.mip02", "Paint.mip03"]
 
 

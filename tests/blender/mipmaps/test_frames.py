@@ -89,7 +89,7 @@ def test_faces_that_come_and_go(bake, pulse):
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({"frame_start": 5, "frame_end": 4}, "End: found 4, which is before Start, 5"),
+        ({"frame_start": 5, "frame_end": 4}, "End: 4 is before Start, 5"),
         ({"frame_step": 0}, "Step: found 0; allowed: 1 and up"),
     ],
 )

@@ -58,7 +58,7 @@ def test_the_file_decides_unless_the_user_does(bake, paint, tmp_path, lookups, n
     )
     np.testing.assert_allclose(baked(), level(footprint), atol=0.51 / 255)
     assert np.abs(level(0.0) - level(1.0)).max() > 2 / 255
-    words = {0.0: "PAM Bilinear over", 1.0: "one lookup a pixel", 1.5: "anisotropic lookups"}
+    words = {0.0: "PAM Bilinear over", 1.0: "one lookup per pixel", 1.5: "anisotropic lookups"}
     assert words[footprint] in outcome.summary
     assert ("lookup" in outcome.summary) == (footprint > 0)
     assert outcome.warnings == []
@@ -94,7 +94,7 @@ def test_readers_of_encoded_texels_are_supersampled(bake, tmp_path, lookups, cou
         filepath=str(tmp_path / "out.ktx2"),
     )
     np.testing.assert_array_equal(baked(), expected)
-    assert sum(warning.startswith("lookups: ") for warning in outcome.warnings) == count
+    assert sum(warning.startswith("Lookups: ") for warning in outcome.warnings) == count
 
 
 def test_normal_maps_heed_it(bake, paint):
@@ -152,6 +152,6 @@ def test_least_squares_need_no_object(bake, tmp_path):
     outcome = bake(image, filter="ls-bilinear", wrap="repeat", seam_budget=1.0, filepath=str(path))
     expected = level(1.0, filter="ls-bilinear", wrap="repeat")
     np.testing.assert_allclose(baked(), expected, atol=0.51 / 255)
-    assert "with Least Squares for one lookup a pixel into" in outcome.summary
+    assert "with Least Squares for one lookup per pixel into" in outcome.summary
     assert outcome.notes == []
     assert len(read_ktx2(path).levels) == 5

@@ -126,7 +126,7 @@ def test_frames_importance_and_instances(blend, tmp_path):
     assert "over 1 object at 3 frames" in result.stdout
     assert target.exists()
     missing = run("bake", blend, "--output", tmp_path / "no.exr", "--importance", "Other")
-    assert_fails(missing, "importance: found no vertex group or attribute named 'Other'")
+    assert_fails(missing, "Importance: found no vertex group or attribute named 'Other'")
     assert not (tmp_path / "no.exr").exists()
 
 
@@ -286,10 +286,10 @@ def test_a_file_a_base_color(tmp_path):
         f"texture.Albedo_{index}.{number:02d}.png" for index in (0, 1) for number in range(4)
     ]
     result = run("bake", path.name, "--output", "o.exr", "--roughness", "Rough", cwd=tmp_path)
-    assert_fails(result, "--roughness: needs --image, as 2 images are baked")
+    assert_fails(result, "--roughness: give --image too; without it, 2 images are baked")
     assert_fails(
         run("plot", path.name, "--table", "error.csv", cwd=tmp_path),
-        "--image: needed, as the meshes use 'Albedo 0', 'Albedo 1'",
+        "--image: choose one; the meshes use 'Albedo 0', 'Albedo 1'",
     )
     assert not list(tmp_path.glob("o.*"))
     (tmp_path / "Albedo 0.png").unlink()

@@ -62,9 +62,9 @@ def test_roughness_is_of_normal_maps(addon, request_of):
     rough = reading.read_roughness(request, level_0)
     assert (rough.roughness, rough.target) == (None, None)
     (told,) = reading.odd_uses(request, level_0, rough)
-    assert told == "roughness 'Rough' is left out: 'Paint' is no normal map"
+    assert told == "Roughness: 'Rough' is not used, because 'Paint' is not a normal map"
     request = request_of(image, roughness="Rough", content="color")
-    with pytest.raises(ValueError, match="with the content 'color'"):
+    with pytest.raises(ValueError, match="the content is 'color'"):
         reading.read_roughness(request, reading.read_level_0(request))
 
 

@@ -74,7 +74,7 @@ def test_other_images_are_read_as_light(bake, options):
     expected = scenes.pixels("Paint.mip02")
     outcome = bake(image, bpy.context.selected_objects, reader="srgb-after")
     assert outcome.warnings == [
-        "reader: 'Paint' is no 8-bit sRGB image, so it is read as linear light"
+        "Reader: 'Paint' is not an 8-bit sRGB image, so it is read as linear light"
     ]
     np.testing.assert_array_equal(scenes.pixels("Paint.mip02"), expected)
 
@@ -93,7 +93,7 @@ def test_a_file_that_is_read_as_light_gets_a_warning(bake, tmp_path):
 def test_trilinear_goes_with_light(bake, tmp_path):
     _, _, image = checks()
     options = {"filter": "pam-trilinear", "reader": "srgb-after"}
-    with pytest.raises(ValueError, match="reader: 'srgb-after' goes with pam-bilinear"):
+    with pytest.raises(ValueError, match="reader: 'srgb-after' requires pam-bilinear"):
         bake(image, bpy.context.selected_objects, filepath=str(tmp_path / "out.tif"), **options)
     assert [one.name for one in bpy.data.images] == ["Paint"]
     assert list(tmp_path.iterdir()) == []
@@ -117,7 +117,7 @@ def test_plot_measures_what_the_reader_sees():
         pam, box = measured[mip_value]
         assert box == pytest.approx(expected, rel=0.02)
         assert pam < box
-    with pytest.raises(RuntimeError, match="reader: 'srgb-after' goes with pam-bilinear"):
+    with pytest.raises(RuntimeError, match="reader: 'srgb-after' requires pam-bilinear"):
         bpy.ops.prefilter.plot_error(image="Paint", filters={"pam-trilinear"})
 
 

@@ -73,7 +73,7 @@ def test_corners_that_fold_are_refused(addon, corners):
     settings = addon("resampling.choices").ResampleSettings
     for warp in ("corners", "rectify"):
         chosen = settings(warp=warp, **dict(zip(names, corners, strict=True)))
-        with pytest.raises(ValueError, match=r"^Corners: found .*without dents"):
+        with pytest.raises(ValueError, match=r"^Corners: found .*convex quadrilateral"):
             addon("resampling.placement").placement(chosen, 60, 40)
 
 

@@ -188,7 +188,10 @@ def test_failures(sky, tmp_path):
         ((tmp_path / "none.png", target), ("INPUT", "none.png")),
         ((path, tmp_path / "none" / "new.png"), ("there is no folder",)),
         ((path, target, "--scale", 0), ("Scale X: found 0",)),
-        ((path, target, "--corners", 0, 0, 1, 1, 1, 0, 0, 1), ("Corners: found", "without dents")),
+        (
+            (path, target, "--corners", 0, 0, 1, 1, 1, 0, 0, 1),
+            ("Corners: found", "convex quadrilateral"),
+        ),
         ((path, target, "--corners", 0, 0, 9e5, 0, 9e5, 1, 0, 1), ("18000000 pixels long",)),
         ((path, target, "--method", "table", "--table", "no.json"), ("no.json",)),
     ):

@@ -182,7 +182,7 @@ def test_in_place_and_undo():
         ({"image": "Pain"}, "no image named 'Pain'"),
         ({"image": ""}, "image: no name is given"),
         ({"scale_x": 0.0}, "Scale X: found 0"),
-        ({"warp": "corners", "lower_left": (2.0, 2.0)}, "Corners: found .*without dents"),
+        ({"warp": "corners", "lower_left": (2.0, 2.0)}, "Corners: found .*convex quadrilateral"),
         ({"scale_x": 1000.0, "scale_y": 1000.0}, "."),
         ({"method": "table"}, "Table: no file is named"),
         ({"method": "table", "table": "/none.json"}, "none.json"),

@@ -171,7 +171,7 @@ def not_finite():
     [
         (lambda: "Paint", "found no image named 'Paint'; this file has 'Other'"),
         (lambda: "", "no name is given"),
-        (tiled, "'Tiles': it has UDIM tiles"),
+        (tiled, "'Tiles': has UDIM tiles"),
         (without_file, "'Lost': found no pixels .*is its file missing"),
         (not_finite, "row 3, column 4 holds nan"),
     ],

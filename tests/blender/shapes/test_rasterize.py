@@ -337,7 +337,7 @@ def test_names_and_report(capfd):
     obj.data.bevel_depth = 0.1
     rasterize()
     out = capfd.readouterr().out
-    assert "left out, as Blender fills closed ones only: 1 open spline of 'Square'" in out
+    assert "left out, because Blender fills only closed ones: 1 open spline of 'Square'" in out
     assert "bevel and extrusion of 'Square' do not show" in out
 
 
@@ -380,8 +380,8 @@ def test_refused(capfd):
     outlines.polygon(obj, [(0, 0), (1, 0), (0, 1)])
     assert "Margin: 40 leaves no room in 64 x 64 pixels" in refused(capfd, margin=40)
     words = refused(capfd, resolution="density", density=1e6)
-    assert "Pixels per Unit: 1e+06 makes an image of" in words
-    assert "65536 are allowed" in words
+    assert "Pixels per Unit: 1e+06 would make an image of" in words
+    assert "the limit is 65536" in words
     obj.scale = (0, 0, 0)
     assert "no area" in refused(capfd)
     assert "Make a mesh with a UV map the active object" in refused(capfd, source="uv")

@@ -613,7 +613,7 @@ def test_levels_of_what_is_seen_otherwise_are_blenders(scene, tmp_path, capfd, s
     assert path.read_bytes() == before
     output = capfd.readouterr().out
     assert f"'paint.png': {reason}" in output or reason in output
-    assert "its levels are Blender's" in output
+    assert "it keeps Blender's levels" in output
 
 
 @needs_cache
@@ -624,7 +624,8 @@ def test_what_lies_beyond_the_edges_must_be_of_one_kind(scene, tmp_path):
     node = obj.data.materials[0].node_tree.nodes["Image Texture"]
     node.extension = "MIRROR"
     with pytest.raises(
-        RuntimeError, match="UVs leave it, where Image Texture nodes go on by MIRROR"
+        RuntimeError,
+        match="some UVs lie outside the image, where Image Texture nodes extend it by MIRROR",
     ):
         bake()
     node.extension = "CLIP"

@@ -138,7 +138,7 @@ def test_failures_leave_nothing(blend, tmp_path):
         ),
         (
             ("voxelize", blend, target, "--voxel-size", "0.0001"),
-            ["object 'Body': Voxel Size: 0.0001", "4096 are allowed"],
+            ["object 'Body': Voxel Size: 0.0001", "the limit is 4096"],
             1,
         ),
         (("boolean", blend, "-o", target), ["give two files or more"], 2),

@@ -236,7 +236,7 @@ def _put_back(target: Path, earlier: Path | None) -> str:
             earlier.unlink(missing_ok=True)
     except OSError as error:
         kept = "" if earlier is None else f"; the earlier file is kept as '{earlier}'"
-        return f"'{target}' was written and cannot be taken back{kept}: {error}"
+        return f"'{target}' was written, which cannot be undone{kept}: {error}"
     return ""
 
 

@@ -250,7 +250,7 @@ def _as_light(stored: np.ndarray, srgb: bool, threads: int) -> npt.NDArray[np.fl
         return floats
     if stored.dtype != np.uint16:
         raise ValueError(
-            "encoding: 'srgb' goes with images of uint8 or uint16; decode others with to_linear"
+            "encoding: 'srgb' requires images of uint8 or uint16; decode others with to_linear"
         )
     return to_linear(floats, threads=threads)
 

@@ -118,7 +118,7 @@ def _check_header(path: str) -> None:
         header = file.read(255)
         end = _end_of_records(file, header, size)
     if header[:4] != b"LASF" or len(header) < 227:
-        raise ValueError(f"'{path}' is no LAS file: it begins with {header[:4]!r}")
+        raise ValueError(f"'{path}' is not a LAS file: it begins with {header[:4]!r}")
     records = struct.unpack_from("<I", header, 100)[0] * 54
     if max(records, end) > size:
         raise ValueError(f"'{path}': too short for the records that its header announces")

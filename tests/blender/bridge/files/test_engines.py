@@ -104,7 +104,7 @@ def test_float_image_in_bytes_is_clipped_and_told(bake, tmp_path, kind):
     values[..., 3] = 1
     image = scenes.image("Light", values, is_float=True)
     outcome = bake(image, f"out.{kind}", texture_format="rgba8")
-    assert outcome.warnings == ["texture format: RGBA8 clips values of 'Light' beyond 0 and 1"]
+    assert outcome.warnings == ["Texture Format: RGBA8 clips values of 'Light' outside 0 to 1"]
     file = READERS[kind](tmp_path / f"out.{kind}")
     expected = 255 * scenes.to_srgb(np.clip(values[..., :3], 0, 1))
     assert np.abs(file.levels[0][..., :3] - expected).max() <= 0.51
@@ -156,16 +156,20 @@ def test_few_channels_of_srgb_are_refused(bake, tmp_path, kind, texture_format):
 @pytest.mark.parametrize(
     ("options", "settings", "words"),
     [
-        ({}, {}, "knows no alpha of 'Paint' between 0 and 1"),
-        ({"alpha_mode": "CHANNEL_PACKED"}, {}, "leaves the fourth channel of 'Paint' out"),
-        ({}, {"content": "cutout", "threshold": 0.25}, "cuts alpha at 0.5, not at 0.25"),
+        ({}, {}, "stores only alpha 0 and 1; 'Paint' has values in between"),
+        ({"alpha_mode": "CHANNEL_PACKED"}, {}, "drops the fourth channel of 'Paint'"),
+        (
+            {},
+            {"content": "cutout", "threshold": 0.25},
+            "cuts alpha off at 0.5, not at the threshold 0.25",
+        ),
         ({}, {"content": "cutout", "threshold": 0.5}, None),
     ],
 )
 def test_bc1_tells_what_becomes_of_alpha(bake, tmp_path, options, settings, words):
     image = scenes.image("Paint", scenes.noise(8, 8, alpha=True), **options)
     outcome = bake(image, "out.dds", texture_format="bc1", **settings)
-    assert outcome.warnings == ([] if words is None else [f"texture format: BC1 {words}"])
+    assert outcome.warnings == ([] if words is None else [f"Texture Format: BC1 {words}"])
     level = read_dds(tmp_path / "out.dds").levels[0]
     if options:
         assert np.all(level[..., 3] == 255)
@@ -178,7 +182,7 @@ def test_blocks_of_odd_sides_are_told(bake, tmp_path, kind):
     image = scenes.image("Paint", scenes.noise(6, 9))
     outcome = bake(image, f"out.{kind}", texture_format="bc3")
     assert outcome.warnings == [
-        "texture format: BC3 of 9 x 6 texels: Direct3D needs sides divisible by 4"
+        "Texture Format: BC3 of 9 x 6 texels: Direct3D needs sides divisible by 4"
     ]
     assert len(READERS[kind](tmp_path / f"out.{kind}").levels) == 4
 
@@ -294,7 +298,7 @@ def test_bc7_keeps_soft_alpha(bake, tmp_path, kind):
 def test_bc1_rgb_leaves_alpha_out(bake, tmp_path, kind):
     image = scenes.image("Paint", scenes.noise(8, 8, alpha=True))
     outcome = bake(image, f"out.{kind}", texture_format="bc1-rgb")
-    assert outcome.warnings == ["texture format: BC1 RGB leaves the fourth channel of 'Paint' out"]
+    assert outcome.warnings == ["Texture Format: BC1 RGB drops the fourth channel of 'Paint'"]
     file = READERS[kind](tmp_path / f"out.{kind}")
     assert file.format == {"dds": "BC1_SRGB", "ktx2": "BC1_RGB_SRGB"}[kind]
     assert np.all(file.levels[0][..., 3:] == 255)
@@ -315,12 +319,12 @@ def test_bc6h_tells_what_it_cannot_hold(bake, tmp_path):
     dark = np.full((4, 4, 4), (-0.5, 1, 1, 0.5), np.float32)
     outcome = bake(scenes.image("Dark", dark, is_float=True), "a.dds", texture_format="bc6h")
     assert outcome.warnings == [
-        "texture format: BC6H leaves the fourth channel of 'Dark' out",
-        "texture format: BC6H clips values of 'Dark' below 0",
+        "Texture Format: BC6H drops the fourth channel of 'Dark'",
+        "Texture Format: BC6H clips values of 'Dark' below 0",
     ]
     outcome = bake(scenes.image("Paint", scenes.noise(4, 4)), "b.dds", texture_format="bc6h")
     assert outcome.warnings == [
-        "texture format: BC6H is for float images; BC7 is closer to 'Paint'"
+        "Texture Format: BC6H is for float images; BC7 is closer to 'Paint'"
     ]
     wild = np.full((4, 4, 4), 1e6, np.float32)
     with pytest.raises(ValueError, match=r"half floats of format 'bc6h'.*'rgba32f' is needed"):

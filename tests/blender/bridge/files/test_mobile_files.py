@@ -60,23 +60,23 @@ def test_values_of_high_dynamic_range(bake, tmp_path, texture_format):
     assert read_ktx2(tmp_path / "out.ktx2").format.endswith("SFLOAT")
     dark = scenes.image("Dark", values - 10, is_float=True)
     (told,) = bake(dark, "out.ktx2", texture_format=texture_format).warnings
-    assert told == f"texture format: {label} clips values of 'Dark' below 0"
+    assert told == f"Texture Format: {label} clips values of 'Dark' below 0"
     (told,) = bake(
         scenes.image("Paint", scenes.noise(8, 8)), "out.ktx2", texture_format=texture_format
     ).warnings
-    assert told == f"texture format: {label} is for float images; ASTC is closer to 'Paint'"
+    assert told == f"Texture Format: {label} is for float images; ASTC is closer to 'Paint'"
 
 
 def test_alpha_that_etc2_leaves_out_is_told(bake):
     image = scenes.image("Paint", scenes.noise(8, 8, alpha=True))
     outcome = bake(image, "out.ktx2", texture_format="etc2-rgb")
-    assert outcome.warnings == ["texture format: ETC2 RGB leaves the fourth channel of 'Paint' out"]
+    assert outcome.warnings == ["Texture Format: ETC2 RGB drops the fourth channel of 'Paint'"]
 
 
 @pytest.mark.parametrize("texture_format", ["eac-r11", "eac-rg11"])
 def test_colors_in_eac_are_refused(bake, tmp_path, texture_format):
     image = scenes.image("Paint", scenes.noise(8, 8))
-    with pytest.raises(ValueError, match=r"EAC RG?11 has no sRGB form.*'Paint'.*Non-Color"):
+    with pytest.raises(ValueError, match=r"EAC RG?11 has no sRGB variant.*'Paint'.*Non-Color"):
         bake(image, "out.ktx2", texture_format=texture_format)
     assert os.listdir(tmp_path) == []
 

@@ -128,7 +128,7 @@ def test_what_cannot_be_taken_back_is_named(addon, tmp_path, monkeypatch):
         staging.commit_all(files)
     message = str(caught.value)
     for number in (1, 3):
-        assert f"{number}.txt' was written and cannot be taken back" in message
+        assert f"{number}.txt' was written, which cannot be undone" in message
         assert (tmp_path / f"{number}.txt").read_text() == "new"
     assert "/0.txt" not in message
     assert not (tmp_path / "0.txt").exists()

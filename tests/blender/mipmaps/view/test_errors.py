@@ -173,7 +173,7 @@ def test_image_of_the_users_keeps_its_pixels(stretched):
 
 
 def test_no_filter_is_refused(stretched):
-    with pytest.raises(RuntimeError, match="filters: none is chosen"):
+    with pytest.raises(RuntimeError, match="Filters: choose at least one"):
         plot(filters=set())
     assert [image.name for image in bpy.data.images] == ["Paint"]
 

@@ -498,7 +498,7 @@ def plane():
         (
             bodies.cube,
             {"resolution": "size", "voxel_size": 1e-6},
-            "object 'Cube': Voxel Size: 1e-06 makes .*4096 are allowed.*use 0.000489 or more",
+            "Voxel Size: 1e-06 would need .* the limit is 4096. Use 0.000489 or more",
         ),
     ],
 )
