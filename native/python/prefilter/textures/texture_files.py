@@ -5,6 +5,7 @@
 from collections.abc import Sequence
 from typing import BinaryIO
 
+import numpy as np
 import numpy.typing as npt
 
 from .. import _native
@@ -15,6 +16,7 @@ from .dds import DDS
 from .ktx2 import KTX2
 from .texel_formats import (
     Container,
+    TexelFormat,
     Texture,
     as_alpha,
     as_format,
@@ -127,15 +129,7 @@ def _write(
     images = as_levels(levels, srgb)
     texel_format = as_format(format, images[0], needs_srgb=srgb)
     srgb = srgb and not texel_format.is_float
-    codes = container.codes(texel_format)
-    if codes == (None, None):
-        raise ValueError(f"format: {container.name} files have no '{texel_format.name}'")
-    code = codes[srgb]
-    if code is None:
-        raise ValueError(
-            f"encoding: 'srgb' with the format '{texel_format.name}', which has no sRGB form in "
-            f"{container.name} files; 'linear' or another format is needed"
-        )
+    code = _code(container, texel_format, srgb)
     output = as_output(path)
     report = as_progress(progress)
     count = as_threads(threads)
@@ -143,28 +137,15 @@ def _write(
     has_alpha = channels == 4 and texel_format.channels == 4
     alpha = as_alpha(alpha)
     scheme = as_supercompression(supercompression)
-    texels = sum(image.shape[0] * image.shape[1] for image in images)
-    payloads: list[bytes] = []
-    sizes: list[int] = []
-    done = 0
-    for image in images:
-        size = image.shape[0] * image.shape[1]
-        part = _part(report, done / texels, size / texels)
-        if part is not None and part(0.0) is False:
-            raise _native.Cancelled("cancelled")
-        payload = encoded(
-            image,
-            texel_format,
-            encoding == "srgb",
-            weigh_by_alpha=has_alpha and alpha == "straight",
-            progress=part if scheme == "none" else _part(part, 0.0, 0.5),
-            threads=count,
-        )
-        sizes.append(len(payload))
-        if scheme == "zstd":
-            payload = _native.supercompress(payload, _part(part, 0.5, 0.5))
-        payloads.append(payload)
-        done += size
+    payloads, sizes = _payloads(
+        images,
+        texel_format,
+        encoding == "srgb",
+        has_alpha and alpha == "straight",
+        scheme,
+        report,
+        count,
+    )
     texture = Texture(
         texel_format=texel_format,
         code=code,
@@ -184,6 +165,55 @@ def _write(
     write_output(output, write_parts)
     if report is not None:
         report(1.0)
+
+
+def _code(container: Container, texel_format: TexelFormat, srgb: bool) -> int:
+    """What a container calls a format."""
+    codes = container.codes(texel_format)
+    if codes == (None, None):
+        raise ValueError(f"format: {container.name} files have no '{texel_format.name}'")
+    code = codes[srgb]
+    if code is None:
+        raise ValueError(
+            f"encoding: 'srgb' with the format '{texel_format.name}', which has no sRGB form in "
+            f"{container.name} files; 'linear' or another format is needed"
+        )
+    return code
+
+
+def _payloads(
+    images: Sequence[np.ndarray],
+    texel_format: TexelFormat,
+    is_encoded: bool,
+    weigh_by_alpha: bool,
+    scheme: str,
+    report: ProgressCallback | None,
+    threads: int,
+) -> tuple[list[bytes], list[int]]:
+    """The levels as a file has them, and their sizes before they were supercompressed."""
+    texels = sum(image.shape[0] * image.shape[1] for image in images)
+    payloads: list[bytes] = []
+    sizes: list[int] = []
+    done = 0
+    for image in images:
+        size = image.shape[0] * image.shape[1]
+        part = _part(report, done / texels, size / texels)
+        if part is not None and part(0.0) is False:
+            raise _native.Cancelled("cancelled")
+        payload = encoded(
+            image,
+            texel_format,
+            is_encoded,
+            weigh_by_alpha=weigh_by_alpha,
+            progress=part if scheme == "none" else _part(part, 0.0, 0.5),
+            threads=threads,
+        )
+        sizes.append(len(payload))
+        if scheme == "zstd":
+            payload = _native.supercompress(payload, _part(part, 0.5, 0.5))
+        payloads.append(payload)
+        done += size
+    return payloads, sizes
 
 
 def _part(progress: ProgressCallback | None, start: float, share: float) -> ProgressCallback | None:
