@@ -11,7 +11,6 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import addon_utils
 import bpy
 import gpu
 import numpy as np
@@ -19,9 +18,8 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
-from window import idle, play, region, until
+from window import PACKAGE, begun, idle, play, region, until
 
-PACKAGE = "bl_ext.user_default.prefilter"
 RESULT = sys.argv[sys.argv.index("--") + 1]
 WIDTH, HEIGHT = 64, 48  # Of an offscreen picture.
 VIEWS = ((0.0, 0.1, 0.37), (1.2, 0.3, 2.0), (1.45, 2.0, 6.0))  # Tilt, rotation, tiles.
@@ -31,19 +29,13 @@ found: dict[str, object] = {}
 
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
-    assert addon_utils.enable(PACKAGE, default_set=True) is not None
+    stage = begun("IMAGE_EDITOR", opened="PREFILTER_PT_plane")
+    window, area = stage.window, stage.area
     kept = importlib.import_module(f"{PACKAGE}.resampling.view.kept")
-    panel = bpy.types.PREFILTER_PT_plane
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
     image = scenes.image("Wide", scenes.noise(24, 43))
     # Blender tells of changes to what the scene uses.
     scenes.textured_quad(image)
     other = scenes.image("High", scenes.noise(33, 7, alpha=True, seed=2))
-    window = bpy.context.window_manager.windows[0]
-    area = max(window.screen.areas, key=lambda area: area.width * area.height)
-    area.type = "IMAGE_EDITOR"
     area.spaces.active.image = image
     area.spaces.active.show_region_ui = True
     yield

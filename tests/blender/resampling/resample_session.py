@@ -12,40 +12,37 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import addon_utils
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
 import window as windows
-from window import RedoPanel, idle, play, refused, region, until
+from window import RedoPanel, Stage, begun, idle, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
 
 
+found: dict[str, object] = {}
+
+
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
-    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
-    # A panel that is closed is not drawn.
-    panel = bpy.types.PREFILTER_PT_resample
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
-    window = bpy.context.window_manager.windows[0]
-    area = max(window.screen.areas, key=lambda area: area.width * area.height)
-    area.type = "IMAGE_EDITOR"
-    area.spaces.active.show_region_ui = True
+    stage = begun("IMAGE_EDITOR", opened="PREFILTER_PT_resample")
     yield
-    override = {"window": window, "area": area, "region": region(area, "WINDOW")}
-    found = {}
-    with bpy.context.temp_override(**override):
+    with bpy.context.temp_override(**stage.override):
         found["polls_without_image"] = bpy.ops.prefilter.resample_image.poll()
-    area.spaces.active.image = scenes.image("Paint", scenes.noise(64, 96))
-    sidebar = region(area, "UI")
-    yield from until(lambda: sidebar.active_panel_category != "UNSUPPORTED")
-    sidebar.active_panel_category = "Prefilter"
+    stage.area.spaces.active.image = scenes.image("Paint", scenes.noise(64, 96))
+    yield from panel(stage)
+    yield from resampled(stage)
+    yield from table(stage)
+    RESULT.write_text(json.dumps(found))
+
+
+def panel(stage: Stage) -> Iterator[None]:
+    """Draws the panel with several settings."""
+    yield from stage.open_tab()
     settings = bpy.context.scene.prefilter_resample
     for name, value in (
         ("warp", "corners"),
@@ -57,62 +54,60 @@ def session() -> Iterator[None]:
         ("filter", "gaussian"),
     ):
         setattr(settings, name, value)
-        area.tag_redraw()
-        yield
-        yield
-    found["tab"] = sidebar.active_panel_category
+        yield from stage.redrawn()
+    found["tab"] = stage.tab
 
+
+def resampled(stage: Stage) -> Iterator[None]:
+    """Resamples an image, does so again with another scale, undoes it; cancels another run."""
+    space = stage.area.spaces.active
     bpy.ops.ed.undo_push(message="before")
-    with bpy.context.temp_override(**override):
+    with bpy.context.temp_override(**stage.override):
         found["started"] = list(
             bpy.ops.prefilter.resample_image("INVOKE_DEFAULT", True, scale_x=0.5, scale_y=0.5)
         )
         found["refused_while_running"] = refused(bpy.ops.prefilter.resample_image)
     yield from until(idle)
     yield
-    found["shown"] = area.spaces.active.image.name
-    found["size"] = list(area.spaces.active.image.size)
-    if region(area, "HUD").height < 40:
-        yield from RedoPanel(window, area).unfolded()
-    yield from RedoPanel(window, area).step("scale_x")
-    found["size_after_redo"] = list(area.spaces.active.image.size)
+    found["shown"] = space.image.name
+    found["size"] = list(space.image.size)
+    yield from stage.redo_panel()
+    yield from RedoPanel(stage.window, stage.area).step("scale_x")
+    found["size_after_redo"] = list(space.image.size)
     found["after_redo"] = names()
     bpy.ops.ed.undo()
     yield
     found["undone"] = names()
 
-    area.spaces.active.image = scenes.image("Big", scenes.noise(1024, 1024))
-    with bpy.context.temp_override(**override):
+    space.image = scenes.image("Big", scenes.noise(1024, 1024))
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.resample_image(
             "INVOKE_DEFAULT", scale_x=4.0, scale_y=4.0, filter="lanczos3"
         )
     found["works"] = not idle()
-    window.event_simulate(type="ESC", value="PRESS")
+    stage.escape()
     yield from until(idle)
     found["cancelled"] = names()
 
+
+def table(stage: Stage) -> Iterator[None]:
+    """Makes a sampling table in the Text editor, and cancels another."""
+    area = stage.area
     area.type = "TEXT_EDITOR"
     area.spaces.active.show_region_ui = True
     yield
-    sidebar = region(area, "UI")
-    yield from until(lambda: sidebar.active_panel_category != "UNSUPPORTED")
-    sidebar.active_panel_category = "Prefilter"
-    yield
-    yield
-    with bpy.context.temp_override(
-        window=window, area=area, region=region(area, "WINDOW"), space_data=area.spaces.active
-    ):
+    yield from stage.open_tab()
+    with bpy.context.temp_override(**stage.override, space_data=area.spaces.active):
         bpy.ops.prefilter.sampling_table("INVOKE_DEFAULT", filter="tent", texels=4)
     yield from until(idle)
     yield
     found["text"] = area.spaces.active.text.name
-    with bpy.context.temp_override(window=window, area=area, region=region(area, "WINDOW")):
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.sampling_table("INVOKE_DEFAULT", texels=9, grid=16, slices=8)
     found["table_works"] = not idle()
-    window.event_simulate(type="ESC", value="PRESS")
+    stage.escape()
     yield from until(idle)
     found["texts"] = [text.name for text in bpy.data.texts]
-    RESULT.write_text(json.dumps(found))
 
 
 def names() -> list[str]:

@@ -13,7 +13,6 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import addon_utils
 import bpy
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
@@ -21,72 +20,63 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import bodies
 import clouds
 import window as windows
-from window import RedoPanel, idle, play, refused, region, until
+from window import RedoPanel, Stage, begun, idle, play, refused, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
 
 
+found: dict[str, object] = {}
+
+
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
-    assert addon_utils.enable("bl_ext.user_default.prefilter", default_set=True) is not None
-    for obj in list(bpy.data.objects):
-        bpy.data.objects.remove(obj)
+    stage = begun()
+    without_objects()
     clouds.scan(*clouds.torus(3_000))
-    window = bpy.context.window_manager.windows[0]
-    area = max(window.screen.areas, key=lambda area: area.width * area.height)
-    override = {"window": window, "area": area, "region": region(area, "WINDOW")}
-    area.spaces.active.show_region_ui = True
-    sidebar = region(area, "UI")
-    yield from until(lambda: sidebar.active_panel_category != "UNSUPPORTED")
-    sidebar.active_panel_category = "Prefilter"
-    area.tag_redraw()
-    yield
-    yield
-    found = {"tab": sidebar.active_panel_category}
-    for name in ("VIEW3D_MT_object", "VIEW3D_MT_object_convert", "PREFILTER_MT_scans"):
-        with bpy.context.temp_override(**override):
-            bpy.ops.wm.call_menu(name=name)
-        yield
-        window.event_simulate(type="ESC", value="PRESS")
-        yield
+    yield from stage.open_tab()
+    found["tab"] = stage.tab
+    yield from stage.menus("VIEW3D_MT_object", "VIEW3D_MT_object_convert", "PREFILTER_MT_scans")
+    yield from reconstructed(stage)
 
+    bpy.data.objects.remove(bpy.data.objects["Scan"])
+    # Without a graphics card so many points take long to draw.
+    stage.area.spaces.active.overlay.show_overlays = False
+    clouds.scan(*clouds.torus(300_000))
+    yield
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=11, wavelet="d4")
+    found["works"] = not idle()
+    stage.escape()
+    yield from until(idle)
+    found["cancelled"] = hidden()
+
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=9)
+    bpy.data.objects.remove(bpy.data.objects["Scan"])
+    yield from until(idle)
+    found["gone"] = hidden()
+    RESULT.write_text(json.dumps(found))
+
+
+def reconstructed(stage: Stage) -> Iterator[None]:
+    """Reconstructs a surface, does so again with another depth, and undoes it."""
     bpy.ops.ed.undo_push(message="before")
-    with bpy.context.temp_override(**override):
+    with bpy.context.temp_override(**stage.override):
         found["started"] = list(bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", True, depth=5))
         found["refused_while_running"] = refused(bpy.ops.prefilter.reconstruct)
     yield from until(idle)
     yield
     found["objects"] = hidden()
     found["closed"] = bodies.is_closed(bpy.data.objects["Scan.surface"])
-    if region(area, "HUD").height < 40:
-        yield from RedoPanel(window, area).unfolded()
-    panel = RedoPanel(window, area)
+    yield from stage.redo_panel()
+    panel = RedoPanel(stage.window, stage.area)
     found["before_redo"] = size(panel)
     yield from panel.step("depth")
     found["after_redo"] = size(panel)
     bpy.ops.ed.undo()
     yield
     found["undone"] = hidden()
-
-    bpy.data.objects.remove(bpy.data.objects["Scan"])
-    # Without a graphics card so many points take long to draw.
-    area.spaces.active.overlay.show_overlays = False
-    clouds.scan(*clouds.torus(300_000))
-    yield
-    with bpy.context.temp_override(**override):
-        bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=11, wavelet="d4")
-    found["works"] = not idle()
-    window.event_simulate(type="ESC", value="PRESS")
-    yield from until(idle)
-    found["cancelled"] = hidden()
-
-    with bpy.context.temp_override(**override):
-        bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=9)
-    bpy.data.objects.remove(bpy.data.objects["Scan"])
-    yield from until(idle)
-    found["gone"] = hidden()
-    RESULT.write_text(json.dumps(found))
 
 
 def hidden() -> dict[str, bool]:

@@ -10,6 +10,7 @@ import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 
 import addon_utils
 import bpy
@@ -20,9 +21,8 @@ from mathutils import Matrix
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import play, until
+from window import PACKAGE, Stage, begun, play, region, until
 
-PACKAGE = "bl_ext.user_default.prefilter"
 RESULT = sys.argv[sys.argv.index("--") + 1]
 CHANNELS = ("COLOR_ALPHA", "COLOR", "ALPHA", "GREEN")
 SIDE = 48  # Of an offscreen picture.
@@ -32,8 +32,7 @@ found: dict[str, object] = {}
 
 def session() -> Iterator[None]:
     """Yields whenever Blender should draw and handle events before going on."""
-    assert addon_utils.enable(PACKAGE, default_set=True) is not None
-    preview = importlib.import_module(f"{PACKAGE}.mipmaps.view.preview")
+    stage = begun("IMAGE_EDITOR")
     bright = scenes.noise(64, 64, seed=2)
     bright[..., :3] *= 1.5
     images = {
@@ -44,118 +43,147 @@ def session() -> Iterator[None]:
     }
     for name, image in images.items():
         scenes.textured_quad(image, name)
-    window = bpy.context.window_manager.windows[0]
-    area = max(window.screen.areas, key=lambda area: area.width * area.height)
-    area.type = "IMAGE_EDITOR"
-    area.spaces.active.image = images["byte"]
+    stage.area.spaces.active.image = images["byte"]
     yield
-
-    region = next(region for region in area.regions if region.type == "WINDOW")
-    override = {"window": window, "area": area, "region": region}
-    settings = bpy.context.window_manager.prefilter_view
     bpy.context.scene.prefilter_bake.wrap = "clamp"
-
-    def shoot(name: str) -> Iterator[None]:
-        area.tag_redraw()
-        yield
-        yield
-        seen = scenes.screen(os.environ["FRAMEBUFFER"])
-        bottom, left = region.y, region.x
-        found[f"{name}.screen"] = seen[bottom : bottom + region.height, left : left + region.width]
-        low = region.view2d.region_to_view(0.5, 0.5)
-        high = region.view2d.region_to_view(region.width - 0.5, region.height - 0.5)
-        found[f"{name}.u"] = np.linspace(low[0], high[0], region.width)
-        found[f"{name}.v"] = np.linspace(low[1], high[1], region.height)
-
     for name, image in images.items():
-        area.spaces.active.image = image
-        with bpy.context.temp_override(**override):
-            bpy.ops.image.view_all(fit_view=True)
-        for channels in CHANNELS:
-            area.spaces.active.display_channels = channels
-            yield from shoot(f"{name}.plain.{channels}")
-        area.spaces.active.display_channels = "COLOR_ALPHA"
-        with bpy.context.temp_override(**override):
-            started = bpy.ops.prefilter.preview_levels("INVOKE_DEFAULT", compare="tent")
-        assert started == {"RUNNING_MODAL"}, started
-        yield from until(lambda image=image: preview.find(image) is not None)
-        settings.mip_value, settings.use_wipe = 0.0, False
-        for channels in CHANNELS:
-            area.spaces.active.display_channels = channels
-            yield from shoot(f"{name}.level0.{channels}")
-        area.spaces.active.display_channels = "COLOR_ALPHA"
-        settings.mip_value = 2.0
-        yield from shoot(f"{name}.level2")
+        yield from levels(stage, name, image)
+    yield from settings(stage, images["byte"])
+    yield from readers(stage, images["byte"])
+    yield from in_uv_editor(stage, images["byte"])
+    yield from changes(stage)
+    yield from ends(stage)
+    np.savez(RESULT, **found)
 
-    shown = preview.find(images["byte"])
-    area.spaces.active.image = images["byte"]
-    settings.compare, settings.use_wipe, settings.wipe = "tent", True, 0.5
-    yield from shoot("byte.wipe")
-    settings.use_wipe, settings.mip_value = False, 1.5
-    found["byte.last_level"] = shown.last_level
-    with bpy.context.temp_override(**override):
+
+def module() -> ModuleType:
+    """Returns the module of the add-on that keeps previews."""
+    return importlib.import_module(f"{PACKAGE}.mipmaps.view.preview")
+
+
+def state() -> bpy.types.PropertyGroup:
+    """Returns the settings of the view."""
+    return bpy.context.window_manager.prefilter_view
+
+
+def shoot(stage: Stage, name: str) -> Iterator[None]:
+    """Keeps what the screen shows, and where in the image that is."""
+    yield from stage.redrawn()
+    inside = region(stage.area, "WINDOW")
+    seen = scenes.screen(os.environ["FRAMEBUFFER"])
+    bottom, left = inside.y, inside.x
+    found[f"{name}.screen"] = seen[bottom : bottom + inside.height, left : left + inside.width]
+    low = inside.view2d.region_to_view(0.5, 0.5)
+    high = inside.view2d.region_to_view(inside.width - 0.5, inside.height - 0.5)
+    found[f"{name}.u"] = np.linspace(low[0], high[0], inside.width)
+    found[f"{name}.v"] = np.linspace(low[1], high[1], inside.height)
+
+
+def levels(stage: Stage, name: str, image: bpy.types.Image) -> Iterator[None]:
+    """Shows an image as it is, and its levels in its place."""
+    space = stage.area.spaces.active
+    space.image = image
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.image.view_all(fit_view=True)
+    for channels in CHANNELS:
+        space.display_channels = channels
+        yield from shoot(stage, f"{name}.plain.{channels}")
+    space.display_channels = "COLOR_ALPHA"
+    with bpy.context.temp_override(**stage.override):
+        started = bpy.ops.prefilter.preview_levels("INVOKE_DEFAULT", compare="tent")
+    assert started == {"RUNNING_MODAL"}, started
+    yield from until(lambda: module().find(image) is not None)
+    state().mip_value, state().use_wipe = 0.0, False
+    for channels in CHANNELS:
+        space.display_channels = channels
+        yield from shoot(stage, f"{name}.level0.{channels}")
+    space.display_channels = "COLOR_ALPHA"
+    state().mip_value = 2.0
+    yield from shoot(stage, f"{name}.level2")
+
+
+def settings(stage: Stage, image: bpy.types.Image) -> Iterator[None]:
+    """Shows the wipe, a level between two, from near, and no level."""
+    stage.area.spaces.active.image = image
+    state().compare, state().use_wipe, state().wipe = "tent", True, 0.5
+    yield from shoot(stage, "byte.wipe")
+    state().use_wipe, state().mip_value = False, 1.5
+    found["byte.last_level"] = module().find(image).last_level
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.image.view_zoom_ratio(ratio=5.0)
-    yield from shoot("byte.zoomed")
+    yield from shoot(stage, "byte.zoomed")
+    state().use_preview = False
+    yield from shoot(stage, "byte.off")
+    state().use_preview = True
 
-    settings.use_preview = False
-    yield from shoot("byte.off")
-    settings.use_preview = True
 
-    yield from offscreen(preview, images["byte"], "offscreen")
+def readers(stage: Stage, image: bpy.types.Image) -> Iterator[None]:
+    """Draws the levels of both readers."""
+    yield from offscreen(module(), image, "offscreen")
     bpy.context.scene.prefilter_bake.reader = "srgb-after"
-    with bpy.context.temp_override(**override):
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.preview_levels("EXEC_DEFAULT", compare="tent")
-    yield from offscreen(preview, images["byte"], "encoded")
+    yield from offscreen(module(), image, "encoded")
     bpy.context.scene.prefilter_bake.reader = "linear"
-    with bpy.context.temp_override(**override):
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.preview_levels("EXEC_DEFAULT", compare="tent")
 
+
+def in_uv_editor(stage: Stage, image: bpy.types.Image) -> Iterator[None]:
+    """Shows the level below the UV map of a mesh in Edit Mode."""
     for obj in bpy.data.objects:
         obj.select_set(False)
     inner = [(0.3 + 0.4 * u, 0.3 + 0.4 * v) for u, v in scenes.UNIT_SQUARE]
     edited = scenes.quads("Inner", [inner])
     edited.data.materials.append(bpy.data.materials["byte material"])
-    with bpy.context.temp_override(**override):
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.object.mode_set(mode="EDIT")
         bpy.ops.mesh.select_all(action="SELECT")
-    area.ui_type = "UV"
-    area.spaces.active.image = images["byte"]
-    with bpy.context.temp_override(**override):
+    stage.area.ui_type = "UV"
+    stage.area.spaces.active.image = image
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.image.view_all(fit_view=True)
-    yield from shoot("byte.uv")
-    with bpy.context.temp_override(**override):
+    yield from shoot(stage, "byte.uv")
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.object.mode_set(mode="OBJECT")
-    area.ui_type = "IMAGE_EDITOR"
-    area.spaces.active.image = images["byte"]
+    stage.area.ui_type = "IMAGE_EDITOR"
+    stage.area.spaces.active.image = image
     yield
 
-    with bpy.context.temp_override(**override):
+
+def changes(stage: Stage) -> Iterator[None]:
+    """Moves an object, undoes that, and paints on the image."""
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.ed.undo_push(message="before")
         bpy.data.objects["byte"].location.x += 1
         bpy.ops.ed.undo_push(message="after")
     yield
     image = bpy.data.images["Byte"]
-    found["stale after a move"] = preview.find(image).is_stale
-    preview.find(image).is_stale = False
-    with bpy.context.temp_override(**override):
+    found["stale after a move"] = module().find(image).is_stale
+    module().find(image).is_stale = False
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.ed.undo()
     yield
-    image = bpy.data.images["Byte"]
-    found["editor's image after undo"] = str(getattr(area.spaces.active.image, "name", None))
-    area.spaces.active.image = image
-    found["kept after undo"] = preview.find(image) is not None
-    yield from shoot("byte.undone")
-    preview.find(image).is_stale = False
-    found["stale before painting"] = preview.find(image).is_stale
+    image, space = bpy.data.images["Byte"], stage.area.spaces.active
+    found["editor's image after undo"] = str(getattr(space.image, "name", None))
+    space.image = image
+    found["kept after undo"] = module().find(image) is not None
+    yield from shoot(stage, "byte.undone")
+    module().find(image).is_stale = False
+    found["stale before painting"] = module().find(image).is_stale
     image.pixels.foreach_set(scenes.noise(32, 64, seed=9).ravel())
     image.update()
     image.update_tag()
     yield
-    found["stale after painting"] = preview.find(image).is_stale
+    found["stale after painting"] = module().find(image).is_stale
 
-    with bpy.context.temp_override(**override):
+
+def ends(stage: Stage) -> Iterator[None]:
+    """Ends the preview; loads another file, and disables the add-on."""
+    with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.end_preview()
-    found["ended"] = preview.find(image) is None
+    preview = module()
+    found["ended"] = preview.find(bpy.data.images["Byte"]) is None
     bpy.ops.wm.read_homefile(use_empty=True)
     yield
     found["kept in next file"] = len(preview._previews)
@@ -163,7 +191,6 @@ def session() -> Iterator[None]:
     yield
     # Blender removes the package of a disabled extension, and other tests need it.
     assert addon_utils.enable(PACKAGE, default_set=True) is not None
-    np.savez(RESULT, **found)
 
 
 def offscreen(preview: object, image: bpy.types.Image, name: str) -> Iterator[None]:
