@@ -34,6 +34,13 @@ struct RingShape {
 void measure_ring(const Patch& patch, std::int32_t vertex, const Ring& ring, RingShape* shape);
 
 /// Whether the edges to two neighbors are on one side of a crease.
-bool share_sector(const Ring& ring, const RingShape& shape, std::size_t i, std::size_t j);
+inline bool share_sector(const Ring& ring, const RingShape& shape, std::size_t i, std::size_t j) {
+  if (ring.crease_count < 2) return true;
+  const std::uint8_t i_after = shape.sectors[i];
+  const std::uint8_t i_before = shape.sectors[ring.before(i)];
+  const std::uint8_t j_after = shape.sectors[j];
+  const std::uint8_t j_before = shape.sectors[ring.before(j)];
+  return i_after == j_after || i_after == j_before || i_before == j_after || i_before == j_before;
+}
 
 }  // namespace prefilter

@@ -93,21 +93,24 @@ TEST(CleanUp, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(CleanUp, OfNoiseBringsInNoIntersections) {
-  // Surfaces less than a cell apart: a few of the first changes make them cross.
-  std::mt19937 random(2);
-  const FacetedMesh before = contour_of(24, [&](int x, int y, int z) {
-    const double value = static_cast<double>(random()) / 4294967296.0;
-    const auto [low, high] = std::minmax({x, y, z});
-    return low < 2 || high > 21 ? 0.0 : value;
-  });
-  ASSERT_TRUE(
-      intersecting_triangles({before.positions, before.triangles}, {}, Progress(), 2).empty());
-  const FacetedMesh after = clean_up(before, 0.01, Progress(), 2);
-  EXPECT_EQ(fault_of(plain(after)), "");
-  EXPECT_LT(after.triangles.size(), before.triangles.size());
-  EXPECT_TRUE(
-      intersecting_triangles({after.positions, after.triangles}, {}, Progress(), 2).empty());
-  EXPECT_EQ(clean_up(before, 0.01, Progress(), 1).triangles, after.triangles);
+  // Surfaces less than a cell apart: a few of the first changes make them cross, inside of the one
+  // patch for all seeds but 2.
+  for (const unsigned seed : {1U, 2U, 5U, 7U}) {
+    std::mt19937 random(seed);
+    const FacetedMesh before = contour_of(24, [&](int x, int y, int z) {
+      const double value = static_cast<double>(random()) / 4294967296.0;
+      const auto [low, high] = std::minmax({x, y, z});
+      return low < 2 || high > 21 ? 0.0 : value;
+    });
+    ASSERT_TRUE(
+        intersecting_triangles({before.positions, before.triangles}, {}, Progress(), 2).empty());
+    const FacetedMesh after = clean_up(before, 0.01, Progress(), 2);
+    EXPECT_EQ(fault_of(plain(after)), "");
+    EXPECT_LT(after.triangles.size(), before.triangles.size());
+    EXPECT_TRUE(
+        intersecting_triangles({after.positions, after.triangles}, {}, Progress(), 2).empty());
+    EXPECT_EQ(clean_up(before, 0.01, Progress(), 1).triangles, after.triangles);
+  }
 }
 
 TEST(CleanUp, LeavesATetrahedronAlone) {
