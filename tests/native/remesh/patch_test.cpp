@@ -438,28 +438,29 @@ TEST(CollapseCheck, AddsUpWhatIsLittleAndKeepsPointsOfTheRest) {
   EXPECT_FALSE(check(pyramid({0, 0, 1.05}, kSquare), &outcome));
 }
 
+// From both sides.
+void set_crease(std::int32_t a, std::int32_t b, Patch* patch) {
+  for (PatchTriangle& t : patch->triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::int32_t from = t.corners[i];
+      const std::int32_t to = t.corners[(i + 1) % 3];
+      if ((from != a || to != b) && (from != b || to != a)) continue;
+      t.creases = static_cast<std::uint8_t>(t.creases | (1U << i));
+      t.crease_errors[i] = 0.375F;
+    }
+  }
+}
+
 TEST(Collapse, KeepsPointsAndCreases) {
   Patch patch = torus(8, 8, 5);
   PatchLinks links = link_corners(patch.positions.size(), patch.triangles);
   const Ring ring = ring_of(patch, links, 20);
-  // A crease from the vertex to the one behind the spoke, seen from both sides; the spoke's own.
-  const auto crease = [&](std::int32_t a, std::int32_t b) {
-    for (PatchTriangle& t : patch.triangles) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::int32_t from = t.corners[i];
-        const std::int32_t to = t.corners[(i + 1) % 3];
-        if ((from == a && to == b) || (from == b && to == a)) {
-          t.creases = static_cast<std::uint8_t>(t.creases | (1U << i));
-          t.crease_errors[i] = 0.375F;
-        }
-      }
-    }
-  };
+  // One from the vertex to the neighbor behind the spoke, one from the spoke to that before.
   const std::int32_t to = ring.vertices[0];
   const std::int32_t after = ring.vertices[1];
   const std::int32_t before = ring.vertices[ring.size - 1];
-  crease(20, after);
-  crease(to, before);
+  set_crease(20, after, &patch);
+  set_crease(to, before, &patch);
   Outcome outcome;
   outcome.adds_points = true;
   outcome.error = 0.25;
