@@ -12,6 +12,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 #include "prefilter/contour/grid_contour.h"
 #include "prefilter/contour/outlines.h"
 #include "prefilter/contour/tree_contour.h"
@@ -22,18 +23,10 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-Interpolant interpolant_of(const std::string& name) {
-  if (name == "occupancy") return Interpolant::kOccupancy;
-  if (name == "plane") return Interpolant::kPlane;
-  if (name == "linear") return Interpolant::kLinear;
-  if (name == "sharp") return Interpolant::kSharp;
-  throw_invalid("interpolant: '" + name + "' is not one of occupancy, plane, linear, sharp");
-}
-
 ContourOptions contour_options(const std::string& interpolant, float isovalue, bool clean_up,
                                double adaptivity, const py::object& progress, int threads) {
   ContourOptions options;
-  options.interpolant = interpolant_of(interpolant);
+  options.interpolant = value_named("interpolant", interpolant, kInterpolants);
   options.isovalue = isovalue;
   options.clean_up = clean_up;
   options.adaptivity = adaptivity;

@@ -8,6 +8,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 #include "prefilter/color/transfer.h"
 #include "prefilter/mipmap/mipmap_error.h"
 #include "prefilter/mipmap/mipmaps.h"
@@ -19,12 +20,6 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-Reader reader_of(const std::string& name) {
-  if (name == "linear") return Reader::kLinear;
-  if (name == "srgb-after") return Reader::kSrgbAfter;
-  throw_invalid("reader: '" + name + "' is not one of linear, srgb-after");
-}
-
 MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::optional<float> low,
                          std::optional<float> high, int levels, bool premultiplied,
                          const std::string& reader, double seam_budget, double footprint,
@@ -35,7 +30,7 @@ MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::
   options.bounds = {low, high};
   options.levels = levels;
   options.premultiplied = premultiplied;
-  options.reader = reader_of(reader);
+  options.reader = value_named("reader", reader, kReaders);
   options.seam_budget = seam_budget;
   options.footprint = footprint;
   options.threads = threads;
@@ -105,7 +100,7 @@ std::vector<double> bound_mipmap_error(const std::vector<Array<float>>& levels,
   const std::vector<ImageView> views = views_of(levels);
   const ImageView image = view_of(array);
   const WrapModes modes = wrap_modes(wrap);
-  const Reader reads = reader_of(reader);
+  const Reader reads = value_named("reader", reader, kReaders);
   const Progress reporter = to_progress(progress);
   const py::gil_scoped_release unlocked;
   return mipmap_error(views, image, surfaces, mip_values, modes, reads, reporter, threads);

@@ -11,6 +11,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 #include "prefilter/outline/stroke.h"
 #include "prefilter/raster/rasterize.h"
 
@@ -122,13 +123,6 @@ Paint linear_paint(const std::vector<double>& constant, const std::vector<double
   return paint;
 }
 
-Spread spread_of(const std::string& name) {
-  if (name == "pad") return Spread::kPad;
-  if (name == "repeat") return Spread::kRepeat;
-  if (name == "reflect") return Spread::kReflect;
-  throw_invalid("spread: '" + name + "' is not one of pad, repeat, reflect");
-}
-
 Paint stops_paint(bool is_radial, const std::array<double, 2>& start, double start_radius,
                   const std::array<double, 2>& end, double end_radius,
                   const std::vector<std::pair<double, std::vector<double>>>& stops,
@@ -137,31 +131,13 @@ Paint stops_paint(bool is_radial, const std::array<double, 2>& start, double sta
   paint.kind = is_radial ? Paint::Kind::kRadialStops : Paint::Kind::kLinearStops;
   paint.channels = static_cast<int>(stops.front().second.size());
   for (const auto& [offset, value] : stops) paint.stops.push_back({offset, channel_values(value)});
-  paint.spread = spread_of(spread);
+  paint.spread = value_named("spread", spread, kSpreads);
   paint.start = point_of(start);
   paint.end = point_of(end);
   paint.start_radius = start_radius;
   paint.end_radius = end_radius;
   paint.to_shape = map_of(matrix);
   return paint;
-}
-
-RasterMethod method_of(const std::string& name) {
-  if (name == "scanline") return RasterMethod::kScanline;
-  if (name == "wavelet") return RasterMethod::kWavelet;
-  throw_invalid("method: '" + name + "' is not one of scanline, wavelet");
-}
-
-Overlap overlap_of(const std::string& name) {
-  if (name == "add") return Overlap::kAdd;
-  if (name == "cover") return Overlap::kCover;
-  throw_invalid("overlap: '" + name + "' is not one of add, cover");
-}
-
-FillRule fill_rule_of(const std::string& name) {
-  if (name == "nonzero") return FillRule::kNonzero;
-  if (name == "evenodd") return FillRule::kEvenOdd;
-  throw_invalid("fill_rule: '" + name + "' is not one of nonzero, evenodd");
 }
 
 Array<float> bound_rasterize(
@@ -172,15 +148,16 @@ Array<float> bound_rasterize(
   options.width = width;
   options.height = height;
   options.filter = filter;
-  options.method = method_of(method);
-  options.overlap = overlap_of(overlap);
+  options.method = value_named("method", method, kRasterMethods);
+  options.overlap = value_named("overlap", overlap, kOverlaps);
   options.background = background;
   options.depth = depth;
   options.threads = threads;
   options.progress = to_progress(progress);
   std::vector<Shape> shapes;
   for (const auto& [outline, fill_rule, paint, winds_once] : drawn) {
-    shapes.push_back({*outline, fill_rule_of(fill_rule), paint, winds_once});
+    shapes.push_back(
+        {*outline, value_named("fill_rule", fill_rule, kFillRules), paint, winds_once});
   }
   Image image;
   {
@@ -190,27 +167,13 @@ Array<float> bound_rasterize(
   return to_array(std::move(image));
 }
 
-StrokeJoin join_of(const std::string& name) {
-  if (name == "miter") return StrokeJoin::kMiter;
-  if (name == "round") return StrokeJoin::kRound;
-  if (name == "bevel") return StrokeJoin::kBevel;
-  throw_invalid("join: '" + name + "' is not one of miter, round, bevel");
-}
-
-StrokeCap cap_of(const std::string& name) {
-  if (name == "butt") return StrokeCap::kButt;
-  if (name == "round") return StrokeCap::kRound;
-  if (name == "square") return StrokeCap::kSquare;
-  throw_invalid("cap: '" + name + "' is not one of butt, round, square");
-}
-
 Outline bound_stroked(const Outline& outline, double width, const std::string& join,
                       const std::string& cap, double miter_limit, const std::vector<double>& dashes,
                       double dash_offset, double tolerance) {
   StrokeOptions options;
   options.width = width;
-  options.join = join_of(join);
-  options.cap = cap_of(cap);
+  options.join = value_named("join", join, kStrokeJoins);
+  options.cap = value_named("cap", cap, kStrokeCaps);
   options.miter_limit = miter_limit;
   options.dashes = dashes;
   options.dash_offset = dash_offset;
@@ -282,6 +245,7 @@ void bind_raster(py::module_& m) {
   m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("width"), py::arg("height"),
         py::arg("filter"), py::arg("method"), py::arg("overlap"), py::arg("background"),
         py::arg("depth"), py::arg("progress"), py::arg("threads"));
+  m.attr("FILL_RULES") = names_of(kFillRules);
   m.def("raster_filters", [] {
     const auto names = raster_filters();
     return std::vector<std::string>(names.begin(), names.end());

@@ -15,6 +15,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 #include "prefilter/mesh/array_sink.h"
 #include "prefilter/mesh/ply_mesh_writer.h"
 #include "prefilter/reconstruct/reconstruct.h"
@@ -25,12 +26,6 @@ namespace py = pybind11;
 
 namespace prefilter::python {
 namespace {
-
-WaveletBasis basis_of(const std::string& name) {
-  if (name == "haar") return WaveletBasis::kHaar;
-  if (name == "d4") return WaveletBasis::kD4;
-  throw_invalid("wavelet: '" + name + "' is not one of haar, d4");
-}
 
 using Level = std::variant<double, std::string>;
 
@@ -53,7 +48,9 @@ void bind_options(py::module_& m) {
       .def_readwrite("depth", &Options::depth)
       .def_readwrite("cell_size", &Options::cell_size)
       .def_property("wavelet", nullptr,
-                    [](Options* o, const std::string& name) { o->basis = basis_of(name); })
+                    [](Options* o, const std::string& name) {
+                      o->basis = value_named("wavelet", name, kWaveletBases);
+                    })
       .def_readwrite("smooth", &Options::smooth)
       .def_property("isovalue", nullptr, &set_isovalue)
       .def_readwrite("are_sides_known", &Options::are_sides_known)

@@ -10,6 +10,7 @@
 
 #include "convert.h"
 #include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 #include "prefilter/solid/as_solid.h"
 #include "prefilter/solid/close_holes.h"
 
@@ -18,20 +19,13 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-HoleMethod hole_method(const std::string& name) {
-  if (name == "smooth") return HoleMethod::kSmooth;
-  if (name == "flat") return HoleMethod::kFlat;
-  if (name == "fan") return HoleMethod::kFan;
-  throw_invalid("method: '" + name + "' is not one of smooth, flat, fan");
-}
-
 // The mesh with its caps, or as it was without any; and the numbers of open edges, of holes, and of
 // those left open.
 std::tuple<py::array, py::array, std::size_t, std::size_t, std::size_t> bound_close_holes(
     const py::array& positions, const py::array& triangles, const std::string& method,
     const py::object& callback, int threads) {
   CloseHolesOptions options;
-  options.method = hole_method(method);
+  options.method = value_named("method", method, kHoleMethods);
   options.threads = threads;
   options.progress = to_progress(callback);
   const InputMesh mesh = mesh_of(positions, triangles);

@@ -10,6 +10,7 @@
 
 #include "convert.h"
 #include "instances.h"
+#include "prefilter/base/names.h"
 #include "prefilter/surface/charts.h"
 #include "prefilter/surface/subdivision.h"
 #include "prefilter/surface/surface.h"
@@ -122,9 +123,9 @@ Surface bound_subdivide(const Array<double>& positions, const Array<std::int64_t
   }
   if (kept) mesh.kept = kept->data();
   SubdivisionOptions options;
-  options.scheme = subdivision_scheme(scheme);
-  options.boundary = subdivision_boundary(boundary);
-  options.uv_interpolation = uv_interpolation(uv_smooth);
+  options.scheme = value_named("scheme", scheme, kSubdivisionSchemes);
+  options.boundary = value_named("boundary", boundary, kSubdivisionBoundaries);
+  options.uv_interpolation = value_named("uv_smooth", uv_smooth, kUvInterpolations);
   options.level = level;
   options.progress = to_progress(progress);
   const py::gil_scoped_release unlocked;

@@ -16,6 +16,7 @@
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/octree.h"
 #include "prefilter/voxel/queries.h"
@@ -29,13 +30,6 @@ namespace {
 using Corners = std::pair<Vector3, Vector3>;
 
 Box to_box(const Corners& corners) { return {corners.first, corners.second}; }
-
-SetOperation set_operation(const std::string& name) {
-  if (name == "union") return SetOperation::kUnion;
-  if (name == "intersection") return SetOperation::kIntersection;
-  if (name == "difference") return SetOperation::kDifference;
-  throw_invalid("operation: '" + name + "' is not one of union, intersection, difference");
-}
 
 Octree bound_voxelize(const py::array& positions, const py::array& triangles, int depth,
                       const std::optional<Corners>& bounds, const py::object& progress,
@@ -52,7 +46,7 @@ Octree bound_voxelize(const py::array& positions, const py::array& triangles, in
 
 Octree bound_combine(const Octree& a, const Octree& b, const std::string& name,
                      const py::object& callback, int threads) {
-  const SetOperation operation = set_operation(name);
+  const SetOperation operation = value_named("operation", name, kSetOperations);
   const Progress progress = to_progress(callback);
   const py::gil_scoped_release unlocked;
   return combine(a, b, operation, progress, threads);

@@ -15,6 +15,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/image.h"
+#include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
 
@@ -32,6 +33,14 @@ std::vector<ImageView> views_of(const std::vector<Array<float>>& arrays);
 /// An array of shape (height, width, channels) that owns the image.
 Array<float> to_array(Image image);
 std::vector<Array<float>> to_arrays(std::vector<Image> images);
+
+/// The names in a table of an enumeration's.
+template <typename Value, std::size_t kCount>
+pybind11::tuple names_of(const Named<Value> (&table)[kCount]) {
+  pybind11::tuple names(kCount);
+  for (std::size_t i = 0; i < kCount; ++i) names[i] = pybind11::str(table[i].name);
+  return names;
+}
 
 /// The rows of an array of shape (rows, 3).
 template <typename T>

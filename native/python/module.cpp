@@ -10,6 +10,7 @@
 #include "convert.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/memory.h"
+#include "prefilter/base/names.h"
 
 namespace py = pybind11;
 
@@ -78,13 +79,7 @@ std::vector<Array<float>> to_arrays(std::vector<Image> images) {
 }
 
 WrapModes wrap_modes(const WrapNames& names) {
-  const auto mode = [](const std::string& name) {
-    if (name == "clamp") return Wrap::kClamp;
-    if (name == "repeat") return Wrap::kRepeat;
-    if (name == "border") return Wrap::kBorder;
-    throw_invalid("wrap: '" + name + "' is not one of clamp, repeat, border");
-  };
-  return {mode(names.first), mode(names.second)};
+  return {value_named("wrap", names.first, kWraps), value_named("wrap", names.second, kWraps)};
 }
 
 bool is_finalizing() {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 
 namespace prefilter {
 namespace {
@@ -38,14 +38,7 @@ const BlockLayout& layout_of(BlockFormat format) {
 }
 
 const BlockLayout& layout_named(const std::string& name) {
-  const auto* const found =
-      std::find_if(std::begin(kLayouts), std::end(kLayouts),
-                   [&name](const BlockLayout& one) { return name == one.name; });
-  if (found != std::end(kLayouts)) return *found;
-  std::string names;
-  for (const BlockLayout& one : kLayouts)
-    names += (names.empty() ? "" : ", ") + std::string(one.name);
-  throw_invalid("format: '" + name + "' is not one of " + names);
+  return element_named("format", name, kLayouts, &BlockLayout::name);
 }
 
 }  // namespace prefilter

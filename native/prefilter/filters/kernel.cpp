@@ -10,7 +10,7 @@
 #include <string>
 
 #include "prefilter/base/elementary.h"
-#include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 
 namespace prefilter {
 namespace {
@@ -142,13 +142,7 @@ const Kernel* find_kernel(std::string_view name) {
 }
 
 const Kernel& kernel_named(std::string_view name) {
-  if (const Kernel* kernel = find_kernel(name)) return *kernel;
-  std::string names;
-  for (const Kernel& kernel : kernels()) {
-    if (!names.empty()) names += ", ";
-    names += kernel.name();
-  }
-  throw_invalid("filter: '" + std::string(name) + "' is not one of " + names);
+  return element_named("filter", name, kernels(), &Kernel::name);
 }
 
 const Kernel& box_kernel() {

@@ -2,7 +2,7 @@
 
 #include "prefilter/mipmap/mipmap_filter.h"
 
-#include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 
 namespace prefilter {
 
@@ -39,13 +39,7 @@ std::string name_of(const MipmapFilter& filter) {
 }
 
 MipmapFilter mipmap_filter(const std::string& name) {
-  std::string names;
-  for (const MipmapFilter& filter : mipmap_filters()) {
-    const std::string own = name_of(filter);
-    if (name == own) return filter;
-    names += (names.empty() ? "" : ", ") + own;
-  }
-  throw_invalid("filter: '" + name + "' is not one of " + names);
+  return element_named("filter", name, mipmap_filters(), name_of);
 }
 
 bool needs_surface(const MipmapFilter& filter) {

@@ -2,7 +2,7 @@
 
 #include "prefilter/resize/resize_filter.h"
 
-#include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 
 namespace prefilter {
 
@@ -26,13 +26,7 @@ std::string name_of(const ResizeFilter& filter) {
 }
 
 ResizeFilter resize_filter(const std::string& name) {
-  std::string names;
-  for (const ResizeFilter& filter : resize_filters()) {
-    const std::string own = name_of(filter);
-    if (name == own) return filter;
-    names += (names.empty() ? "" : ", ") + own;
-  }
-  throw_invalid("filter: '" + name + "' is not one of " + names);
+  return element_named("filter", name, resize_filters(), name_of);
 }
 
 }  // namespace prefilter

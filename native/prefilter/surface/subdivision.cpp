@@ -50,17 +50,6 @@ using Uvs = std::vector<Values<2>>;
 using Weights = std::vector<Values<1>>;
 using PrimvarRefiner = Far::PrimvarRefinerReal<double>;
 
-template <typename T, std::size_t N>
-T named(const char* argument, const std::string& name,
-        const std::array<std::pair<const char*, T>, N>& known) {
-  std::string all;
-  for (const auto& [text, value] : known) {
-    if (name == text) return value;
-    all += std::string(all.empty() ? "" : ", ") + text;
-  }
-  throw_invalid(std::string(argument) + ": '" + name + "' is not one of " + all);
-}
-
 void check_vertex(std::int64_t vertex, const PolygonArrays& mesh, const char* rows,
                   std::size_t row) {
   if (vertex >= 0 && vertex < static_cast<std::int64_t>(mesh.vertex_count)) return;
@@ -427,31 +416,6 @@ Surface triangulated(const PolygonArrays& mesh, const Refined& refined,
 }
 
 }  // namespace
-
-SubdivisionScheme subdivision_scheme(const std::string& name) {
-  return named<SubdivisionScheme, 3>("scheme", name,
-                                     {{{"catmull-clark", SubdivisionScheme::kCatmullClark},
-                                       {"loop", SubdivisionScheme::kLoop},
-                                       {"bilinear", SubdivisionScheme::kBilinear}}});
-}
-
-SubdivisionBoundary subdivision_boundary(const std::string& name) {
-  return named<SubdivisionBoundary, 2>("boundary", name,
-                                       {{{"edge-and-corner", SubdivisionBoundary::kEdgeAndCorner},
-                                         {"edge-only", SubdivisionBoundary::kEdgeOnly}}});
-}
-
-UvInterpolation uv_interpolation(const std::string& name) {
-  using Rule = UvInterpolation;
-  return named<Rule, 6>(
-      "uv_smooth", name,
-      {{{"none", Rule::kNone},
-        {"preserve-corners", Rule::kPreserveCorners},
-        {"preserve-corners-and-junctions", Rule::kPreserveCornersAndJunctions},
-        {"preserve-corners-junctions-and-concave", Rule::kPreserveCornersJunctionsAndConcave},
-        {"preserve-boundaries", Rule::kPreserveBoundaries},
-        {"smooth-all", Rule::kSmoothAll}}});
-}
 
 Surface subdivide(const PolygonArrays& mesh, const SubdivisionOptions& options) {
   check_polygons(mesh, options);

@@ -646,4 +646,7 @@ def rasterize(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float32]: ...
+
+FILL_RULES: Final[tuple[str, ...]]
+
 def raster_filters() -> list[str]: ...

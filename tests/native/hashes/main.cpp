@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "hashes/inputs.h"
+#include "prefilter/base/names.h"
 #include "prefilter/blocks/compress_blocks.h"
 #include "prefilter/blocks/supercompress.h"
 #include "prefilter/color/transfer.h"
@@ -143,7 +144,7 @@ void subdivisions(const Run& run) {
   arrays.corner_count = corners.size();
   for (const char* scheme : {"catmull-clark", "loop"}) {
     SubdivisionOptions options;
-    options.scheme = subdivision_scheme(scheme);
+    options.scheme = value_named("scheme", scheme, kSubdivisionSchemes);
     options.level = 2;
     const Surface surface = subdivide(arrays, options);
     run.print(std::string("subdivide ") + scheme,

@@ -9,6 +9,8 @@
 #include <span>
 #include <vector>
 
+#include "prefilter/base/names.h"
+
 namespace prefilter {
 
 /// A point or a direction of the plane.
@@ -39,6 +41,9 @@ struct AffineMap2 {
 
 /// Which points lie inside: those of a winding number that is not zero, or that is odd.
 enum class FillRule : std::uint8_t { kNonzero, kEvenOdd };
+
+inline constexpr Named<FillRule> kFillRules[] = {{"nonzero", FillRule::kNonzero},
+                                                 {"evenodd", FillRule::kEvenOdd}};
 
 /// Contours, each a chain of segments: a Bezier curve of degree 1 or more, or a rational quadratic
 /// one. With y upwards the inside of a counter-clockwise contour is on its left.

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "prefilter/base/names.h"
+
 namespace prefilter {
 
 enum class Wrap {
@@ -12,6 +14,9 @@ enum class Wrap {
   kRepeat,  // the image tiled
   kBorder,  // zero, and what lies outside of the unit square weighs nothing
 };
+
+inline constexpr Named<Wrap> kWraps[] = {
+    {"clamp", Wrap::kClamp}, {"repeat", Wrap::kRepeat}, {"border", Wrap::kBorder}};
 
 /// Wrap modes along u and v.
 struct WrapModes {

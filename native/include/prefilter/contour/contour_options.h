@@ -7,6 +7,7 @@
 #include <span>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
 
 namespace prefilter {
@@ -17,6 +18,11 @@ enum class Interpolant {
   kLinear,     // samples of a smooth function: marching cubes
   kSharp,      // kPlane, with the edges and corners of the shape
 };
+
+inline constexpr Named<Interpolant> kInterpolants[] = {{"occupancy", Interpolant::kOccupancy},
+                                                       {"plane", Interpolant::kPlane},
+                                                       {"linear", Interpolant::kLinear},
+                                                       {"sharp", Interpolant::kSharp}};
 
 /// A mesh that a shape was made of.
 struct SourceMesh {

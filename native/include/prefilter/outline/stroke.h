@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "prefilter/base/names.h"
 #include "prefilter/base/outline.h"
 #include "prefilter/outline/resolve.h"
 
@@ -14,8 +15,14 @@ namespace prefilter {
 /// What fills the gap outside of a corner.
 enum class StrokeJoin : std::uint8_t { kMiter, kRound, kBevel };
 
+inline constexpr Named<StrokeJoin> kStrokeJoins[] = {
+    {"miter", StrokeJoin::kMiter}, {"round", StrokeJoin::kRound}, {"bevel", StrokeJoin::kBevel}};
+
 /// How open contours and dashes end: where they do, with half a disc, or with half a square.
 enum class StrokeCap : std::uint8_t { kButt, kRound, kSquare };
+
+inline constexpr Named<StrokeCap> kStrokeCaps[] = {
+    {"butt", StrokeCap::kButt}, {"round", StrokeCap::kRound}, {"square", StrokeCap::kSquare}};
 
 struct StrokeOptions {
   double width = 1.0;  // in the outline's units

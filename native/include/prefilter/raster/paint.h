@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
+#include "prefilter/base/names.h"
 #include "prefilter/base/outline.h"
 
 namespace prefilter {
@@ -17,6 +18,9 @@ using ChannelValues = std::array<double, kMaxChannels>;
 
 /// What a gradient does before its first stop and behind its last.
 enum class Spread : std::uint8_t { kPad, kRepeat, kReflect };
+
+inline constexpr Named<Spread> kSpreads[] = {
+    {"pad", Spread::kPad}, {"repeat", Spread::kRepeat}, {"reflect", Spread::kReflect}};
 
 /// The value at one place of a gradient; between stops it is linear.
 struct GradientStop {

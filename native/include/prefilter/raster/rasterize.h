@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "prefilter/base/image.h"
+#include "prefilter/base/names.h"
 #include "prefilter/base/outline.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/raster/paint.h"
@@ -36,11 +37,16 @@ enum class RasterMethod : std::uint8_t {
   kWavelet,
 };
 
+inline constexpr Named<RasterMethod> kRasterMethods[] = {{"scanline", RasterMethod::kScanline},
+                                                         {"wavelet", RasterMethod::kWavelet}};
+
 /// What becomes of several shapes at one place.
 enum class Overlap : std::uint8_t {
   kAdd,    // their values are added
   kCover,  // a later one covers those before it, as far as it is opaque
 };
+
+inline constexpr Named<Overlap> kOverlaps[] = {{"add", Overlap::kAdd}, {"cover", Overlap::kCover}};
 
 /// The names of all filters of shapes.
 std::span<const std::string_view> raster_filters();

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/mesh/mesh_sink.h"
 #include "prefilter/scan/point_source.h"
@@ -19,6 +20,9 @@ enum class WaveletBasis {
   kHaar,  // blocks: fast, and sharp where points are clean
   kD4,    // Daubechies' with four coefficients: more points to a coefficient, so less noise
 };
+
+inline constexpr Named<WaveletBasis> kWaveletBases[] = {{"haar", WaveletBasis::kHaar},
+                                                        {"d4", WaveletBasis::kD4}};
 
 enum class Isovalue {
   kMean,   // the mean of the function at the points

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
 
 namespace prefilter {
@@ -17,6 +18,9 @@ enum class HoleMethod {
   kFlat,    // the triangles of the smallest area between the vertices of the border
   kFan,     // triangles to the middle of the border
 };
+
+inline constexpr Named<HoleMethod> kHoleMethods[] = {
+    {"smooth", HoleMethod::kSmooth}, {"flat", HoleMethod::kFlat}, {"fan", HoleMethod::kFan}};
 
 struct CloseHolesOptions {
   HoleMethod method = HoleMethod::kSmooth;

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <string>
 
+#include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/surface/surface.h"
 
@@ -15,11 +15,20 @@ namespace prefilter {
 
 enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear };
 
+inline constexpr Named<SubdivisionScheme> kSubdivisionSchemes[] = {
+    {"catmull-clark", SubdivisionScheme::kCatmullClark},
+    {"loop", SubdivisionScheme::kLoop},
+    {"bilinear", SubdivisionScheme::kBilinear}};
+
 /// What boundaries of the mesh do.
 enum class SubdivisionBoundary {
   kEdgeOnly,       // they are smooth curves
   kEdgeAndCorner,  // the same, but vertices of one face stay where they are
 };
+
+inline constexpr Named<SubdivisionBoundary> kSubdivisionBoundaries[] = {
+    {"edge-and-corner", SubdivisionBoundary::kEdgeAndCorner},
+    {"edge-only", SubdivisionBoundary::kEdgeOnly}};
 
 /// Where texture coordinates stay linear, from nowhere to everywhere. The first five are smooth
 /// inside of charts.
@@ -32,11 +41,14 @@ enum class UvInterpolation {
   kNone,                                // linear everywhere
 };
 
-/// The values of public names such as "catmull-clark", "edge-and-corner" and "preserve-corners".
-/// Throw Error for any other, naming all.
-SubdivisionScheme subdivision_scheme(const std::string& name);
-SubdivisionBoundary subdivision_boundary(const std::string& name);
-UvInterpolation uv_interpolation(const std::string& name);
+inline constexpr Named<UvInterpolation> kUvInterpolations[] = {
+    {"none", UvInterpolation::kNone},
+    {"preserve-corners", UvInterpolation::kPreserveCorners},
+    {"preserve-corners-and-junctions", UvInterpolation::kPreserveCornersAndJunctions},
+    {"preserve-corners-junctions-and-concave",
+     UvInterpolation::kPreserveCornersJunctionsAndConcave},
+    {"preserve-boundaries", UvInterpolation::kPreserveBoundaries},
+    {"smooth-all", UvInterpolation::kSmoothAll}};
 
 /// Raw arrays of a polygon mesh, as a caller has them.
 struct PolygonArrays {

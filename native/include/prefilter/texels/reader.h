@@ -3,12 +3,17 @@
 // How a renderer gets from stored texels to a color.
 #pragma once
 
+#include "prefilter/base/names.h"
+
 namespace prefilter {
 
 enum class Reader {
   kLinear,     // decodes texels, then filters: GPUs, and float textures everywhere
   kSrgbAfter,  // filters sRGB-encoded texels, then decodes: Cycles on 8-bit sRGB images
 };
+
+inline constexpr Named<Reader> kReaders[] = {{"linear", Reader::kLinear},
+                                             {"srgb-after", Reader::kSrgbAfter}};
 
 /// Channels of an image that are stored sRGB-encoded: its colors. A fourth channel is alpha.
 inline int encoded_channels(int channels) { return channels < 3 ? channels : 3; }

@@ -3,6 +3,7 @@
 // Set operations on occupancy octrees (section 3.1).
 #pragma once
 
+#include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/voxel/octree.h"
 
@@ -13,6 +14,11 @@ enum class SetOperation {
   kIntersection,  // min(a, b)
   kDifference,    // min(a, 1 - b)
 };
+
+inline constexpr Named<SetOperation> kSetOperations[] = {
+    {"union", SetOperation::kUnion},
+    {"intersection", SetOperation::kIntersection},
+    {"difference", SetOperation::kDifference}};
 
 /// The operation cell by cell, in memory proportional to the surfaces. Octrees may be of any depths
 /// and bounds.

@@ -2,7 +2,7 @@
 
 """Arguments that several functions take, checked once, here at the border."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 import numpy as np
 
@@ -15,6 +15,12 @@ def as_name(argument: str, name: object) -> str:
     if not isinstance(name, str):
         raise ValueError(f"{argument}: {name!r}; a name is needed")
     return name.encode(errors="replace").decode()
+
+
+def as_one_of(argument: str, name: str, allowed: Collection[str]) -> str:
+    if not isinstance(name, str) or name not in allowed:
+        raise ValueError(f"{argument}: {name!r} is not one of {', '.join(allowed)}")
+    return name
 
 
 def as_wrap(wrap: Wrap) -> tuple[str, str]:
@@ -84,6 +90,4 @@ def as_number(argument: str, number: float) -> float:
 
 
 def is_srgb(encoding: str) -> bool:
-    if encoding not in ("linear", "srgb"):
-        raise ValueError(f"encoding: {encoding!r} is not one of linear, srgb")
-    return encoding == "srgb"
+    return as_one_of("encoding", encoding, ("linear", "srgb")) == "srgb"

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
+from .._border.arguments import ProgressCallback, as_int, as_name, as_number, as_one_of, as_progress
 from .._border.arrays import as_threads
 from .._border.input import as_path, open_file
 from .._border.staging import as_target, write_output
@@ -137,9 +137,7 @@ class SamplingTable:
         Raises:
             ValueError: There is no such table.
         """
-        name = as_name("filter", filter)
-        if name not in SAMPLING_FILTERS:
-            raise ValueError(f"filter: {name!r} is not one of {', '.join(SAMPLING_FILTERS)}")
+        name = as_one_of("filter", as_name("filter", filter), SAMPLING_FILTERS)
         if texels not in STANDARD_TEXELS:
             raise ValueError(
                 f"texels: {texels!r}; standard tables have 4, 6 or 8. SamplingTable.build makes "

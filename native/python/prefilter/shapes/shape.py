@@ -8,12 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import as_name, as_number
+from .._border.arguments import as_name, as_number, as_one_of
 from .._border.arrays import as_array
 from .arguments import Stop, as_color, as_matrix, as_point, as_stops, determinant
 from .contours import Contours
-
-_FILL_RULES = ("nonzero", "evenodd")
 
 
 class Shape(Contours):
@@ -45,9 +43,7 @@ class Shape(Contours):
     ) -> None:
         super().__init__()
         name = as_name("fill_rule", fill_rule)
-        if name not in _FILL_RULES:
-            raise ValueError(f"fill_rule: '{name}' is not one of {', '.join(_FILL_RULES)}")
-        self._fill_rule = name
+        self._fill_rule = as_one_of("fill_rule", name, _native.FILL_RULES)
         self._winds_once = bool(winds_once)
         self.color = color
 

@@ -6,7 +6,7 @@ import os
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from .._border.arguments import ProgressCallback, as_progress
+from .._border.arguments import ProgressCallback, as_one_of, as_progress
 from .._native import Cancelled
 from ._svg.warnings import SvgWarning, Warnings
 from .shape import Shape
@@ -117,8 +117,7 @@ def read_svg(
         OSError: The file cannot be read.
         Cancelled: `progress` returned False.
     """
-    if light not in ("linear", "srgb"):
-        raise ValueError(f"light: {light!r} is not one of linear, srgb")
+    as_one_of("light", light, ("linear", "srgb"))
     # Style sheets take modules that those who read no drawings need not wait for.
     from ._svg.document import read_document
     from ._svg.drawing import Drawing

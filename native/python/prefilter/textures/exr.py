@@ -10,10 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_progress, is_srgb
+from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srgb
 from .._border.arrays import as_threads
 from .._border.staging import Output, as_output, write_output
-from .texel_formats import as_alpha, halving_levels
+from .texel_formats import ALPHAS, halving_levels
 
 _TILE_SIDE = _native.EXR_TILE_SIDE
 _TILES_A_STEP = 512
@@ -65,9 +65,8 @@ def write_exr(
     """
     srgb = is_srgb(encoding)
     images = _as_all_levels(levels, srgb)
-    if format not in _FORMATS:
-        raise ValueError(f"format: {format!r} is not one of {', '.join(_FORMATS)}")
-    has_alpha = as_alpha(alpha) != "independent" and images[0].shape[2] in (2, 4)
+    as_one_of("format", format, _FORMATS)
+    has_alpha = as_one_of("alpha", alpha, ALPHAS) != "independent" and images[0].shape[2] in (2, 4)
     texts = _as_texts(attributes)
     output = as_output(path)
     report = as_progress(progress)

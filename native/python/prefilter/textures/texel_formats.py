@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback
+from .._border.arguments import ProgressCallback, as_one_of
 from .._border.arrays import as_image, as_texels
 from ..images.color import to_linear
 
@@ -198,26 +198,11 @@ def as_format(name: str, level: np.ndarray, *, needs_srgb: bool) -> TexelFormat:
             return FORMATS["rgba16f"]
         name = {1: "r8", 2: "rg8"}.get(level.shape[2], "rgba8")
         return FORMATS["rgba8" if needs_srgb else name]
-    if not isinstance(name, str) or name not in FORMATS:
-        raise ValueError(f"format: {name!r} is not one of auto, {', '.join(FORMATS)}")
+    as_one_of("format", name, ("auto", *FORMATS))
     found = FORMATS[name]
     if found.channels == 2 and level.shape[2] < 2:
         raise ValueError(f"format: '{name}' needs 2 channels; the levels have {level.shape[2]}")
     return found
-
-
-def as_alpha(alpha: str) -> str:
-    if alpha not in ALPHAS:
-        raise ValueError(f"alpha: {alpha!r} is not one of {', '.join(ALPHAS)}")
-    return alpha
-
-
-def as_supercompression(supercompression: str) -> str:
-    if supercompression not in SUPERCOMPRESSIONS:
-        raise ValueError(
-            f"supercompression: {supercompression!r} is not one of {', '.join(SUPERCOMPRESSIONS)}"
-        )
-    return supercompression
 
 
 def encoded(

@@ -9,19 +9,19 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_progress, is_srgb
+from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srgb
 from .._border.arrays import as_threads
 from .._border.staging import Output, as_output, write_output
 from .dds import DDS
 from .ktx2 import KTX2
 from .texel_formats import (
+    ALPHAS,
+    SUPERCOMPRESSIONS,
     Container,
     TexelFormat,
     Texture,
-    as_alpha,
     as_format,
     as_levels,
-    as_supercompression,
     encoded,
 )
 
@@ -135,8 +135,8 @@ def _write(
     count = as_threads(threads)
     height, width, channels = images[0].shape
     has_alpha = channels == 4 and texel_format.channels == 4
-    alpha = as_alpha(alpha)
-    scheme = as_supercompression(supercompression)
+    alpha = as_one_of("alpha", alpha, ALPHAS)
+    scheme = as_one_of("supercompression", supercompression, SUPERCOMPRESSIONS)
     payloads, sizes = _payloads(
         images,
         texel_format,
