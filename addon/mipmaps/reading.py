@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
+import prefilter
 
 from ..bridge import image_roles, images, meshes
 from ..bridge.files import engines, textures
@@ -312,15 +313,14 @@ def read_roughness(request: Request, level_0: Level0) -> Rough:
 
 def roughness_format(settings: Settings, picture: Picture) -> str:
     """Returns the format of the roughness file: that of the normal map, unless channels lack."""
-    if settings.texture_format in {"eac-r11", "eac-rg11"}:
-        if settings.roughness_channel == "all":
-            return "eac-r11"
-        return "etc2-rgba" if picture.stored.shape[2] == 4 else "etc2-rgb"
-    if settings.texture_format not in {"bc4", "bc5"}:
+    chosen = prefilter.TEXEL_FORMATS.get(settings.texture_format)
+    if chosen is None or chosen.channels > 2:
         return settings.texture_format
     if settings.roughness_channel == "all":
-        return "bc4"
-    return "bc7"
+        return "bc4" if chosen.is_in_dds else "eac-r11"
+    if chosen.is_in_dds:
+        return "bc7"
+    return "etc2-rgba" if picture.stored.shape[2] == 4 else "etc2-rgb"
 
 
 def _no_surface(

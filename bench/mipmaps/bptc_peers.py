@@ -27,7 +27,7 @@ import numpy as np
 import OpenImageIO as oiio
 import prefilter
 from numpy.typing import NDArray
-from prefilter.textures.texel_formats import FORMATS
+from prefilter import TEXEL_FORMATS
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
@@ -74,7 +74,7 @@ def intel(texture_format: str, profile: str) -> Callable[[Pixels], bytes]:
 def decoded(blocks: bytes, texture_format: str, shape: tuple[int, ...], folder: Path) -> Pixels:
     """What OpenImageIO reads, the top row first."""
     height, width = shape[:2]
-    code = FORMATS[texture_format].dxgi[0]
+    code = TEXEL_FORMATS[texture_format].dxgi[0]
     header = b"DDS " + struct.pack("<7I44x", 124, 0x81007, height, width, len(blocks), 0, 1)
     header += struct.pack("<2I4s20x", 32, 4, b"DX10") + struct.pack("<I16x", 0x1000)
     header += struct.pack("<5I", code, 3, 0, 1, 3)

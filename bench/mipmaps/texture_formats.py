@@ -30,7 +30,7 @@ import OpenImageIO as oiio
 import prefilter
 import texture2ddecoder as decoders
 from numpy.typing import NDArray
-from prefilter.textures.texel_formats import FORMATS
+from prefilter import TEXEL_FORMATS
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
@@ -96,7 +96,7 @@ def packed_size(image: Bytes, texture_format: str, folder: Path) -> int:
 
 def encoding_of(texture_format: str) -> str:
     """Of images of colors, where the format has it."""
-    return "linear" if FORMATS[texture_format].vulkan[1] is None else "srgb"
+    return "linear" if TEXEL_FORMATS[texture_format].vulkan[1] is None else "srgb"
 
 
 def measured(image: Bytes, texture_format: str, folder: Path) -> tuple[float, float, int]:
@@ -156,7 +156,7 @@ def main() -> None:
         image = np.ascontiguousarray(pixels[top : top + SIDE, left : left + SIDE, :3])
         count = image.shape[0] * image.shape[1]
         runs: dict[str, Callable[[Path], tuple[float, float, int]]] = {}
-        for name in FORMATS:
+        for name in TEXEL_FORMATS:
             if name in DECODERS or name == "uastc":
                 runs[name] = partial(measured, image, name)
         if options.astcenc:
@@ -170,7 +170,9 @@ def main() -> None:
                     if name not in best or found[1] < best[name][1]:
                         best[name] = found
             packed = {
-                name: packed_size(image, name, Path(folder)) for name in runs if name in FORMATS
+                name: packed_size(image, name, Path(folder))
+                for name in runs
+                if name in TEXEL_FORMATS
             }
         rows = []
         for name, (decibels, seconds, size) in best.items():

@@ -704,6 +704,7 @@ def test_every_function_is_there():
         "RASTER_FILTERS",
         "RESIZE_FILTERS",
         "SAMPLING_FILTERS",
+        "TEXEL_FORMATS",
     }
     classes = {
         "Cancelled",
@@ -723,6 +724,7 @@ def test_every_function_is_there():
         "SvgDrawing",
         "SvgWarning",
         "TableSection",
+        "TexelFormat",
         "TracedContour",
     }
     # In test_normals_of_points, test_face_normals, test_scan_files, test_scan_failures,

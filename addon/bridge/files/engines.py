@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 import prefilter
+from prefilter import TexelFormat
 
 from ...core.alpha import unassociated
 from ..images import Encoding, FloatArray, Picture
@@ -29,17 +30,7 @@ _WRITERS: dict[str, Callable[..., None]] = {
     ".dds": prefilter.write_dds,
     ".ktx2": prefilter.write_ktx2,
 }
-_NO_NEGATIVES = frozenset({"bc6h", "astc-4x4-hdr", "astc-6x6-hdr"})
-_FLOATS = frozenset({"rgba16f", "rgba32f"}) | _NO_NEGATIVES
-_THREE_CHANNELS = frozenset({"bc1-rgb", "bc6h", "etc2-rgb"})
-_FEW_CHANNELS = {
-    "bc4": "the red channel",
-    "bc5": "the red and green channels",
-    "eac-r11": "the red channel",
-    "eac-rg11": "the red and green channels",
-}
-_KTX2_ONLY = ("etc2", "eac", "astc", "uastc")
-_BLOCK_SIDE = 4
+_CHANNELS = {1: "the red channel", 2: "the red and green channels"}
 _CUT_OUT_ALPHA = 0.5
 
 
@@ -81,43 +72,60 @@ def checked(
     if target is None or not has_formats(target.name):
         return []
     chosen = _chosen(picture, texture_format)
-    who = f"Texture Format: {_label(chosen)}"
-    if chosen.startswith(_KTX2_ONLY) and not has_supercompression(target.name):
+    who = f"Texture Format: {_label(chosen.name)}"
+    if not chosen.is_in_dds and not has_supercompression(target.name):
         raise ValueError(f"{who} needs a .ktx2 file; found '{target.name}'")
-    if chosen in _FEW_CHANNELS and not picture.is_float and picture.encoding is not Encoding.NONE:
+    has_no_srgb = chosen.channels in _CHANNELS
+    if has_no_srgb and not picture.is_float and picture.encoding is not Encoding.NONE:
         raise ValueError(
             f"{who} has no sRGB variant, and image '{picture.name}' has the color space "
             f"{picture.colorspace}; set Non-Color, or choose another format"
         )
     told = []
-    height, width, channels = picture.shape
-    if chosen.startswith("bc") and (width % _BLOCK_SIDE or height % _BLOCK_SIDE):
+    height, width, _ = picture.shape
+    if chosen.block and chosen.is_in_dds and (width % chosen.block[0] or height % chosen.block[1]):
         told.append(f"{who} of {width} x {height} texels: Direct3D needs sides divisible by 4")
-    if chosen in _FEW_CHANNELS and not may_lose_channels:
-        told.append(f"{who} keeps only {_FEW_CHANNELS[chosen]} of '{picture.name}'")
-    elif chosen in _THREE_CHANNELS and channels == 4:
-        if picture.alpha_is_coverage or not may_lose_channels:
-            told.append(f"{who} drops the fourth channel of '{picture.name}'")
-    elif chosen == "bc1" and channels == 4:
-        if not picture.alpha_is_coverage:
-            if not may_lose_channels:
-                told.append(f"{who} drops the fourth channel of '{picture.name}'")
-        elif threshold is None:
-            told.append(f"{who} stores only alpha 0 and 1; '{picture.name}' has values in between")
-        elif threshold != _CUT_OUT_ALPHA:
-            told.append(
-                f"{who} cuts alpha off at {_CUT_OUT_ALPHA}, not at the threshold {threshold:g}"
-            )
-    if chosen in _NO_NEGATIVES and not picture.is_float:
-        closer = "BC7" if chosen == "bc6h" else "ASTC"
-        told.append(f"{who} is for float images; {closer} is closer to '{picture.name}'")
-    if picture.is_float:
-        finite = picture.stored[np.isfinite(picture.stored)]
-        if chosen not in _FLOATS and finite.size and (finite.min() < 0 or finite.max() > 1):
-            told.append(f"{who} clips values of '{picture.name}' outside 0 to 1")
-        elif chosen in _NO_NEGATIVES and finite.size and finite.min() < 0:
-            told.append(f"{who} clips values of '{picture.name}' below 0")
+    told += _lost_channels(picture, chosen, who, threshold, may_lose_channels)
+    told += _lost_values(picture, chosen, who)
     return told
+
+
+def _lost_channels(
+    picture: Picture,
+    chosen: TexelFormat,
+    who: str,
+    threshold: float | None,
+    may_lose_channels: bool,
+) -> list[str]:
+    if chosen.channels in _CHANNELS:
+        kept = f"{who} keeps only {_CHANNELS[chosen.channels]} of '{picture.name}'"
+        return [] if may_lose_channels else [kept]
+    if picture.shape[2] < 4 or chosen.alpha == "full":
+        return []
+    if chosen.alpha == "none" or not picture.alpha_is_coverage:
+        is_lost = picture.alpha_is_coverage or not may_lose_channels
+        return [f"{who} drops the fourth channel of '{picture.name}'"] if is_lost else []
+    if threshold is None:
+        return [f"{who} stores only alpha 0 and 1; '{picture.name}' has values in between"]
+    if threshold != _CUT_OUT_ALPHA:
+        return [f"{who} cuts alpha off at {_CUT_OUT_ALPHA}, not at the threshold {threshold:g}"]
+    return []
+
+
+def _lost_values(picture: Picture, chosen: TexelFormat, who: str) -> list[str]:
+    if not picture.is_float:
+        if not chosen.is_float or chosen.keeps_negatives:
+            return []
+        closer = "BC7" if chosen.is_in_dds else "ASTC"
+        return [f"{who} is for float images; {closer} is closer to '{picture.name}'"]
+    finite = picture.stored[np.isfinite(picture.stored)]
+    if finite.size == 0 or chosen.keeps_negatives:
+        return []
+    if not chosen.is_float and (finite.min() < 0 or finite.max() > 1):
+        return [f"{who} clips values of '{picture.name}' outside 0 to 1"]
+    if chosen.is_float and finite.min() < 0:
+        return [f"{who} clips values of '{picture.name}' below 0"]
+    return []
 
 
 def stage(
@@ -156,7 +164,7 @@ def stage(
     alpha = "independent"
     if picture.alpha_is_coverage:
         alpha = "straight" if picture.alpha_is_straight else "premultiplied"
-    elif chosen == "bc1":
+    elif chosen.alpha == "cut-out":
         levels = [level[..., :3] for level in levels]
 
     def go_on(_: float) -> bool:
@@ -166,7 +174,7 @@ def stage(
     write = partial(
         write_texture,
         levels=levels,
-        format=chosen,
+        format=chosen.name,
         encoding=encoding,
         alpha=alpha,
         progress=go_on,
@@ -217,23 +225,23 @@ def _label(texture_format: str) -> str:
     return re.sub(r"(\d)X(\d)", r"\1x\2", texture_format.upper().replace("-", " "))
 
 
-def _chosen(picture: Picture, texture_format: str) -> str:
-    if texture_format != "auto":
-        return texture_format
-    return "rgba16f" if picture.is_float else "rgba8"
+def _chosen(picture: Picture, texture_format: str) -> TexelFormat:
+    if texture_format == "auto":
+        texture_format = "rgba16f" if picture.is_float else "rgba8"
+    return prefilter.TEXEL_FORMATS[texture_format]
 
 
 def _values(
     picture: Picture,
     linear_levels: Sequence[FloatArray],
     stored_levels: Sequence[FloatArray],
-    chosen: str,
+    chosen: TexelFormat,
 ) -> tuple[list[Any], str]:
     """Returns the levels to write, and the encoding that they have or are to get."""
-    if not (picture.is_float or chosen in _FLOATS or picture.encoding is Encoding.OCIO):
+    if not (picture.is_float or chosen.is_float or picture.encoding is Encoding.OCIO):
         encoding = "srgb" if picture.encoding is Encoding.SRGB else "linear"
         return [_bytes(level) for level in stored_levels], encoding
-    encoding = "linear" if picture.is_data or chosen in _FEW_CHANNELS else "srgb"
+    encoding = "linear" if picture.is_data or chosen.channels in _CHANNELS else "srgb"
     return list(linear_levels), encoding
 
 

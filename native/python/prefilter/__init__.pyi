@@ -60,6 +60,8 @@ from .shapes.shape import Shape as Shape
 from .shapes.svg import SvgDrawing as SvgDrawing
 from .shapes.svg import read_svg as read_svg
 from .textures.exr import write_exr as write_exr
+from .textures.texel_formats import TEXEL_FORMATS as TEXEL_FORMATS
+from .textures.texel_formats import TexelFormat as TexelFormat
 from .textures.texture_files import write_dds as write_dds
 from .textures.texture_files import write_ktx2 as write_ktx2
 from .voxels.contours import contour as contour

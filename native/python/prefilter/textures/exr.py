@@ -3,7 +3,8 @@
 """Mip-mapped OpenEXR files, for renderers and their texture systems."""
 
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import BinaryIO
 
 import numpy as np
@@ -13,7 +14,8 @@ from .. import _native
 from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srgb
 from .._border.arrays import as_threads
 from .._border.staging import Output, as_output, write_output
-from .texel_formats import ALPHAS, halving_levels
+from .texel_formats import ALPHAS
+from .texels import halving_levels
 
 _TILE_SIDE = _native.EXR_TILE_SIDE
 _TILES_A_STEP = 512
@@ -70,44 +72,46 @@ def write_exr(
     texts = _as_texts(attributes)
     output = as_output(path)
     report = as_progress(progress)
-    count = as_threads(threads)
-    columns_and_rows = [
-        tuple(-(-side // _TILE_SIDE) for side in image.shape[1::-1]) for image in images
-    ]
-    tile_count = sum(columns * rows for columns, rows in columns_and_rows)
-
-    def write_parts(file: BinaryIO) -> None:
-        file.write(_header(images[0], format, texts))
-        table = file.tell()
-        file.write(bytes(8 * tile_count))
-        sizes: list[int] = []
-        for number, (image, (columns, rows)) in enumerate(
-            zip(images, columns_and_rows, strict=True)
-        ):
-            step = max(1, _TILES_A_STEP // columns)
-            for first in range(0, rows, step):
-                if report is not None and report(len(sizes) / tile_count) is False:
-                    raise _native.Cancelled("cancelled")
-                chunks, chunk_sizes = _native.exr_tiles(
-                    image,
-                    srgb,
-                    number,
-                    first,
-                    min(step, rows - first),
-                    format == "half",
-                    has_alpha,
-                    has_alpha and alpha == "straight",
-                    count,
-                )
-                file.write(chunks.data)
-                sizes.extend(chunk_sizes)
-        offsets = table + 8 * tile_count + np.cumsum([0, *sizes[:-1]], dtype=np.int64)
-        file.seek(table)
-        file.write(offsets.astype("<u8").tobytes())
-
-    write_output(output, write_parts)
+    tiles = partial(
+        _native.exr_tiles,
+        srgb=srgb,
+        half=format == "half",
+        has_alpha=has_alpha,
+        multiplies=has_alpha and alpha == "straight",
+        threads=as_threads(threads),
+    )
+    header = _header(images[0], format, texts)
+    write_output(output, lambda file: _write_parts(file, header, images, tiles, report))
     if report is not None:
         report(1.0)
+
+
+def _write_parts(
+    file: BinaryIO,
+    header: bytes,
+    images: Sequence[np.ndarray],
+    tiles: Callable[..., tuple[np.ndarray, Sequence[int]]],
+    report: ProgressCallback | None,
+) -> None:
+    """Writes the header, the table of offsets, and all tiles, some rows of them at a time."""
+    counts = [tuple(-(-side // _TILE_SIDE) for side in image.shape[1::-1]) for image in images]
+    tile_count = sum(columns * rows for columns, rows in counts)
+    file.write(header)
+    file.write(bytes(8 * tile_count))
+    sizes: list[int] = []
+    for number, (image, (columns, rows)) in enumerate(zip(images, counts, strict=True)):
+        step = max(1, _TILES_A_STEP // columns)
+        for first in range(0, rows, step):
+            if report is not None and report(len(sizes) / tile_count) is False:
+                raise _native.Cancelled("cancelled")
+            count = min(step, rows - first)
+            chunks, chunk_sizes = tiles(image, number=number, first_row=first, row_count=count)
+            file.write(chunks.data)
+            sizes.extend(chunk_sizes)
+    end_of_table = len(header) + 8 * tile_count
+    offsets = end_of_table + np.cumsum([0, *sizes[:-1]], dtype=np.int64)
+    file.seek(len(header))
+    file.write(offsets.astype("<u8").tobytes())
 
 
 def _as_all_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:

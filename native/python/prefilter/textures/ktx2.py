@@ -9,35 +9,14 @@ from collections.abc import Iterator
 import numpy as np
 
 from .._native import VERSION
-from .texel_formats import FORMATS, Container, Texture
+from .texel_formats import ALPHA, Container, Texture
 
 _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 _HEADER_BYTES, _LEVEL_INDEX_BYTES = 80, 24
 _BASIC_FORMAT_VERSION = 2
-_MODEL_RGBSDA = 1
 _PRIMARIES_UNSPECIFIED, _PRIMARIES_BT709 = 0, 1
 _TRANSFER_LINEAR, _TRANSFER_SRGB = 1, 2
 _FLAG_PREMULTIPLIED = 1
-_RED, _GREEN, _BLUE, _ALPHA = 0, 1, 2, 15
-_BLOCK_COLOR, _BLOCK_COLOR_AND_CUT_OUT = 0, 1
-_ETC2_COLOR = 2
-_UASTC_RGB, _UASTC_RGBA = 0, 3
-_BLOCKS = {
-    "bc1": (128, (_BLOCK_COLOR_AND_CUT_OUT,)),
-    "bc1-rgb": (128, (_BLOCK_COLOR,)),
-    "bc3": (130, (_ALPHA, _BLOCK_COLOR)),
-    "bc4": (131, (_RED,)),
-    "bc5": (132, (_RED, _GREEN)),
-    "bc6h": (133, (_BLOCK_COLOR,)),
-    "bc7": (134, (_BLOCK_COLOR,)),
-    "etc2-rgb": (161, (_ETC2_COLOR,)),
-    "etc2-rgba": (161, (_ALPHA, _ETC2_COLOR)),
-    "eac-r11": (161, (_RED,)),
-    "eac-rg11": (161, (_RED, _GREEN)),
-    **{name: (162, (_BLOCK_COLOR,)) for name in FORMATS if name.startswith("astc")},
-    "uastc": (166, (_UASTC_RGBA,)),
-}
-"""Block formats: their color model and their channels, which have the same number of bits."""
 _LINEAR, _SIGNED, _FLOAT = 0x10, 0x40, 0x80
 _SCHEMES = {"none": 0, "zstd": 2}
 
@@ -81,7 +60,7 @@ def _descriptor(texture: Texture) -> bytes:
     texel_format = texture.texel_format
     samples = b"".join(_samples(texture))
     size = 24 + len(samples)
-    model, _ = _model_and_channels(texture)
+    model, _ = texel_format.khronos
     columns, rows = texel_format.block or (1, 1)
     return (
         struct.pack("<I2I", 4 + size, 0, size << 16 | _BASIC_FORMAT_VERSION)
@@ -100,33 +79,24 @@ def _descriptor(texture: Texture) -> bytes:
 
 def _primaries(texture: Texture) -> int:
     # KHR_texture_basisu of glTF: of what is no color, UASTC has none.
-    is_data = texture.texel_format.name == "uastc" and not texture.is_srgb
+    is_data = texture.texel_format.is_transcoded and not texture.is_srgb
     return _PRIMARIES_UNSPECIFIED if is_data else _PRIMARIES_BT709
-
-
-def _model_and_channels(texture: Texture) -> tuple[int, tuple[int, ...]]:
-    texel_format = texture.texel_format
-    if texel_format.name == "uastc" and texture.alpha is None:
-        return _BLOCKS["uastc"][0], (_UASTC_RGB,)
-    if texel_format.is_block:
-        return _BLOCKS[texel_format.name]
-    return _MODEL_RGBSDA, (_RED, _GREEN, _BLUE, _ALPHA)[: texel_format.channels]
 
 
 def _samples(texture: Texture) -> Iterator[bytes]:
     texel_format = texture.texel_format
-    _, channels = _model_and_channels(texture)
+    _, channels = texel_format.khronos
+    if texture.alpha is None:
+        channels = texel_format.opaque_khronos or channels
     bits = 8 * texel_format.unit_bytes // len(channels)
     for number, channel in enumerate(channels):
         if texel_format.is_float:
-            has_sign = texel_format.name != "bc6h"
-            channel |= _FLOAT | (_SIGNED if has_sign else 0)
-            limits = struct.pack("<2f", -1.0 if has_sign else 0.0, 1.0)
+            qualifiers = _FLOAT | (_SIGNED if texel_format.has_sign else 0)
+            limits = struct.pack("<2f", -1.0 if texel_format.has_sign else 0.0, 1.0)
         else:
-            if channel == _ALPHA and texture.is_srgb:
-                channel |= _LINEAR
+            qualifiers = _LINEAR if channel == ALPHA and texture.is_srgb else 0
             limits = struct.pack("<2I", 0, (1 << min(bits, 32)) - 1)
-        yield struct.pack("<H2B4x", bits * number, bits - 1, channel) + limits
+        yield struct.pack("<H2B4x", bits * number, bits - 1, channel | qualifiers) + limits
 
 
 def _entry(key: str, value: str) -> bytes:

@@ -1,19 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""How the texels of texture files for engines are laid out, and arrays brought into that layout."""
+"""How the texels of texture files for engines are laid out: all there is to know of a format."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from .. import _native
-from .._border.arguments import ProgressCallback, as_one_of
-from .._border.arrays import as_image, as_texels
-from ..images.color import to_linear
-
+Channel = type[np.uint8] | type[np.float16] | type[np.float32]
 Codes = tuple[int | None, int | None]
 """What a container calls a format with linear and with sRGB colors; None where it has no word."""
 
@@ -30,15 +25,24 @@ class TexelFormat:
         channel_type: Of a channel; of what is compressed for blocks.
         dxgi: The DXGI_FORMAT of linear and of sRGB colors; None where there is none.
         vulkan: The VkFormat of the same.
+        khronos: The color model of Khronos' data format descriptor, and the channels that it names,
+            which have the same number of bits.
+        opaque_khronos: The channels of textures without alpha, where that matters.
+        alpha: "full", "cut-out" (0 or 1), or "none".
+        has_sign: Whether its type has negative values; see `keeps_negatives`.
     """
 
     name: str
     channels: int
     unit_bytes: int
     block: tuple[int, int] | None
-    channel_type: type[np.uint8] | type[np.float16] | type[np.float32]
+    channel_type: Channel
     dxgi: Codes
     vulkan: Codes
+    khronos: tuple[int, tuple[int, ...]]
+    opaque_khronos: tuple[int, ...] | None = None
+    alpha: str = "none"
+    has_sign: bool = False
 
     @property
     def is_block(self) -> bool:
@@ -47,6 +51,21 @@ class TexelFormat:
     @property
     def is_float(self) -> bool:
         return self.channel_type is not np.uint8
+
+    @property
+    def is_in_dds(self) -> bool:
+        """Whether DDS files have it; KTX 2 files have all."""
+        return self.dxgi != (None, None)
+
+    @property
+    def is_transcoded(self) -> bool:
+        """Whether it becomes another where it is used, so Vulkan has no word for it."""
+        return self.vulkan[0] == _UNDEFINED
+
+    @property
+    def keeps_negatives(self) -> bool:
+        """Whether negative values stay; in blocks of floats they become 0."""
+        return self.has_sign and not self.is_block
 
 
 @dataclass(frozen=True)
@@ -85,15 +104,34 @@ class Container(NamedTuple):
     """The file, piece by piece."""
 
 
+ALPHAS = ("straight", "premultiplied", "independent")
+SUPERCOMPRESSIONS = ("none", "zstd")
+
+RED, GREEN, BLUE, ALPHA = 0, 1, 2, 15
+"""Khronos' channels, of texels and of blocks of one or two channels."""
+_COLOR, _COLOR_AND_CUT_OUT, _ETC2_COLOR = 0, 1, 2
+_UASTC_RGB, _UASTC_RGBA = 0, 3
+_RGBSDA, _ETC2, _ASTC, _UASTC = 1, 161, 162, 166
+_BC1, _BC3, _BC4, _BC5, _BC6H, _BC7 = 128, 130, 131, 132, 133, 134
+_UNDEFINED = 0
+_NONE = (None, None)
+
+
 def _plain(
-    name: str,
-    channels: int,
-    channel_type: type[np.uint8] | type[np.float16] | type[np.float32],
-    dxgi: Codes,
-    vulkan: Codes,
+    name: str, channels: int, channel_type: Channel, dxgi: Codes, vulkan: Codes
 ) -> TexelFormat:
-    size = channels * np.dtype(channel_type).itemsize
-    return TexelFormat(name, channels, size, None, channel_type, dxgi, vulkan)
+    return TexelFormat(
+        name,
+        channels,
+        channels * np.dtype(channel_type).itemsize,
+        None,
+        channel_type,
+        dxgi,
+        vulkan,
+        (_RGBSDA, (RED, GREEN, BLUE, ALPHA)[:channels]),
+        alpha="full" if channels == 4 else "none",
+        has_sign=channel_type is not np.uint8,
+    )
 
 
 def _blocks(
@@ -102,16 +140,45 @@ def _blocks(
     unit_bytes: int,
     dxgi: Codes,
     vulkan: Codes,
+    model: int,
+    *khronos: int,
     block: tuple[int, int] = (4, 4),
-    channel_type: type[np.uint8] | type[np.float16] = np.uint8,
+    channel_type: Channel = np.uint8,
+    opaque_khronos: tuple[int, ...] | None = None,
+    alpha: str = "",
+    has_sign: bool = False,
 ) -> TexelFormat:
-    return TexelFormat(name, channels, unit_bytes, block, channel_type, dxgi, vulkan)
+    return TexelFormat(
+        name,
+        channels,
+        unit_bytes,
+        block,
+        channel_type,
+        dxgi,
+        vulkan,
+        (model, khronos),
+        opaque_khronos,
+        alpha or ("full" if channels == 4 else "none"),
+        has_sign,
+    )
 
 
-ALPHAS = ("straight", "premultiplied", "independent")
-SUPERCOMPRESSIONS = ("none", "zstd")
+def _astc(columns: int, rows: int, vulkan: Codes, *, is_hdr: bool = False) -> TexelFormat:
+    return _blocks(
+        f"astc-{columns}x{rows}" + "-hdr" * is_hdr,
+        4,
+        16,
+        _NONE,
+        vulkan,
+        _ASTC,
+        _COLOR,
+        block=(columns, rows),
+        channel_type=np.float16 if is_hdr else np.uint8,
+        has_sign=is_hdr,
+    )
 
-FORMATS = {
+
+TEXEL_FORMATS = {
     texel_format.name: texel_format
     for texel_format in (
         _plain("r8", 1, np.uint8, (61, None), (9, 15)),
@@ -119,156 +186,26 @@ FORMATS = {
         _plain("rgba8", 4, np.uint8, (28, 29), (37, 43)),
         _plain("rgba16f", 4, np.float16, (10, None), (97, None)),
         _plain("rgba32f", 4, np.float32, (2, None), (109, None)),
-        _blocks("bc1", 4, 8, (71, 72), (133, 134)),
-        _blocks("bc1-rgb", 3, 8, (71, 72), (131, 132)),
-        _blocks("bc3", 4, 16, (77, 78), (137, 138)),
-        _blocks("bc4", 1, 8, (80, None), (139, None)),
-        _blocks("bc5", 2, 16, (83, None), (141, None)),
-        _blocks("bc6h", 3, 16, (95, None), (143, None), channel_type=np.float16),
-        _blocks("bc7", 4, 16, (98, 99), (145, 146)),
-        _blocks("etc2-rgb", 3, 8, (None, None), (147, 148)),
-        _blocks("etc2-rgba", 4, 16, (None, None), (151, 152)),
-        _blocks("eac-r11", 1, 8, (None, None), (153, None)),
-        _blocks("eac-rg11", 2, 16, (None, None), (155, None)),
-        _blocks("astc-4x4", 4, 16, (None, None), (157, 158)),
-        _blocks("astc-6x6", 4, 16, (None, None), (165, 166), (6, 6)),
-        _blocks("astc-8x8", 4, 16, (None, None), (171, 172), (8, 8)),
-        _blocks("astc-4x4-hdr", 4, 16, (None, None), (1000066000, None), (4, 4), np.float16),
-        _blocks("astc-6x6-hdr", 4, 16, (None, None), (1000066004, None), (6, 6), np.float16),
-        # Of what it becomes where it is used, so Vulkan has no word for it: VK_FORMAT_UNDEFINED.
-        _blocks("uastc", 4, 16, (None, None), (0, 0)),
+        _blocks("bc1", 4, 8, (71, 72), (133, 134), _BC1, _COLOR_AND_CUT_OUT, alpha="cut-out"),
+        _blocks("bc1-rgb", 3, 8, (71, 72), (131, 132), _BC1, _COLOR),
+        _blocks("bc3", 4, 16, (77, 78), (137, 138), _BC3, ALPHA, _COLOR),
+        _blocks("bc4", 1, 8, (80, None), (139, None), _BC4, RED),
+        _blocks("bc5", 2, 16, (83, None), (141, None), _BC5, RED, GREEN),
+        _blocks("bc6h", 3, 16, (95, None), (143, None), _BC6H, _COLOR, channel_type=np.float16),
+        _blocks("bc7", 4, 16, (98, 99), (145, 146), _BC7, _COLOR),
+        _blocks("etc2-rgb", 3, 8, _NONE, (147, 148), _ETC2, _ETC2_COLOR),
+        _blocks("etc2-rgba", 4, 16, _NONE, (151, 152), _ETC2, ALPHA, _ETC2_COLOR),
+        _blocks("eac-r11", 1, 8, _NONE, (153, None), _ETC2, RED),
+        _blocks("eac-rg11", 2, 16, _NONE, (155, None), _ETC2, RED, GREEN),
+        _astc(4, 4, (157, 158)),
+        _astc(6, 6, (165, 166)),
+        _astc(8, 8, (171, 172)),
+        _astc(4, 4, (1000066000, None), is_hdr=True),
+        _astc(6, 6, (1000066004, None), is_hdr=True),
+        _blocks(
+            *("uastc", 4, 16, _NONE, (_UNDEFINED, _UNDEFINED), _UASTC, _UASTC_RGBA),
+            opaque_khronos=(_UASTC_RGB,),
+        ),
     )
 }
-
-
-def halving_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
-    """The levels, each uint8 or float32; raises ValueError unless each halves the one before.
-
-    Those of uint16 become floats, decoded where they are sRGB.
-    """
-    if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
-        found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
-        raise ValueError(f"levels: {found}; a list of images, level 0 first, is needed")
-    images: list[np.ndarray] = []
-    for number, level in enumerate(levels):
-        who = f"levels: level {number}"
-        image = as_texels(who, level)
-        if image.dtype == np.uint16:
-            image = to_linear(image) if srgb else as_image(who, image)
-        height, width, channels = image.shape
-        if channels > 4:
-            raise ValueError(f"{who} has {channels} channels; 1 to 4 are allowed")
-        if images:
-            before = images[-1].shape
-            if before[:2] == (1, 1):
-                raise ValueError(f"{who} is one too many: the one before has 1 x 1 texel")
-            wanted = max(1, before[0] // 2), max(1, before[1] // 2)
-            if (height, width) != wanted:
-                raise ValueError(
-                    f"{who} has {width} x {height} texels; half of the one before, rounded down, "
-                    f"is {wanted[1]} x {wanted[0]}"
-                )
-            if channels != before[2]:
-                raise ValueError(
-                    f"{who} has {channels} channels, the one before {before[2]}; they must be alike"
-                )
-        images.append(image)
-    return images
-
-
-def as_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
-    """The same, all uint8 or all float32 and finite."""
-    images = halving_levels(levels, srgb)
-    for number, image in enumerate(images):
-        who = f"levels: level {number}"
-        if image.dtype != images[0].dtype:
-            raise ValueError(
-                f"{who} has texels of {image.dtype}, level 0 of {images[0].dtype}; they must be "
-                "alike"
-            )
-        if image.dtype != np.uint8:
-            _check_finite(who, image)
-    return images
-
-
-def as_format(name: str, level: np.ndarray, *, needs_srgb: bool) -> TexelFormat:
-    """The format of that name; for "auto" the one that holds all of a level."""
-    if name == "auto":
-        if level.dtype != np.uint8:
-            return FORMATS["rgba16f"]
-        name = {1: "r8", 2: "rg8"}.get(level.shape[2], "rgba8")
-        return FORMATS["rgba8" if needs_srgb else name]
-    as_one_of("format", name, ("auto", *FORMATS))
-    found = FORMATS[name]
-    if found.channels == 2 and level.shape[2] < 2:
-        raise ValueError(f"format: '{name}' needs 2 channels; the levels have {level.shape[2]}")
-    return found
-
-
-def encoded(
-    level: np.ndarray,
-    texel_format: TexelFormat,
-    srgb: bool,
-    *,
-    weigh_by_alpha: bool,
-    progress: ProgressCallback | None,
-    threads: int,
-) -> bytes:
-    """A level as a file holds it, the top row first."""
-    flipped = np.ascontiguousarray(level[::-1])
-    if texel_format.is_float:
-        texels = _linear_floats(flipped, srgb, texel_format, threads)
-    elif flipped.dtype == np.uint8:
-        texels = flipped
-    else:
-        texels = _native.to_bytes(flipped, srgb, threads)
-    if texel_format.is_block:
-        rgba = _with_channels(texels, 4)
-        if texel_format.is_float:
-            rgba = rgba.view(np.uint16)
-        return _native.compress_blocks(
-            rgba, texel_format.name, srgb, weigh_by_alpha, progress, threads
-        )
-    return _with_channels(texels, texel_format.channels).tobytes()
-
-
-def _linear_floats(
-    level: np.ndarray,
-    srgb: bool,
-    texel_format: TexelFormat,
-    threads: int,
-) -> np.ndarray:
-    if level.dtype == np.uint8:
-        level = level.astype(np.float32) / np.float32(255)
-        if srgb:
-            level = to_linear(level, threads=threads)
-    with np.errstate(over="ignore"):
-        values = level.astype(texel_format.channel_type)
-    if not np.isfinite(values).all():
-        raise ValueError(
-            f"levels: hold {level.ravel()[np.abs(level).argmax()]}, beyond the half floats of "
-            f"format '{texel_format.name}' (65504); 'rgba32f' is needed"
-        )
-    return values
-
-
-def _with_channels(texels: np.ndarray, channels: int) -> np.ndarray:
-    """The first channels; for four, gray becomes a color, and what lacks is 0, but alpha 1."""
-    found = texels.shape[2]
-    if found >= channels:
-        return np.ascontiguousarray(texels[..., :channels])
-    full = 255 if texels.dtype == np.uint8 else 1
-    rgba = np.zeros((*texels.shape[:2], 4), texels.dtype)
-    rgba[..., : 3 if found == 1 else found] = texels
-    rgba[..., 3] = full
-    return rgba
-
-
-def _check_finite(who: str, image: np.ndarray) -> None:
-    bad = np.argwhere(~np.isfinite(image))
-    if len(bad):
-        row, column, channel = bad[0]
-        raise ValueError(
-            f"{who}: the texel in row {row}, column {column} holds {image[row, column, channel]}; "
-            f"finite values are needed"
-        )
+"""All formats, by name."""

@@ -14,16 +14,8 @@ from .._border.arrays import as_threads
 from .._border.staging import Output, as_output, write_output
 from .dds import DDS
 from .ktx2 import KTX2
-from .texel_formats import (
-    ALPHAS,
-    SUPERCOMPRESSIONS,
-    Container,
-    TexelFormat,
-    Texture,
-    as_format,
-    as_levels,
-    encoded,
-)
+from .texel_formats import ALPHAS, SUPERCOMPRESSIONS, Container, TexelFormat, Texture
+from .texels import as_format, as_levels, encoded
 
 
 def write_dds(

@@ -6,6 +6,7 @@ import os
 
 import numpy as np
 import OpenImageIO as oiio
+import prefilter
 import pytest
 import scenes
 from texture_readers import read_dds, read_ktx2
@@ -330,3 +331,8 @@ def test_bc6h_tells_what_it_cannot_hold(bake, tmp_path):
     with pytest.raises(ValueError, match=r"half floats of format 'bc6h'.*'rgba32f' is needed"):
         bake(scenes.image("Wild", wild, is_float=True), "c.dds", texture_format="bc6h")
     assert sorted(os.listdir(tmp_path)) == ["a.dds", "b.dds"]
+
+
+def test_every_format_but_the_smallest_can_be_chosen(addon):
+    offered = addon("mipmaps.choices").TEXTURE_FORMATS.keys() - {"auto", "blocks"}
+    assert offered == prefilter.TEXEL_FORMATS.keys() - {"r8", "rg8"}

@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Levels as arrays, checked and brought into the layout of a format."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _native
+from .._border.arguments import ProgressCallback, as_one_of
+from .._border.arrays import as_image, as_texels
+from ..images.color import to_linear
+from .texel_formats import TEXEL_FORMATS, TexelFormat
+
+
+def halving_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
+    """The levels, each uint8 or float32; raises ValueError unless each halves the one before.
+
+    Those of uint16 become floats, decoded where they are sRGB.
+    """
+    if not isinstance(levels, Sequence) or isinstance(levels, str | bytes) or not levels:
+        found = "an empty list" if isinstance(levels, list) else f"a {type(levels).__name__}"
+        raise ValueError(f"levels: {found}; a list of images, level 0 first, is needed")
+    images: list[np.ndarray] = []
+    for number, level in enumerate(levels):
+        who = f"levels: level {number}"
+        image = as_texels(who, level)
+        if image.dtype == np.uint16:
+            image = to_linear(image) if srgb else as_image(who, image)
+        height, width, channels = image.shape
+        if channels > 4:
+            raise ValueError(f"{who} has {channels} channels; 1 to 4 are allowed")
+        if images:
+            before = images[-1].shape
+            if before[:2] == (1, 1):
+                raise ValueError(f"{who} is one too many: the one before has 1 x 1 texel")
+            wanted = max(1, before[0] // 2), max(1, before[1] // 2)
+            if (height, width) != wanted:
+                raise ValueError(
+                    f"{who} has {width} x {height} texels; half of the one before, rounded down, "
+                    f"is {wanted[1]} x {wanted[0]}"
+                )
+            if channels != before[2]:
+                raise ValueError(
+                    f"{who} has {channels} channels, the one before {before[2]}; they must be alike"
+                )
+        images.append(image)
+    return images
+
+
+def as_levels(levels: Sequence[npt.ArrayLike], srgb: bool) -> list[np.ndarray]:
+    """The same, all uint8 or all float32 and finite."""
+    images = halving_levels(levels, srgb)
+    for number, image in enumerate(images):
+        who = f"levels: level {number}"
+        if image.dtype != images[0].dtype:
+            raise ValueError(
+                f"{who} has texels of {image.dtype}, level 0 of {images[0].dtype}; they must be "
+                "alike"
+            )
+        if image.dtype != np.uint8:
+            _check_finite(who, image)
+    return images
+
+
+def as_format(name: str, level: np.ndarray, *, needs_srgb: bool) -> TexelFormat:
+    """The format of that name; for "auto" the one that holds all of a level."""
+    if name == "auto":
+        if level.dtype != np.uint8:
+            return TEXEL_FORMATS["rgba16f"]
+        name = {1: "r8", 2: "rg8"}.get(level.shape[2], "rgba8")
+        return TEXEL_FORMATS["rgba8" if needs_srgb else name]
+    as_one_of("format", name, ("auto", *TEXEL_FORMATS))
+    found = TEXEL_FORMATS[name]
+    if found.channels == 2 and level.shape[2] < 2:
+        raise ValueError(f"format: '{name}' needs 2 channels; the levels have {level.shape[2]}")
+    return found
+
+
+def encoded(
+    level: np.ndarray,
+    texel_format: TexelFormat,
+    srgb: bool,
+    *,
+    weigh_by_alpha: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> bytes:
+    """A level as a file holds it, the top row first."""
+    flipped = np.ascontiguousarray(level[::-1])
+    if texel_format.is_float:
+        texels = _linear_floats(flipped, srgb, texel_format, threads)
+    elif flipped.dtype == np.uint8:
+        texels = flipped
+    else:
+        texels = _native.to_bytes(flipped, srgb, threads)
+    if texel_format.is_block:
+        rgba = _with_channels(texels, 4)
+        if texel_format.is_float:
+            rgba = rgba.view(np.uint16)
+        return _native.compress_blocks(
+            rgba, texel_format.name, srgb, weigh_by_alpha, progress, threads
+        )
+    return _with_channels(texels, texel_format.channels).tobytes()
+
+
+def _linear_floats(
+    level: np.ndarray,
+    srgb: bool,
+    texel_format: TexelFormat,
+    threads: int,
+) -> np.ndarray:
+    if level.dtype == np.uint8:
+        level = level.astype(np.float32) / np.float32(255)
+        if srgb:
+            level = to_linear(level, threads=threads)
+    with np.errstate(over="ignore"):
+        values = level.astype(texel_format.channel_type)
+    if not np.isfinite(values).all():
+        raise ValueError(
+            f"levels: hold {level.ravel()[np.abs(level).argmax()]}, beyond the half floats of "
+            f"format '{texel_format.name}' (65504); 'rgba32f' is needed"
+        )
+    return values
+
+
+def _with_channels(texels: np.ndarray, channels: int) -> np.ndarray:
+    """The first channels; for four, gray becomes a color, and what lacks is 0, but alpha 1."""
+    found = texels.shape[2]
+    if found >= channels:
+        return np.ascontiguousarray(texels[..., :channels])
+    full = 255 if texels.dtype == np.uint8 else 1
+    rgba = np.zeros((*texels.shape[:2], 4), texels.dtype)
+    rgba[..., : 3 if found == 1 else found] = texels
+    rgba[..., 3] = full
+    return rgba
+
+
+def _check_finite(who: str, image: np.ndarray) -> None:
+    bad = np.argwhere(~np.isfinite(image))
+    if len(bad):
+        row, column, channel = bad[0]
+        raise ValueError(
+            f"{who}: the texel in row {row}, column {column} holds {image[row, column, channel]}; "
+            f"finite values are needed"
+        )
