@@ -2,12 +2,12 @@
 
 """What a user may set for a bake, a preview and an error plot."""
 
-import re
 from dataclasses import dataclass
 
 import prefilter
 
 from ..core.choices import Choice
+from ..core.filters import LABELS
 from ..core.options import number, one_of, switch, text, threads
 
 _PAM = {
@@ -35,7 +35,7 @@ _COVERED = "-covered"
 def _kernel_choice(name: str) -> Choice:
     """Returns how a filter of the library is presented whose kernel weighs texels alike."""
     kernel = name.removesuffix(_COVERED)
-    label = re.sub(r"(?<=[a-z])(?=\d)", " ", kernel).replace("bspline", "B-spline").title()
+    label = LABELS[kernel]
     if name == kernel:
         return Choice(label, f"{label} over all texels, whether a face uses them or not")
     return Choice(f"{label}, Covered", f"{label} over the texels that a face touches")

@@ -7,30 +7,29 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..core.choices import Choice
+from ..core.filters import filters_for
 from ..core.options import number, numbers, one_of, switch, text, threads
 
 SIZES = {
     "percent": Choice("Percent", "A share of the width and height of the image"),
     "pixels": Choice("Pixels", "A width and a height"),
 }
-FILTERS = {
-    "lanczos3": Choice("Lanczos 3", "Sharp, with some ringing at edges"),
-    "lanczos2": Choice("Lanczos 2", "Sharp, with less ringing and a little more aliasing"),
-    "mitchell": Choice("Mitchell", "A compromise between blur, ringing and aliasing"),
-    "least-squares": Choice(
-        "Least Squares",
-        "Closest to the image when the result is enlarged again by interpolation, as "
-        "renderers and viewers do. Sharp. For reducing images",
-    ),
-    "radial3": Choice(
-        "Radial 3", "Cuts off fine detail equally in all directions. Sharp, and slower"
-    ),
-    "radial2": Choice("Radial 2", "Like Radial 3, with less ringing"),
-    "gaussian": Choice("Gaussian", "Soft, without ringing"),
-    "bspline2": Choice("B-Spline 2", "Softer, without ringing"),
-    "tent": Choice("Tent", "Soft, without ringing; interpolates linearly when enlarging"),
-    "box": Choice("Box", "The average of the pixels; enlarged pixels stay squares"),
-}
+FILTERS = filters_for(
+    "resize",
+    {
+        "lanczos3": "Sharp, with some ringing at edges",
+        "lanczos2": "Sharp, with less ringing and a little more aliasing",
+        "mitchell": "A compromise between blur, ringing and aliasing",
+        "least-squares": "Closest to the image when the result is enlarged again by "
+        "interpolation, as renderers and viewers do. Sharp. For reducing images",
+        "radial3": "Cuts off fine detail equally in all directions. Sharp, and slower",
+        "radial2": "Like Radial 3, with less ringing",
+        "gaussian": "Soft, without ringing",
+        "bspline2": "Softer, without ringing",
+        "tent": "Soft, without ringing; interpolates linearly when enlarging",
+        "box": "The average of the pixels; enlarged pixels stay squares",
+    },
+)
 WRAPS = {
     "clamp": Choice("Clamp", "Extend edge pixels"),
     "repeat": Choice("Repeat", "The image tiles the plane"),
@@ -50,10 +49,9 @@ RESULT_SIZES = {
     "image": Choice("Image", "As large as the image"),
     "pixels": Choice("Pixels", "A width and a height"),
 }
-TABLE_FILTERS = {
-    key: FILTERS[key]
-    for key in ("lanczos3", "lanczos2", "mitchell", "gaussian", "bspline2", "tent", "box")
-}
+TABLE_FILTERS = filters_for(
+    "sampling", {name: choice.description for name, choice in FILTERS.items()}
+)
 METHODS = {
     "exact": Choice("Exact", "Every pixel under the filter. The best, and the slowest"),
     "8": Choice("8 Texels", "8 texels of the mipmap per pixel, weighted by a sampling table"),

@@ -15,7 +15,7 @@ from .placement import placement, squeeze
 from .sampling_tables import load
 
 _SUFFIXES = {"affine": "transformed", "corners": "pinned", "rectify": "rectified"}
-_RADII = {"box": 0.5, "tent": 1.0, "bspline2": 1.5, "lanczos3": 3.0}
+_RADII = {one.name: one.radius for one in prefilter.PIXEL_FILTERS}
 _PER_PIXEL, _PER_WEIGHT = 8.0, 0.2  # What an exact filter costs, in texels read.
 _PER_TEXEL = 8.0  # What a texel costs that mipmaps are made of.
 _DONE = {"affine": "Scaled and rotated", "corners": "Pinned", "rectify": "Rectified"}
@@ -96,7 +96,7 @@ def effort(settings: ResampleSettings, width: int, height: int) -> float:
     placed = placement(settings, width, height)
     made = placed.width * placed.height
     if settings.method == "exact":
-        reach = 2.0 * _RADII.get(settings.filter, 2.0)
+        reach = 2.0 * _RADII[settings.filter]
         return made * (_PER_PIXEL + _PER_WEIGHT * reach**2 * squeeze(placed, width, height))
     texels = int(settings.method) if settings.method.isdigit() else 8
     probes = settings.max_probes if settings.filter == "gaussian" else 1

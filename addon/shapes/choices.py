@@ -5,6 +5,7 @@
 from dataclasses import dataclass
 
 from ..core.choices import Choice
+from ..core.filters import filters_for
 from ..core.options import number, one_of, rgba, switch, text, threads
 
 LARGEST_SIDE = 1 << 16
@@ -17,17 +18,20 @@ SOURCES = {
     "uv": Choice("UV Map", "A mask of what the faces of the active mesh cover in its UV map"),
     "svg": Choice("SVG File", "The drawing in an SVG file"),
 }
-FILTERS = {
-    "box": Choice("Box", "The exact share of each pixel that a shape covers"),
-    "tent": Choice("Tent", "Soft"),
-    "bspline2": Choice("Quadratic B-Spline", "Softer"),
-    "gaussian": Choice("Gaussian", "Isotropic; softer"),
-    "mitchell": Choice("Mitchell", "A little softer than Box, with fewer stairs; little ringing"),
-    "lanczos2": Choice("Lanczos 2", "Sharper than Mitchell, with some ringing"),
-    "lanczos3": Choice("Lanczos 3", "Sharpest, with ringing around edges"),
-    "radial2": Choice("Radial 2", "Like Lanczos 2, but isotropic"),
-    "radial3": Choice("Radial 3", "Like Lanczos 3, but isotropic"),
-}
+FILTERS = filters_for(
+    "raster",
+    {
+        "box": "The exact share of each pixel that a shape covers",
+        "tent": "Soft",
+        "bspline2": "Softer",
+        "gaussian": "Isotropic; softer",
+        "mitchell": "A little softer than Box, with fewer stairs; little ringing",
+        "lanczos2": "Sharper than Mitchell, with some ringing",
+        "lanczos3": "Sharpest, with ringing around edges",
+        "radial2": "Like Lanczos 2, but isotropic",
+        "radial3": "Like Lanczos 3, but isotropic",
+    },
+)
 RESOLUTIONS = {
     "size": Choice("Size", "An image of this size, into which the shapes are fitted"),
     "density": Choice("Pixels per Unit", "Fit the image to the shapes, plus the margin"),

@@ -246,10 +246,6 @@ void bind_raster(py::module_& m) {
         py::arg("filter"), py::arg("method"), py::arg("overlap"), py::arg("background"),
         py::arg("depth"), py::arg("progress"), py::arg("threads"));
   m.attr("FILL_RULES") = names_of(kFillRules);
-  m.def("raster_filters", [] {
-    const auto names = raster_filters();
-    return std::vector<std::string>(names.begin(), names.end());
-  });
 }
 
 }  // namespace prefilter::python

@@ -192,11 +192,6 @@ Array<float> bound_resample(const Array<float>& array, const Array<double>& tran
 }  // namespace
 
 void bind_resample(py::module_& m) {
-  m.def("sampling_filters", [] {
-    std::vector<std::string> names;
-    for (const Kernel& kernel : kernels()) names.emplace_back(kernel.name());
-    return names;
-  });
   m.def("sampling_levels", &bound_sampling_levels, py::arg("image"), py::arg("filter"),
         py::arg("wrap"), py::arg("levels"), py::arg("premultiplied"), py::arg("progress"),
         py::arg("threads"));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "convert.h"
+#include "prefilter/filters/pixel_filter.h"
 #include "prefilter/resize/resize.h"
 
 namespace py = pybind11;
@@ -14,10 +15,14 @@ namespace py = pybind11;
 namespace prefilter::python {
 
 void bind_resize(py::module_& m) {
-  m.def("resize_filters", [] {
-    std::vector<std::string> names;
-    for (const ResizeFilter& filter : resize_filters()) names.push_back(name_of(filter));
-    return names;
+  m.def("pixel_filters", [] {
+    py::list filters;
+    for (const PixelFilter& filter : pixel_filters()) {
+      py::list uses;
+      for (const FilterUse use : filter.uses) uses.append(name_in(kFilterUses, use));
+      filters.append(py::make_tuple(filter.name, filter.label, filter.radius, py::tuple(uses)));
+    }
+    return filters;
   });
   m.def(
       "resize",

@@ -22,7 +22,7 @@ AT_ENABLING = re.compile(
 WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
 # Of the package: what options take their limits and choices from.
 OF_PACKAGE = re.compile(
-    r"prefilter(\.(_native|_border(\..*)?|images(\.(mipmaps|color))?|meshes(\.surface)?"
+    r"prefilter(\.(_native|_border(\..*)?|images(\.(mipmaps|color|pixel_filters))?|meshes(\.surface)?"
     r"|points(\.scan_files)?|sampling(\.levels)?|voxels(\.octree)?))?"
 )
 SLOW = {"argparse", "concurrent.futures", "logging", "tempfile", "zipfile", "OpenImageIO"}

@@ -700,6 +700,7 @@ def test_every_function_is_there():
     constants = {
         "MAX_DEPTH",
         "MIPMAP_FILTERS",
+        "PIXEL_FILTERS",
         "POINT_EXTENSIONS",
         "RASTER_FILTERS",
         "RESIZE_FILTERS",
@@ -715,6 +716,7 @@ def test_every_function_is_there():
         "MeshMeasures",
         "NearestPoints",
         "PickedTexels",
+        "PixelFilter",
         "ReconstructionReport",
         "SamplingTable",
         "ScanPoints",

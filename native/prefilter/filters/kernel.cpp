@@ -11,6 +11,7 @@
 
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/names.h"
+#include "prefilter/filters/pixel_filter.h"
 
 namespace prefilter {
 namespace {
@@ -29,20 +30,54 @@ double mitchell(double x) {
 
 double gaussian(double x) { return elementary::exp(-std::numbers::pi * x * x); }
 
-// Name, radius, width and degree of the pieces, and the function from 0 to the radius. Of those
-// that are no polynomials, lanczos2 is off by 6e-6 at the most, lanczos3 by 2e-6, and gaussian,
-// which ends with a step of 3.5e-6, by 1e-6.
+double bspline2(double x) { return x < 0.5 ? 0.75 - x * x : 0.5 * (1.5 - x) * (1.5 - x); }
+
+template <int kLobes>
+double lanczos(double x) {
+  return sinc(x) * sinc(x / kLobes);
+}
+
+using enum FilterUse;
+constexpr FilterUse kEverything[] = {kRaster, kResize, kMipmap, kSampling};
+constexpr FilterUse kImages[] = {kRaster, kResize};
+constexpr FilterUse kSizes[] = {kResize};
+
+struct Row {
+  std::string_view name;
+  std::string_view label;
+  double radius;
+  std::span<const FilterUse> uses;
+  bool is_radial = false;
+  // Of a kernel: the width and the degree of its pieces, and the function from 0 to the radius.
+  double piece_width = 0.0;
+  int degree = 0;
+  double (*function)(double) = nullptr;
+};
+
+// Of the kernels that are no polynomials, lanczos2 is off by 6e-6 at the most, lanczos3 by 2e-6,
+// and gaussian, which ends with a step of 3.5e-6, by 1e-6.
+constexpr Row kRows[] = {
+    {"box", "Box", 0.5, kEverything, false, 1.0, 0, [](double) { return 1.0; }},
+    {"tent", "Tent", 1.0, kEverything, false, 1.0, 1, [](double x) { return 1.0 - x; }},
+    {"bspline2", "B-Spline 2", 1.5, kEverything, false, 1.0, 2, bspline2},
+    {"mitchell", "Mitchell", 2.0, kEverything, false, 1.0, 3, mitchell},
+    {"lanczos2", "Lanczos 2", 2.0, kEverything, false, 1.0, 7, lanczos<2>},
+    {"lanczos3", "Lanczos 3", 3.0, kEverything, false, 1.0, 7, lanczos<3>},
+    {"gaussian", "Gaussian", 2.0, kEverything, false, 0.5, 7, gaussian},
+    {"radial2", "Radial 2", 2.0, kImages, true},
+    {"radial3", "Radial 3", 3.0, kImages, true},
+    {"least-squares", "Least Squares", 1.0, kSizes},
+};
+
 const std::vector<Kernel>& all_kernels() {
-  static const std::vector<Kernel> kernels = {
-      {"box", 0.5, 1.0, 0, [](double) { return 1.0; }},
-      {"tent", 1.0, 1.0, 1, [](double x) { return 1.0 - x; }},
-      {"bspline2", 1.5, 1.0, 2,
-       [](double x) { return x < 0.5 ? 0.75 - x * x : 0.5 * (1.5 - x) * (1.5 - x); }},
-      {"mitchell", 2.0, 1.0, 3, mitchell},
-      {"lanczos2", 2.0, 1.0, 7, [](double x) { return sinc(x) * sinc(x / 2.0); }},
-      {"lanczos3", 3.0, 1.0, 7, [](double x) { return sinc(x) * sinc(x / 3.0); }},
-      {"gaussian", 2.0, 0.5, 7, gaussian},
-  };
+  static const std::vector<Kernel> kernels = [] {
+    std::vector<Kernel> made;
+    for (const Row& row : kRows) {
+      if (row.function == nullptr) continue;
+      made.emplace_back(row.name, row.radius, row.piece_width, row.degree, row.function);
+    }
+    return made;
+  }();
   return kernels;
 }
 
@@ -143,6 +178,30 @@ const Kernel* find_kernel(std::string_view name) {
 
 const Kernel& kernel_named(std::string_view name) {
   return element_named("filter", name, kernels(), &Kernel::name);
+}
+
+bool PixelFilter::is_for(FilterUse use) const {
+  return std::find(uses.begin(), uses.end(), use) != uses.end();
+}
+
+std::span<const PixelFilter> pixel_filters() {
+  static const std::vector<PixelFilter> filters = [] {
+    std::vector<PixelFilter> made;
+    for (const Row& row : kRows) {
+      made.push_back(
+          {row.name, row.label, row.radius, find_kernel(row.name), row.is_radial, row.uses});
+    }
+    return made;
+  }();
+  return filters;
+}
+
+std::vector<PixelFilter> filters_for(FilterUse use) {
+  std::vector<PixelFilter> found;
+  for (const PixelFilter& filter : pixel_filters()) {
+    if (filter.is_for(use)) found.push_back(filter);
+  }
+  return found;
 }
 
 const Kernel& box_kernel() {

@@ -3,14 +3,15 @@
 #include "prefilter/mipmap/mipmap_filter.h"
 
 #include "prefilter/base/names.h"
+#include "prefilter/filters/pixel_filter.h"
 
 namespace prefilter {
 
 std::vector<MipmapFilter> mipmap_filters() {
   std::vector<MipmapFilter> filters;
   for (const Weighting weighting : {Weighting::kAll, Weighting::kCovered}) {
-    for (const Kernel& kernel : kernels()) {
-      filters.emplace_back(TextureSpaceFilter{&kernel, weighting});
+    for (const PixelFilter& filter : filters_for(FilterUse::kMipmap)) {
+      filters.emplace_back(TextureSpaceFilter{filter.kernel, weighting});
     }
   }
   for (const SurfaceFilter filter : {SurfaceFilter::kUnitSquare, SurfaceFilter::kBox,

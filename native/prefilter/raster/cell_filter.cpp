@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/gauss_rule.h"
+#include "prefilter/filters/pixel_filter.h"
 #include "prefilter/filters/windowed_jinc.h"
 #include "prefilter/raster/rasterize.h"
 
@@ -123,34 +127,32 @@ CellFilter of_radial(double radius) {
   return filter;
 }
 
-constexpr std::array<std::string_view, 9> kNames = {"box",      "tent",     "bspline2",
-                                                    "mitchell", "lanczos2", "lanczos3",
-                                                    "gaussian", "radial2",  "radial3"};
+CellFilter cell_filter(const PixelFilter& filter) {
+  assert(filter.is_radial || filter.kernel != nullptr);
+  return filter.is_radial ? of_radial(filter.radius) : of_kernel(*filter.kernel);
+}
 
 }  // namespace
 
-std::span<const std::string_view> raster_filters() { return kNames; }
+std::span<const std::string_view> raster_filters() {
+  static const std::vector<std::string_view> names = [] {
+    std::vector<std::string_view> found;
+    for (const PixelFilter& filter : filters_for(FilterUse::kRaster)) found.push_back(filter.name);
+    return found;
+  }();
+  return names;
+}
 
 const CellFilter* find_cell_filter(std::string_view name) {
-  if (name == "radial2") {
-    static const CellFilter filter = of_radial(2.0);
-    return &filter;
+  // Radial ones take a while: each filter is made when it is first asked for.
+  static std::mutex mutex;
+  static std::map<std::string_view, CellFilter> made;
+  const std::lock_guard lock(mutex);
+  if (const auto found = made.find(name); found != made.end()) return &found->second;
+  for (const PixelFilter& filter : filters_for(FilterUse::kRaster)) {
+    if (filter.name == name) return &made.emplace(filter.name, cell_filter(filter)).first->second;
   }
-  if (name == "radial3") {
-    static const CellFilter filter = of_radial(3.0);
-    return &filter;
-  }
-  static const std::vector<CellFilter> filters = [] {
-    std::vector<CellFilter> all;
-    for (const std::string_view each : kNames) {
-      const Kernel* kernel = find_kernel(each);
-      if (kernel != nullptr) all.push_back(of_kernel(*kernel));
-    }
-    return all;
-  }();
-  const auto found = std::find(kNames.begin(), kNames.end(), name);
-  // The radial ones are the last.
-  return found == kNames.end() ? nullptr : &filters[found - kNames.begin()];
+  return nullptr;
 }
 
 }  // namespace prefilter

@@ -10,10 +10,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <memory>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/memory.h"
+#include "prefilter/base/names.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/raster/band_values.h"
 #include "prefilter/raster/box_coverage.h"
@@ -204,14 +206,9 @@ void make_bands(const RasterLayers& job, const CellFilter& filter, const RasterO
 
 Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
   check_options(shapes, options);
-  const CellFilter* filter = find_cell_filter(options.filter);
-  if (filter == nullptr) {
-    std::string names;
-    for (const std::string_view name : raster_filters()) {
-      names += (names.empty() ? "" : ", ") + std::string(name);
-    }
-    throw_invalid("filter: '" + options.filter + "' is not one of " + names);
-  }
+  const std::string_view name =
+      element_named("filter", options.filter, raster_filters(), std::identity());
+  const CellFilter* filter = find_cell_filter(name);
   const bool is_wavelet = options.method == RasterMethod::kWavelet;
   if (is_wavelet) {
     check_wavelet_options(shapes, options);

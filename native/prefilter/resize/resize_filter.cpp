@@ -3,15 +3,21 @@
 #include "prefilter/resize/resize_filter.h"
 
 #include "prefilter/base/names.h"
+#include "prefilter/filters/pixel_filter.h"
 
 namespace prefilter {
 
 std::vector<ResizeFilter> resize_filters() {
   std::vector<ResizeFilter> filters;
-  for (const Kernel& kernel : kernels()) filters.emplace_back(&kernel);
-  filters.emplace_back(RadialFilter{2});
-  filters.emplace_back(RadialFilter{3});
-  filters.emplace_back(BilinearFit{});
+  for (const PixelFilter& filter : filters_for(FilterUse::kResize)) {
+    if (filter.kernel != nullptr) {
+      filters.emplace_back(filter.kernel);
+    } else if (filter.is_radial) {
+      filters.emplace_back(RadialFilter{static_cast<int>(filter.radius)});
+    } else {
+      filters.emplace_back(BilinearFit{});
+    }
+  }
   return filters;
 }
 

@@ -13,6 +13,8 @@ from .images.mipmaps import mipmap_error as mipmap_error
 from .images.mipmaps import mipmaps as mipmaps
 from .images.mipmaps import seam_contrast as seam_contrast
 from .images.normal_maps import normal_mipmaps as normal_mipmaps
+from .images.pixel_filters import PIXEL_FILTERS as PIXEL_FILTERS
+from .images.pixel_filters import PixelFilter as PixelFilter
 from .images.resizing import RESIZE_FILTERS as RESIZE_FILTERS
 from .images.resizing import resize as resize
 from .images.texture_use import fill_transparent as fill_transparent

@@ -7,8 +7,9 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import ProgressCallback, Wrap, as_name, as_progress, as_size, as_wrap
 from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
+from .pixel_filters import names_for
 
-RESIZE_FILTERS = tuple(_native.resize_filters())
+RESIZE_FILTERS = names_for("resize")
 """All filters of `resize`."""
 
 

@@ -18,8 +18,9 @@ from .._border.arguments import (
 )
 from .._border.arrays import as_image, as_threads, in_form_of
 from .._border.channels import in_channel_groups
+from ..images.pixel_filters import names_for
 
-SAMPLING_FILTERS = tuple(_native.sampling_filters())
+SAMPLING_FILTERS = names_for("sampling")
 """The kernels that sampling tables and `sampling_levels` are made for."""
 
 Value = TypeVar("Value", bound=np.generic)

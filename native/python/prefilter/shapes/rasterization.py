@@ -16,10 +16,11 @@ from .._border.arguments import (
     as_size,
 )
 from .._border.arrays import FloatArray, as_threads
+from ..images.pixel_filters import names_for
 from .arguments import as_color
 from .shape import Shape
 
-RASTER_FILTERS: tuple[str, ...] = tuple(_native.raster_filters())
+RASTER_FILTERS = names_for("raster")
 
 
 def rasterize(
