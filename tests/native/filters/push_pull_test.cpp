@@ -29,6 +29,33 @@ TEST(FillHoles, KeepsTexelsWithWeightAndFillsTheRest) {
   }
 }
 
+// One texel of every two by two is known, so it is what the next coarser layer has there. A hole's
+// centre is a quarter of a coarse texel from that of the one above it, along both axes.
+TEST(FillHoles, InterpolatesTheCoarserLayer) {
+  Image image(4, 4, 1);
+  std::vector<float> weights(16, 0.0F);
+  const float known[2][2] = {{1.0F, 3.0F}, {-2.0F, 10.0F}};
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      image.texel(2 * i, 2 * j)[0] = known[j][i];
+      weights[static_cast<std::size_t>(8 * j + 2 * i)] = 1.0F;
+    }
+  }
+  fill_holes(weights, {}, 1, Progress(), 1, &image);
+  const auto between = [&](int x, int y) {
+    const double u = std::min(std::max(0.5 * (x + 0.5) - 0.5, 0.0), 1.0);
+    const double v = std::min(std::max(0.5 * (y + 0.5) - 0.5, 0.0), 1.0);
+    return (1.0 - v) * ((1.0 - u) * known[0][0] + u * known[0][1]) +
+           v * ((1.0 - u) * known[1][0] + u * known[1][1]);
+  };
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 4; ++x) {
+      const bool is_known = x % 2 == 0 && y % 2 == 0;
+      EXPECT_NEAR(image.texel(x, y)[0], is_known ? known[y / 2][x / 2] : between(x, y), 1e-6);
+    }
+  }
+}
+
 TEST(FillHoles, StaysBetweenTheValuesAround) {
   Image image(16, 16, 1);
   std::vector<float> weights(256, 0.0F);

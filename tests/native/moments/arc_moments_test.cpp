@@ -24,12 +24,12 @@ struct Integrals {
 
 // By Simpson's rule over t, with many steps.
 template <int N>
-Integrals<N> integrals(const ParametricCurve& curve, double t_begin, double t_end, Point2 center) {
-  constexpr int kSteps = 400;
+Integrals<N> integrals(const ParametricCurve& curve, double t_begin, double t_end, Point2 center,
+                       int steps = 400) {
   Integrals<N> sums;
-  const double step = (t_end - t_begin) / kSteps;
-  for (int k = 0; k <= kSteps; ++k) {
-    const double weight = k == 0 || k == kSteps ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
+  const double step = (t_end - t_begin) / steps;
+  for (int k = 0; k <= steps; ++k) {
+    const double weight = k == 0 || k == steps ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
     const double t = t_begin + k * step;
     const Point2 at = curve.at(t) - center;
     const double dy = weight * step / 3.0 * curve.derivative(t).y;
@@ -106,6 +106,24 @@ TYPED_TEST(ArcMomentsOf, CurvesAreTheirIntegrals) {
       batch.flush(&cells);
       expect_near<kN>(cells[0], integrals<kN>(piece.curve, piece.t_begin, piece.t_end, center), 1.0,
                       kCurveBound);
+    });
+  }
+}
+
+// Whose points crowd together at their ends, or in the middle.
+TYPED_TEST(ArcMomentsOf, SharpConicsAreTheirIntegrals) {
+  constexpr int kN = TestFixture::kDegree;
+  ArcBatch<kN> batch;
+  const std::array<Point2, 3> controls = {{{0.05, 0.1}, {0.4, 0.9}, {0.95, 0.95}}};
+  for (const double weight : {0.01, 0.05, 0.2, 5.0, 20.0, 100.0}) {
+    for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool) {
+      typename TestFixture::Cells cells(1);
+      batch.add_curve(piece.curve, {piece.t_begin, piece.t_end, piece.begin, piece.end}, {0.5, 0.5},
+                      1, 0, &cells);
+      batch.flush(&cells);
+      expect_near<kN>(cells[0],
+                      integrals<kN>(piece.curve, piece.t_begin, piece.t_end, {0.5, 0.5}, 20000),
+                      1.0, kCurveBound);
     });
   }
 }

@@ -154,6 +154,11 @@ TEST(Footprint, HasTheSingularValues) {
         EXPECT_NEAR(std::abs(found.direction_x * c + found.direction_y * s), 1, 1e-12);
       }
       EXPECT_NEAR(std::hypot(found.direction_x, found.direction_y), 1.0, 1e-15);
+      // The same of the image in a mirror.
+      const Footprint mirrored =
+          singular_values({-c * a + s * d, c * b - s * e, -s * a - c * d, s * b + c * e});
+      EXPECT_NEAR(mirrored.major, 8.0, 1e-12);
+      EXPECT_NEAR(mirrored.minor, minor, 1e-12);
     }
   }
 }

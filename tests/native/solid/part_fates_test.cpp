@@ -178,7 +178,10 @@ TEST(HollowRegions, AreBoundedByOpenPartsAndNotFilled) {
   sides[2].outside_back = 0.2F;
   EXPECT_EQ(parts_around(patches, areas, sides, hollow(0.0, 0.0)),
             (std::vector<std::size_t>{0, 2}));
-  sides[0].region = 4;  // now more of region 3 is bounded by the closed part
+  patches.patches[1].area = 3.0;  // more of region 3 is bounded by the closed part
+  EXPECT_EQ(hollow_regions(patches, std::vector{2.0, 3.0, 1.0}, sides, std::vector<double>(5)),
+            (std::vector{false, false, false, false, true}));
+  sides[0].region = 4;  // now all of it is
   EXPECT_EQ(hollow(0.0, 0.0), (std::vector{false, false, false, false, true}));
 }
 

@@ -49,6 +49,30 @@ Surface random_surface(unsigned seed, int triangles) {
   return surface;
 }
 
+// A triangle that is a line in the texture, along an edge between two tiles, is in one of them.
+TEST(UdimTile, WhatLiesBetweenTilesIsInTheNext) {
+  for (const bool along_u : {false, true}) {
+    Surface surface;
+    surface.triangles = {{0, 1, 2}};
+    surface.areas = {2.0};
+    surface.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}};
+    surface.uvs.emplace_back();
+    const double places[3] = {1.2, 1.4, 1.8};
+    for (int i = 0; i < 3; ++i) {
+      surface.uvs[0][i] =
+          along_u ? TextureCoordinate{places[i], 1.0} : TextureCoordinate{1.0, places[i]};
+    }
+    for (int row = 0; row < 3; ++row) {
+      for (int column = 0; column < 3; ++column) {
+        const bool is_there = row == 1 && column == 1;
+        EXPECT_NEAR(udim_tile(surface, 1001 + 10 * row + column).total_area(), is_there ? 2.0 : 0.0,
+                    1e-12)
+            << column << ", " << row;
+      }
+    }
+  }
+}
+
 TEST(UdimTile, SharesAreThoseOfSamples) {
   for (unsigned seed = 0; seed < 12; ++seed) {
     Surface surface = random_surface(seed, 3);

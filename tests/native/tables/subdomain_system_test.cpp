@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "prefilter/tables/bordered_rows.h"
 #include "prefilter/tables/filter_products.h"
 
 namespace prefilter {
@@ -115,6 +116,28 @@ TEST(SubdomainSystem, RampsAddTheDistanceFromTheWeightedCentre) {
   const FittedSet best = fit_set(plain, members);
   EXPECT_NEAR(plain.filter_error(best), best.error, 1e-12);
   EXPECT_LE(best.error, ramped.filter_error(set) + 1e-12);
+}
+
+// Whatever their signs: without, all digits of this one are lost.
+TEST(BorderedRows, ArePivotedByTheLargest) {
+  TableSection section;
+  section.levels = 3;
+  section.slices = 2;
+  const SubdomainSystem system(*find_kernel("tent"), {"tent", 3, 4, 2, 1, 0.0}, section, 1);
+  const std::vector<int> members = {0};
+  BorderedRows rows(system, members, 1);
+  ASSERT_EQ(rows.rows, 2U);
+  EXPECT_EQ(rows.at(0, 0), system.products_of(0)[0]);
+  EXPECT_EQ(rows.at(0, 1), 1.0);
+  EXPECT_EQ(rows.at(1, 0), 1.0);
+  EXPECT_EQ(rows.at(1, 1), 0.0);
+  const double values[2][3] = {{1e-20, 1.0, 1.0}, {-1.0, 1.0, 0.0}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) rows.at(i, j) = values[i][j];
+  }
+  ASSERT_TRUE(rows.eliminate(0.0));
+  EXPECT_NEAR(rows.side(0, 0), 1.0, 1e-12);
+  EXPECT_NEAR(rows.side(1, 0), 1.0, 1e-12);
 }
 
 }  // namespace

@@ -103,6 +103,7 @@ TEST(Octree, PointsFindTheirCells) {
     points.push_back({uniform(random), uniform(random), uniform(random)});
   const std::vector<float> found = values_at(octree, points, 2);
   const std::vector<std::int8_t> sides = classify(octree, points, 1e-5, 2);
+  const std::vector<std::int8_t> exact_sides = classify(octree, points, 0.0, 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
     float expected = 0.0F;
     std::size_t index = 0;
@@ -114,6 +115,7 @@ TEST(Octree, PointsFindTheirCells) {
     if (is_inside) expected = cells[index];
     EXPECT_EQ(found[i], expected);
     EXPECT_EQ(sides[i], expected <= 1e-5F ? -1 : expected >= 1.0F - 1e-5F ? 1 : 0);
+    EXPECT_EQ(exact_sides[i], expected == 0.0F ? -1 : expected == 1.0F ? 1 : 0);
   }
 }
 
