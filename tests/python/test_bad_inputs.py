@@ -10,9 +10,10 @@ import numpy as np
 import prefilter
 import pytest
 from clouds import sphere
-from refusals import AXES, NAN, NUMBERS, TEXELS, THREADS, WRAPS, changed, check_refusal
+from refusals import AXES, NAN, TEXELS, THREADS, WRAPS, changed, check_refusal
 from scenes import random_image, soup, square
 from test_bad_sampling_inputs import FUNCTIONS as SAMPLING_FUNCTIONS
+from test_bad_surface_inputs import FUNCTIONS as SURFACE_FUNCTIONS
 from test_bad_voxel_inputs import FUNCTIONS as VOXEL_FUNCTIONS
 
 IMAGE = random_image(0, 16, 16, 3)
@@ -28,31 +29,7 @@ CLOUD = sphere(1000)
 ONES = np.ones(1000)
 
 
-def placed(matrices):
-    return SURFACE.placed(matrices)
-
-
-def udim_tile(number):
-    return SURFACE.udim_tile(number)
-
-
 FUNCTIONS = {
-    "Surface": (
-        prefilter.Surface,
-        {"positions": POINTS, "triangles": TRIANGLES, "uvs": UVS},
-    ),
-    "from_subdivision": (
-        prefilter.Surface.from_subdivision,
-        {
-            "positions": QUAD,
-            "face_sizes": np.array([4]),
-            "face_vertices": np.arange(4),
-            "face_uvs": QUAD[:, :2].copy(),
-        },
-    ),
-    "placed": (placed, {}),
-    "udim_tile": (udim_tile, {}),
-    "merged": (prefilter.Surface.merged, {}),
     "mipmaps": (prefilter.mipmaps, {"image": IMAGE, "surface": SURFACE}),
     "coarser_levels": (prefilter.coarser_levels, {"image": IMAGE, "surface": SURFACE}),
     "mipmap_error": (
@@ -71,250 +48,12 @@ FUNCTIONS = {
     "write_exr": (prefilter.write_exr, {"path": "out.exr", "levels": [IMAGE[:1, :1]]}),
     "write_dds": (prefilter.write_dds, {"path": "out.dds", "levels": [RGBA]}),
     "write_ktx2": (prefilter.write_ktx2, {"path": "out.ktx2", "levels": [RGBA]}),
-    "reconstruct": (
-        prefilter.reconstruct,
-        {"points": CLOUD.points, "normals": CLOUD.normals, "depth": 3},
-    ),
     "resize": (prefilter.resize, {"image": IMAGE, "width": 5, "height": 7}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
 }
 
-NEEDS_POINTS = "at least 3 are needed"
-
 ROWS = [
-    (
-        "Surface",
-        {"triangles": TRIANGLES[:0], "uvs": UVS[:0]},
-        ["triangles: none", "at least one is needed"],
-    ),
-    ("Surface", {"positions": POINTS[:, :2]}, ["positions: shape (6, 2)", "(vertices, 3) is"]),
-    ("Surface", {"positions": "abc"}, ["positions: dtype <U3", NUMBERS]),
-    ("Surface", {"triangles": TRIANGLES[:, :2]}, ["triangles: shape (2, 2)", "(triangles, 3) is"]),
-    ("Surface", {"triangles": TRIANGLES * 1.0}, ["triangles: dtype float64", "integers are"]),
-    ("Surface", {"triangles": TRIANGLES + 1}, ["triangles: ", "vertex 6", "6 vertices (0 to 5)"]),
-    ("Surface", {"triangles": TRIANGLES - 1}, ["triangles: triangle 0 names vertex -1", "(0 to"]),
-    ("Surface", {"uvs": UVS[:1]}, ["uvs: shape (1, 3, 2)", "(2, 3, 2) for", "(6, 2) for"]),
-    ("Surface", {"uvs": POINTS[:5, :2]}, ["uvs: shape (5, 2)", "(6, 2) for the vertices"]),
-    ("Surface", {"uvs": POINTS}, ["uvs: shape (6, 3)", "(6, 2) for the vertices"]),
-    (
-        "Surface",
-        {"uvs": POINTS[:, :2], "triangles": TRIANGLES + 1},
-        ["triangles: ", "vertex 6", "6 vertices (0 to 5)"],
-    ),
-    (
-        "Surface",
-        {"uvs": POINTS[:, :2], "triangles": TRIANGLES - 1},
-        ["triangles: triangle 0 names vertex -1", "(0 to"],
-    ),
-    ("Surface", {"uvs": POINTS[:, :2] * NAN}, ["uvs: triangle 0", "nan", "finite"]),
-    ("Surface", {"uvs": POINTS[:, :2] + 1j}, ["uvs: dtype complex128", NUMBERS]),
-    ("Surface", {"positions": []}, ["positions: shape (0,)", "(vertices, 3) is needed"]),
-    ("Surface", {"positions": POINTS > 0}, ["positions: dtype bool", NUMBERS]),
-    ("Surface", {"triangles": []}, ["triangles: shape (0,)", "(triangles, 3) is needed"]),
-    ("Surface", {"triangles": [[0, 1, 2.5]]}, ["triangles: dtype float64", "integers are"]),
-    (
-        "Surface",
-        {"triangles": TRIANGLES.astype(np.uint64) + 2**63},
-        ["triangles: found 9223372036854775813", "63 bits"],
-    ),
-    ("Surface", {"triangles": TRIANGLES > 0}, ["triangles: dtype bool", "integers are"]),
-    ("Surface", {"uvs": None}, ["uvs: dtype object", NUMBERS]),
-    (
-        "Surface",
-        {"positions": changed(POINTS, (4, 1), NAN)},
-        ["positions: vertex 4", "nan", "finite"],
-    ),
-    (
-        "Surface",
-        {"positions": changed(POINTS, (2, 0), np.inf)},
-        ["positions: vertex 2", "inf", "finite"],
-    ),
-    ("Surface", {"uvs": changed(UVS, (1, 2, 0), NAN)}, ["uvs: triangle 1", "nan", "finite"]),
-    ("Surface", {"positions": POINTS * 1e200}, ["positions: the area of triangle 0", "too large"]),
-    (
-        "Surface",
-        {"weights": np.ones(3)},
-        ["weights: shape (3,) of float64", "(6,) for vertices, (2,) or (2, 1) for triangles"],
-    ),
-    ("Surface", {"weights": np.ones(6, bool)}, ["weights: shape (6,) of bool", "real numbers"]),
-    ("Surface", {"weights": "heavy"}, ["weights: shape () of", "real numbers"]),
-    (
-        "Surface",
-        {"weights": changed(np.ones(6), 1, -0.5)},
-        ["weights: vertex 1 has -0.5", "finite weights of 0 and up are needed"],
-    ),
-    ("Surface", {"weights": np.array([1.0, NAN])}, ["weights: triangle 1 has nan", "0 and up"]),
-    (
-        "Surface",
-        {"weights": np.array([[1.0, 1, 1], [1, 1, np.inf]])},
-        ["weights: triangle 1 has inf", "0 and up"],
-    ),
-    (
-        "Surface",
-        {"weights": np.array([1e308, 1.0]), "positions": POINTS * 10},
-        ["weights: the area of triangle 0", "too large"],
-    ),
-    (
-        "from_subdivision",
-        {"face_sizes": np.array([2, 2])},
-        ["face_sizes: face 0 has 2 corners", "3 to 65535 are allowed"],
-    ),
-    (
-        "from_subdivision",
-        {"face_sizes": np.array([5])},
-        ["face_sizes: add up to 5", "face_vertices has 4", "both must be equal"],
-    ),
-    (
-        "from_subdivision",
-        {"face_vertices": np.array([0, 1, 2, 9])},
-        ["face_vertices: face 0 names vertex 9", "(0 to 3)"],
-    ),
-    (
-        "from_subdivision",
-        {"face_vertices": np.array([0, 1, 2, 0])},
-        ["face_vertices: face 0 names vertex 0 twice", "needs different vertices"],
-    ),
-    ("from_subdivision", {"face_uvs": QUAD}, ["face_uvs: shape (4, 3)", "(corners, 2) is needed"]),
-    ("from_subdivision", {"level": 11}, ["level: 11", "1 to 10 are allowed"]),
-    ("from_subdivision", {"level": 10**30}, ["level: 1" + 30 * "0", "from 1 to 10 is needed"]),
-    (
-        "from_subdivision",
-        {"creases": 5},
-        ["creases: int", "a pair (vertices, sharpness) is needed"],
-    ),
-    (
-        "from_subdivision",
-        {"creases": ([[0, 2]], [1.0])},
-        ["creases: crease 0 is between vertices 0 and 2", "an edge of a face is needed"],
-    ),
-    (
-        "from_subdivision",
-        {"creases": ([[0, 1]], [1.0, 2.0])},
-        ["creases: sharpness: shape (2,)", "(1,) is needed"],
-    ),
-    (
-        "from_subdivision",
-        {"corners": ([0], [-1.0])},
-        ["corners: corner 0 has sharpness -1", "0 and up is needed"],
-    ),
-    (
-        "from_subdivision",
-        {"scheme": "doo-sabin"},
-        ["scheme: 'doo-sabin'", "one of catmull-clark, loop, bilinear"],
-    ),
-    (
-        "from_subdivision",
-        {"faces": np.array([0], np.int64)},
-        ["faces: shape (1,) of int64", "(1,) of bool is needed"],
-    ),
-    *(
-        ("reconstruct", {"points": CLOUD.points[:n], "normals": CLOUD.normals[:n]}, words)
-        for n, words in (
-            (0, ["points: 0, of which 0", NEEDS_POINTS]),
-            (1, ["points: 1, of which 0", NEEDS_POINTS]),
-            (2, ["points: 2, of which 0", NEEDS_POINTS]),
-        )
-    ),
-    (
-        "reconstruct",
-        {"points": CLOUD.points[:0], "normals": None},
-        ["points: none", "at least one"],
-    ),
-    (
-        "reconstruct",
-        {"points": CLOUD.points * 0 + 3},
-        ["points: all coincide", "an extent is needed"],
-    ),
-    *(
-        ("reconstruct", arguments, ["points: 1000, of which 1000 are not finite", NEEDS_POINTS])
-        for arguments in (
-            {"points": CLOUD.points * NAN},
-            {"points": CLOUD.points * 1e301},
-            {"normals": CLOUD.normals * 0},
-            {"normals": CLOUD.normals * np.inf},
-            {"weights": ONES * 0},
-        )
-    ),
-    ("reconstruct", {"points": [[1.0], [1.0, 2.0]]}, ["points: found no array", "inhomogeneous"]),
-    ("reconstruct", {"points": CLOUD.points[:, :2]}, ["points: shape (1000, 2)", "(points, 3)"]),
-    ("reconstruct", {"points": np.ones((9, 3), bool)}, ["points: dtype bool", NUMBERS]),
-    ("reconstruct", {"points": None}, ["points: dtype object", NUMBERS]),
-    ("reconstruct", {"normals": "up"}, ["normals: dtype <U2", NUMBERS]),
-    ("reconstruct", {"normals": CLOUD.normals[:9]}, ["normals: 9 rows", "1000 are needed"]),
-    *(
-        ("reconstruct", {"depth": depth}, [f"depth: {depth!r}; ", "from 1 to 12 is needed"])
-        for depth in (0, -1, 13, True, 2.5, "9", None, 10**30)
-    ),
-    ("reconstruct", {"wavelet": "d6"}, ["wavelet: 'd6' is not one of haar, d4"]),
-    ("reconstruct", {"wavelet": None}, ["wavelet: None", "a name is needed"]),
-    ("reconstruct", {"isovalue": "mode"}, ["isovalue: 'mode'", "auto, mean, half, or a number"]),
-    *(
-        ("reconstruct", {"isovalue": isovalue}, [f"isovalue: {isovalue!r}", "a number is needed"])
-        for isovalue in (True, None, [0.5])
-    ),
-    *(
-        ("reconstruct", {"isovalue": isovalue}, ["isovalue: ", "finite number of at most 1e30"])
-        for isovalue in (NAN, np.inf, -np.inf, 1e300)
-    ),
-    *(
-        ("reconstruct", {"trim": trim}, [f"trim: {trim:g}; ", "above 0 and up to 1e6"])
-        for trim in (0, -1.0, NAN, np.inf, 1e300)
-    ),
-    ("reconstruct", {"trim": True}, ["trim: True", "a number is needed"]),
-    ("reconstruct", {"weights": ONES[:9]}, ["weights: shape (9,)", "(1000,) is needed"]),
-    ("reconstruct", {"weights": ONES > 0}, ["weights: dtype bool", NUMBERS]),
-    *(
-        (
-            "reconstruct",
-            {"weights": changed(ONES, 7, weight)},
-            ["weights: point 7 has ", "numbers from 0 to 1e+30 are needed"],
-        )
-        for weight in (-0.5, NAN, np.inf, 1e31)
-    ),
-    ("reconstruct", {"attributes": ONES}, ["attributes: shape (1000,)", "(1000, n) is needed"]),
-    *(
-        (
-            "reconstruct",
-            {"attributes": changed(CLOUD.points, (7, 2), value)},
-            ["attributes: point 7 has ", "numbers from -1e+30 to 1e+30 are needed"],
-        )
-        for value in (NAN, -np.inf, 1e31)
-    ),
-    *(
-        ("reconstruct", {"memory_limit": limit}, [f"memory_limit: {limit!r}", "MiB from 0"])
-        for limit in (-1, 2.5, True, "1 GB")
-    ),
-    *(
-        ("reconstruct", {"threads": threads}, [f"threads: {threads!r}", THREADS])
-        for threads in (-1, 1.5, True)
-    ),
-    ("reconstruct", {"progress": 5}, ["progress: 5", "a callable of one number is needed"]),
-    ("reconstruct", {"report": {}}, ["report: {}", "a ReconstructionReport is needed, or None"]),
-    ("placed", {"matrices": np.eye(3)}, ["matrices: shape (3, 3)", "(4, 4), (3, 4) or several"]),
-    ("placed", {"matrices": np.empty((0, 4, 4))}, ["matrices: none", "at least one is needed"]),
-    (
-        "placed",
-        {"matrices": np.full((2, 4, 4), 1.0)},
-        ["matrices: the last row of matrix 0 is [1.0, 1.0, 1.0, 1.0]", "0, 0, 0, 1 is needed"],
-    ),
-    (
-        "placed",
-        {"matrices": np.full((2, 3, 4), NAN)},
-        ["matrices: matrix 0: row 0 holds nan", "finite"],
-    ),
-    (
-        "placed",
-        {"matrices": np.eye(4) * [1e200, 1e200, 1, 1]},
-        ["matrices: the area of triangle 0", "too large"],
-    ),
-    ("placed", {"matrices": [["a"]]}, ["matrices: found no array of numbers", "'a'"]),
-    *(
-        ("udim_tile", {"number": number}, [f"number: {number!r}; ", "from 1001 to 9999"])
-        for number in (1000, 10000, 10**30, "1001", True)
-    ),
-    ("merged", {"surfaces": 5}, ["surfaces: a int", "a list of Surface is needed"]),
-    ("merged", {"surfaces": [SURFACE, 3]}, ["surfaces: holds a int", "a Surface is needed"]),
     *(
         ("mipmaps", {"image": image}, words)
         for image, words in (
@@ -735,5 +474,5 @@ def test_every_function_is_there():
     elsewhere |= {"rasterize", "read_points", "read_svg", "reconstruct_file"}
     elsewhere |= {"available_memory"}  # takes nothing
     public = set(prefilter.__all__) - constants - classes - elsewhere
-    assert public <= {*FUNCTIONS, *SAMPLING_FUNCTIONS, *VOXEL_FUNCTIONS}
+    assert public <= {*FUNCTIONS, *SAMPLING_FUNCTIONS, *SURFACE_FUNCTIONS, *VOXEL_FUNCTIONS}
     assert {row[0] for row in ROWS} == set(FUNCTIONS)
