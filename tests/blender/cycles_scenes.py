@@ -14,6 +14,22 @@ Array = NDArray[np.float32]
 
 MAGENTA = (1.0, 0.0, 1.0)
 GREEN, BLUE = (0.1, 0.8, 0.2), (0.2, 0.1, 0.9)
+HAS_CACHE = "use_texture_cache" in bpy.types.RenderSettings.bl_rna.properties
+
+
+def bake() -> set[str]:
+    """Bakes the texture cache of the scene."""
+    return bpy.ops.prefilter.bake_texture_cache()
+
+
+def generate() -> set[str]:
+    """Has Blender make its own."""
+    return bpy.ops.render.generate_texture_cache()
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    """Returns the files of a folder and of those in it."""
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 def write_picture(path: Path, pixels: Array, kind: str) -> bpy.types.Image:

@@ -8,13 +8,21 @@ import bpy
 import cycles_scenes as cycles
 import numpy as np
 import OpenImageIO as oiio
-import prefilter
 import pytest
 import scenes
 from command_line import run
-from cycles_scenes import BLUE, GREEN, MAGENTA, packed_picture, smooth, udim
+from cycles_scenes import (
+    BLUE,
+    GREEN,
+    HAS_CACHE,
+    MAGENTA,
+    bake,
+    contents,
+    generate,
+    smooth,
+    udim,
+)
 
-HAS_CACHE = "use_texture_cache" in bpy.types.RenderSettings.bl_rna.properties
 needs_cache = pytest.mark.skipif(not HAS_CACHE, reason="Blender 5.2 or later is needed")
 
 LEFT = ((0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (0.0, 1.0))
@@ -27,18 +35,6 @@ def scene():
     made = bpy.context.scene
     cycles.set_up(made)
     return made
-
-
-def bake():
-    return bpy.ops.prefilter.bake_texture_cache()
-
-
-def generate():
-    return bpy.ops.render.generate_texture_cache()
-
-
-def contents(folder):
-    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
 @pytest.mark.skipif(HAS_CACHE, reason="this Blender has a texture cache")
@@ -435,228 +431,6 @@ def test_tiles_are_weighed_by_what_lies_in_them(scene, tmp_path):
     for number, color in ((1001, GREEN), (1002, BLUE)):
         stored = cycles.level(cycles.cache_file(tmp_path, f"paint.{number}"), 4)[..., :3]
         np.testing.assert_allclose(stored, np.broadcast_to(color, stored.shape), atol=0.03)
-
-
-@needs_cache
-def test_an_image_of_one_colour_stays(scene, tmp_path, capfd):
-    pixels = np.full((128, 128, 3), 0.5, np.float32)
-    cycles.shown_on(cycles.write_picture(tmp_path / "flat.png", pixels, "uint8"))
-    generate()
-    before = contents(tmp_path)
-    assert bake() == {"FINISHED"}
-    assert contents(tmp_path) == before
-    assert "1 of one color stay" in capfd.readouterr().out
-
-
-@needs_cache
-def test_cancelling_leaves_the_cache(scene, tmp_path, addon):
-    for name in ("one.png", "two.png"):
-        pixels = smooth(128, 128, 3, seed=len(name) + ord(name[0]))
-        cycles.shown_on(cycles.write_picture(tmp_path / name, pixels, "uint8"), name=name)
-    generate()
-    before = contents(tmp_path)
-    module = addon("texture_cache.bake")
-    for most in (0.0, 0.3, 0.7, 0.999):
-        job = module.CacheBake.read(scene, scenes.depsgraph())
-        with pytest.raises(prefilter.Cancelled):
-            job.compute(lambda fraction, most=most: fraction <= most)
-        assert contents(tmp_path) == before
-
-
-@needs_cache
-def test_no_space_leaves_the_cache(scene, tmp_path, addon, monkeypatch):
-    for name in ("one.png", "two.png"):
-        pixels = smooth(128, 128, 3, seed=len(name) + ord(name[0]))
-        cycles.shown_on(cycles.write_picture(tmp_path / name, pixels, "uint8"), name=name)
-    generate()
-    before = contents(tmp_path)
-    original = addon("bridge.files.tx")._write
-    calls = []
-
-    def full(writer, path, *rest):
-        calls.append(path)
-        if len(calls) > 10:
-            raise OSError(f"cannot write '{path}': no space left")
-        original(writer, path, *rest)
-
-    monkeypatch.setattr(addon("bridge.files.tx"), "_write", full)
-    with pytest.raises(RuntimeError, match="no space left"):
-        bake()
-    assert contents(tmp_path) == before
-
-
-@needs_cache
-@pytest.mark.parametrize("has_cache", [False, True])
-def test_a_read_only_folder_is_an_error(scene, tmp_path, has_cache):
-    folder = tmp_path / "textures"
-    folder.mkdir()
-    cycles.shown_on(cycles.write_picture(folder / "paint.png", smooth(64, 64, 3), "uint8"))
-    if has_cache:
-        generate()
-    locked = folder / "blender_tx" if has_cache else folder
-    locked.chmod(0o555)
-    before = contents(tmp_path)
-    try:
-        with pytest.raises(RuntimeError, match=r"'paint\.png'.*read-only"):
-            bake()
-        assert contents(tmp_path) == before
-        assert has_cache or not (folder / "blender_tx").exists()
-    finally:
-        locked.chmod(0o755)
-
-
-@needs_cache
-def test_what_has_no_file_is_passed_over(scene, tmp_path, capfd):
-    cycles.shown_on(cycles.write_picture(tmp_path / "good.png", smooth(64, 64, 3), "uint8"))
-    made = bpy.data.images.new("Generated", 16, 16)
-    packed = cycles.write_picture(tmp_path / "packed.png", smooth(64, 64, 3), "uint8")
-    packed.pack()
-    dirty = cycles.write_picture(tmp_path / "dirty.png", smooth(64, 64, 3), "uint8")
-    dirty.pixels[0] = 0.25
-    gone = cycles.write_picture(tmp_path / "gone.png", smooth(64, 64, 3), "uint8")
-    (tmp_path / "gone.png").unlink()
-    movie = cycles.write_picture(tmp_path / "frames.png", smooth(64, 64, 3), "uint8")
-    movie.source = "SEQUENCE"
-    broken = cycles.write_picture(tmp_path / "broken.png", smooth(64, 64, 3), "uint8")
-    (tmp_path / "broken.png").write_bytes(b"no picture")
-    for image in (made, packed, dirty, gone, movie, broken):
-        cycles.shown_on(image, name=image.name)
-    assert bake() == {"FINISHED"}
-    output = capfd.readouterr().out
-    for text in (
-        "'Generated': found a generated image",
-        "'packed.png' is packed: unpack it",
-        "'dirty.png': has changes that are not in its file",
-        "'gone.png': there is no file",
-        "'frames.png': found an image sequence",
-        "'broken.png': Blender cannot make a texture cache",
-        "texture cache of 1 image (1 file), over 1 object",
-    ):
-        assert text in output
-    assert [path.name.split(".")[0] for path in cycles.cache_files(tmp_path)] == ["good"]
-
-
-@needs_cache
-def test_packed_images_are_unpacked_and_baked_in_one_step(scene, tmp_path, capfd):
-    names = ("one", "two")
-    for seed, name in enumerate(names):
-        image, _ = packed_picture(tmp_path, f"{name}.png", smooth(64, 64, 3, seed=seed))
-        image.name = name
-        cycles.shown_on(image, name=name)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
-    with pytest.raises(RuntimeError) as caught:
-        bake()
-    lines = str(caught.value).splitlines()
-    for name in names:
-        (line,) = (line for line in lines if f"'{name}'" in line)
-        assert "is packed: unpack it" in line
-        assert len(line) < 80
-    capfd.readouterr()
-    assert bpy.ops.prefilter.bake_texture_cache(use_unpack=True) == {"FINISHED"}
-    output = capfd.readouterr().out
-    for name in names:
-        assert f"image '{name}': unpacked into '{name}.png'" in output
-        assert cycles.cache_file(tmp_path / "textures", f"{name}.png").is_file()
-    assert "texture cache of 2 images (2 files)" in output
-
-
-@needs_cache
-def test_a_tile_without_a_file_is_told(scene, tmp_path):
-    image = udim(tmp_path, missing=True)
-    cycles.shown_on(image)
-    with pytest.raises(RuntimeError, match=r"there is no file '.*paint\.1002\.exr'"):
-        bake()
-    assert not (tmp_path / "blender_tx").exists()
-
-
-def of_objects(tree, node):
-    coordinates = tree.nodes.new("ShaderNodeTexCoord")
-    tree.links.new(coordinates.outputs["Object"], node.inputs["Vector"])
-
-
-def of_the_world(tree, node):
-    del tree
-    world = bpy.data.worlds.new("Sky")
-    scenes.use_nodes(world)
-    world.node_tree.nodes.new("ShaderNodeTexEnvironment").image = node.image
-    bpy.context.scene.world = world
-
-
-def of_a_curve(tree, node):
-    del tree
-    curve = bpy.data.curves.new("Rope", "CURVE")
-    curve.materials.append(bpy.data.objects["Quad"].data.materials[0])
-    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Rope", curve))
-    assert node.image is not None
-
-
-@needs_cache
-@pytest.mark.parametrize(
-    ("spoil", "reason"),
-    [
-        (of_objects, "gets its coordinates from 'Texture Coordinate' (Object)"),
-        (of_the_world, "the world 'Sky' shows it as an environment"),
-        (of_a_curve, "object 'Rope' (curve) shows it"),
-    ],
-)
-def test_levels_of_what_is_seen_otherwise_are_blenders(scene, tmp_path, capfd, spoil, reason):
-    cycles.shown_on(
-        cycles.write_picture(tmp_path / "good.png", smooth(64, 64, 3), "uint8"), name="G"
-    )
-    image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3, seed=9), "uint8")
-    tree = cycles.shown_on(image, LEFT).data.materials[0].node_tree
-    spoil(tree, tree.nodes["Image Texture"])
-    generate()
-    path = cycles.cache_file(tmp_path, "paint.png")
-    before = path.read_bytes()
-    assert bake() == {"FINISHED"}
-    assert path.read_bytes() == before
-    output = capfd.readouterr().out
-    assert f"'paint.png': {reason}" in output or reason in output
-    assert "it keeps Blender's levels" in output
-
-
-@needs_cache
-def test_what_lies_beyond_the_edges_must_be_of_one_kind(scene, tmp_path):
-    image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
-    wide = ((-0.5, 0), (1.5, 0), (1.5, 1), (-0.5, 1))
-    obj = cycles.shown_on(image, wide)
-    node = obj.data.materials[0].node_tree.nodes["Image Texture"]
-    node.extension = "MIRROR"
-    with pytest.raises(
-        RuntimeError,
-        match="some UVs lie outside the image, where Image Texture nodes extend it by MIRROR",
-    ):
-        bake()
-    node.extension = "CLIP"
-    assert bake() == {"FINISHED"}
-    cycles.shown_on(image, wide, "Other")
-    with pytest.raises(RuntimeError, match=r"CLIP, REPEAT|REPEAT, CLIP"):
-        bake()
-
-
-@needs_cache
-def test_nothing_to_bake_says_why(scene, tmp_path):
-    cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
-    with pytest.raises(RuntimeError, match="no image texture to bake; it has no mesh"):
-        bake()
-    scenes.quads("Bare")
-    with pytest.raises(RuntimeError, match=r"no material on a mesh that is rendered.*'Bare'"):
-        bake()
-
-
-@needs_cache
-def test_bad_geometry_is_told(scene, tmp_path):
-    image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
-    obj = cycles.shown_on(image)
-    obj.data.vertices[0].co.x = float("nan")
-    with pytest.raises(RuntimeError, match=r"object 'Quad': .*positions"):
-        bake()
-    obj.data.vertices[0].co.x = 0
-    for vertex in obj.data.vertices:
-        vertex.co = (0, 0, 0)
-    with pytest.raises(RuntimeError, match="no surface of the scene lies in it"):
-        bake()
 
 
 @needs_cache
