@@ -3,7 +3,11 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "convert.h"
 #include "instances.h"
@@ -20,29 +24,35 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-MipmapOptions to_options(const std::string& filter, const WrapNames& wrap, std::optional<float> low,
-                         std::optional<float> high, int levels, bool premultiplied,
-                         const std::string& reader, double seam_budget, double footprint,
-                         const py::object& progress, int threads) {
-  MipmapOptions options;
-  options.filter = mipmap_filter(filter);
-  options.wrap = wrap_modes(wrap);
-  options.bounds = {low, high};
-  options.levels = levels;
-  options.premultiplied = premultiplied;
-  options.reader = value_named("reader", reader, kReaders);
-  options.seam_budget = seam_budget;
-  options.footprint = footprint;
-  options.threads = threads;
-  options.progress = to_progress(progress);
-  return options;
+using Surfaces = std::vector<const Surface*>;
+
+void bind_mipmap_options(py::module_& m) {
+  using Options = MipmapOptions;
+  py::class_<Options>(m, "MipmapOptions")
+      .def(py::init<>())
+      .def_property(
+          "filter", [](const Options& o) { return name_of(o.filter); },
+          [](Options& o, const std::string& name) { o.filter = mipmap_filter(name); })
+      .def_property("wrap", nullptr,
+                    [](Options& o, const WrapNames& names) { o.wrap = wrap_modes(names); })
+      .def_property("bounds", nullptr,
+                    [](Options& o, const std::pair<std::optional<float>, std::optional<float>>& b) {
+                      o.bounds = {b.first, b.second};
+                    })
+      .def_readwrite("levels", &Options::levels)
+      .def_readwrite("premultiplied", &Options::premultiplied)
+      .def_property("reader", nullptr,
+                    [](Options& o, const std::string& name) {
+                      o.reader = value_named("reader", name, kReaders);
+                    })
+      .def_readwrite("seam_budget", &Options::seam_budget)
+      .def_readwrite("footprint", &Options::footprint)
+      .def_readwrite("threads", &Options::threads);
 }
 
-template <typename... Options>
-std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
-                                        const std::vector<const Surface*>& surfaces,
-                                        Options... given) {
-  const MipmapOptions options = to_options(given...);
+std::vector<Array<float>> bound_float_levels(const Array<float>& array, const Surfaces& surfaces,
+                                             MipmapOptions options, const py::object& progress) {
+  options.progress = to_progress(progress);
   const ImageView image = view_of(array);
   std::vector<Image> images;
   {
@@ -52,9 +62,10 @@ std::vector<Array<float>> bound_mipmaps(const Array<float>& array,
   return to_arrays(std::move(images));
 }
 
-std::vector<Image> coarser_levels_of(const Array<std::uint8_t>& array, bool srgb,
-                                     const std::vector<const Surface*>& surfaces,
-                                     const MipmapOptions& options) {
+std::vector<Image> levels_of_bytes(const Array<std::uint8_t>& array, bool srgb,
+                                   const Surfaces& surfaces, MipmapOptions options,
+                                   const py::object& progress) {
+  options.progress = to_progress(progress);
   const ByteValues values = byte_values(srgb);
   const TexelSource image(array.data(), static_cast<int>(array.shape(1)),
                           static_cast<int>(array.shape(0)), static_cast<int>(array.shape(2)),
@@ -63,19 +74,18 @@ std::vector<Image> coarser_levels_of(const Array<std::uint8_t>& array, bool srgb
   return coarser_levels(image, surfaces, options);
 }
 
-template <typename... Options>
 std::vector<Array<float>> bound_float_levels_of_bytes(const Array<std::uint8_t>& array, bool srgb,
-                                                      const std::vector<const Surface*>& surfaces,
-                                                      Options... given) {
-  return to_arrays(coarser_levels_of(array, srgb, surfaces, to_options(given...)));
+                                                      const Surfaces& surfaces,
+                                                      const MipmapOptions& options,
+                                                      const py::object& progress) {
+  return to_arrays(levels_of_bytes(array, srgb, surfaces, options, progress));
 }
 
-template <typename... Options>
-std::vector<Array<std::uint8_t>> bound_byte_mipmaps(const Array<std::uint8_t>& array, bool srgb,
-                                                    const std::vector<const Surface*>& surfaces,
-                                                    Options... given) {
-  const MipmapOptions options = to_options(given...);
-  std::vector<Image> images = coarser_levels_of(array, srgb, surfaces, options);
+std::vector<Array<std::uint8_t>> bound_byte_levels(const Array<std::uint8_t>& array, bool srgb,
+                                                   const Surfaces& surfaces,
+                                                   const MipmapOptions& options,
+                                                   const py::object& progress) {
+  std::vector<Image> images = levels_of_bytes(array, srgb, surfaces, options, progress);
   std::vector<Array<std::uint8_t>> arrays;
   for (Image& level : images) {
     std::vector<std::uint8_t> bytes;
@@ -158,18 +168,7 @@ Array<float> bound_fill_unused(const Array<float>& array,
 }  // namespace
 
 void bind_mipmap(py::module_& m) {
-  using ForFloats = std::vector<Array<float>> (*)(
-      const Array<float>&, const std::vector<const Surface*>&, std::string, WrapNames,
-      std::optional<float>, std::optional<float>, int, bool, std::string, double, double,
-      py::object, int);
-  using ForBytes = std::vector<Array<std::uint8_t>> (*)(
-      const Array<std::uint8_t>&, bool, const std::vector<const Surface*>&, std::string, WrapNames,
-      std::optional<float>, std::optional<float>, int, bool, std::string, double, double,
-      py::object, int);
-  using ForFloatsOfBytes = std::vector<Array<float>> (*)(
-      const Array<std::uint8_t>&, bool, const std::vector<const Surface*>&, std::string, WrapNames,
-      std::optional<float>, std::optional<float>, int, bool, std::string, double, double,
-      py::object, int);
+  bind_mipmap_options(m);
   m.def("mipmap_filters", [] {
     std::vector<std::tuple<std::string, bool, bool>> filters;
     for (const MipmapFilter& filter : mipmap_filters()) {
@@ -177,19 +176,12 @@ void bind_mipmap(py::module_& m) {
     }
     return filters;
   });
-  m.def("coarser_levels", static_cast<ForFloats>(&bound_mipmaps), py::arg("image"),
-        py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"), py::arg("high"),
-        py::arg("levels"), py::arg("premultiplied"), py::arg("reader"), py::arg("seam_budget"),
-        py::arg("footprint"), py::arg("progress"), py::arg("threads"));
-  m.def("coarser_byte_levels", static_cast<ForBytes>(&bound_byte_mipmaps), py::arg("image"),
-        py::arg("srgb"), py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"),
-        py::arg("high"), py::arg("levels"), py::arg("premultiplied"), py::arg("reader"),
-        py::arg("seam_budget"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));
-  m.def("coarser_float_levels_of_bytes",
-        static_cast<ForFloatsOfBytes>(&bound_float_levels_of_bytes), py::arg("image"),
-        py::arg("srgb"), py::arg("surfaces"), py::arg("filter"), py::arg("wrap"), py::arg("low"),
-        py::arg("high"), py::arg("levels"), py::arg("premultiplied"), py::arg("reader"),
-        py::arg("seam_budget"), py::arg("footprint"), py::arg("progress"), py::arg("threads"));
+  m.def("coarser_levels", &bound_float_levels, py::arg("image"), py::arg("surfaces"),
+        py::arg("options"), py::arg("progress"));
+  m.def("coarser_byte_levels", &bound_byte_levels, py::arg("image"), py::arg("srgb"),
+        py::arg("surfaces"), py::arg("options"), py::arg("progress"));
+  m.def("coarser_float_levels_of_bytes", &bound_float_levels_of_bytes, py::arg("image"),
+        py::arg("srgb"), py::arg("surfaces"), py::arg("options"), py::arg("progress"));
   m.def("mipmap_error", &bound_mipmap_error, py::arg("levels"), py::arg("image"),
         py::arg("surfaces"), py::arg("mip_values"), py::arg("wrap"), py::arg("reader"),
         py::arg("progress"), py::arg("threads"));

@@ -363,52 +363,38 @@ def keep_coverage(
     threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
 def mipmap_filters() -> list[tuple[str, bool, bool]]: ...
+
+class MipmapOptions:
+    def __init__(self) -> None: ...
+    filter: str
+    wrap: tuple[str, str]
+    bounds: tuple[float | None, float | None]
+    levels: int
+    premultiplied: bool
+    reader: str
+    seam_budget: float
+    footprint: float
+    threads: int
+
 def coarser_levels(
     image: npt.NDArray[np.float32],
     surfaces: Sequence[Surface],
-    filter: str,
-    wrap: tuple[str, str],
-    low: float | None,
-    high: float | None,
-    levels: int,
-    premultiplied: bool,
-    reader: str,
-    seam_budget: float,
-    footprint: float,
+    options: MipmapOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
 def coarser_byte_levels(
     image: npt.NDArray[np.uint8],
     srgb: bool,
     surfaces: Sequence[Surface],
-    filter: str,
-    wrap: tuple[str, str],
-    low: float | None,
-    high: float | None,
-    levels: int,
-    premultiplied: bool,
-    reader: str,
-    seam_budget: float,
-    footprint: float,
+    options: MipmapOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> list[npt.NDArray[np.uint8]]: ...
 def coarser_float_levels_of_bytes(
     image: npt.NDArray[np.uint8],
     srgb: bool,
     surfaces: Sequence[Surface],
-    filter: str,
-    wrap: tuple[str, str],
-    low: float | None,
-    high: float | None,
-    levels: int,
-    premultiplied: bool,
-    reader: str,
-    seam_budget: float,
-    footprint: float,
+    options: MipmapOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
 def mipmap_error(
     levels: Sequence[npt.NDArray[np.float32]],

@@ -2,13 +2,16 @@
 
 """Arguments that several functions take, checked once, here at the border."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
 ProgressCallback = Callable[[float], bool | None]
 Wrap = str | tuple[str, str]
 Bounds = tuple[float | None, float | None]
+Check = Callable[[Any], object]
+Options = TypeVar("Options")
 
 
 def as_name(argument: str, name: object) -> str:
@@ -21,6 +24,18 @@ def as_one_of(argument: str, name: str, allowed: Collection[str]) -> str:
     if not isinstance(name, str) or name not in allowed:
         raise ValueError(f"{argument}: {name!r} is not one of {', '.join(allowed)}")
     return name
+
+
+def set_options(
+    options: Options, checks: Mapping[str, Check], arguments: Mapping[str, object]
+) -> Options:
+    """Options of the native module, set from the arguments of a function by their names.
+
+    A check raises ValueError, or returns what the native module takes.
+    """
+    for name, check in checks.items():
+        setattr(options, name, check(arguments[name]))
+    return options
 
 
 def as_wrap(wrap: Wrap) -> tuple[str, str]:

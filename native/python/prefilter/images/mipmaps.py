@@ -3,7 +3,8 @@
 """Mipmaps of a texture on a surface (chapter 7)."""
 
 from collections.abc import Sequence
-from typing import Any, Literal, NamedTuple, overload
+from functools import partial
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,7 @@ import numpy.typing as npt
 from .. import _native
 from .._border.arguments import (
     Bounds,
+    Check,
     ProgressCallback,
     Wrap,
     as_bounds,
@@ -20,6 +22,7 @@ from .._border.arguments import (
     as_progress,
     as_wrap,
     is_srgb,
+    set_options,
 )
 from .._border.arrays import as_image, as_texels, as_threads, in_form_of
 from ..meshes.surface import Surface, as_surfaces
@@ -46,40 +49,20 @@ MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters(
 """
 
 
-@overload
-def mipmaps(
-    image: npt.ArrayLike,
-    surface: Surface | Sequence[Surface] | None = ...,
-    *,
-    filter: str = ...,
-    wrap: Wrap = ...,
-    bounds: Bounds | None = ...,
-    levels: int | None = ...,
-    premultiplied: bool = ...,
-    reader: str = ...,
-    encoding: Literal["linear"] = ...,
-    seam_budget: float = ...,
-    footprint: float = ...,
-    progress: ProgressCallback | None = ...,
-    threads: int = ...,
-) -> FilteredLevels[np.float32]: ...
-@overload
-def mipmaps(
-    image: npt.ArrayLike,
-    surface: Surface | Sequence[Surface] | None = ...,
-    *,
-    filter: str = ...,
-    wrap: Wrap = ...,
-    bounds: Bounds | None = ...,
-    levels: int | None = ...,
-    premultiplied: bool = ...,
-    reader: str = ...,
-    encoding: str = ...,
-    seam_budget: float = ...,
-    footprint: float = ...,
-    progress: ProgressCallback | None = ...,
-    threads: int = ...,
-) -> FilteredLevels[np.float32] | FilteredLevels[np.uint16] | FilteredLevels[np.uint8]: ...
+# What checks an option, and turns it into what the native module takes.
+_CHECKS: dict[str, Check] = {
+    "filter": partial(as_name, "filter"),
+    "wrap": as_wrap,
+    "bounds": as_bounds,
+    "levels": as_level_count,
+    "premultiplied": bool,
+    "reader": partial(as_name, "reader"),
+    "seam_budget": partial(as_number, "seam_budget"),
+    "footprint": partial(as_number, "footprint"),
+    "threads": as_threads,
+}
+
+
 def mipmaps(
     image: npt.ArrayLike,
     surface: Surface | Sequence[Surface] | None = None,
@@ -95,7 +78,7 @@ def mipmaps(
     footprint: float = 0.0,
     progress: ProgressCallback | None = None,
     threads: int = 0,
-) -> FilteredLevels[np.float32] | FilteredLevels[np.uint16] | FilteredLevels[np.uint8]:
+) -> FilteredLevels[Any]:
     """The levels of an image's mipmap, each fitted to the surface that uses it.
 
     "pam-bilinear" minimizes, level by level, the integral over the surface of the squared
@@ -155,18 +138,17 @@ def mipmaps(
         ValueError: An argument is out of range, or a texel that counts is not finite.
         Cancelled: The progress callback returned False.
     """
-    arguments = _native_arguments(
-        *(surface, filter, wrap, bounds, levels, premultiplied),
-        *(reader, seam_budget, footprint, progress, threads),
-    )
+    options = set_options(_native.MipmapOptions(), _CHECKS, locals())
+    surfaces, report = as_surfaces(surface), as_progress(progress)
     stored, srgb = as_texels("image", image), is_srgb(encoding)
     made: list[npt.NDArray[Any]]
     if stored.dtype == np.uint8:
-        made = _native.coarser_byte_levels(stored, srgb, *arguments)
+        made = _native.coarser_byte_levels(stored, srgb, surfaces, options, report)
     else:
-        made = _native.coarser_levels(_as_light(stored, srgb, as_threads(threads)), *arguments)
+        light = _as_light(stored, srgb, options.threads)
+        made = _native.coarser_levels(light, surfaces, options, report)
         if stored.dtype == np.uint16:
-            made = [_as_words(level, srgb, as_threads(threads)) for level in made]
+            made = [_as_words(level, srgb, options.threads) for level in made]
     # Copied once the memory for filtering is free again.
     return FilteredLevels([in_form_of(image, level) for level in (stored.copy(), *made)], filter)
 
@@ -200,47 +182,15 @@ def coarser_levels(
         ValueError: As `mipmaps`.
         Cancelled: The progress callback returned False.
     """
-    arguments = _native_arguments(
-        *(surface, filter, wrap, bounds, levels, premultiplied),
-        *(reader, seam_budget, footprint, progress, threads),
-    )
+    options = set_options(_native.MipmapOptions(), _CHECKS, locals())
+    surfaces, report = as_surfaces(surface), as_progress(progress)
     stored, srgb = as_texels("image", image), is_srgb(encoding)
     if stored.dtype == np.uint8:
-        made = _native.coarser_float_levels_of_bytes(stored, srgb, *arguments)
+        made = _native.coarser_float_levels_of_bytes(stored, srgb, surfaces, options, report)
     else:
-        made = _native.coarser_levels(_as_light(stored, srgb, as_threads(threads)), *arguments)
+        light = _as_light(stored, srgb, options.threads)
+        made = _native.coarser_levels(light, surfaces, options, report)
     return FilteredLevels((in_form_of(image, level) for level in made), filter)
-
-
-def _native_arguments(
-    surface: Surface | Sequence[Surface] | None,
-    filter: str,
-    wrap: Wrap,
-    bounds: Bounds | None,
-    levels: int | None,
-    premultiplied: bool,
-    reader: str,
-    seam_budget: float,
-    footprint: float,
-    progress: ProgressCallback | None,
-    threads: int,
-) -> tuple[Any, ...]:
-    """What the library's functions take beside the image, checked, in their order."""
-    low, high = as_bounds(bounds)
-    return (
-        as_surfaces(surface),
-        as_name("filter", filter),
-        as_wrap(wrap),
-        low,
-        high,
-        as_level_count(levels),
-        bool(premultiplied),
-        as_name("reader", reader),
-        as_number("seam_budget", seam_budget),
-        as_number("footprint", footprint),
-        as_progress(progress),
-        as_threads(threads),
-    )
 
 
 def _as_light(stored: np.ndarray, srgb: bool, threads: int) -> npt.NDArray[np.float32]:
