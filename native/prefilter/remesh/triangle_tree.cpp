@@ -118,8 +118,8 @@ std::vector<TriangleLeaf> make_leaves(const Mesh& mesh, std::span<const std::uin
   return leaves;
 }
 
-std::vector<TreeLevel> make_levels(std::span<const TriangleLeaf> leaves, const Progress& progress,
-                                   int threads) {
+std::vector<TriangleLevel> make_levels(std::span<const TriangleLeaf> leaves,
+                                       const Progress& progress, int threads) {
   std::vector<FloatBox> boxes(leaves.size());
   std::vector<std::uint8_t> has_others(leaves.size());
   const auto count = static_cast<std::int64_t>(leaves.size());
@@ -131,13 +131,13 @@ std::vector<TreeLevel> make_levels(std::span<const TriangleLeaf> leaves, const P
     }
   };
   parallel_ranges(count, kRowsPerTask, threads, progress, make_some);
-  std::vector<TreeLevel> levels;
+  std::vector<TriangleLevel> levels;
   while (true) {
     const std::size_t above =
         (boxes.size() + TriangleTree::kChildren - 1) / TriangleTree::kChildren;
     std::vector<FloatBox> boxes_above(above);
     std::vector<std::uint8_t> has_others_above(above);
-    TreeLevel level;
+    TriangleLevel level;
     level.boxes.resize(above);
     for (std::size_t i = 0; i < above * TriangleTree::kChildren; ++i) {
       const FloatBox box = i < boxes.size() ? boxes[i] : FloatBox();
@@ -181,7 +181,7 @@ void find_near(const TriangleTree& tree, std::size_t leaf, NearLeaves* near) {
   waiting[count++] = {tree.levels.size() - 1, 0};
   while (count > 0) {
     const auto [at, four] = waiting[--count];
-    const TreeLevel& level = tree.levels[at];
+    const TriangleLevel& level = tree.levels[at];
     const FourBoxes& boxes = level.boxes[four];
     for (unsigned met = boxes.meeting(box); met != 0; met &= met - 1U) {
       const auto k = static_cast<std::size_t>(std::countr_zero(met));

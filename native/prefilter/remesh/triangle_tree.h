@@ -79,7 +79,7 @@ struct TriangleLeaf {
 };
 
 /// Nodes of a tree, each above four of the level below; the lowest ones are leaves.
-struct TreeLevel {
+struct TriangleLevel {
   std::vector<FourBoxes> boxes;          // of four nodes that are below the same one
   std::vector<std::uint8_t> has_others;  // of each node: triangles that are not suspect
 };
@@ -88,7 +88,7 @@ struct TriangleTree {
   static constexpr std::size_t kChildren = 4;
 
   std::vector<TriangleLeaf> leaves;
-  std::vector<TreeLevel> levels;  // that of leaves first
+  std::vector<TriangleLevel> levels;  // that of leaves first
 
   FloatBox box(std::size_t leaf) const {
     return levels[0].boxes[leaf / kChildren].box(leaf % kChildren);

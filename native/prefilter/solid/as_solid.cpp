@@ -58,11 +58,11 @@ std::size_t turn_closed_patches(const Patches& patches, WorkMesh* mesh, const Pr
   std::vector<std::uint32_t> part_of_patch(patches.patches.size());
   std::vector<std::size_t> first(patches.patches.size(), mesh->triangles.size());
   for (std::size_t t = mesh->triangles.size(); t-- > 0;) first[patches.patch_of[t]] = t;
-  const auto is_part = [](const Patch& patch) { return patch.is_closed(); };
+  const auto is_part = [](const FacePatch& patch) { return patch.is_closed(); };
   const auto count = static_cast<std::uint32_t>(
       std::count_if(patches.patches.begin(), patches.patches.end(), is_part));
   for (std::size_t p = 0; p < patches.patches.size(); ++p) {
-    const Patch& patch = patches.patches[p];
+    const FacePatch& patch = patches.patches[p];
     part_of_patch[p] = is_part(patch) ? static_cast<std::uint32_t>(parts.size()) : count;
     if (is_part(patch)) {
       parts.push_back({patch.volume, patch.area, patch.triangles, 0, first[p],

@@ -64,7 +64,7 @@ std::vector<bool> hollow_regions(const Patches& patches, std::span<const double>
   std::vector<double> open(labels, 0.0);
   std::vector<double> closed(labels, 0.0);
   for (std::size_t t = 0; t < sides.size(); ++t) {
-    const Patch& patch = patches.patches[patches.patch_of[t]];
+    const FacePatch& patch = patches.patches[patches.patch_of[t]];
     (patch.is_closed() ? closed : open)[sides[t].region] += areas[t];
   }
   std::vector<bool> is_hollow(labels, false);
@@ -84,7 +84,7 @@ std::vector<std::size_t> parts_around(const Patches& patches, std::span<const do
   }
   std::vector<std::size_t> parts;
   for (std::size_t p = 0; p < bounding.size(); ++p) {
-    const Patch& patch = patches.patches[p];
+    const FacePatch& patch = patches.patches[p];
     if (!patch.is_closed() && bounding[p] > patch.area / 2.0) parts.push_back(p);
   }
   return parts;

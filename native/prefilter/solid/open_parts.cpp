@@ -42,7 +42,7 @@ std::vector<double> areas_of(const WorkMesh& mesh) {
 }
 
 // Parts with small holes alone are wound around as they are.
-bool is_open(const Patch& patch, double cell) {
+bool is_open(const FacePatch& patch, double cell) {
   const bool is_nearly_closed = patch.is_orientable && patch.turned_area == 0.0 &&
                                 patch.border * patch.border < kLargestHole * patch.area &&
                                 patch.volume > cell * patch.area;
@@ -66,7 +66,7 @@ WorkMesh wound_parts(const WorkMesh& mesh, const Patches& patches,
 Octree voxels_of(const WorkMesh& mesh, const Patches& patches, double cell,
                  const Progress& progress, int threads) {
   Box box = kEmptyBox;
-  for (const Patch& patch : patches.patches) box.include(patch.box);
+  for (const FacePatch& patch : patches.patches) box.include(patch.box);
   Octree octree = empty_tree_around(box, cell);
   bool has_area = false;
   for (std::size_t t = 0; t < mesh.triangles.size() && !has_area; ++t) {
@@ -188,9 +188,9 @@ bool mend_open_parts(const Patches& patches, const SolidOptions& options, const 
   const double cell = options.cell;
   const double thickness = options.thickness * cell;
   const bool has_open =
-      std::any_of(all.begin(), all.end(), [&](const Patch& p) { return is_open(p, cell); });
-  if (!has_open &&
-      std::none_of(all.begin(), all.end(), [&](const Patch& p) { return is_thin(p, thickness); })) {
+      std::any_of(all.begin(), all.end(), [&](const FacePatch& p) { return is_open(p, cell); });
+  if (!has_open && std::none_of(all.begin(), all.end(),
+                                [&](const FacePatch& p) { return is_thin(p, thickness); })) {
     return false;
   }
   const std::vector<double> areas = areas_of(*mesh);

@@ -31,7 +31,7 @@ std::vector<PartAreas> part_areas(const Patches& patches, std::span<const double
   return sums;
 }
 
-bool is_thin(const Patch& patch, double thickness) {
+bool is_thin(const FacePatch& patch, double thickness) {
   return patch.is_closed() && 2.0 * std::abs(patch.volume) < thickness * patch.area;
 }
 
@@ -39,7 +39,7 @@ bool judge_parts(const Patches& patches, std::span<const PartAreas> areas, doubl
                  std::span<PartFate> fates) {
   bool has_changed = false;
   for (std::size_t p = 0; p < fates.size(); ++p) {
-    const Patch& patch = patches.patches[p];
+    const FacePatch& patch = patches.patches[p];
     const auto& [lost, inside, seen] = areas[p];
     auto& [fate, is_thickened] = fates[p];
     is_thickened = false;

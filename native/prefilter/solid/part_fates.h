@@ -39,7 +39,7 @@ std::vector<PartAreas> part_areas(const Patches& patches, std::span<const double
                                   std::span<const TriangleSides> sides);
 
 /// Whether a closed part is thinner than `thickness` on average.
-bool is_thin(const Patch& patch, double thickness);
+bool is_thin(const FacePatch& patch, double thickness);
 
 /// Decides on the parts that are wound: open ones are buried if most of what they lose is inside,
 /// and sheets if they lose much; closed ones that are thin, and others that lose a little, are

@@ -61,7 +61,7 @@ class PatchWalk {
   // The patch of a triangle that is in none yet.
   void walk(std::uint32_t seed) {
     const auto number = static_cast<std::uint32_t>(result_->patches.size());
-    Patch patch;
+    FacePatch patch;
     members_.assign(1, seed);
     result_->patch_of[seed] = number;
     const Vector3 origin = mesh_.corners(seed)[0];
@@ -134,7 +134,7 @@ void add_borders(const MeshView<std::int32_t>& mesh, const EdgeTable& edges, Pat
       const double side = length(mesh.positions[high] - mesh.positions[low]);
       for (const Balance& balance : balances) {
         if (balance.excess == 0) continue;
-        Patch& patch = result->patches[balance.patch];
+        FacePatch& patch = result->patches[balance.patch];
         patch.border += side;
         for (std::size_t a = 0; a < 3; ++a) {
           const double middle = mesh.positions[low][a] / 2.0 + mesh.positions[high][a] / 2.0;

@@ -14,7 +14,7 @@
 namespace prefilter {
 
 /// Triangles that hang together by edges on which there are two of them.
-struct Patch {
+struct FacePatch {
   std::size_t triangles = 0;
   double area = 0.0;
   double volume = 0.0;  // as turned, of the cone from its first corner; exact where it is closed
@@ -29,7 +29,7 @@ struct Patch {
 
 /// The patches of a mesh, in the order of their first triangles.
 struct Patches {
-  std::vector<Patch> patches;
+  std::vector<FacePatch> patches;
   std::vector<std::uint32_t> patch_of;  // of each triangle
   std::vector<std::uint8_t> is_turned;  // of each triangle: whether it is to be turned
 };

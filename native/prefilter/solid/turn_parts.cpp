@@ -45,7 +45,7 @@ std::vector<PatchSides> sides_of_patches(const Patches& patches, std::span<const
   return sums;
 }
 
-bool is_to_turn(const Patch& patch, const PatchSides& sides, double cell) {
+bool is_to_turn(const FacePatch& patch, const PatchSides& sides, double cell) {
   if (patch.is_closed() || !patch.is_orientable) return false;
   // The outside reaches both sides of what is open wide: as with closed parts, by the volume.
   if (sides.both > kMostOpen * patch.area) return -sides.volume > kBulkyCells * cell * patch.area;

@@ -18,20 +18,20 @@ namespace {
 using testing::box_mesh;
 
 // Patches of one triangle each, of area 1.
-Patches patches_of(const std::vector<Patch>& patches) {
+Patches patches_of(const std::vector<FacePatch>& patches) {
   Patches result{patches, {}, {}};
   for (std::uint32_t p = 0; p < patches.size(); ++p) result.patch_of.push_back(p);
   return result;
 }
-Patch open_patch(std::size_t triangles = 2) {
-  Patch patch;
+FacePatch open_patch(std::size_t triangles = 2) {
+  FacePatch patch;
   patch.triangles = triangles;
   patch.area = 1.0;
   patch.border = 1.0;
   return patch;
 }
-Patch closed_patch(double volume) {
-  Patch patch = open_patch();
+FacePatch closed_patch(double volume) {
+  FacePatch patch = open_patch();
   patch.border = 0.0;
   patch.volume = volume;
   return patch;
@@ -60,14 +60,14 @@ struct Judged {
   bool is_thickened;
   bool has_changed;
 };
-Judged judged(const Patch& patch, const PartAreas& areas, double thickness = 0.1) {
+Judged judged(const FacePatch& patch, const PartAreas& areas, double thickness = 0.1) {
   std::vector<PartFate> fates(1);
   const bool has_changed = judge_parts(patches_of({patch}), std::vector{areas}, thickness, fates);
   return {fates[0].fate, fates[0].is_thickened, has_changed};
 }
 
 TEST(PartFates, OpenPartsGoByWhatTheyLose) {
-  const Patch open = open_patch();
+  const FacePatch open = open_patch();
   const auto fate = [&](double lost, double inside, double seen) {
     return judged(open, {lost, inside, seen});
   };
@@ -113,7 +113,7 @@ WorkMesh triangle_at(double height) {
 }
 
 // Whether a patch of that triangle alone is turned.
-bool is_turned(Patch patch, TriangleSides sides, double height = 0.0, double cell = 0.1) {
+bool is_turned(FacePatch patch, TriangleSides sides, double height = 0.0, double cell = 0.1) {
   patch.border_middle = {0, 0, 0};
   WorkMesh mesh = triangle_at(height);
   std::vector<TriangleSides> all = {sides};
@@ -131,19 +131,19 @@ TEST(TurnParts, GoByWhereTheOutsideIs) {
   const auto sides = [](float both, float front, float back) {
     return TriangleSides{both, front, back, 0.0F};
   };
-  const Patch several = open_patch(2);
+  const FacePatch several = open_patch(2);
   EXPECT_FALSE(is_turned(several, sides(0, 1, 0)));
   EXPECT_TRUE(is_turned(several, sides(0, 0, 1)));
   // A part of one mind is turned where four times as much is seen from behind.
   EXPECT_FALSE(is_turned(several, sides(0, 0.11F, 0.42F)));
   EXPECT_TRUE(is_turned(several, sides(0, 0.1F, 0.42F)));
   EXPECT_TRUE(is_turned(open_patch(1), sides(0, 0.4F, 0.42F)));
-  Patch mixed = open_patch(2);
+  FacePatch mixed = open_patch(2);
   mixed.turned_area = 0.1;
   EXPECT_TRUE(is_turned(mixed, sides(0, 0.4F, 0.42F)));
   EXPECT_FALSE(is_turned(several, sides(0, 0, 0.09F)));
   EXPECT_FALSE(is_turned(closed_patch(1.0), sides(0, 0, 1)));
-  Patch none = open_patch(2);  // it cannot be oriented
+  FacePatch none = open_patch(2);  // it cannot be oriented
   none.is_orientable = false;
   EXPECT_TRUE(is_turned(none, sides(0, 0.4F, 0.42F)));
   EXPECT_FALSE(is_turned(none, sides(0, 0.42F, 0.4F)));
