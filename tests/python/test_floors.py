@@ -109,3 +109,16 @@ def test_trespasses_are_found(room: str, included: str, expected: list[str]) -> 
 def test_internal_headers_are_found(header: str, expected: list[str]) -> None:
     source = f'#include <vector>\n#include "prefilter/{header}"\n'
     assert [path for path in _includes(source) if not (PUBLIC / path).is_file()] == expected
+
+
+def test_no_two_headers_define_the_same_name() -> None:
+    # Two structures of a name are one to the linker: functions of the first serve both.
+    homes: dict[str, list[str]] = {}
+    for path in SOURCES:
+        if path.suffix != ".h":
+            continue
+        text = path.read_text(encoding="utf-8")
+        for name in re.findall(r"^(?:struct|class|enum class) (\w+)[^;]*?\{", text, re.MULTILINE):
+            homes.setdefault(name, []).append(path.name)
+    assert len(homes) > 200
+    assert {name: found for name, found in homes.items() if len(found) > 1} == {}

@@ -71,13 +71,13 @@ void add_means(const PointSeries& series, WeightMoments* moments) {
   (*moments)[8] += series.c22 * (1.0 / 90.0);
 }
 
-double coordinate(const Point2& corner, int axis) { return axis == 0 ? corner.x : corner.y; }
+double coordinate(const GridPoint& corner, int axis) { return axis == 0 ? corner.x : corner.y; }
 
-double twice_area(const Point2& a, const Point2& b, const Point2& c) {
+double twice_area(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
   return std::abs((b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y));
 }
 
-Point2 between(const Point2& p, const Point2& q, double f) {
+GridPoint between(const GridPoint& p, const GridPoint& q, double f) {
   return {p.x + f * (q.x - p.x), p.y + f * (q.y - p.y)};
 }
 
@@ -87,10 +87,10 @@ Point2 between(const Point2& p, const Point2& q, double f) {
 void add_crossing(const CellPiece& piece, int i, int k, int axis, double value, CellPiece* low,
                   CellPiece* high) {
   if (coordinate(piece.corners[i], axis) > coordinate(piece.corners[k], axis)) std::swap(i, k);
-  const Point2& p = piece.corners[i];
-  const Point2& q = piece.corners[k];
+  const GridPoint& p = piece.corners[i];
+  const GridPoint& q = piece.corners[k];
   const double f = (value - coordinate(p, axis)) / (coordinate(q, axis) - coordinate(p, axis));
-  Point2 at = between(p, q, f);
+  GridPoint at = between(p, q, f);
   (axis == 0 ? at.x : at.y) = value;
   if (piece.is_barycentric) {
     low->sources[low->count] = high->sources[high->count] =
@@ -202,14 +202,14 @@ void sweep_row(const CellPiece& row, int y, const CellWindow& window, CellSink* 
 }  // namespace
 
 double CellPiece::mass() const {
-  const std::array<Point2, kMaxCorners>& points = is_barycentric ? sources : corners;
+  const std::array<GridPoint, kMaxCorners>& points = is_barycentric ? sources : corners;
   double doubled = 0.0;
   for (int i = 2; i < count; ++i) doubled += twice_area(points[0], points[i - 1], points[i]);
   return 0.5 * doubled * mass_per_area;
 }
 
 void CellPiece::add_moments(double cell_x, double cell_y, WeightMoments* moments) const {
-  const std::array<Point2, kMaxCorners>& points = is_barycentric ? sources : corners;
+  const std::array<GridPoint, kMaxCorners>& points = is_barycentric ? sources : corners;
   const Both cell = {cell_x, cell_y};
   const auto point = [&](int i) { return Both{corners[i].x, corners[i].y} - cell; };
   // Triangles (0, i - 1, i) of the fan. What all have in common, corner 0, comes in at the end.
@@ -250,7 +250,7 @@ void split_piece(const CellPiece& piece, int axis, double value, CellPiece* low,
 }
 
 CellPiece whole_piece(const MassTriangle& triangle, bool is_barycentric) {
-  const std::array<Point2, 3>& p = triangle.corners;
+  const std::array<GridPoint, 3>& p = triangle.corners;
   CellPiece piece;
   piece.count = 3;
   std::copy(p.begin(), p.end(), piece.corners.begin());
@@ -261,8 +261,8 @@ CellPiece whole_piece(const MassTriangle& triangle, bool is_barycentric) {
   double length = 0.0;
   double magnitude = 0.0;
   for (int i = 0; i < 3; ++i) {
-    const Point2& a = p[i];
-    const Point2& b = p[(i + 1) % 3];
+    const GridPoint& a = p[i];
+    const GridPoint& b = p[(i + 1) % 3];
     length = std::max({length, std::abs(b.x - a.x), std::abs(b.y - a.y)});
     magnitude = std::max({magnitude, std::abs(a.x), std::abs(a.y)});
   }

@@ -15,13 +15,13 @@
 
 namespace prefilter {
 
-struct Point2 {
+struct GridPoint {
   double x, y;
 };
 
 /// A triangle in grid units with a mass. Any winding.
 struct MassTriangle {
-  std::array<Point2, 3> corners;
+  std::array<GridPoint, 3> corners;
   double mass = 0.0;
 };
 
@@ -37,9 +37,9 @@ struct CellWindow {
 struct CellPiece {
   // A triangle cut by four half-planes has at most seven corners.
   static constexpr int kMaxCorners = 7;
-  std::array<Point2, kMaxCorners> corners;
+  std::array<GridPoint, kMaxCorners> corners;
   // Where they are in the triangle, in two barycentric coordinates, if `is_barycentric`.
-  std::array<Point2, kMaxCorners> sources;
+  std::array<GridPoint, kMaxCorners> sources;
   int count = 0;
   // Mass by area, in the grid or, if `is_barycentric`, in those coordinates.
   double mass_per_area = 0.0;

@@ -65,13 +65,13 @@ Clipper2Lib::Paths64 resolved(const Clipper2Lib::Paths64& paths, FillRule rule) 
   return result;
 }
 
-Clipper2Lib::ClipType clip_type(SetOperation operation) {
+Clipper2Lib::ClipType clip_type(OutlineOperation operation) {
   switch (operation) {
-    case SetOperation::kUnion:
+    case OutlineOperation::kUnion:
       return Clipper2Lib::ClipType::Union;
-    case SetOperation::kIntersection:
+    case OutlineOperation::kIntersection:
       return Clipper2Lib::ClipType::Intersection;
-    case SetOperation::kDifference:
+    case OutlineOperation::kDifference:
       break;
   }
   return Clipper2Lib::ClipType::Difference;
@@ -96,7 +96,7 @@ std::vector<Polygon> flattened(const Outline& outline, double tolerance) {
 
 Outline combine_polygons(const std::vector<Polygon>& first, FillRule first_rule,
                          const std::vector<Polygon>& second, FillRule second_rule,
-                         SetOperation operation) {
+                         OutlineOperation operation) {
   const Grid grid(first, second);
   Clipper2Lib::Paths64 subject = grid.to_grid(first);
   Clipper2Lib::Paths64 clip = grid.to_grid(second);

@@ -21,6 +21,6 @@ std::vector<Polygon> flattened(const Outline& outline, double tolerance);
 /// inside on the left. Vertices are rounded to 2^-40 of the size of both.
 Outline combine_polygons(const std::vector<Polygon>& first, FillRule first_rule,
                          const std::vector<Polygon>& second, FillRule second_rule,
-                         SetOperation operation);
+                         OutlineOperation operation);
 
 }  // namespace prefilter

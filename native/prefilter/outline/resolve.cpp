@@ -73,7 +73,7 @@ std::optional<Outline> resolved(const Outline& outline, FillRule rule, double to
         break;
     }
   }
-  return combine_polygons(flattened(outline, tolerance), rule, {}, rule, SetOperation::kUnion);
+  return combine_polygons(flattened(outline, tolerance), rule, {}, rule, OutlineOperation::kUnion);
 }
 
 Outline resolve(const Outline& outline, FillRule rule, double tolerance) {

@@ -12,13 +12,13 @@
 namespace prefilter {
 namespace {
 
-bool holds(SetOperation operation, bool in_first, bool in_second) {
+bool holds(OutlineOperation operation, bool in_first, bool in_second) {
   switch (operation) {
-    case SetOperation::kUnion:
+    case OutlineOperation::kUnion:
       return in_first || in_second;
-    case SetOperation::kIntersection:
+    case OutlineOperation::kIntersection:
       return in_first && in_second;
-    case SetOperation::kDifference:
+    case OutlineOperation::kDifference:
       break;
   }
   return in_first && !in_second;
@@ -27,7 +27,7 @@ bool holds(SetOperation operation, bool in_first, bool in_second) {
 }  // namespace
 
 Outline combine(const Outline& first, FillRule first_rule, const Outline& second,
-                FillRule second_rule, SetOperation operation, double tolerance) {
+                FillRule second_rule, OutlineOperation operation, double tolerance) {
   const std::array<const Outline*, 2> outlines = {&first, &second};
   const auto is_inside = [&](const LayerWindings& windings) {
     return holds(operation, is_filled(windings[0], first_rule),

@@ -10,11 +10,12 @@
 
 namespace prefilter {
 
-enum class SetOperation : std::uint8_t { kUnion, kIntersection, kDifference };
+enum class OutlineOperation : std::uint8_t { kUnion, kIntersection, kDifference };
 
 /// The boundary of a set operation of what two outlines fill by their rules, as `resolve` would
 /// have it.
 Outline combine(const Outline& first, FillRule first_rule, const Outline& second,
-                FillRule second_rule, SetOperation operation, double tolerance = kOutlineTolerance);
+                FillRule second_rule, OutlineOperation operation,
+                double tolerance = kOutlineTolerance);
 
 }  // namespace prefilter

@@ -92,7 +92,7 @@ std::vector<VisiblePiece> pieces_by_polygons(std::span<const CoveringLayer> laye
   const auto polygons_of = [&](std::size_t layer) {
     const Outline& outline = *layers[layer].outline;
     return flattened(combine_polygons(flattened(outline, tolerance), layers[layer].fill_rule, {},
-                                      layers[layer].fill_rule, SetOperation::kUnion),
+                                      layers[layer].fill_rule, OutlineOperation::kUnion),
                      tolerance);
   };
   const Box2 box = control_box(*layers[index].outline);
@@ -114,11 +114,11 @@ std::vector<VisiblePiece> pieces_by_polygons(std::span<const CoveringLayer> laye
       const std::vector<Polygon> polygons = flattened(piece.outline, tolerance);
       divided.push_back(
           {index, piece.veils,
-           combine_polygons(polygons, kRule, cover, kRule, SetOperation::kDifference)});
+           combine_polygons(polygons, kRule, cover, kRule, OutlineOperation::kDifference)});
       if (layers[above].is_opaque) continue;
       divided.push_back(
           {index, piece.veils,
-           combine_polygons(polygons, kRule, cover, kRule, SetOperation::kIntersection)});
+           combine_polygons(polygons, kRule, cover, kRule, OutlineOperation::kIntersection)});
       divided.back().veils.push_back(static_cast<std::uint32_t>(above));
     }
     std::erase_if(divided, [](const VisiblePiece& piece) { return piece.outline.empty(); });

@@ -67,7 +67,7 @@ class TileMeasure final : public CellSink {
     y_parts_ = AxisParts(y_cells.lines(0), range.y0, range.y0 + range.height, 2.0);
     for (const std::uint32_t* k = tiles.begin(tile); k != tiles.end(tile); ++k) {
       MassTriangle triangle = source.triangles[*k];
-      for (Point2& corner : triangle.corners) {
+      for (GridPoint& corner : triangle.corners) {
         corner.x *= 2.0;
         corner.y *= 2.0;
       }
@@ -116,7 +116,7 @@ class TileMeasure final : public CellSink {
     // Positions go to the part's own coordinates.
     if (!piece.is_barycentric) piece.mass_per_area *= x_parts_.width(column) * y_parts_.width(row);
     for (int i = 0; i < piece.count; ++i) {
-      Point2& corner = piece.corners[i];
+      GridPoint& corner = piece.corners[i];
       corner.x = (corner.x - x_parts_.low(column)) / x_parts_.width(column);
       corner.y = (corner.y - y_parts_.low(row)) / y_parts_.width(row);
     }

@@ -22,7 +22,7 @@ struct Extent {
   double low, high;
 };
 
-Extent extent(const MassTriangle& triangle, double Point2::*axis) {
+Extent extent(const MassTriangle& triangle, double GridPoint::*axis) {
   const auto [low, high] = std::minmax(
       {triangle.corners[0].*axis, triangle.corners[1].*axis, triangle.corners[2].*axis});
   return {low, high};
@@ -35,8 +35,8 @@ class Mapper final : public CellSink {
 
   // `triangle` is in units of tiles; the indices name it in messages.
   void add(const MassTriangle& triangle, std::size_t surface_index, std::size_t triangle_index) {
-    const Extent u = extent(triangle, &Point2::x);
-    const Extent v = extent(triangle, &Point2::y);
+    const Extent u = extent(triangle, &GridPoint::x);
+    const Extent v = extent(triangle, &GridPoint::y);
     if (u.low >= 0.0 && u.high <= 1.0 && v.low >= 0.0 && v.high <= 1.0) {
       push(triangle);
       return;
@@ -140,22 +140,22 @@ class Mapper final : public CellSink {
 
   void push(MassTriangle triangle) {
     if (!(triangle.mass > 0.0)) return;
-    for (Point2& corner : triangle.corners) {
+    for (GridPoint& corner : triangle.corners) {
       corner.x = std::clamp(corner.x, 0.0, 1.0) * width_;
       corner.y = std::clamp(corner.y, 0.0, 1.0) * height_;
     }
-    keep_off_far_edge(&Point2::x, width_, &triangle);
-    keep_off_far_edge(&Point2::y, height_, &triangle);
+    keep_off_far_edge(&GridPoint::x, width_, &triangle);
+    keep_off_far_edge(&GridPoint::y, height_, &triangle);
     out_->triangles.push_back(triangle);
   }
 
   // What lies all on the image's far edge belongs to the last texel, which is half-open like every
   // cell.
-  static void keep_off_far_edge(double Point2::*axis, int size, MassTriangle* triangle) {
-    for (const Point2& corner : triangle->corners) {
+  static void keep_off_far_edge(double GridPoint::*axis, int size, MassTriangle* triangle) {
+    for (const GridPoint& corner : triangle->corners) {
       if (corner.*axis != size) return;
     }
-    for (Point2& corner : triangle->corners) corner.*axis = std::nextafter(size, 0.0);
+    for (GridPoint& corner : triangle->corners) corner.*axis = std::nextafter(size, 0.0);
   }
 
   int width_;

@@ -20,7 +20,7 @@ TileRange tile_range(double a, double b, double c, int count) {
 
 template <typename Use>
 void for_each_tile(const MassTriangle& triangle, int columns, int rows, const Use& use) {
-  const std::array<Point2, 3>& p = triangle.corners;
+  const std::array<GridPoint, 3>& p = triangle.corners;
   const TileRange x = tile_range(p[0].x, p[1].x, p[2].x, columns);
   const TileRange y = tile_range(p[0].y, p[1].y, p[2].y, rows);
   for (int row = y.first; row <= y.last; ++row) {

@@ -66,7 +66,7 @@ std::map<std::pair<int, int>, WeightMoments> sample(const MassTriangle& triangle
 MassTriangle random_triangle(std::mt19937* random, double size) {
   std::uniform_real_distribution<double> place(0.0, size);
   MassTriangle triangle;
-  for (Point2& corner : triangle.corners) corner = {place(*random), place(*random)};
+  for (GridPoint& corner : triangle.corners) corner = {place(*random), place(*random)};
   triangle.mass = 1.0;
   return triangle;
 }

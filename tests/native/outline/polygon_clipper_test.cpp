@@ -35,15 +35,15 @@ TEST(PolygonClipper, CombinesByEachRule) {
   const std::vector<Polygon> twice = {{{0, 0}, {4, 0}, {4, 4}, {0, 4}},
                                       {{1, 1}, {3, 1}, {3, 3}, {1, 3}}};
   const std::vector<Polygon> other = {{{2, 0}, {6, 0}, {6, 4}, {2, 4}}};
-  const auto area_of = [&](FillRule rule, SetOperation operation) {
+  const auto area_of = [&](FillRule rule, OutlineOperation operation) {
     return area(combine_polygons(twice, rule, other, FillRule::kNonzero, operation));
   };
-  EXPECT_NEAR(area_of(FillRule::kNonzero, SetOperation::kUnion), 24.0, 1e-9);
-  EXPECT_NEAR(area_of(FillRule::kNonzero, SetOperation::kIntersection), 8.0, 1e-9);
-  EXPECT_NEAR(area_of(FillRule::kNonzero, SetOperation::kDifference), 8.0, 1e-9);
-  EXPECT_NEAR(area_of(FillRule::kEvenOdd, SetOperation::kUnion), 22.0, 1e-9);
-  EXPECT_NEAR(area_of(FillRule::kEvenOdd, SetOperation::kIntersection), 6.0, 1e-9);
-  EXPECT_NEAR(area_of(FillRule::kEvenOdd, SetOperation::kDifference), 6.0, 1e-9);
+  EXPECT_NEAR(area_of(FillRule::kNonzero, OutlineOperation::kUnion), 24.0, 1e-9);
+  EXPECT_NEAR(area_of(FillRule::kNonzero, OutlineOperation::kIntersection), 8.0, 1e-9);
+  EXPECT_NEAR(area_of(FillRule::kNonzero, OutlineOperation::kDifference), 8.0, 1e-9);
+  EXPECT_NEAR(area_of(FillRule::kEvenOdd, OutlineOperation::kUnion), 22.0, 1e-9);
+  EXPECT_NEAR(area_of(FillRule::kEvenOdd, OutlineOperation::kIntersection), 6.0, 1e-9);
+  EXPECT_NEAR(area_of(FillRule::kEvenOdd, OutlineOperation::kDifference), 6.0, 1e-9);
 }
 
 }  // namespace

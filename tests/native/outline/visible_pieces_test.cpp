@@ -150,17 +150,18 @@ TEST(SetOperations, AreasAddUp) {
     const Outline a = blob(&random);
     const Outline b = blob(&random);
     constexpr FillRule kRule = FillRule::kNonzero;
-    const auto area_of = [&](const Outline& first, const Outline& second, SetOperation operation) {
+    const auto area_of = [&](const Outline& first, const Outline& second,
+                             OutlineOperation operation) {
       return area(combine(first, kRule, second, kRule, operation));
     };
     const double whole = area(resolve(a, kRule));
-    const double both = area_of(a, b, SetOperation::kIntersection);
-    EXPECT_NEAR(area_of(a, b, SetOperation::kDifference) + both, whole, 1e-6 * whole);
-    EXPECT_NEAR(area_of(a, b, SetOperation::kUnion) + both, whole + area(resolve(b, kRule)),
+    const double both = area_of(a, b, OutlineOperation::kIntersection);
+    EXPECT_NEAR(area_of(a, b, OutlineOperation::kDifference) + both, whole, 1e-6 * whole);
+    EXPECT_NEAR(area_of(a, b, OutlineOperation::kUnion) + both, whole + area(resolve(b, kRule)),
                 1e-6 * whole);
-    EXPECT_NEAR(both, area_of(b, a, SetOperation::kIntersection), 1e-6 * whole);
-    EXPECT_EQ(area_of(a, a, SetOperation::kDifference), 0.0);
-    EXPECT_NEAR(area_of(a, a, SetOperation::kIntersection), whole, 1e-6 * whole);
+    EXPECT_NEAR(both, area_of(b, a, OutlineOperation::kIntersection), 1e-6 * whole);
+    EXPECT_EQ(area_of(a, a, OutlineOperation::kDifference), 0.0);
+    EXPECT_NEAR(area_of(a, a, OutlineOperation::kIntersection), whole, 1e-6 * whole);
   }
 }
 

@@ -36,7 +36,7 @@ TEST(MapToTexels, StaysInsideTheImage) {
     for (const Wrap v : {Wrap::kClamp, Wrap::kRepeat, Wrap::kBorder}) {
       for (const MassTriangle& triangle : map(surface, u, v).triangles) {
         EXPECT_GT(triangle.mass, 0.0);
-        for (const Point2& corner : triangle.corners) {
+        for (const GridPoint& corner : triangle.corners) {
           EXPECT_TRUE(corner.x >= 0 && corner.x <= 8 && corner.y >= 0 && corner.y <= 4);
         }
       }

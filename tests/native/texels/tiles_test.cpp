@@ -48,7 +48,7 @@ TEST(Tiles, HaveTheTrianglesThatMeetThem) {
     MassTriangle triangle{};
     const double x = 80.0 * unit(random);
     const double y = 60.0 * unit(random);
-    for (Point2& corner : triangle.corners) {
+    for (GridPoint& corner : triangle.corners) {
       corner = {std::min(x + 30.0 * unit(random), 100.0), std::min(y + 30.0 * unit(random), 70.0)};
     }
     triangles.triangles.push_back(triangle);
