@@ -171,6 +171,7 @@ TEST(Footprint, IsNeitherNarrowerThanATexelNorWiderThanTheCoarsest) {
   EXPECT_EQ(none.major, 1.0);
   EXPECT_EQ(none.minor, 1.0);
   EXPECT_DOUBLE_EQ(singular_values({1e300, -1e300, 1e300, 1e300}).minor, 1e300 * std::sqrt(2.0));
+  EXPECT_EQ(footprint_of({100.0, 0.0, 0.0, 50.0}, 3).minor, 8.0);
 }
 
 }  // namespace
