@@ -111,5 +111,17 @@ TEST(ProgressTest, PartsCoverTheirShareAndRise) {
   EXPECT_DOUBLE_EQ(seen[2], 1.0);
 }
 
+TEST(ProgressTest, NeverFallsBack) {
+  std::vector<double> seen;
+  const Progress progress([&](double fraction) {
+    seen.push_back(fraction);
+    return true;
+  });
+  progress.report(0.75);
+  std::this_thread::sleep_for(std::chrono::milliseconds(40));
+  progress.report(0.25);
+  EXPECT_EQ(seen, (std::vector<double>{0.75, 0.75}));
+}
+
 }  // namespace
 }  // namespace prefilter

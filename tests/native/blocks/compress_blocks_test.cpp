@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
@@ -68,6 +69,22 @@ Color decoded_color(const std::uint8_t* block, int i) {
 
 constexpr BlockFormat kByteFormats[] = {BlockFormat::kBc1, BlockFormat::kBc1Rgb, BlockFormat::kBc3,
                                         BlockFormat::kBc4, BlockFormat::kBc5,    BlockFormat::kBc7};
+
+TEST(CompressBlocks, OfAWideImageAreThoseOfItsColumns) {
+  // More blocks in a row than are compressed at once.
+  const int columns = 150;
+  const Bytes texels = random_texels(4 * columns, 4, 7);
+  const Bytes blocks = compressed(texels, 4 * columns, 4, BlockFormat::kBc4);
+  ASSERT_EQ(blocks.size(), 8U * columns);
+  for (int column = 0; column < columns; ++column) {
+    Bytes part(64);
+    for (int y = 0; y < 4; ++y) {
+      std::copy_n(texels.begin() + 16 * (y * columns + column), 16, part.begin() + 16 * y);
+    }
+    const Bytes block = compressed(part, 4, 4, BlockFormat::kBc4);
+    EXPECT_EQ(block, Bytes(blocks.begin() + 8 * column, blocks.begin() + 8 * column + 8));
+  }
+}
 
 TEST(CompressBlocks, SizesCountBlocks) {
   const Bytes texels = random_texels(9, 6, 1);
