@@ -3,8 +3,10 @@
 """What the sessions share that run in a Blender with a window."""
 
 import os
+import sys
 import traceback
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -33,6 +35,23 @@ def idle() -> bool:
         for window in bpy.context.window_manager.windows
         for operator in window.modal_operators
     )
+
+
+@contextmanager
+def held() -> Iterator[None]:
+    """Holds work in threads back until it is cancelled, so that Esc never comes too late."""
+    job = sys.modules[f"{PACKAGE}.core.jobs"].Job
+    advance = job._advance
+
+    def wait(self: Any, fraction: float) -> bool:
+        self._cancelled.wait(MAX_WAITS * SECONDS_PER_STEP)
+        return advance(self, fraction)
+
+    job._advance = wait
+    try:
+        yield
+    finally:
+        job._advance = advance
 
 
 def refused(operator: Callable[..., object]) -> str:

@@ -134,7 +134,7 @@ def test_shares_that_faces_have_do_not_depend_on_the_viewport_level(find, pictur
     assert areas[0] == areas[1] == areas[2]
 
 
-def test_modifier_is_on_again_afterwards(find, picture):
+def test_modifier_is_on_again_afterward(find, picture):
     cube = scenes.cube(picture)
     modifier = scenes.subdivided(cube, levels=2)
     find([cube], picture)

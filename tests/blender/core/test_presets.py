@@ -113,7 +113,7 @@ def test_bad_presets(kind, tmp_path, monkeypatch):
     paths = bpy.utils.preset_paths
     monkeypatch.setattr(bpy.utils, "preset_paths", lambda sub: [*paths(sub), str(tmp_path)])
     for text, message in [
-        ("settings.colour = 1", "'colour' is not a setting"),
+        ("settings.color = 1", "'color' is not a setting"),
         ("settings.depth = 99", "Depth: found 99; allowed: 1 to 12"),
         ("settings.depth = '9'", "Depth: found '9'"),
         ("settings.depth = True", "Depth: found True"),

@@ -44,7 +44,7 @@ def test_data_is_filtered_as_it_is(bake):
     np.testing.assert_allclose(scenes.pixels("Normals.mip01"), expected, atol=0.51 / 255)
 
 
-def test_straight_alpha_weighs_colour(bake):
+def test_straight_alpha_weighs_color(bake):
     values = scenes.noise(8, 8, alpha=True)
     bake(scenes.image("Leaf", values, colorspace="Linear Rec.709"), filter="box")
     alpha = scenes.halved(values[..., 3:])

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
 import window as windows
-from window import RedoPanel, Stage, begun, idle, play, refused, until
+from window import RedoPanel, Stage, begun, held, idle, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
@@ -79,14 +79,13 @@ def resampled(stage: Stage) -> Iterator[None]:
     yield
     found["undone"] = names()
 
-    space.image = scenes.image("Big", scenes.noise(1024, 1024))
-    with bpy.context.temp_override(**stage.override):
-        bpy.ops.prefilter.resample_image(
-            "INVOKE_DEFAULT", scale_x=4.0, scale_y=4.0, filter="lanczos3"
-        )
-    found["works"] = not idle()
-    stage.escape()
-    yield from until(idle)
+    space.image = bpy.data.images["Paint"]
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.resample_image("INVOKE_DEFAULT", scale_x=4.0, scale_y=4.0)
+        found["works"] = not idle()
+        stage.escape()
+        yield from until(idle)
     found["cancelled"] = names()
 
 
@@ -102,11 +101,12 @@ def table(stage: Stage) -> Iterator[None]:
     yield from until(idle)
     yield
     found["text"] = area.spaces.active.text.name
-    with bpy.context.temp_override(**stage.override):
-        bpy.ops.prefilter.sampling_table("INVOKE_DEFAULT", texels=9, grid=16, slices=8)
-    found["table_works"] = not idle()
-    stage.escape()
-    yield from until(idle)
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.sampling_table("INVOKE_DEFAULT", filter="tent", texels=4)
+        found["table_works"] = not idle()
+        stage.escape()
+        yield from until(idle)
     found["texts"] = [text.name for text in bpy.data.texts]
 
 

@@ -18,7 +18,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
 import window as windows
-from window import RedoPanel, begun, idle, play, refused, until
+from window import RedoPanel, begun, held, idle, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
@@ -61,12 +61,13 @@ def session() -> Iterator[None]:
     yield
     found["undone"] = names()
 
-    space.image = scenes.image("Big", scenes.noise(1024, 1024))
-    with bpy.context.temp_override(**stage.override):
-        bpy.ops.prefilter.resize_image("INVOKE_DEFAULT", percent=390, filter="radial3")
-    found["works"] = not idle()
-    stage.escape()
-    yield from until(idle)
+    space.image = bpy.data.images["Paint"]
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.resize_image("INVOKE_DEFAULT", percent=390)
+        found["works"] = not idle()
+        stage.escape()
+        yield from until(idle)
     found["cancelled"] = names()
     RESULT.write_text(json.dumps(found))
 

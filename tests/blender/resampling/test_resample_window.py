@@ -29,7 +29,7 @@ def test_undo(found):
 
 def test_esc(found):
     assert found["works"]
-    assert found["cancelled"] == ["Big", "Paint"]
+    assert found["cancelled"] == ["Paint"]
 
 
 def test_tables(found):

@@ -30,4 +30,4 @@ def test_undo(found):
 
 def test_esc(found):
     assert found["works"]
-    assert found["cancelled"] == ["Big", "Paint"]
+    assert found["cancelled"] == ["Paint"]

@@ -20,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import bodies
 import clouds
 import window as windows
-from window import RedoPanel, Stage, begun, idle, play, refused, until, without_objects
+from window import RedoPanel, Stage, begun, held, idle, play, refused, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
@@ -39,16 +39,12 @@ def session() -> Iterator[None]:
     yield from stage.menus("VIEW3D_MT_object", "VIEW3D_MT_object_convert", "PREFILTER_MT_scans")
     yield from reconstructed(stage)
 
-    bpy.data.objects.remove(bpy.data.objects["Scan"])
-    # Without a graphics card so many points take long to draw.
-    stage.area.spaces.active.overlay.show_overlays = False
-    clouds.scan(*clouds.torus(300_000))
-    yield
-    with bpy.context.temp_override(**stage.override):
-        bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=11, wavelet="d4")
-    found["works"] = not idle()
-    stage.escape()
-    yield from until(idle)
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=6)
+        found["works"] = not idle()
+        stage.escape()
+        yield from until(idle)
     found["cancelled"] = hidden()
 
     with bpy.context.temp_override(**stage.override):

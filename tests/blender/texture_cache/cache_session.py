@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import cycles_scenes as cycles
 import scenes
-from window import Stage, begun, idle, play, refused, until, without_objects
+from window import Stage, begun, held, idle, play, refused, until, without_objects
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -68,21 +68,24 @@ def interrupted(stage: Stage) -> Iterator[None]:
     """Cancels a bake by Esc, and another one by loading a file."""
     scene = bpy.context.scene
     scene.render.use_texture_cache = False
-    bpy.data.objects["Quad"].data.materials[0] = cycles.emission("Big", picture("big.png", 2048))
+    bpy.data.objects["Quad"].data.materials[0] = cycles.emission("Big", picture("big.png", 64))
     with bpy.context.temp_override(**stage.override):
         bpy.ops.render.generate_texture_cache()
         before = contents()
-        bpy.ops.prefilter.bake_texture_cache("INVOKE_DEFAULT")
-    yield
-    stage.escape()
-    yield from until(idle)
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.bake_texture_cache("INVOKE_DEFAULT")
+        yield
+        stage.escape()
+        yield from until(idle)
     found["cancelled_leaves_files"] = contents() == before
     found["cache_after_cancel"] = scene.render.use_texture_cache
 
-    with bpy.context.temp_override(**stage.override):
-        bpy.ops.prefilter.bake_texture_cache("INVOKE_DEFAULT")
-    bpy.ops.wm.read_homefile(use_empty=True)
-    yield
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.bake_texture_cache("INVOKE_DEFAULT")
+        bpy.ops.wm.read_homefile(use_empty=True)
+        yield
     scenes.image("Next", scenes.noise(2, 2))
     yield
     found["polls_in_next_file"] = bpy.ops.prefilter.bake_texture_cache.poll()

@@ -33,7 +33,7 @@ def scene():
 
 
 @needs_cache
-def test_an_image_of_one_colour_stays(scene, tmp_path, capfd):
+def test_an_image_of_one_color_stays(scene, tmp_path, capfd):
     pixels = np.full((128, 128, 3), 0.5, np.float32)
     cycles.shown_on(cycles.write_picture(tmp_path / "flat.png", pixels, "uint8"))
     generate()
@@ -44,7 +44,7 @@ def test_an_image_of_one_colour_stays(scene, tmp_path, capfd):
 
 
 @needs_cache
-def test_cancelling_leaves_the_cache(scene, tmp_path, addon):
+def test_canceling_leaves_the_cache(scene, tmp_path, addon):
     for name in ("one.png", "two.png"):
         pixels = smooth(128, 128, 3, seed=len(name) + ord(name[0]))
         cycles.shown_on(cycles.write_picture(tmp_path / name, pixels, "uint8"), name=name)

@@ -235,7 +235,7 @@ def test_levels_are_closer_to_the_image_as_cycles_reads_it(
         ("leaf.exr", "half", "PREMUL"),
     ],
 )
-def test_colour_and_alpha_are_associated(scene, tmp_path, name, kind, mode):
+def test_color_and_alpha_are_associated(scene, tmp_path, name, kind, mode):
     alpha = (smooth(64, 64, 1) > 0.5).astype(np.float32)
     color = np.float32(GREEN)
     leaf = color * alpha if mode == "PREMUL" else np.where(alpha > 0, color, np.float32(MAGENTA))
@@ -262,7 +262,7 @@ def test_colour_and_alpha_are_associated(scene, tmp_path, name, kind, mode):
 @needs_cache
 @pytest.mark.parametrize("is_cut_out", [False, True])
 @pytest.mark.parametrize("kind", ["uint8", "float"])
-def test_covered_colours_are_closer_to_the_image(scene, tmp_path, is_cut_out, kind):
+def test_covered_colors_are_closer_to_the_image(scene, tmp_path, is_cut_out, kind):
     pixels, alpha = smooth(256, 256, 4), smooth(256, 256, 1, seed=8)
     pixels[..., 3:] = alpha > 0.5 if is_cut_out else np.clip(2 * alpha - 0.5, 0, 1)
     if kind == "float":
@@ -406,7 +406,7 @@ def test_two_images_of_a_file_share_their_surfaces(scene, tmp_path):
 
 
 @needs_cache
-def test_colour_spaces_of_a_file_have_a_cache_file_each(scene, tmp_path, capfd):
+def test_color_spaces_of_a_file_have_a_cache_file_each(scene, tmp_path, capfd):
     first = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
     second = bpy.data.images.load(str(tmp_path / "paint.png"), check_existing=False)
     second.colorspace_settings.name = "Non-Color"

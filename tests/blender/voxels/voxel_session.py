@@ -18,7 +18,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import bodies
-from window import Stage, begun, idle, play, refused, until, without_objects
+from window import Stage, begun, held, idle, play, refused, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -72,10 +72,11 @@ def voxelized(stage: Stage) -> Iterator[None]:
     bpy.ops.ed.undo()
     yield
     found["undone"] = vertices()
-    with bpy.context.temp_override(**stage.override):
-        bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=9)
-    stage.escape()
-    yield from until(idle)
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=9)
+        stage.escape()
+        yield from until(idle)
     found["cancelled"] = vertices()
 
 

@@ -18,7 +18,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import Stage, begun, cancelled, idle, largest, play, refused, until
+from window import Stage, begun, cancelled, held, idle, largest, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -54,10 +54,11 @@ def baked(stage: Stage) -> Iterator[None]:
         found["refused_while_running"] = refused(bpy.ops.prefilter.bake_mipmaps)
     yield from until(idle)
     found["after_bake"] = image_names()
-    with bpy.context.temp_override(**stage.override):
-        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
-    stage.escape()
-    yield from until(idle)
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
+        stage.escape()
+        yield from until(idle)
     found["after_cancel"] = image_names()
 
 
@@ -92,10 +93,11 @@ def interrupted_by_files(stage: Stage) -> Iterator[None]:
     space.image = scenes.image("Big", scenes.noise(1024, 1024))
     scenes.textured_quad(space.image)
     yield
-    with bpy.context.temp_override(**stage.override):
-        bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
-    bpy.ops.wm.read_homefile(use_empty=True)
-    yield
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.bake_mipmaps("INVOKE_DEFAULT", image="Big")
+        bpy.ops.wm.read_homefile(use_empty=True)
+        yield
     scenes.image("Next", scenes.noise(2, 2))
     yield
     found["status"] = bpy.types.STATUSBAR_HT_header.draw.__module__

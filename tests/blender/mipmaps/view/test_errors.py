@@ -185,7 +185,7 @@ def test_report_has_the_values(stretched, capfd):
     assert said in capfd.readouterr().out
 
 
-def test_cancelling_stops(stretched, addon):
+def test_canceling_stops(stretched, addon):
     settings = addon("mipmaps.choices").Settings()
     reading = addon("mipmaps.reading")
     request = reading.Request(stretched, list(bpy.data.objects), settings, scenes.depsgraph())

@@ -25,7 +25,7 @@ def lightness(srgb):
     return 116 * np.cbrt(np.maximum(luminance, 0.009)) - 16
 
 
-def test_colours_are_ordered_and_even(addon):
+def test_colors_are_ordered_and_even(addon):
     octaves = np.linspace(-4, 4, 65)
     colors = addon("mipmaps.view.weights").colors(2.0**octaves)
     found = lightness(colors)
@@ -38,7 +38,7 @@ def test_colours_are_ordered_and_even(addon):
     assert inner.max() < 1
 
 
-def test_colours_end_where_the_legend_does(addon):
+def test_colors_end_where_the_legend_does(addon):
     colors = addon("mipmaps.view.weights").colors
     np.testing.assert_array_equal(colors(16.0), colors(1e9))
     np.testing.assert_array_equal(colors(1 / 16), colors(1e-30))
@@ -63,7 +63,7 @@ def test_says_how_much_is_used(capfd):
     assert "50.0% of the texels hold some of the surface" in capfd.readouterr().out
 
 
-def test_legend_has_its_colours(addon):
+def test_legend_has_its_colors(addon):
     panel = addon("mipmaps.panels.seeing")
     assert len(panel._swatches) == 6
     for key, _ in panel._swatches:
