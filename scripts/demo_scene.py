@@ -146,8 +146,8 @@ def texels_of(
     right, top = np.minimum(np.ceil(uvs.max(axis=0) + margin), TEXTURE_SIZE).astype(int)
     y, x = np.indices((top - bottom, right - left)).reshape(2, -1)
     rows, columns = y + bottom, x + left
-    centres = np.stack([columns + 0.5, rows + 0.5, np.ones(len(rows))])
-    weights = to_barycentric @ centres
+    centers = np.stack([columns + 0.5, rows + 0.5, np.ones(len(rows))])
+    weights = to_barycentric @ centers
     grown = margin * np.hypot(to_barycentric[:, 0], to_barycentric[:, 1]) + 1e-9
     inside = (weights >= -grown[:, None]).all(axis=0)
     return rows[inside], columns[inside], weights[:, inside].T
@@ -290,10 +290,10 @@ def comparison(panels: Sequence[tuple[str, str, Array]]) -> Array:
     page = blank(len(panels) * (PANEL_WIDTH + GAP) + GAP, PANEL_HEIGHT + GAP + 92)
     for index, (title, note, pixels) in enumerate(panels):
         left = GAP + index * (PANEL_WIDTH + GAP)
-        centre = left + PANEL_WIDTH // 2
+        center = left + PANEL_WIDTH // 2
         place(page, left, GAP, pixels)
-        write(page, centre, GAP + PANEL_HEIGHT + 36, title, 30)
-        write(page, centre, GAP + PANEL_HEIGHT + 72, note, 24, ink=0.42)
+        write(page, center, GAP + PANEL_HEIGHT + 36, title, 30)
+        write(page, center, GAP + PANEL_HEIGHT + 72, note, 24, ink=0.42)
     return page
 
 

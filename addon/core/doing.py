@@ -83,7 +83,7 @@ class Doing:
     def may_be_redone(cls, context: bpy.types.Context) -> bool:
         """Returns whether the operator is the one that Adjust Last Operation adjusts.
 
-        Blender polls it in the state that its result has left, and undoes that afterwards: what was
+        Blender polls it in the state that its result has left, and undoes that afterward: what was
         selected may be hidden or gone. A poll has to let it pass; `read` says what is amiss.
         """
         last = context.active_operator

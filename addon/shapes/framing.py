@@ -27,7 +27,7 @@ class View:
     """How a point of the world is seen.
 
     Attributes:
-        matrix: (4, 4), from world space to the view: right, up, towards the viewer.
+        matrix: (4, 4), from world space to the view: right, up, toward the viewer.
         projection: (4, 4), from there to a camera's frame, which is [-1, 1] x [-1, 1] wherever the
             last number is 1; None for a view along an axis, which has no frame.
     """

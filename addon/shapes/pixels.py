@@ -80,7 +80,7 @@ def finished(
 
     Args:
         raster: (height, width, 1) coverage, or (height, width, 4) associated colors and alpha. They
-            may overshoot, as those of many filters do. What it holds afterwards is undefined.
+            may overshoot, as those of many filters do. What it holds afterward is undefined.
         color: What is covered, of a coverage.
         settings: Colors, background and bleeding.
         is_straight: Whether colors are not to be multiplied by alpha.

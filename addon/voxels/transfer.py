@@ -217,7 +217,7 @@ class Transfer:
         return _new_layer(layer, "CORNER", values)
 
     def _facing(self, normals: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Returns normals of corners towards the outside: subtracted objects are inside out."""
+        """Returns normals of corners toward the outside: subtracted objects are inside out."""
         a, b, c = np.moveaxis(self._positions[self._triangles], 1, 0)
         outside = np.repeat(np.cross(b - a, c - a), 3, axis=0)
         is_turned = np.einsum("ij,ij->i", outside, normals) < 0.0

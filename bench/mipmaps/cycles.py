@@ -268,12 +268,12 @@ def render(
 ) -> Frame:
     """Renders a square picture of the objects from one of the sides."""
     corners = [obj.matrix_world @ Vector(corner) for obj in objects for corner in obj.bound_box]
-    centre = sum(corners, Vector()) / len(corners)
-    radius = max((corner - centre).length for corner in corners)
+    center = sum(corners, Vector()) / len(corners)
+    radius = max((corner - center).length for corner in corners)
     turn = Euler((math.pi / 2 - ELEVATION, 0, 2 * math.pi * view / VIEWS + math.pi / 7))
     camera = scene.camera
     camera.rotation_euler = turn
-    camera.location = centre + turn.to_matrix() @ Vector((0, 0, 3 * radius))
+    camera.location = center + turn.to_matrix() @ Vector((0, 0, 3 * radius))
     camera.data.ortho_scale = 2 * radius
     camera.data.clip_start, camera.data.clip_end = 0.1 * radius, 10 * radius
     scene.render.resolution_x = scene.render.resolution_y = size

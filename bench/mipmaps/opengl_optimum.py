@@ -36,7 +36,7 @@ START = "pam-bilinear:footprint=1"
 KNOWN = (opengl.BASELINE, "pam-bilinear", START, "pam-trilinear:footprint=1")
 BALANCES = (0.0, 0.5, 1.0, 2.0)
 STEPS = 80
-PULL = 1e-4  # Towards where it starts, for texels that hardly any frame reads.
+PULL = 1e-4  # Toward where it starts, for texels that hardly any frame reads.
 PLACES = "vec4(uv, textureQueryLod(levels, uv).y, 1.0)"
 
 

@@ -160,13 +160,13 @@ class Renderer:
         self._buffers = {}
         self._programs: dict[str, moderngl.Program] = {}
         textured = model.corners[model.used != UNTEXTURED]
-        centre = (textured.min(axis=(0, 1)) + textured.max(axis=(0, 1))) / 2
-        self._radius = np.linalg.norm(textured - centre, axis=2).max()
-        self._reach = np.linalg.norm(model.corners - centre, axis=2).max()
+        center = (textured.min(axis=(0, 1)) + textured.max(axis=(0, 1))) / 2
+        self._radius = np.linalg.norm(textured - center, axis=2).max()
+        self._reach = np.linalg.norm(model.corners - center, axis=2).max()
         charts = np.broadcast_to(model.charts()[:, None, None], (len(model.used), 3, 1))
         for image in np.unique(model.used):
             of_image = model.used == image
-            rows = [model.corners[of_image] - centre, model.uvs[of_image], charts[of_image]]
+            rows = [model.corners[of_image] - center, model.uvs[of_image], charts[of_image]]
             vertices = np.concatenate(rows, axis=2).astype(np.float32)
             self._buffers[int(image)] = self.context.buffer(vertices.tobytes())
 

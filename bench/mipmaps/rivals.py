@@ -129,9 +129,9 @@ def _halved(level: Floats, axis: int, wrap: str) -> Floats:
     within = (np.arange(_KAISER_SAMPLES) + 0.5) / _KAISER_SAMPLES
     weights = _kaiser((taps[:, None] - 1 + within) / 2).mean(axis=1)
     weights /= weights.sum()
-    centres = 2 * np.arange(size // 2)
+    centers = 2 * np.arange(size // 2)
     return sum(
-        weight * level.take(wrapped(centres + tap, size, wrap), axis=axis)
+        weight * level.take(wrapped(centers + tap, size, wrap), axis=axis)
         for tap, weight in zip(taps, weights, strict=True)
     )
 

@@ -16,16 +16,16 @@ constexpr int kCharts = 8;  // along each axis
 
 /// A square chart of side sqrt(1/2) cells, which fits its cell at any angle.
 struct Chart {
-  double centre_u;
-  double centre_v;
+  double center_u;
+  double center_v;
   double angle;
 
   TextureCoordinate at(double s, double t) const {
     const double side = std::numbers::sqrt2 / 2.0 / kCharts;
     const double x = (s - 0.5) * side;
     const double y = (t - 0.5) * side;
-    return {centre_u + std::cos(angle) * x - std::sin(angle) * y,
-            centre_v + std::sin(angle) * x + std::cos(angle) * y};
+    return {center_u + std::cos(angle) * x - std::sin(angle) * y,
+            center_v + std::sin(angle) * x + std::cos(angle) * y};
   }
 };
 

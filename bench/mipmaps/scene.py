@@ -102,8 +102,8 @@ def made_mesh(quads: int) -> dict[str, NDArray]:
         turned = np.stack(
             [np.cos(angle) * s - np.sin(angle) * t, np.sin(angle) * s + np.cos(angle) * t]
         )
-        centre = (np.array(divmod(chart, CHARTS)) + 0.5) / CHARTS
-        uv = centre + turned.T * np.sqrt(0.5) / CHARTS
+        center = (np.array(divmod(chart, CHARTS)) + 0.5) / CHARTS
+        uv = center + turned.T * np.sqrt(0.5) / CHARTS
         triangles.append(local + chart * len(s))
         uvs.append(uv[local])
         positions.append(np.stack([scale * s, scale * t, np.full(len(s), chart)], axis=1))

@@ -199,8 +199,8 @@ def touched_texels(uvs: Floats, width: int, height: int, wrap: str) -> NDArray[n
         x, y = np.meshgrid(np.arange(low[0], high[0]), np.arange(low[1], high[1]))
         meets = np.ones(x.shape, bool)
         for corner, edge in zip(triangle, edges * np.sign(twice_area), strict=True):
-            centre = edge[0] * (y + 0.5 - corner[1]) - edge[1] * (x + 0.5 - corner[0])
-            meets &= centre + np.abs(edge).sum() / 2 > 0
+            center = edge[0] * (y + 0.5 - corner[1]) - edge[1] * (x + 0.5 - corner[0])
+            meets &= center + np.abs(edge).sum() / 2 > 0
         touched[wrapped(y[meets], height, wrap), wrapped(x[meets], width, wrap)] = True
     return touched
 

@@ -21,7 +21,7 @@ Texels = NDArray[np.float32]
 FOLDER = Path(__file__).resolve().parents[2] / "build/opengl"
 SIZE = 2048
 GAP = 2
-TEXELS_PER_METRE = 11
+TEXELS_PER_METER = 11
 PARTS = 320
 LENGTH, WIDTH, DEPTH = 100.0, 14.0, 8.0
 BACKGROUND = (0.02, 0.02, 0.02)
@@ -72,7 +72,7 @@ def boxes(random: np.random.Generator) -> list[tuple[Floats, Floats, tuple[float
     slices = 20
     for k in range(slices):
         x = (k + 0.5) / slices - 0.5
-        # Towards bow and stern it narrows.
+        # Toward bow and stern it narrows.
         width = WIDTH * (1 - (2 * abs(x)) ** 3 * 0.8)
         found.append(
             (
@@ -88,12 +88,12 @@ def boxes(random: np.random.Generator) -> list[tuple[Floats, Floats, tuple[float
         room = WIDTH * (1 - (2 * abs(x)) ** 3 * 0.8) / 2
         # The highest stand amidships.
         side[2] += random.exponential(7 * np.exp(-((x / 0.15) ** 2)))
-        centre = np.array([x * LENGTH, random.uniform(-room, room), side[2] / 2])
-        found.append((centre, side, PALETTE[random.integers(len(PALETTE))]))
+        center = np.array([x * LENGTH, random.uniform(-room, room), side[2] / 2])
+        found.append((center, side, PALETTE[random.integers(len(PALETTE))]))
     return found
 
 
-def faces_of(centre: Floats, sides: Floats, color: tuple[float, float, float]) -> list[Face]:
+def faces_of(center: Floats, sides: Floats, color: tuple[float, float, float]) -> list[Face]:
     """Returns the faces of a box but for the bottom one, seen from outside."""
     faces = []
     for axis, sign in ((0, -1), (0, 1), (1, -1), (1, 1), (2, 1)):
@@ -102,8 +102,8 @@ def faces_of(centre: Floats, sides: Floats, color: tuple[float, float, float]) -
         quad[:, axis] = sign
         quad[:, along] = [-1, 1, 1, -1]
         quad[:, up] = [-1, -1, 1, 1]
-        texels = [max(2, round(sides[k] * TEXELS_PER_METRE)) for k in (along, up)]
-        faces.append(Face(centre + quad * sides / 2, *texels, color))
+        texels = [max(2, round(sides[k] * TEXELS_PER_METER)) for k in (along, up)]
+        faces.append(Face(center + quad * sides / 2, *texels, color))
     return faces
 
 

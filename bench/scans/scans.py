@@ -63,7 +63,7 @@ def read(path: Path) -> tuple[Floats, NDArray[np.int64]]:
 
 
 def grid_normals(points: Floats, grid: NDArray[np.int64]) -> Floats:
-    """Returns normals of length 1 towards the scanner, 0 where no triangle has the point."""
+    """Returns normals of length 1 toward the scanner, 0 where no triangle has the point."""
     a, b, c, d = grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]
     corners = np.concatenate([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
     corners = corners[(corners >= 0).all(axis=1)]

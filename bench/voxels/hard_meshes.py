@@ -121,7 +121,7 @@ def shuffled(mesh: HardMesh, seed: int = 0) -> HardMesh:
 
 
 def soup(mesh: HardMesh, jitter: float = 0.0, shrunk: float = 0.0, seed: int = 0) -> HardMesh:
-    """Triangles that share no vertices: these are moved at random, and towards the middles."""
+    """Triangles that share no vertices: these are moved at random, and toward the middles."""
     corners = mesh.positions[mesh.triangles]
     middles = corners.mean(axis=1, keepdims=True)
     moved = corners + shrunk * (middles - corners)

@@ -101,8 +101,8 @@ def holes() -> Iterator[Hole]:
     def distance(p: Floats) -> Floats:
         return np.abs(np.hypot(np.hypot(p[:, 0], p[:, 1]) - 1, p[:, 2]) - 0.4)
 
-    for name, centre in (("outer", (1.4, 0, 0)), ("inner", (0.6, 0, 0)), ("upper", (1, 0, 0.4))):
-        kept = np.linalg.norm(middles - centre, axis=1) > 0.3
+    for name, center in (("outer", (1.4, 0, 0)), ("inner", (0.6, 0, 0)), ("upper", (1, 0, 0.4))):
+        kept = np.linalg.norm(middles - center, axis=1) > 0.3
         title = f"torus, {name} side"
         yield Hole(title, points, triangles[kept], volume(points, triangles), distance)
 

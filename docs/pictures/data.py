@@ -67,8 +67,8 @@ def twig(size: int) -> Array:
             for side in (-1, 1):
                 turn = np.pi / 2 - side * random.uniform(0.7, 1.2)
                 length = random.uniform(0.05, 0.11) * (1.15 - at)
-                centre = (x + length * np.cos(turn), at + length * np.sin(turn))
-                leaf = blade(u, v, centre, length, 0.13 * length, turn, size)
+                center = (x + length * np.cos(turn), at + length * np.sin(turn))
+                leaf = blade(u, v, center, length, 0.13 * length, turn, size)
                 alpha = np.maximum(alpha, leaf)
                 shade = np.where(leaf > 0, random.uniform(0.6, 1.0), shade)
     image = np.zeros((size, size, 4))
@@ -80,11 +80,11 @@ def twig(size: int) -> Array:
 
 
 def blade(
-    u: Array, v: Array, centre: tuple[float, float], length: float, width: float, turn: float,
+    u: Array, v: Array, center: tuple[float, float], length: float, width: float, turn: float,
     size: int,
 ) -> Array:  # fmt: skip
     """The alpha of a leaf pointed at both ends, over a texel from 0 to 1."""
-    x, y = u - centre[0], v - centre[1]
+    x, y = u - center[0], v - center[1]
     along = (x * np.cos(turn) + y * np.sin(turn)) / length
     across = np.abs(-x * np.sin(turn) + y * np.cos(turn))
     return np.clip((width * (1 - along**2) - across) * size + 0.5, 0, 1) * (np.abs(along) < 1)

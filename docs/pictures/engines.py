@@ -43,7 +43,7 @@ def main(folder: Path) -> None:
         difference = (found[..., :3] - levels[0][..., :3]) * alpha
         error = np.sqrt(np.mean(difference**2))
         print(f"{title}: {error:.2f} steps of 8 bits, {bits:.1f} bits a texel")
-        cells.append((over_grey(found), f"{title}: {bits:.0f} bits a texel"))
+        cells.append((over_gray(found), f"{title}: {bits:.0f} bits a texel"))
         if name != "rgba8":
             shown = np.clip(128 + GAIN * difference, 0, 255)
             cells.append((shown, f"{title}: error x {GAIN}, {error:.1f} / 255"))
@@ -71,7 +71,7 @@ def texture() -> Bytes:
     return np.dstack([np.asarray(picture), (255 * alpha).astype(np.uint8)])[::-1].copy()
 
 
-def over_grey(rgba: NDArray[np.float64]) -> NDArray[np.float64]:
+def over_gray(rgba: NDArray[np.float64]) -> NDArray[np.float64]:
     """The colors over the gray that an error of zero has."""
     alpha = rgba[..., 3:] / 255
     return rgba[..., :3] * alpha + 128 * (1 - alpha)

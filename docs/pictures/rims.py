@@ -26,7 +26,7 @@ DEPTH = 6
 SAMPLES = 24
 RADIUS = 0.42
 CREASE = math.radians(30)
-TOWARDS = mathutils.Vector((0.25, -0.55, 1.0)).normalized()
+TOWARD = mathutils.Vector((0.25, -0.55, 1.0)).normalized()
 WHOLE, CLOSE = 2.6, 0.5  # How wide the camera sees.
 Mesh = tuple[np.ndarray, np.ndarray]
 
@@ -128,7 +128,7 @@ def rim_point(positions: np.ndarray, cutter: Mesh) -> tuple[float, ...]:
     away = positions - middle
     radius = np.linalg.norm(away - np.outer(away @ axis, axis), axis=1)
     rim = positions[np.abs(radius - RADIUS) < 1e-3]
-    return tuple(rim[(rim @ np.array(TOWARDS)).argmax()])
+    return tuple(rim[(rim @ np.array(TOWARD)).argmax()])
 
 
 def set_up_light(scene: bpy.types.Scene) -> None:
@@ -153,8 +153,8 @@ def set_up_light(scene: bpy.types.Scene) -> None:
 
 def aim(scene: bpy.types.Scene, point: tuple[float, ...], width: float) -> None:
     """Lets the camera look at a point."""
-    scene.camera.location = mathutils.Vector(point) + 6 * TOWARDS
-    scene.camera.rotation_euler = TOWARDS.to_track_quat("Z", "Y").to_euler()
+    scene.camera.location = mathutils.Vector(point) + 6 * TOWARD
+    scene.camera.rotation_euler = TOWARD.to_track_quat("Z", "Y").to_euler()
     scene.camera.data.ortho_scale = width
 
 

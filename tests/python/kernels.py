@@ -48,16 +48,16 @@ def folded(weights, reach, size, wrap):
     return result.T
 
 
-def weights_at(filter, centres, width, size, wrap):
+def weights_at(filter, centers, width, size, wrap):
     """Of the texels along an axis, a row for each center, where the unit is `width` texels wide."""
-    centre = np.atleast_1d(np.asarray(centres, float))[:, None]
-    reach = int(np.ceil(3 * max(width, 1) + abs(centre).max())) + 1
+    center = np.atleast_1d(np.asarray(centers, float))[:, None]
+    reach = int(np.ceil(3 * max(width, 1) + abs(center).max())) + 1
     texel = np.arange(-reach, size + reach)
     if filter == "box":
-        low = np.maximum(texel, centre - width / 2)
-        weights = np.maximum(0.0, np.minimum(texel + 1, centre + width / 2) - low)
+        low = np.maximum(texel, center - width / 2)
+        weights = np.maximum(0.0, np.minimum(texel + 1, center + width / 2) - low)
     else:
-        weights = KERNELS[filter][0]((texel + 0.5 - centre) / max(1.0, width))
+        weights = KERNELS[filter][0]((texel + 0.5 - center) / max(1.0, width))
     return folded(weights / weights.sum(axis=1, keepdims=True), reach, size, wrap)
 
 

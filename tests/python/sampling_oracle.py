@@ -41,14 +41,14 @@ def kernel(filter, x):
     return _form(filter, x) / _integral(filter)
 
 
-def taps(filter, centre, width, first, last):
+def taps(filter, center, width, first, last):
     """The weights of texels `first` to `last` under a kernel whose unit is `width` texels."""
     texel = np.arange(first, last + 1)
     if filter == "box":
-        low = np.maximum(texel, centre - width / 2)
-        weights = np.maximum(0.0, np.minimum(texel + 1, centre + width / 2) - low)
+        low = np.maximum(texel, center - width / 2)
+        weights = np.maximum(0.0, np.minimum(texel + 1, center + width / 2) - low)
     else:
-        weights = kernel(filter, (texel + 0.5 - centre) / max(1.0, width))
+        weights = kernel(filter, (texel + 0.5 - center) / max(1.0, width))
     return weights / weights.sum()
 
 

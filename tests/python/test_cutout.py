@@ -183,7 +183,7 @@ def test_one_texel_shows_all_or_nothing():
             assert (level.item() >= 0.5) is shown
 
 
-def test_premultiplied_colours_follow_alpha():
+def test_premultiplied_colors_follow_alpha():
     image = leaves(64, 60, 3)
     associated = image.copy()
     associated[..., :3] *= image[..., 3:]
@@ -201,7 +201,7 @@ def test_premultiplied_colours_follow_alpha():
 
 
 @pytest.mark.parametrize("filter", ["pam-bilinear", "pam-box", "box", "lanczos3-covered"])
-def test_colours_under_no_alpha_do_not_bleed(filter):
+def test_colors_under_no_alpha_do_not_bleed(filter):
     """The red that nothing shows is in no level, wherever a lookup has any alpha."""
     mesh = two_charts()
     levels = prefilter.mipmaps(leaves(128, 60, 3), mesh.surface, filter=filter)

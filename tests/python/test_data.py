@@ -98,7 +98,7 @@ def test_both_kinds_of_alpha_give_the_same_light(premultiplied, peak):
 
 
 @pytest.mark.parametrize("filter", FILTERS)
-def test_straight_colours_are_those_that_are_seen(filter):
+def test_straight_colors_are_those_that_are_seen(filter):
     """Blue that no alpha shows stays out of every level, however bright it is."""
     image = np.zeros((32, 32, 4), np.float32)
     image[...] = (0.0, 0.0, 900.0, 0.0)

@@ -147,7 +147,7 @@ def test_flat_levels_are_small(tmp_path):
     np.testing.assert_array_equal(read_back(path)[0][0], levels[0])
 
 
-def test_progress_and_cancelling(tmp_path):
+def test_progress_and_canceling(tmp_path):
     path = tmp_path / "texture.exr"
     path.write_bytes(b"before")
     levels = pyramid(700, 700, 3)

@@ -62,7 +62,7 @@ def images(*channels: int) -> list[AsHad]:
 
 
 IMAGES = [*images(), *images(3), *images(4)]
-GREY = [*images(), *images(1)]
+GRAY = [*images(), *images(1)]
 ALPHA = images(4)
 named = {"ids": lambda had: had.name}
 
@@ -152,7 +152,7 @@ def test_alpha(had):
     check(had, prefilter.fill_transparent(had.image), prefilter.fill_transparent(had.meant))
 
 
-@pytest.mark.parametrize("had", [*GREY, *ALPHA], **named)
+@pytest.mark.parametrize("had", [*GRAY, *ALPHA], **named)
 def test_cut_outs(had):
     coarser = prefilter.mipmaps(had.meant, filter="tent")[1:]
     flat = [level[..., 0] for level in coarser] if np.ndim(had.image) == 2 else coarser
@@ -166,7 +166,7 @@ def test_normals(had):
     check_levels(had, found, prefilter.normal_mipmaps(had.meant, SURFACE))
 
 
-@pytest.mark.parametrize("had", GREY, **named)
+@pytest.mark.parametrize("had", GRAY, **named)
 def test_roughness(had):
     normals = random_image(8, *had.meant.shape[:2], 3)
     found = prefilter.normal_mipmaps(normals, SURFACE, roughness=had.image)

@@ -191,16 +191,16 @@ def test_whole_tiles_weigh_as_much_as_their_parts():
     ("filter", "kind", "paint"),
     [
         *itertools.product(
-            ["box-covered", *PAM], ["colours", "alpha", "opaque"], [np.nan, np.inf, -1e30, 1e30]
+            ["box-covered", *PAM], ["colors", "alpha", "opaque"], [np.nan, np.inf, -1e30, 1e30]
         ),
         # The other kernels weigh texels where "box-covered" does.
-        *((filter, "colours", np.nan) for filter in COVERED if filter != "box-covered"),
+        *((filter, "colors", np.nan) for filter in COVERED if filter != "box-covered"),
     ],
 )
 def test_unused_texels_have_no_influence_at_all(filter, kind, paint):
     charts = [square((0.1, 0.15), (0.43, 0.4)), square((0.6, 0.55), (0.8, 0.95), area=0.2)]
     mesh = join(*charts, soup([[(0.2, 0.7), (0.4, 0.9), (0.3, 0.8)]]))
-    image = random_image(7, 64, 64, 3 if kind == "colours" else 4) * np.float32(0.8)
+    image = random_image(7, 64, 64, 3 if kind == "colors" else 4) * np.float32(0.8)
     if kind == "opaque":
         image[..., 3] = 1
     uvs, _ = surface_samples(mesh, 400)
@@ -223,7 +223,7 @@ def test_unused_texels_have_no_influence_at_all(filter, kind, paint):
 
 
 @pytest.mark.parametrize("filter", COVERED + PAM)
-def test_unused_texels_are_filled_with_colours_of_the_image(filter):
+def test_unused_texels_are_filled_with_colors_of_the_image(filter):
     image = np.zeros((64, 64, 3), np.float32)
     image[...] = (1, 0, 1)
     mesh = square((0.2, 0.2), (0.45, 0.45))
@@ -281,7 +281,7 @@ def test_the_error_of_the_image_itself_is_zero():
     assert prefilter.mipmap_error(levels, image, mesh.surface, [0.0, -3.0, 9.0]).max() < 1e-7
 
 
-def test_straight_alpha_weighs_colours():
+def test_straight_alpha_weighs_colors():
     image = random_image(12, 16, 16, 4)
     image[..., 3] = image[..., 3] > 0.4
     hidden = image[..., 3] == 0
@@ -311,8 +311,8 @@ def test_straight_alpha_weighs_colours():
 
 @pytest.mark.parametrize("filter", ALL)
 @pytest.mark.parametrize("bounds", [(0.0, 1.0), None, (0.0, None)])
-def test_a_constant_colour_stays_constant_under_any_alpha(filter, bounds):
-    colour = np.array((0.9, 0.5, 0.7), np.float32)
+def test_a_constant_color_stays_constant_under_any_alpha(filter, bounds):
+    color = np.array((0.9, 0.5, 0.7), np.float32)
     random = np.random.default_rng(13)
     y, x = np.mgrid[:64, :64] / 64 - 0.5
     alphas = [
@@ -323,11 +323,11 @@ def test_a_constant_colour_stays_constant_under_any_alpha(filter, bounds):
     ]
     for alpha in alphas:
         image = np.empty((64, 64, 4), np.float32)
-        image[..., :3] = colour
+        image[..., :3] = color
         image[..., 3] = alpha
         for level in prefilter.mipmaps(image, square().surface, filter=filter, bounds=bounds)[1:]:
             seen = level[..., 3] > 0
-            assert np.abs(level[..., :3] - colour)[seen].max() < 1e-4
+            assert np.abs(level[..., :3] - color)[seen].max() < 1e-4
 
 
 def test_alpha_of_one_everywhere_is_no_alpha():

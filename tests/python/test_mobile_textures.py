@@ -309,7 +309,7 @@ def test_refusals(tmp_path, levels, options, words):
 
 
 @pytest.mark.parametrize("format", ["astc-8x8", "uastc", "rgba8"])
-def test_cancelling_writes_nothing(tmp_path, format):
+def test_canceling_writes_nothing(tmp_path, format):
     fractions: list[float] = []
 
     def stop(fraction: float) -> bool:

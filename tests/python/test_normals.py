@@ -200,15 +200,15 @@ def lobe_errors(level, count=60):
     errors = []
     for _ in range(count):
         low, high = np.array(charts[random.integers(2)])
-        centre = random.uniform(low + half, high - half)
-        points = centre + random.uniform(-half, half, (400, 2))
+        center = random.uniform(low + half, high - half)
+        points = center + random.uniform(-half, half, (400, 2))
         shown = unit(2 * scenes.bilinear(image, points, CLAMP) - 1)
         values = scenes.bilinear(rough, points, CLAMP)[:, 0]
         truth = lobe(directions, shown, values).mean(1)
-        normal = unit(2 * scenes.bilinear(normals[level], centre[None], CLAMP) - 1)
+        normal = unit(2 * scenes.bilinear(normals[level], center[None], CLAMP) - 1)
         mean = unit(shown.mean(0))[None]
-        read = scenes.bilinear(added[level], centre[None], CLAMP)[0, 0]
-        unadded = scenes.bilinear(plain[level], centre[None], CLAMP)[0, 0] ** 0.25
+        read = scenes.bilinear(added[level], center[None], CLAMP)[0, 0]
+        unadded = scenes.bilinear(plain[level], center[None], CLAMP)[0, 0] ** 0.25
         pairs = [(normal, read), (normal, unadded), (mean, read), (mean, rougher(shown, values))]
         errors.append(
             [

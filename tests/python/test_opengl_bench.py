@@ -26,10 +26,10 @@ def levels():
     return [random.random((SIDE >> k, SIDE >> k, 3)).astype(np.float32) for k in range(7)]
 
 
-def quads(*centres):
+def quads(*centers):
     """A model of squares of 2 x 2 that face +y, at places (x, y), each with all of the texture."""
     ends = np.array([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]], float)
-    corners = [ends + np.array([x, y, 0]) for x, y in centres]
+    corners = [ends + np.array([x, y, 0]) for x, y in centers]
     uvs = (ends[:, [0, 2]] + 1) / 2
     threes = ([0, 1, 2], [0, 2, 3])
     return Model(

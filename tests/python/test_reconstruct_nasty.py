@@ -225,7 +225,7 @@ def test_threads_do_not_change_what_is_trimmed(trim):
 
 
 @pytest.mark.parametrize("depth", [1, 2])
-def test_cells_without_neighbours_count_where_none_are_larger(depth: int) -> None:
+def test_cells_without_neighbors_count_where_none_are_larger(depth: int) -> None:
     """A corner of a box: too few samples to be neighbors of each other."""
     points = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, -1.0, -1.0]])
     positions, triangles = prefilter.reconstruct(points, points, depth=depth)

@@ -218,7 +218,7 @@ def test_any_number_of_channels_bytes_and_affine_maps():
         {"filter": "gaussian", "max_probes": 4, "exact": True},
     ],
 )
-def test_threads_progress_and_cancelling(options):
+def test_threads_progress_and_canceling(options):
     image = random_image(12, 32, 32, 4)
     one, four = (
         prefilter.resample(image, PERSPECTIVE, 90, 80, threads=n, **options) for n in (1, 4)

@@ -76,7 +76,7 @@ def test_a_full_disk(tmp_path, sphere, size, memory_limit):
 
 
 @pytest.mark.parametrize("memory_limit", [None, 0])
-def test_cancelling(tmp_path, sphere, memory_limit):
+def test_canceling(tmp_path, sphere, memory_limit):
     source = write(tmp_path, "cloud.ply", sphere)
     for after in (0.0, 0.3, 0.6, 0.9):
         with only_target_is_left(tmp_path) as target, pytest.raises(prefilter.Cancelled):

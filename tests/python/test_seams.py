@@ -222,7 +222,7 @@ def test_more_budget_hides_more(filter):
     assert (contrasts[-1] < 0.2 * contrasts[0]).all()
 
 
-def test_an_image_of_one_colour_stays():
+def test_an_image_of_one_color_stays():
     mesh, _, _ = folded()
     image = np.full((16, 16, 3), 0.25, np.float32)
     for level in prefilter.mipmaps(image, mesh.surface, seam_budget=0.1):
@@ -248,7 +248,7 @@ def test_footprints_have_budgets_of_their_own(filter, footprint):
         assert (more < np.maximum(less, 0.05 * contrasts[0])).all()
 
 
-def test_corners_of_one_colour_do_not_tell_the_contrast():
+def test_corners_of_one_color_do_not_tell_the_contrast():
     """Stripes that have a whole number of periods along every edge of a mesh of few triangles."""
     period = 0.3
     positions = np.array([(x, y, 0) for x in range(3) for y in range(2)], np.float64)
@@ -269,8 +269,8 @@ def test_corners_of_one_colour_do_not_tell_the_contrast():
 
 def continuous(mesh, size):
     """An image of a pattern on the surface: the same on both sides of the seam."""
-    centres = (np.arange(size) + 0.5) / size
-    u, v = np.meshgrid(centres, centres)
+    centers = (np.arange(size) + 0.5) / size
+    u, v = np.meshgrid(centers, centers)
     at = np.zeros((size, size, 3))
     for corners, uvs in zip(mesh.positions[mesh.triangles], mesh.uvs, strict=True):
         edges = np.linalg.inv((uvs[1:] - uvs[0]).T)
@@ -327,7 +327,7 @@ def test_results_do_not_depend_on_threads():
         np.testing.assert_array_equal(a, b)
 
 
-def test_a_change_of_colour_along_a_seam_stays():
+def test_a_change_of_color_along_a_seam_stays():
     mesh, _, _ = folded()
     image = np.zeros((32, 32, 1), np.float32)
     image[:, 17:] = 1.0  # The one square is black and the other white.

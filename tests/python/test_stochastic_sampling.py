@@ -143,7 +143,7 @@ def test_the_ends_of_the_numbers_and_no_samples():
     np.testing.assert_array_equal(exact, np.tile(levels[0][0, 0], (2, 1)))
 
 
-def test_progress_and_cancelling():
+def test_progress_and_canceling():
     levels, table = levels_for("lanczos2"), TABLES["lanczos2"]
     many = (np.random.default_rng(2).random((20_000, 2)), 2.0, np.zeros(20_000))
     told = []

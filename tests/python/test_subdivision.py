@@ -68,7 +68,7 @@ def refined(points, faces, sharp):
         of_vertex[edge[0]].add(edge)
         of_vertex[edge[1]].add(edge)
     sharp = {e: sharp.get(e, 0) if len(of_edge[e]) == 2 else np.inf for e in of_edge}
-    centres = np.array([points[face].mean(axis=0) for face in faces])
+    centers = np.array([points[face].mean(axis=0) for face in faces])
     new, place, next_sharp = [], {}, {}
     for v in range(len(points)):
         n = len(of_vertex[v])
@@ -79,17 +79,17 @@ def refined(points, faces, sharp):
         elif len(creases) == 2:
             new.append(0.75 * points[v] + 0.125 * points[creases].sum(axis=0))
         else:
-            around = points[others].sum(axis=0) + centres[faces_at[v]].sum(axis=0)
+            around = points[others].sum(axis=0) + centers[faces_at[v]].sum(axis=0)
             new.append((n - 2) / n * points[v] + around / n**2)
     for edge, (one, *two) in of_edge.items():
         place[edge] = len(new)
         middle = points[list(edge)].mean(axis=0)
         smooth = not sharp[edge] >= 1
-        new.append((middle + centres[[one, *two]].mean(axis=0)) / 2 if smooth else middle)
+        new.append((middle + centers[[one, *two]].mean(axis=0)) / 2 if smooth else middle)
         for v in edge:
             next_sharp[v, place[edge]] = max(0, sharp[edge] - 1)
     first = len(new)
-    new.extend(centres)
+    new.extend(centers)
     quads = []
     for k, face in enumerate(faces):
         for i, v in enumerate(face):
@@ -101,11 +101,11 @@ def refined(points, faces, sharp):
 
 def limit_points(points, faces, sharp):
     """The limit masks, for meshes of quads: Halstead, Kass and DeRose; cubic B-splines."""
-    neighbours, across = defaultdict(set), defaultdict(list)
+    neighbors, across = defaultdict(set), defaultdict(list)
     counts, creases = defaultdict(int), defaultdict(list)
     for face in faces:
         for i, v in enumerate(face):
-            neighbours[v] |= {face[i - 1], face[(i + 1) % 4]}
+            neighbors[v] |= {face[i - 1], face[(i + 1) % 4]}
             across[v].append(face[(i + 2) % 4])
     for edge in edges_of(faces):
         counts[edge] += 1
@@ -115,13 +115,13 @@ def limit_points(points, faces, sharp):
             creases[b].append(a)
     found = []
     for v, point in enumerate(points):
-        n = len(neighbours[v])
+        n = len(neighbors[v])
         if len(creases[v]) > 2:
             found.append(point)
         elif len(creases[v]) == 2:
             found.append((4 * point + points[creases[v]].sum(axis=0)) / 6)
         else:
-            around = 4 * points[list(neighbours[v])].sum(axis=0) + points[across[v]].sum(axis=0)
+            around = 4 * points[list(neighbors[v])].sum(axis=0) + points[across[v]].sum(axis=0)
             found.append((n * n * point + around) / (n * (n + 5)))
     return np.array(found)
 
@@ -409,7 +409,7 @@ def test_memory_is_refused_before_it_is_asked_for():
         limit(positions, faces, level=10)
 
 
-def test_progress_and_cancelling():
+def test_progress_and_canceling():
     seen = []
     limit(CUBE, CUBE_FACES, level=7, progress=seen.append)
     assert seen == sorted(seen)

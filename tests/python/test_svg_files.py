@@ -292,7 +292,7 @@ def test_bad_arguments():
             drawing.shapes_for(*size)
 
 
-def test_progress_and_cancelling():
+def test_progress_and_canceling():
     body = '<rect width="9" height="9"/>' * 3000
     told = []
     drawing = read(body, progress=told.append)

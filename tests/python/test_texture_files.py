@@ -471,7 +471,7 @@ def test_file_is_replaced_with_its_mode_and_through_links(tmp_path, kind):
     np.testing.assert_array_equal(read(target).levels[0][..., :3], GOOD[0])
 
 
-def test_cancelling_writes_nothing(tmp_path, kind):
+def test_canceling_writes_nothing(tmp_path, kind):
     write, _ = WRITERS[kind]
     target = tmp_path / "file"
     target.write_bytes(b"old")

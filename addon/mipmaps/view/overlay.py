@@ -75,7 +75,7 @@ void main()
   float alpha = clamp(light.a, 0.0, 1.0);
   vec3 shown = clamp(blends && alpha > 0.0 ? light.rgb / alpha : light.rgb, 0.0, 1.0);
   if (blends) {
-    // As the editor does, which used to multiply colour as it is displayed.
+    // As the editor does, which used to multiply color as it is displayed.
     shown = MULTIPLIES_LIGHT ? shown * alpha : decoded(encoded(shown) * alpha);
   }
   if (channels == 0 && blends) {

@@ -31,7 +31,7 @@ class Preview:
             multiplied by alpha where that is coverage.
         wrap: What lookups read outside of the image along u and v.
         blends: Whether alpha is coverage.
-        decodes_after: Whether lookups interpolate encoded texels, and decode afterwards.
+        decodes_after: Whether lookups interpolate encoded texels, and decode afterward.
         objects: The names of the objects that wear the image.
         is_stale: Whether the image or an object has changed since.
     """

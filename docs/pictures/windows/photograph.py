@@ -105,8 +105,8 @@ def framebuffer(path: Path) -> np.ndarray:
     """The screen as (height, width, 3) bytes, from X's window dump format (XWDFile.h)."""
     dump = path.read_bytes()
     header = np.frombuffer(dump, ">u4", 25)
-    size, width, height, bytes_per_line, colours = header[[0, 4, 5, 12, 19]]
-    start = size + 12 * colours
+    size, width, height, bytes_per_line, colors = header[[0, 4, 5, 12, 19]]
+    start = size + 12 * colors
     rows = np.frombuffer(dump, np.uint8, height * bytes_per_line, start)
     pixels = rows.reshape(height, -1)[:, : 4 * width].reshape(height, width, 4)
     return pixels[..., 2::-1]

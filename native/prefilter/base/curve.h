@@ -59,10 +59,10 @@ Point2 point_at(const Curve& curve, double t);
 Point2 derivative_at(const Curve& curve, double t);
 
 /// Appends a curve to the contour that an outline ends with, `end` in place of its last point; or
-/// backwards, `end` in place of its first.
+/// backward, `end` in place of its first.
 void append_curve(const Curve& curve, bool reversed, const Point2& end, Outline* outline);
 
-/// Appends a contour that has segments, closed, or closed and backwards.
+/// Appends a contour that has segments, closed, or closed and backward.
 void append_contour(const Outline& from, std::size_t index, bool reversed, Outline* to);
 
 /// The curve between two parameters, `from` <= `to`, with control points of its own.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Cancelling in the middle of steps whose number is not known.
+// Canceling in the middle of steps whose number is not known.
 #pragma once
 
 #include <cstdint>

@@ -16,7 +16,7 @@
 namespace prefilter {
 namespace {
 
-// A share of a row of blocks, so that cancelling takes effect soon whatever the width.
+// A share of a row of blocks, so that canceling takes effect soon whatever the width.
 constexpr int kBlocksAtOnce = 64;
 
 template <class Channel>

@@ -12,13 +12,13 @@ namespace prefilter {
 namespace {
 
 template <typename Curve>
-Image map_colours(const ImageView& image, int threads, const Curve& curve) {
+Image map_colors(const ImageView& image, int threads, const Curve& curve) {
   Image result(image);
-  const int colours = std::min(image.channels, 3);
+  const int colors = std::min(image.channels, 3);
   parallel_for(image.height, threads, Progress(), [&](std::int64_t y) {
     float* texel = result.texel(0, static_cast<int>(y));
     for (int x = 0; x < image.width; ++x, texel += image.channels) {
-      for (int c = 0; c < colours; ++c) texel[c] = curve(texel[c]);
+      for (int c = 0; c < colors; ++c) texel[c] = curve(texel[c]);
     }
   });
   return result;
@@ -42,11 +42,11 @@ float linear_to_srgb(float linear) {
 }
 
 Image decode_srgb(const ImageView& image, int threads) {
-  return map_colours(image, threads, srgb_to_linear);
+  return map_colors(image, threads, srgb_to_linear);
 }
 
 Image encode_srgb(const ImageView& image, int threads) {
-  return map_colours(image, threads, linear_to_srgb);
+  return map_colors(image, threads, linear_to_srgb);
 }
 
 ByteValues byte_values(bool srgb) {
@@ -67,9 +67,8 @@ std::vector<std::uint8_t> to_bytes(const ImageView& image, bool srgb, int thread
     const float* value = image.texel(0, static_cast<int>(y));
     std::uint8_t* byte = bytes.data() + static_cast<std::size_t>(y) * row_values;
     for (std::size_t i = 0; i < row_values; ++i) {
-      const bool colour =
-          srgb && static_cast<int>(i % static_cast<std::size_t>(image.channels)) < 3;
-      const float encoded = colour ? linear_to_srgb(value[i]) : value[i];
+      const bool color = srgb && static_cast<int>(i % static_cast<std::size_t>(image.channels)) < 3;
+      const float encoded = color ? linear_to_srgb(value[i]) : value[i];
       byte[i] = static_cast<std::uint8_t>(std::clamp(encoded, 0.0F, 1.0F) * 255.0F + 0.5F);
     }
   });

@@ -43,7 +43,7 @@ class ContourTree {
   float isovalue() const { return isovalue_; }
   CellNode root() const { return {0, 0, 0, 0, !cells_.levels.empty(), root_sides_}; }
 
-  /// Puts a leaf on a side, kInside or kOutside, whatever its value. Afterwards update_sides() is
+  /// Puts a leaf on a side, kInside or kOutside, whatever its value. Afterward update_sides() is
   /// due.
   void set_side(std::size_t level, std::size_t block, int octant, std::uint8_t side) {
     std::uint16_t& sides = blocks_[level][block].sides;
@@ -101,12 +101,12 @@ inline CellCoordinates octant_at(const CellCoordinates& at, int o) {
 
 /// The cell that a face of a cell of the same depth leads to, or the leaf that holds it. Faces are
 /// numbered 2 a for the one across axis a at its low side, and 2 a + 1 for that at its high side.
-using FaceNeighbours = std::array<CellNode, 6>;
+using FaceNeighbors = std::array<CellNode, 6>;
 
 /// The neighbors of an octant, from the neighbors of the cell.
-inline FaceNeighbours octant_neighbours(const ContourTree& tree, const CellNode& cell,
-                                        const FaceNeighbours& of_cell, int octant) {
-  FaceNeighbours result;
+inline FaceNeighbors octant_neighbors(const ContourTree& tree, const CellNode& cell,
+                                      const FaceNeighbors& of_cell, int octant) {
+  FaceNeighbors result;
   for (int face = 0; face < 6; ++face) {
     const int bit = 1 << (face / 2);
     const bool towards_high = (face & 1) != 0;

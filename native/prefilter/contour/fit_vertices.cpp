@@ -168,7 +168,7 @@ void settle_sides(const Progress& progress, int threads, ContourTree* tree) {
                  for (int o = 0; o < 8; ++o) {
                    if (!is_doubtful(level, block.block, o)) continue;
                    const std::optional<float> height =
-                       height_over_centre(window->cell(octant_at(block.at, o)), window->strides());
+                       height_over_center(window->cell(octant_at(block.at, o)), window->strides());
                    if (height)
                      tree->set_side(level, block.block, o, *height >= 0.0F ? kInside : kOutside);
                  }

@@ -13,7 +13,7 @@ namespace prefilter {
 inline constexpr float kDoubt = 0.05F;
 
 /// Puts leaves whose occupancy is close to 1/2 on the side that their center is on, by
-/// height_over_centre: on a curved surface the two differ, and triangles between such a center and
+/// height_over_center: on a curved surface the two differ, and triangles between such a center and
 /// the surface would be inside out. Throws Error(kCancelled).
 void settle_sides(const Progress& progress, int threads, ContourTree* tree);
 

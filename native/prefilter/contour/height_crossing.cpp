@@ -13,7 +13,7 @@ constexpr float kSlack = 0.05F;
 // Of heights in cells: more is an edge.
 constexpr float kMostCurved = 0.5F;
 
-// `up` leads towards the empty end.
+// `up` leads toward the empty end.
 std::optional<float> height_at(const float* cell, std::ptrdiff_t up) {
   return column_height([&](int step) { return cell[step * up]; });
 }
@@ -37,20 +37,20 @@ Profile profile(const float* cell, std::ptrdiff_t across, std::ptrdiff_t up, flo
 }
 
 // The axis along which the occupancies around the two cells change most.
-int steepest_axis(const float* cell, const float* neighbour,
+int steepest_axis(const float* cell, const float* neighbor,
                   const std::array<std::ptrdiff_t, 3>& strides, float* change) {
   int steepest = 0;
   float most = -1.0F;
   for (int axis = 0; axis < 3; ++axis) {
     const std::ptrdiff_t step = strides[axis];
     float difference = 0.0F;
-    for (const float* centre : {cell, neighbour}) {
-      difference += 2.0F * (centre[step] - centre[-step]);
+    for (const float* center : {cell, neighbor}) {
+      difference += 2.0F * (center[step] - center[-step]);
       for (int across = 0; across < 3; ++across) {
         if (across == axis) continue;
         const std::ptrdiff_t side = strides[across];
-        difference += centre[side + step] - centre[side - step];
-        difference += centre[step - side] - centre[-step - side];
+        difference += center[side + step] - center[side - step];
+        difference += center[step - side] - center[-step - side];
       }
     }
     if (std::abs(difference) > most) {
@@ -76,8 +76,8 @@ std::optional<LocalSurface> surface_over(const float* cell, std::ptrdiff_t up,
   const Profile first = profile(cell, across[0], up, *height);
   const Profile second = profile(cell, across[1], up, *height);
   // From the mean over the column to the height at its center.
-  const float at_centre = *height - (first.curvature + second.curvature) / 24.0F - 0.5F;
-  return LocalSurface{at_centre, first, second};
+  const float at_center = *height - (first.curvature + second.curvature) / 24.0F - 0.5F;
+  return LocalSurface{at_center, first, second};
 }
 
 // The crossing as seen from one of the cells, on the way to the other: `along` leads there.
@@ -85,22 +85,22 @@ std::optional<float> crossing_from(const float* cell, std::ptrdiff_t along, std:
                                    const std::array<std::ptrdiff_t, 2>& across) {
   const std::optional<LocalSurface> surface = surface_over(cell, up, across);
   if (!surface) return std::nullopt;
-  const float at_centre = surface->height;
-  if (along == up) return at_centre;
-  if (along == -up) return -at_centre;
+  const float at_center = surface->height;
+  if (along == up) return at_center;
+  if (along == -up) return -at_center;
   const bool is_first = along == across[0] || along == -across[0];
   const Profile& profile_along = is_first ? surface->first : surface->second;
   if (!profile_along.has_slope) return std::nullopt;
   const bool is_forward = along == across[0] || along == across[1];
   const float slope = is_forward ? profile_along.slope : -profile_along.slope;
   const float curvature = profile_along.curvature;
-  // Where at_centre + slope t + curvature t^2 / 2 is 0. The root near that of the line.
+  // Where at_center + slope t + curvature t^2 / 2 is 0. The root near that of the line.
   if (slope == 0.0F) return std::nullopt;
-  float t = -at_centre / slope;
+  float t = -at_center / slope;
   for (int i = 0; i < 3; ++i) {
     const float derivative = slope + curvature * t;
-    if (std::abs(derivative) < 0.25F * std::abs(slope)) return -at_centre / slope;
-    t -= (at_centre + slope * t + 0.5F * curvature * t * t) / derivative;
+    if (std::abs(derivative) < 0.25F * std::abs(slope)) return -at_center / slope;
+    t -= (at_center + slope * t + 0.5F * curvature * t * t) / derivative;
   }
   return t;
 }
@@ -110,22 +110,22 @@ std::optional<float> height_crossing(const float* cell,
                                      const std::array<std::ptrdiff_t, 3>& strides, int face) {
   const int along_axis = face / 2;
   const std::ptrdiff_t along = (face & 1) != 0 ? strides[along_axis] : -strides[along_axis];
-  const float* neighbour = cell + along;
+  const float* neighbor = cell + along;
   float change = 0.0F;
-  const int axis = steepest_axis(cell, neighbour, strides, &change);
+  const int axis = steepest_axis(cell, neighbor, strides, &change);
   const std::ptrdiff_t up = change < 0.0F ? strides[axis] : -strides[axis];
   const std::array<std::ptrdiff_t, 2> across = {strides[(axis + 1) % 3], strides[(axis + 2) % 3]};
   std::optional<float> t = crossing_from(cell, along, up, across);
   if (axis != along_axis && (!t || *t > 0.5F)) {
     // The other cell is nearer.
-    const std::optional<float> back = crossing_from(neighbour, -along, up, across);
+    const std::optional<float> back = crossing_from(neighbor, -along, up, across);
     if (back) t = 1.0F - *back;
   }
   if (!t || !(*t >= -kSlack && *t <= 1.0F + kSlack)) return std::nullopt;
   return t;
 }
 
-std::optional<float> height_over_centre(const float* cell,
+std::optional<float> height_over_center(const float* cell,
                                         const std::array<std::ptrdiff_t, 3>& strides) {
   float change = 0.0F;
   const int axis = steepest_axis(cell, cell, strides, &change);

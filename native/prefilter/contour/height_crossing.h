@@ -28,7 +28,7 @@ std::optional<float> height_crossing(const float* cell,
 
 /// The height of the surface over the cell's center along the axis that it faces most, in cells, so
 /// that the center is inside where it is positive; none as above.
-std::optional<float> height_over_centre(const float* cell,
+std::optional<float> height_over_center(const float* cell,
                                         const std::array<std::ptrdiff_t, 3>& strides);
 
 }  // namespace prefilter

@@ -16,7 +16,7 @@ constexpr double kMostOff = 0.004;
 }  // namespace
 
 double HeightPatch::above(const Vector3& point, Vector3* gradient) const {
-  const Vector3 offset = point - centre;
+  const Vector3 offset = point - center;
   const int first = (axis + 1) % 3;
   const int second = (axis + 2) % 3;
   const double s = offset[first];
@@ -41,14 +41,14 @@ Vector3 HeightPatch::projected(Vector3 point, Vector3* gradient) const {
 }
 
 Vector3 HeightPatch::foot() const {
-  Vector3 foot = centre;
+  Vector3 foot = center;
   foot[axis] += is_up ? height : -height;
   return foot;
 }
 
 Vector3 HeightPatch::normal() const {
   Vector3 gradient;
-  above(centre, &gradient);
+  above(center, &gradient);
   return (1.0 / length(gradient)) * gradient;
 }
 

@@ -11,7 +11,7 @@ namespace prefilter {
 
 /// A quadratic along an axis. Lengths are cells of the root.
 struct HeightPatch {
-  Vector3 centre{};  // of the cell
+  Vector3 center{};  // of the cell
   int axis = 0;
   bool is_up = true;  // full cells are below
   double height = 0.0;

@@ -115,7 +115,7 @@ bool OccupancySurface::fit(SurfaceCell* cell) const {
     if (std::abs(gradient[a]) > std::abs(gradient[patch.axis])) patch.axis = a;
   }
   patch.is_up = gradient[patch.axis] < 0.0;
-  for (int a = 0; a < 3; ++a) patch.centre[a] = at[a] + 0.5;
+  for (int a = 0; a < 3; ++a) patch.center[a] = at[a] + 0.5;
   std::array<std::array<double, 3>, 3> heights;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -193,10 +193,10 @@ std::vector<OccupancySurface::Candidate> OccupancySurface::candidates(
     }
     found.push_back({region, cell, score});
   });
-  const Vector3 centre = {at[0] + 0.5, at[1] + 0.5, at[2] + 0.5};
+  const Vector3 center = {at[0] + 0.5, at[1] + 0.5, at[2] + 0.5};
   std::erase_if(found, [&](const Candidate& candidate) {
     Vector3 gradient;
-    const double above = cells_[candidate.cell].patch.above(centre, &gradient);
+    const double above = cells_[candidate.cell].patch.above(center, &gradient);
     return std::abs(above) > kMostFar * length(gradient);
   });
   return found;
@@ -209,7 +209,7 @@ void OccupancySurface::merge_across_gaps() {
     std::vector<Vector3> normals;
     for (const Candidate& candidate : near) {
       Vector3 gradient;
-      cells_[candidate.cell].patch.projected(cells_[cell].patch.centre, &gradient);
+      cells_[candidate.cell].patch.projected(cells_[cell].patch.center, &gradient);
       normals.push_back((1.0 / length(gradient)) * gradient);
     }
     for (std::size_t i = 0; i < near.size(); ++i) {
@@ -355,8 +355,8 @@ std::optional<OccupancySurface::Hit> OccupancySurface::hit_on_line(
       if (gradient[axis] * rises < kLeastSlope) break;
       point[axis] -= above / gradient[axis];
     }
-    const double from_centre = (point[axis] - at[static_cast<std::size_t>(axis)] - 0.5) * forward;
-    if (gradient[axis] * rises < kLeastSlope || from_centre < -0.2 || from_centre > 1.2) continue;
+    const double from_center = (point[axis] - at[static_cast<std::size_t>(axis)] - 0.5) * forward;
+    if (gradient[axis] * rises < kLeastSlope || from_center < -0.2 || from_center > 1.2) continue;
     const double moved = std::abs(point[axis] - start[axis]);
     if (moved >= least) continue;
     least = moved;

@@ -94,8 +94,8 @@ std::optional<bool> PartSides::is_inside(const Parts& parts, unsigned inside) co
   return std::nullopt;
 }
 
-std::optional<bool> PartSides::is_mostly_inside(const Vector3& centre, const Vector3& size) const {
-  const std::optional<Parts> parts = parts_near(centre);
+std::optional<bool> PartSides::is_mostly_inside(const Vector3& center, const Vector3& size) const {
+  const std::optional<Parts> parts = parts_near(center);
   if (!parts) return std::nullopt;
   // Where but one part runs through, the occupancy tells.
   int passing = 0;
@@ -103,22 +103,22 @@ std::optional<bool> PartSides::is_mostly_inside(const Vector3& centre, const Vec
     const SourcePoint& plane = parts->planes[i];
     double reach = 0.0;
     for (int a = 0; a < 3; ++a) reach += std::abs(plane.normal[a]) * size[a] / 2.0;
-    if (std::abs(dot(plane.normal, centre - plane.position)) < reach) ++passing;
+    if (std::abs(dot(plane.normal, center - plane.position)) < reach) ++passing;
   }
   if (passing < 2) return std::nullopt;
   int inside = 0;
   int outside = 0;
   for (int i = 0; i < kShares * kShares * kShares; ++i) {
-    const Vector3 point = {centre[0] + ((i % kShares + 0.5) / kShares - 0.5) * size[0],
-                           centre[1] + ((i / kShares % kShares + 0.5) / kShares - 0.5) * size[1],
-                           centre[2] + ((i / (kShares * kShares) + 0.5) / kShares - 0.5) * size[2]};
+    const Vector3 point = {center[0] + ((i % kShares + 0.5) / kShares - 0.5) * size[0],
+                           center[1] + ((i / kShares % kShares + 0.5) / kShares - 0.5) * size[1],
+                           center[2] + ((i / (kShares * kShares) + 0.5) / kShares - 0.5) * size[2]};
     const std::optional<bool> side = is_inside(*parts, parts->inside_at(point));
     if (side) ++(*side ? inside : outside);
   }
   const int half = kShares * kShares * kShares / 2;
   if (inside >= half + kClose) return true;
   if (outside >= half + kClose) return false;
-  return inside + outside < 2 * half ? std::nullopt : is_inside(*parts, parts->inside_at(centre));
+  return inside + outside < 2 * half ? std::nullopt : is_inside(*parts, parts->inside_at(center));
 }
 
 std::optional<SourcePoint> PartSides::exit(const Vector3& in, const Vector3& out,
@@ -157,7 +157,7 @@ void PartSides::settle(const Progress& progress, int threads, ContourTree* tree)
     std::size_t level;
     std::size_t block;
     int octant;
-    Vector3 centre;
+    Vector3 center;
     Vector3 size;
   };
   std::vector<Leaf> leaves;
@@ -173,21 +173,21 @@ void PartSides::settle(const Progress& progress, int threads, ContourTree* tree)
       pulse.step();
       const float value = tree->value(octant);
       if (!(value > 0.0F && value < 1.0F)) continue;
-      Vector3 centre;
+      Vector3 center;
       Vector3 size;
       for (int a = 0; a < 3; ++a) {
         size[a] = frame_.cell(a, octant.depth);
-        centre[a] = frame_.position(a, octant_cell[a] + 0.5, octant.depth);
+        center[a] = frame_.position(a, octant_cell[a] + 0.5, octant.depth);
       }
-      if (surface_.meeting_parts(centre).empty()) continue;
-      leaves.push_back({static_cast<std::size_t>(octant.depth - 1), octant.block, o, centre, size});
+      if (surface_.meeting_parts(center).empty()) continue;
+      leaves.push_back({static_cast<std::size_t>(octant.depth - 1), octant.block, o, center, size});
     }
   };
   find(find, tree->root(), {0, 0, 0});
   std::vector<std::uint8_t> sides(leaves.size(), 0);
   const auto settle_some = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      const std::optional<bool> inside = is_mostly_inside(leaves[i].centre, leaves[i].size);
+      const std::optional<bool> inside = is_mostly_inside(leaves[i].center, leaves[i].size);
       if (inside) sides[i] = *inside ? kInside : kOutside;
     }
   };

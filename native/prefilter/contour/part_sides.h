@@ -50,7 +50,7 @@ class PartSides {
     std::array<int, 1U << kMostParts> outside{};
   };
 
-  std::optional<bool> is_mostly_inside(const Vector3& centre, const Vector3& size) const;
+  std::optional<bool> is_mostly_inside(const Vector3& center, const Vector3& size) const;
   std::optional<Parts> parts_near(const Vector3& point) const;
   std::optional<bool> is_inside(const Parts& parts, unsigned inside) const;
 

@@ -16,26 +16,26 @@ constexpr int kTaskDepth = 3;
 // A cell that is split, with what surrounds it.
 struct Visit {
   CellNode cell;
-  FaceNeighbours neighbours;
+  FaceNeighbors neighbors;
   CellCoordinates at;  // in cells of its depth
 };
 
 Visit octant_of(const ContourTree& tree, const Visit& visit, int o) {
-  return {tree.octant(visit.cell, o), octant_neighbours(tree, visit.cell, visit.neighbours, o),
+  return {tree.octant(visit.cell, o), octant_neighbors(tree, visit.cell, visit.neighbors, o),
           octant_at(visit.at, o)};
 }
 
 bool meets_surface(const Visit& visit) {
   unsigned sides = visit.cell.sides;
-  for (const CellNode& neighbour : visit.neighbours) sides |= neighbour.sides;
+  for (const CellNode& neighbor : visit.neighbors) sides |= neighbor.sides;
   return sides == kBothSides;
 }
 
 // Whether the vertex between a leaf and its neighbor across a face, if there is one, is the
 // leaf's.
-bool owns(const CellNode& leaf, const CellNode& neighbour, int face) {
-  if (neighbour.is_split) return false;
-  return neighbour.depth < leaf.depth || (face & 1) != 0;
+bool owns(const CellNode& leaf, const CellNode& neighbor, int face) {
+  if (neighbor.is_split) return false;
+  return neighbor.depth < leaf.depth || (face & 1) != 0;
 }
 
 // On the way from a leaf's center to its neighbor's, in sides of the leaf: where the surface is,
@@ -45,10 +45,10 @@ struct Crossing {
   float distance;
 };
 
-Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode& neighbour,
+Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode& neighbor,
                   Interpolant interpolant) {
   const float a = tree.value(leaf);
-  const float b = tree.value(neighbour);
+  const float b = tree.value(neighbor);
   const float isovalue = tree.isovalue();
   // A side that was not settled by the value: the surface is close to that center.
   if ((a >= isovalue) == (b >= isovalue)) {
@@ -58,8 +58,8 @@ Crossing crossing(const ContourTree& tree, const CellNode& leaf, const CellNode&
   // A coarser leaf that is full or empty holds cells of this size that are; between fractions of
   // different cells there is but the line through the centers.
   const bool is_fraction = b > 0.0F && b < 1.0F;
-  if (is_fraction && neighbour.depth < leaf.depth) {
-    const float apart = 0.5F * (1.0F + static_cast<float>(1 << (leaf.depth - neighbour.depth)));
+  if (is_fraction && neighbor.depth < leaf.depth) {
+    const float apart = 0.5F * (1.0F + static_cast<float>(1 << (leaf.depth - neighbor.depth)));
     return {linear_crossing(a, b, isovalue) * apart, apart};
   }
   if (interpolant == Interpolant::kLinear || !are_occupancies) {
@@ -105,12 +105,12 @@ class VertexMaker {
     for (int o = 0; o < 8; ++o) {
       const CellNode leaf = tree_.octant(visit.cell, o);
       if (leaf.is_split || !is_wanted(octant_at(visit.at, o), leaf.depth)) continue;
-      const FaceNeighbours neighbours = octant_neighbours(tree_, visit.cell, visit.neighbours, o);
+      const FaceNeighbors neighbors = octant_neighbors(tree_, visit.cell, visit.neighbors, o);
       for (int face = 0; face < 6; ++face) {
-        const CellNode& neighbour = neighbours[face];
-        if (!owns(leaf, neighbour, face) || leaf.sides == neighbour.sides) continue;
+        const CellNode& neighbor = neighbors[face];
+        if (!owns(leaf, neighbor, face) || leaf.sides == neighbor.sides) continue;
         cuts |= std::uint64_t{1} << (6 * o + face);
-        task->positions.push_back(position(visit, o, face, leaf, neighbour));
+        task->positions.push_back(position(visit, o, face, leaf, neighbor));
         if (heights_ != nullptr) {
           task->places.push_back(
               {octant_at(visit.at, o), leaf.depth, static_cast<std::int8_t>(face)});
@@ -137,14 +137,14 @@ class VertexMaker {
   }
 
   Vector3 position(const Visit& visit, int o, int face, const CellNode& leaf,
-                   const CellNode& neighbour) const {
-    const Crossing found = crossing(tree_, leaf, neighbour, interpolant_);
+                   const CellNode& neighbor) const {
+    const Crossing found = crossing(tree_, leaf, neighbor, interpolant_);
     Vector3 result;
     for (int a = 0; a < 3; ++a) {
-      const double centre = 2.0 * visit.at[a] + ((o >> a) & 1) + 0.5;
-      result[a] = a == face / 2 ? frame_.crossing(face, centre, static_cast<double>(found.t),
+      const double center = 2.0 * visit.at[a] + ((o >> a) & 1) + 0.5;
+      result[a] = a == face / 2 ? frame_.crossing(face, center, static_cast<double>(found.t),
                                                   static_cast<double>(found.distance), leaf.depth)
-                                : frame_.position(a, centre, leaf.depth);
+                                : frame_.position(a, center, leaf.depth);
     }
     return result;
   }
@@ -188,7 +188,7 @@ void SurfaceVertices::make(const ContourTree& tree, const RootFrame& frame, Inte
     }
     maker.visit_block(visit, tasks.data(), [&](const Visit& octant) { self(self, octant); });
   };
-  FaceNeighbours surroundings;
+  FaceNeighbors surroundings;
   surroundings.fill(kSurroundings);
   above(above, {tree.root(), surroundings, {0, 0, 0}});
   tasks.resize(roots.size() + 1);

@@ -217,9 +217,9 @@ class TriangleMaker {
     for (int i = 0; i < count; ++i) middle = middle + position(corners[i]);
     for (double& x : middle) x /= count;
     middles->push_back(middle);
-    const auto centre = -static_cast<std::int32_t>(middles->size());
+    const auto center = -static_cast<std::int32_t>(middles->size());
     for (int i = 0; i < count; ++i) {
-      triangles->push_back({centre, corners[i], corners[(i + 1) % count]});
+      triangles->push_back({center, corners[i], corners[(i + 1) % count]});
     }
   }
 

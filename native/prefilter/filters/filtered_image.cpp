@@ -114,11 +114,11 @@ void FilteredImage::multiply_by_alpha(const FindRead& find_read, const Options& 
                    }
                  }
                });
-  colours_.fill(kNothing);
+  colors_.fill(kNothing);
   for (const std::array<ValueRange, 3>& row : rows) {
-    for (int c = 0; c < alpha_; ++c) colours_[c] = widened(colours_[c], row[c]);
+    for (int c = 0; c < alpha_; ++c) colors_[c] = widened(colors_[c], row[c]);
   }
-  for (ValueRange& own : colours_) {
+  for (ValueRange& own : colors_) {
     if (!(own.low <= own.high)) own = {0.0F, 0.0F};
   }
 }
@@ -134,7 +134,7 @@ Image& FilteredImage::own_copy() {
 ValueRange FilteredImage::solved_range(int channel, ValueRange bounds) const {
   if (!is_multiplied_) return bounds;
   if (channel == alpha_) return {0.0F, 1.0F};
-  const ValueRange& own = colours_[channel];
+  const ValueRange& own = colors_[channel];
   return {std::clamp(own.low, bounds.low, bounds.high),
           std::clamp(own.high, bounds.low, bounds.high)};
 }
@@ -152,8 +152,8 @@ void FilteredImage::divide_by_alpha(WrapModes wrap, const Progress& progress, in
       const float alpha = texel[alpha_];
       weight[x] = alpha > kLeastAlpha ? alpha : 0.0F;
       for (int c = 0; c < alpha_; ++c) {
-        const float colour = weight[x] > 0.0F ? texel[c] / alpha : 0.0F;
-        texel[c] = std::min(std::max(colour, colours_[c].low), colours_[c].high);
+        const float color = weight[x] > 0.0F ? texel[c] / alpha : 0.0F;
+        texel[c] = std::min(std::max(color, colors_[c].low), colors_[c].high);
       }
       texel[alpha_] = std::clamp(alpha, 0.0F, 1.0F);
     }

@@ -68,7 +68,7 @@ class FilteredImage {
   int alpha_;  // the channel, where there is one
   Image copy_;
   bool is_multiplied_ = false;
-  std::array<ValueRange, 3> colours_{};  // of texels with alpha, before they are multiplied by it
+  std::array<ValueRange, 3> colors_{};  // of texels with alpha, before they are multiplied by it
 };
 
 }  // namespace prefilter

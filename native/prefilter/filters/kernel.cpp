@@ -209,7 +209,7 @@ const Kernel& box_kernel() {
   return box;
 }
 
-Taps kernel_taps(const Kernel& kernel, double centre, double width) {
+Taps kernel_taps(const Kernel& kernel, double center, double width) {
   const double scale = kernel.degree() == 0 ? width : std::max(1.0, width);
   const double reach = kernel.radius() * scale;
   std::vector<double> values;
@@ -217,17 +217,17 @@ Taps kernel_taps(const Kernel& kernel, double centre, double width) {
   if (kernel.degree() == 0) {
     // Scales are ratios of whole numbers: an edge this close to a texel's is the texel's.
     constexpr double kOnEdge = 1e-9;
-    taps.first = static_cast<int>(std::floor(centre - reach + kOnEdge));
-    const int end = static_cast<int>(std::ceil(centre + reach - kOnEdge));
+    taps.first = static_cast<int>(std::floor(center - reach + kOnEdge));
+    const int end = static_cast<int>(std::ceil(center + reach - kOnEdge));
     for (int i = taps.first; i < end; ++i) {
-      values.push_back(kernel.integral((i + 1.0 - centre) / scale) -
-                       kernel.integral((i - centre) / scale));
+      values.push_back(kernel.integral((i + 1.0 - center) / scale) -
+                       kernel.integral((i - center) / scale));
     }
   } else {
-    taps.first = static_cast<int>(std::ceil(centre - reach - 0.5));
-    const int last = static_cast<int>(std::floor(centre + reach - 0.5));
+    taps.first = static_cast<int>(std::ceil(center - reach - 0.5));
+    const int last = static_cast<int>(std::floor(center + reach - 0.5));
     for (int i = taps.first; i <= last; ++i) {
-      values.push_back(kernel.value((i + 0.5 - centre) / scale));
+      values.push_back(kernel.value((i + 0.5 - center) / scale));
     }
   }
   const double sum = std::accumulate(values.begin(), values.end(), 0.0);

@@ -47,7 +47,7 @@ void EncodedFit<C>::add(const MomentBlock<C>& block) {
     }
     cell.same = static_cast<float>(rule.same);
     cell.opposite = static_cast<float>(rule.opposite);
-    for (int c = 0; c < kColours; ++c) {
+    for (int c = 0; c < kColors; ++c) {
       const std::array<double, 4> integrals = rule.integrals(moments.image[c]);
       for (int k = 0; k < 4; ++k) cell.image[k][c] = static_cast<float>(integrals[k]);
     }
@@ -79,7 +79,7 @@ auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> Sums {
       sums.mass += weight;
       Lanes squares{};
       Lanes target{};
-      for (int c = 0; c < kColours; ++c) {
+      for (int c = 0; c < kColors; ++c) {
         const auto [value, slope] = decode(encoded[c]);
         const float image = cell.image[k][c];
         squares[c] = weight * slope * slope;
@@ -100,17 +100,17 @@ auto EncodedFit<C>::assemble(const std::vector<Cell>& cells) -> Sums {
 }
 
 template <int C>
-auto EncodedFit<C>::assemble(int threads, const Progress& progress) -> ColourSums {
+auto EncodedFit<C>::assemble(int threads, const Progress& progress) -> ColorSums {
   system_.clear();
   std::vector<Sums> sums(cells_.size());
   // Rows of tiles that are not beside each other share no texels.
-  for (int colour = 0; colour < kTileColours; ++colour) {
+  for (int color = 0; color < kTileColors; ++color) {
     std::vector<int> rows;
     for (int row = 0; row < tile_rows_; ++row) {
-      if (tile_colour(row, tile_rows_, image_height_) == colour) rows.push_back(row);
+      if (tile_color(row, tile_rows_, image_height_) == color) rows.push_back(row);
     }
-    const Progress part = progress.part(static_cast<double>(colour) / kTileColours,
-                                        static_cast<double>(colour + 1) / kTileColours);
+    const Progress part = progress.part(static_cast<double>(color) / kTileColors,
+                                        static_cast<double>(color + 1) / kTileColors);
     parallel_for(static_cast<std::int64_t>(rows.size()), threads, part, [&](std::int64_t i) {
       const std::size_t first = static_cast<std::size_t>(rows[i]) * tile_columns_;
       for (std::size_t tile = first; tile < first + tile_columns_; ++tile) {
@@ -122,13 +122,13 @@ auto EncodedFit<C>::assemble(int threads, const Progress& progress) -> ColourSum
   Sums total;
   for (const Sums& sum : sums) {
     total.mass += sum.mass;
-    for (int c = 0; c < kColours; ++c) {
+    for (int c = 0; c < kColors; ++c) {
       total.squares[c] += sum.squares[c];
       total.slopes[c] += sum.slopes[c];
     }
   }
   if (!has_slopes_) {
-    for (int c = 0; c < kColours; ++c) mean_slopes_[c] = total.slopes[c] / total.mass;
+    for (int c = 0; c < kColors; ++c) mean_slopes_[c] = total.slopes[c] / total.mass;
     has_slopes_ = true;
   }
   return total.squares;
@@ -137,16 +137,16 @@ auto EncodedFit<C>::assemble(int threads, const Progress& progress) -> ColourSum
 template <int C>
 Lanes EncodedFit<C>::link_weights(double weight) const {
   Lanes weights{};
-  for (int c = 0; c < kColours; ++c) weights[c] = static_cast<float>(weight * mean_slopes_[c]);
+  for (int c = 0; c < kColors; ++c) weights[c] = static_cast<float>(weight * mean_slopes_[c]);
   return weights;
 }
 
 template <int C>
-auto EncodedFit<C>::link_squares(double weight) const -> ColourSums {
+auto EncodedFit<C>::link_squares(double weight) const -> ColorSums {
   const ChannelSums squares =
       links_.value([this](std::ptrdiff_t at) -> const LaneValues& { return system_.texel(at); });
-  ColourSums weighed{};
-  for (int c = 0; c < kColours; ++c) weighed[c] = weight * mean_slopes_[c] * squares[c];
+  ColorSums weighed{};
+  for (int c = 0; c < kColors; ++c) weighed[c] = weight * mean_slopes_[c] * squares[c];
   return weighed;
 }
 
@@ -184,7 +184,7 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
   if (searches) {
     const Progress part = progress.part(0.3, 0.3);
     double square = 0.0;
-    for (int c = 0; c < kColours; ++c) square += image_squares_[c];
+    for (int c = 0; c < kColors; ++c) square += image_squares_[c];
     const LinkedFit fit{[&](double weight, const Progress& fitting) {
                           improve(start, used, weight, options, fitting);
                         },
@@ -202,23 +202,23 @@ Image EncodedFit<C>::solve(const Image& start, const std::vector<unsigned char>&
 
 template <int C>
 auto EncodedFit<C>::sums_with_links(double weight, int threads, const Progress& progress)
-    -> ColourSums {
-  ColourSums sums = assemble(threads, progress);
+    -> ColorSums {
+  ColorSums sums = assemble(threads, progress);
   if (weight == 0.0) return sums;
-  const ColourSums of_links = link_squares(weight);
-  for (int c = 0; c < kColours; ++c) sums[c] += of_links[c];
+  const ColorSums of_links = link_squares(weight);
+  for (int c = 0; c < kColors; ++c) sums[c] += of_links[c];
   return sums;
 }
 
 template <int C>
-auto EncodedFit<C>::go_back(const std::vector<LaneValues>& before, const ColourSums& least,
-                            double weight, int threads, const Progress& progress, ColourSums sums)
-    -> ColourSums {
+auto EncodedFit<C>::go_back(const std::vector<LaneValues>& before, const ColorSums& least,
+                            double weight, int threads, const Progress& progress, ColorSums sums)
+    -> ColorSums {
   constexpr int kMostHalvings = 5;
   for (int halving = 0; halving <= kMostHalvings; ++halving) {
     Lanes keep{};
     bool worse = false;
-    for (int c = 0; c < kColours; ++c) {
+    for (int c = 0; c < kColors; ++c) {
       if (!(sums[c] > least[c])) continue;
       keep[c] = halving == kMostHalvings ? 1.0F : 0.5F;
       worse = true;
@@ -252,7 +252,7 @@ void EncodedFit<C>::add_pull(const Image& start, const std::vector<unsigned char
   const Lanes pull = static_cast<float>(kPull) / std::max(count, 1.0F) * mean;
   for_each_texel([&](std::ptrdiff_t at, const float* texel) {
     Lanes target{};
-    for (int c = 0; c < kColours; ++c) target[c] = texel[c];
+    for (int c = 0; c < kColors; ++c) target[c] = texel[c];
     system_.diagonal(at).v += pull;
     system_.right_side(at).v += pull * target;
   });
@@ -265,19 +265,19 @@ void EncodedFit<C>::improve(const Image& start, const std::vector<unsigned char>
   round_options.max_sweeps = kSweepsPerRound;
   round_options.ranges_times_alpha = false;
   std::vector<LaneValues> before(system_.size());
-  ColourSums first{};
-  ColourSums least{};
+  ColorSums first{};
+  ColorSums least{};
   for (int round = 0; round < kMostRounds; ++round) {
     const Progress part = progress.part(static_cast<double>(round) / kMostRounds,
                                         static_cast<double>(round + 1) / kMostRounds);
     const Progress assembling = part.part(0.0, 0.4);
-    ColourSums sums = sums_with_links(weight, options.threads, assembling);
+    ColorSums sums = sums_with_links(weight, options.threads, assembling);
     if (round == 0) {
       first = least = sums;
     } else {
       sums = go_back(before, least, weight, options.threads, assembling, sums);
       bool settled = true;
-      for (int c = 0; c < kColours; ++c) {
+      for (int c = 0; c < kColors; ++c) {
         if (least[c] - sums[c] > kLeastGain * (first[c] - sums[c])) settled = false;
         least[c] = std::min(least[c], sums[c]);
       }

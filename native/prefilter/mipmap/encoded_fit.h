@@ -44,31 +44,31 @@ class EncodedFit {
               const SolveOptions& options, SeamBudget* budget, const Progress& progress);
 
  private:
-  static constexpr int kColours = C < 3 ? C : 3;
+  static constexpr int kColors = C < 3 ? C : 3;
 
   struct Cell {
     int column, row;
     float x[2], y[2];      // of the points, from the center of texel (column, row)
     float same, opposite;  // weights
-    std::array<std::array<float, kColours>, 4> image;  // integrals at the points
+    std::array<std::array<float, kColors>, 4> image;  // integrals at the points
   };
 
-  using ColourSums = std::array<double, kColours>;
+  using ColorSums = std::array<double, kColors>;
 
   // Puts the Gauss-Newton system at the texels together; returns the sum of squares of each
   // channel, less what does not depend on the texels, and without links.
-  ColourSums assemble(int threads, const Progress& progress);
+  ColorSums assemble(int threads, const Progress& progress);
   // What links of this weight add to it.
-  ColourSums link_squares(double weight) const;
+  ColorSums link_squares(double weight) const;
   // A difference of encoded values counts as the decoded one that the curve's mean slope makes of
   // it: of the slopes at the start, so that all rounds minimize the same.
   Lanes link_weights(double weight) const;
   // The sums of squares of the texels as they are, with those of links of this weight; assembles.
-  ColourSums sums_with_links(double weight, int threads, const Progress& progress);
+  ColorSums sums_with_links(double weight, int threads, const Progress& progress);
   // Halves the way that the texels went since `before`, until no channel's sum, of those that there
   // are now, is above its `least`. Returns the sums there.
-  ColourSums go_back(const std::vector<LaneValues>& before, const ColourSums& least, double weight,
-                     int threads, const Progress& progress, ColourSums sums);
+  ColorSums go_back(const std::vector<LaneValues>& before, const ColorSums& least, double weight,
+                    int threads, const Progress& progress, ColorSums sums);
   // Adds what pulls texels to their start to the system.
   void add_pull(const Image& start, const std::vector<unsigned char>& used);
   // Rounds from where the texels are, to the fit with links of this weight.
@@ -76,8 +76,8 @@ class EncodedFit {
                const SolveOptions& options, const Progress& progress);
 
   struct Sums {
-    ColourSums squares{};
-    ColourSums slopes{};  // squares of the curve's slope, times mass
+    ColorSums squares{};
+    ColorSums slopes{};  // squares of the curve's slope, times mass
     double mass = 0.0;
   };
   Sums assemble(const std::vector<Cell>& cells);
@@ -91,7 +91,7 @@ class EncodedFit {
   std::vector<TexelLink> all_links_;
   LinkForm links_;
   bool has_slopes_ = false;
-  ColourSums mean_slopes_{};  // squares of the curve's slope, over the surface
+  ColorSums mean_slopes_{};  // squares of the curve's slope, over the surface
   ChannelSums image_squares_{};
 };
 

@@ -124,11 +124,11 @@ class CoverageKeeper {
     const double bend = find_bend(alpha, found, done);
     const Curve curve(bend, options_.threshold);
     const int last = level.channels - 1;
-    const int colours = options_.premultiplied ? last : 0;
+    const int colors = options_.premultiplied ? last : 0;
     for_each(&kept, &alpha, [&](float* texel, const float* value) {
       texel[last] = curve(*value);
       const float scale = texel[last] / (*value > 0.0F ? *value : 1.0F);
-      for (int c = 0; c < colours; ++c) texel[c] *= scale;
+      for (int c = 0; c < colors; ++c) texel[c] *= scale;
     });
     return kept;
   }

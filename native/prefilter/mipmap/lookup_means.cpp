@@ -22,7 +22,7 @@ Values mixed(const Values& from, const Values& to, float share) {
   return result;
 }
 
-// From the center towards a neighbor, in texels: 1/4 -+ 1/4 / sqrt(3).
+// From the center toward a neighbor, in texels: 1/4 -+ 1/4 / sqrt(3).
 constexpr std::array<float, 2> kGaussPoints = {0.10566243F, 0.39433757F};
 
 void add(const Values& lookup, float least_length, std::array<double, 4>* sums) {

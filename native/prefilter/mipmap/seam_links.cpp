@@ -72,9 +72,9 @@ void add_lookup(const TextureCoordinate& at, int width, int height, WrapModes wr
   // A lookup outside of a clamped image is one at its edge.
   const auto place = [](double coordinate, int size, Wrap mode, int* texel) {
     const double clamped = mode == Wrap::kClamp ? std::clamp(coordinate, 0.0, 1.0) : coordinate;
-    const double from_centre = clamped * size - 0.5;
-    *texel = static_cast<int>(std::floor(from_centre));
-    return from_centre - *texel;
+    const double from_center = clamped * size - 0.5;
+    *texel = static_cast<int>(std::floor(from_center));
+    return from_center - *texel;
   };
   int column = 0;
   int row = 0;
@@ -106,8 +106,8 @@ double texel_length(const std::array<TextureCoordinate, 2>& ends, int width, int
 void add_stops(double from, double to, std::vector<double>* stops) {
   const double low = std::min(from, to);
   const double high = std::max(from, to);
-  for (double centre = std::floor(low - 0.5) + 1.5; centre < high; centre += 1.0) {
-    stops->push_back((centre - from) / (to - from));
+  for (double center = std::floor(low - 0.5) + 1.5; center < high; center += 1.0) {
+    stops->push_back((center - from) / (to - from));
   }
 }
 

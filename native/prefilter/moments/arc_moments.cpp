@@ -26,7 +26,7 @@ inline IntegerLanes rounded(Lanes values) {
   return convert<IntegerLanes>(select(values < 0.0F, values - 0.5F, values + 0.5F));
 }
 
-// Towards 0 of what has this much, of [0, 1), added to its size. Where that is as good as random,
+// Toward 0 of what has this much, of [0, 1), added to its size. Where that is as good as random,
 // sums of arcs much smaller than the unit are right on average.
 inline IntegerLanes rounded(Lanes values, Lanes share) {
   return convert<IntegerLanes>(select(values < 0.0F, values - share, values + share));

@@ -117,7 +117,7 @@ int turning_points(const ParametricCurve& curve, std::span<const Point2> control
   return count;
 }
 
-bool is_cut_backwards(std::span<const Point2> controls) {
+bool is_cut_backward(std::span<const Point2> controls) {
   for (std::size_t i = 0, j = controls.size() - 1; i < j; ++i, --j) {
     if (controls[i].y != controls[j].y) return controls[i].y > controls[j].y;
     if (controls[i].x != controls[j].x) return controls[i].x > controls[j].x;

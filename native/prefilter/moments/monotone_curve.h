@@ -52,7 +52,7 @@ int turning_points(const ParametricCurve& curve, std::span<const Point2> control
 /// Whether a segment is cut from its end to its begin. Of two shapes that share an edge, each holds
 /// it the other way round: cut from the same end, it adds to one, to the last bit, what it takes
 /// from the other.
-bool is_cut_backwards(std::span<const Point2> controls);
+bool is_cut_backward(std::span<const Point2> controls);
 
 namespace internal {
 
@@ -92,17 +92,17 @@ void for_monotone_parts(std::span<const Point2> controls, double weight, const U
 
 }  // namespace internal
 
-/// Calls use(const MonotoneCurve&, bool backwards) for the pieces of a segment, given by its
+/// Calls use(const MonotoneCurve&, bool backward) for the pieces of a segment, given by its
 /// control points, in the order in which they are cut.
 template <typename Use>
 void for_monotone_pieces(std::span<const Point2> controls, double weight, const Use& use) {
-  const bool backwards = is_cut_backwards(controls);
+  const bool backward = is_cut_backward(controls);
   std::array<Point2, Outline::kMostDegree + 1> turned;
-  if (backwards) {
+  if (backward) {
     std::reverse_copy(controls.begin(), controls.end(), turned.begin());
     controls = {turned.data(), controls.size()};
   }
-  const auto use_turned = [&](const MonotoneCurve& piece) { use(piece, backwards); };
+  const auto use_turned = [&](const MonotoneCurve& piece) { use(piece, backward); };
   internal::for_monotone_parts(controls, weight, use_turned);
 }
 /// Where a piece passes a value of x (axis 0) or y (axis 1) between `low` and its end; the piece

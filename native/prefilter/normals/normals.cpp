@@ -11,7 +11,7 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/normals/local_plane.h"
 #include "prefilter/normals/orientation.h"
-#include "prefilter/spatial/nearest_neighbours.h"
+#include "prefilter/spatial/nearest_neighbors.h"
 
 namespace prefilter {
 namespace {
@@ -30,9 +30,9 @@ Vector3 reversed(const Vector3& normal) { return Vector3{} - normal; }
 void check_arguments(std::span<const Vector3> points, int neighbours,
                      std::span<const Vector3> viewpoints) {
   if (points.empty()) throw_invalid("points: none; at least one is needed");
-  if (neighbours < kLeastNeighbours || neighbours > kMostNeighbours) {
+  if (neighbours < kLeastNeighbors || neighbours > kMostNeighbors) {
     throw_invalid("neighbours: found " + std::to_string(neighbours) + "; a number from " +
-                  std::to_string(kLeastNeighbours) + " to " + std::to_string(kMostNeighbours) +
+                  std::to_string(kLeastNeighbors) + " to " + std::to_string(kMostNeighbors) +
                   " is needed");
   }
   if (viewpoints.size() > 1 && viewpoints.size() != points.size()) {
@@ -44,7 +44,7 @@ void check_arguments(std::span<const Vector3> points, int neighbours,
 
 // Covariance of the neighbors of a point, around their mean.
 SymmetricMatrix covariance(std::span<const Vector3> positions, std::uint32_t place,
-                           const Neighbours& near) {
+                           const Neighbors& near) {
   const Vector3& own = positions[place];
   const double reach = 2.0 * near.squares().back();
   SymmetricMatrix result;
@@ -71,7 +71,7 @@ struct LocalPlanes {
   std::vector<std::uint32_t> links;  // `degree` neighbors for each
 };
 
-LocalPlanes fit_planes(const NeighbourSearch& search, std::size_t neighbours, std::size_t degree,
+LocalPlanes fit_planes(const NeighborSearch& search, std::size_t neighbors, std::size_t degree,
                        const Progress& progress, int threads) {
   const std::span<const Vector3> positions = search.positions();
   LocalPlanes planes;
@@ -80,10 +80,10 @@ LocalPlanes fit_planes(const NeighbourSearch& search, std::size_t neighbours, st
   planes.degree = degree;
   planes.links.resize(positions.size() * degree);
   const auto fit = [&](std::int64_t begin, std::int64_t end) {
-    Neighbours near;
+    Neighbors near;
     for (auto place = static_cast<std::uint32_t>(begin); place < static_cast<std::uint32_t>(end);
          ++place) {
-      search.find(place, neighbours, &near);
+      search.find(place, neighbors, &near);
       planes.areas[place] = near.squares().back();
       for (std::size_t s = 0; s < degree; ++s) {
         const std::size_t link = std::min(s + 1, near.places().size() - 1);
@@ -93,8 +93,8 @@ LocalPlanes fit_planes(const NeighbourSearch& search, std::size_t neighbours, st
       Vector3 normal = least_eigenvector(matrix);
       for (std::size_t growth = 2; growth <= kMostGrowth && flatness(matrix, normal) < kLine;
            growth *= 2) {
-        if (near.places().size() < neighbours) break;
-        search.find(place, growth * neighbours, &near);
+        if (near.places().size() < neighbors) break;
+        search.find(place, growth * neighbors, &near);
         matrix = covariance(positions, place, near);
         normal = least_eigenvector(matrix);
       }
@@ -113,7 +113,7 @@ std::vector<Vector3> estimate_normals(std::span<const Vector3> points, int neigh
                                       int threads) {
   check_arguments(points, neighbours, viewpoints);
   std::vector<Vector3> result(points.size());
-  const NeighbourSearch search(points, progress.part(0.0, 0.2), threads);
+  const NeighborSearch search(points, progress.part(0.0, 0.2), threads);
   const std::span<const Vector3> positions = search.positions();
   if (positions.size() < 3) return result;
   const auto wanted = static_cast<std::size_t>(neighbours);
@@ -126,7 +126,7 @@ std::vector<Vector3> estimate_normals(std::span<const Vector3> points, int neigh
   const auto give_back = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
       const std::uint32_t place = search.places()[i];
-      if (place == NeighbourSearch::kNowhere) continue;
+      if (place == NeighborSearch::kNowhere) continue;
       result[i] = planes.normals[place];
       if (viewpoints.empty()) continue;
       const Vector3& viewpoint = viewpoints[viewpoints.size() == 1 ? 0 : i];

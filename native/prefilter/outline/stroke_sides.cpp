@@ -103,7 +103,7 @@ bool is_folded(const StrokePiece& piece, double offset) {
          dot(chord + offset * (piece.end_normal - piece.begin_normal), chord) <= 0.0;
 }
 
-// Where a side runs backwards the normals cross before they reach it, and what lies between
+// Where a side runs backward the normals cross before they reach it, and what lies between
 // their crossings and the side counts negatively. Twice that area is added: the way goes along
 // the crossings, back along the side, and along the crossings again.
 void append_fold(std::span<const StrokePiece> pieces, double offset, Outline* path) {

@@ -132,19 +132,19 @@ void BoxCurves::add(std::span<const Point2> controls, double weight) {
     const Point2& last = controls.back();
     if (is_monotone(controls[0].x, controls[1].x, second.x, last.x) &&
         is_monotone(controls[0].y, controls[1].y, second.y, last.y)) {
-      const bool backwards = is_cut_backwards(controls);
+      const bool backward = is_cut_backward(controls);
       std::array<Point2, 4> turned;
-      if (backwards) {
+      if (backward) {
         std::reverse_copy(controls.begin(), controls.end(), turned.begin());
         controls = {turned.data(), controls.size()};
       }
       add({ParametricCurve(controls, 0.0), 0.0, 1.0, controls.front(), controls.back()},
-          backwards ? 1 : -1);
+          backward ? 1 : -1);
       return;
     }
   }
-  for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool backwards) {
-    add(piece, backwards ? 1 : -1);
+  for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool backward) {
+    add(piece, backward ? 1 : -1);
   });
 }
 

@@ -30,7 +30,7 @@ class EdgeList {
   double low() const { return low_; }
   double high() const { return high_; }
 
-  /// Calls use(const MonotoneCurve&, bool backwards) for the pieces, in coordinates of cells, of
+  /// Calls use(const MonotoneCurve&, bool backward) for the pieces, in coordinates of cells, of
   /// the segments that may pass between two rows of cells.
   template <typename Use>
   void for_pieces_between(int first_row, int end_row, const CellFilter& filter,

@@ -27,7 +27,7 @@ double radial_offset(const Paint& paint, const Point2& p) {
   const double discriminant = b * b - a * c;
   if (!(discriminant >= 0.0)) return kBehind;
   const double root = std::sqrt(discriminant);
-  // Without cancelling: one root by the sum of equal signs, the other by their product c / a.
+  // Without canceling: one root by the sum of equal signs, the other by their product c / a.
   const double q = b + std::copysign(root, b);
   const double first = q / a;
   const double second = q == 0.0 ? first : c / q;

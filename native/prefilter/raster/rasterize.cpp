@@ -114,7 +114,7 @@ class BandMaker {
   void add_edges(const RasterLayer& layer, MomentCells<M>* cells) const {
     layer.edges.for_pieces_between(
         cells->window().first_row, cells->window().end_row, filter_,
-        [&](const MonotoneCurve& piece, bool backwards) { cells->add(piece, backwards ? 1 : -1); });
+        [&](const MonotoneCurve& piece, bool backward) { cells->add(piece, backward ? 1 : -1); });
     cells->finish();
   }
 

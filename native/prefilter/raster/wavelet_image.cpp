@@ -30,12 +30,12 @@ void add_segments(const EdgeList& edges, int first_row, int end_row, const Plane
   edges.for_segments_between(low, high, [&](std::span<const Point2> controls, double weight) {
     if (controls.size() == 2) {
       // As for_monotone_pieces does, so that shared edges cancel.
-      const bool backwards = is_cut_backwards(controls);
-      strip->add_line(controls[backwards], controls[!backwards], backwards ? -1.0 : 1.0);
+      const bool backward = is_cut_backward(controls);
+      strip->add_line(controls[backward], controls[!backward], backward ? -1.0 : 1.0);
       return;
     }
-    for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool backwards) {
-      strip->add(piece, backwards ? -1.0 : 1.0);
+    for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool backward) {
+      strip->add(piece, backward ? -1.0 : 1.0);
     });
   });
 }

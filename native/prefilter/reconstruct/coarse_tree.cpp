@@ -24,7 +24,7 @@ CoarseTree make_coarse_tree(PooledFlux flux, int top, int slab_count) {
     const int slab = morton_cell(cell.place)[2];
     coarse.continuations.push_back({slab, next[static_cast<std::size_t>(slab)]++});
   }
-  coarse.tree = analyse_flux(std::move(flux), 0, top);
+  coarse.tree = analyze_flux(std::move(flux), 0, top);
   RootMean mean;
   if (!coarse.tree.tops.empty()) mean.add_inside(coarse.tree.tops.front().flux);
   coarse.root = static_cast<float>(mean.median());

@@ -110,7 +110,7 @@ double pool_flux(const SampleSlab& slab, const SampleSlab& whole, std::size_t of
   return left_out;
 }
 
-FluxTree analyse_flux(PooledFlux pooled, int top, int depth) {
+FluxTree analyze_flux(PooledFlux pooled, int top, int depth) {
   FluxTree tree;
   tree.top = top;
   tree.levels.resize(static_cast<std::size_t>(depth - top));

@@ -45,7 +45,7 @@ double pool_flux(const SampleSlab& slab, const SampleSlab& whole, std::size_t of
 
 /// The coefficients of all cells between two depths that hold leaves of samples smaller than
 /// themselves, as triangle_analysis.h has them; `split` tells the octants that have some, too.
-FluxTree analyse_flux(PooledFlux pooled, int top, int depth);
+FluxTree analyze_flux(PooledFlux pooled, int top, int depth);
 
 /// Coefficients to values, for parts whose first cells have these.
 void synthesise_part(const std::vector<float>& tops, FluxTree* tree);

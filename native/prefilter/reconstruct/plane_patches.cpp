@@ -84,9 +84,9 @@ struct Guess {
 };
 
 // Whether there are samples in the neighbors of cells that are asked for in row-major order.
-class Neighbours {
+class Neighbors {
  public:
-  explicit Neighbours(const std::vector<CellKey>& keys) : keys_(keys) {}
+  explicit Neighbors(const std::vector<CellKey>& keys) : keys_(keys) {}
 
   bool has(std::size_t face, CellKey key) {
     std::size_t& cursor = cursors_[face];
@@ -113,7 +113,7 @@ struct CellRange {
 // Adds the sums of a cell to those of the cells next to it that its plane reaches, where these have
 // no samples.
 void add_guesses(const SampleCell& cell, const CellPolygon& polygon, const CellRange& range,
-                 Neighbours* neighbours, std::vector<Guess>* guesses) {
+                 Neighbors* neighbors, std::vector<Guess>* guesses) {
   const CellPosition at = cell_position(cell.key);
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
@@ -122,7 +122,7 @@ void add_guesses(const SampleCell& cell, const CellPolygon& polygon, const CellR
     CellPosition next = at;
     next[axis] += is_high ? 1 : -1;
     if (!range.holds(next, axis)) continue;
-    if (neighbours->has(static_cast<std::size_t>(face), cell_key(next))) continue;
+    if (neighbors->has(static_cast<std::size_t>(face), cell_key(next))) continue;
     std::array<float, 3> position = cell.position;
     position[axis] += is_high ? -cell.weight : cell.weight;
     guesses->push_back({cell_key(next), doubles(cell.normal), doubles(position),
@@ -170,7 +170,7 @@ void for_cells_and_layers(const SampleLevel* below, const SampleLevel& level,
 void add_patches(const SampleLevel* below, const SampleLevel& level, const SampleLevel* above,
                  int depth, int low, int high, std::vector<CellFlux>* patches) {
   const std::vector<CellKey> keys = keys_with_layers(below, level, above);
-  Neighbours neighbours(keys);
+  Neighbors neighbors(keys);
   std::vector<Guess> guesses;
   const CellRange range = {1 << depth, low, high};
   const auto visit = [&](const SampleLevel& from, std::size_t i) {
@@ -181,7 +181,7 @@ void add_patches(const SampleLevel* below, const SampleLevel& level, const Sampl
     const CellPolygon polygon = cut_to_cell(*plane);
     if (polygon.count < 3) return;
     if (&from == &level) patches->push_back(patch(cell_position(cell.key), polygon));
-    add_guesses(cell, polygon, range, &neighbours, &guesses);
+    add_guesses(cell, polygon, range, &neighbors, &guesses);
   };
   for_cells_and_layers(below, level, above, range, visit);
   merge_guesses(&guesses);

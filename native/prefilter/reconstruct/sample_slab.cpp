@@ -16,7 +16,7 @@ namespace prefilter {
 namespace {
 
 constexpr int kIndexBits = 64 - kKeyBits;
-constexpr int kNeighboursOfSurface = 3;
+constexpr int kNeighborsOfSurface = 3;
 constexpr int kAreaSteps = 2;
 // Cells this large always count, so that there is one where every sample does.
 constexpr int kCoarsestLeaf = 2;
@@ -71,7 +71,7 @@ void mark_met(const std::vector<CellKey>& keys, SampleLevel* level) {
       while (cursor < keys.size() && keys[cursor] + 1 < middle) ++cursor;
       for (std::size_t j = cursor; j < keys.size() && keys[j] <= middle + 1; ++j) ++found;
     }
-    level->is_met[i] = found >= kNeighboursOfSurface ? 1 : 0;
+    level->is_met[i] = found >= kNeighborsOfSurface ? 1 : 0;
   }
 }
 

@@ -74,7 +74,7 @@ void Slabs::advance(int s, SlabStage stage) {
       find_leaves_of(s);
       break;
     case SlabStage::kCoefficients:
-      analyse(s);
+      analyze(s);
       break;
     case SlabStage::kValues:
       synthesise_slab(s);
@@ -92,7 +92,7 @@ void Slabs::find_leaves_of(int s) {
   find_leaves(mean_weight, depth_, &slab);
 }
 
-void Slabs::analyse(int s) {
+void Slabs::analyze(int s) {
   Slot& slot = slots_[static_cast<std::size_t>(s)];
   const auto finest_of = [&](int t) {
     const SampleSlab* slab = samples(t);
@@ -105,7 +105,7 @@ void Slabs::analyse(int s) {
               (s + 1) * height(), &pooled.back());
   slot.coarse_flux.assign(std::make_move_iterator(pooled.begin()),
                           std::make_move_iterator(pooled.begin() + top_));
-  slot.tree = analyse_flux(std::move(pooled), top_, depth_);
+  slot.tree = analyze_flux(std::move(pooled), top_, depth_);
 }
 
 void Slabs::synthesise_slab(int s) {

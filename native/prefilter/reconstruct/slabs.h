@@ -79,7 +79,7 @@ class Slabs {
 
   void advance(int s, SlabStage stage);
   void find_leaves_of(int s);
-  void analyse(int s);
+  void analyze(int s);
   void synthesise_slab(int s);
 
   SampleStore* store_;

@@ -69,14 +69,14 @@ class Axis {
   int taps() const { return static_cast<int>(std::floor(2.0 * reach_)) + 1; }
   /// The square of how far tap `tap` of a phase is from the center.
   double squared_distance(int phase, int tap) const {
-    const double away = (first_of_phase(phase) + tap + 0.5 - centre(phase)) / unit_;
+    const double away = (first_of_phase(phase) + tap + 0.5 - center(phase)) / unit_;
     return away * away;
   }
 
  private:
-  double centre(int phase) const { return (phase + 0.5) * source_ / target_; }
+  double center(int phase) const { return (phase + 0.5) * source_ / target_; }
   int first_of_phase(int phase) const {
-    return static_cast<int>(std::ceil(centre(phase) - reach_ - 0.5));
+    return static_cast<int>(std::ceil(center(phase) - reach_ - 0.5));
   }
 
   int source_;

@@ -96,9 +96,9 @@ struct DenseWeights {
   double behind = 0.0;
 };
 
-DenseWeights wide_box(double centre, double width, int size, bool repeats) {
-  const double low = centre - 0.5 * width;
-  const double high = centre + 0.5 * width;
+DenseWeights wide_box(double center, double width, int size, bool repeats) {
+  const double low = center - 0.5 * width;
+  const double high = center + 0.5 * width;
   DenseWeights dense;
   for (int i = 0; i < size; ++i) {
     dense.weights.push_back(
@@ -110,17 +110,17 @@ DenseWeights wide_box(double centre, double width, int size, bool repeats) {
   return dense;
 }
 
-DenseWeights wide_kernel(const Kernel& kernel, double centre, double width, int size,
+DenseWeights wide_kernel(const Kernel& kernel, double center, double width, int size,
                          bool repeats) {
   const ProgressionSum sum(kernel, width, repeats ? size : 1.0);
   DenseWeights dense;
   for (int i = 0; i < size; ++i) {
-    const double x = i + 0.5 - centre;
+    const double x = i + 0.5 - center;
     dense.weights.push_back(repeats ? sum.everywhere(x) : kernel.value(x / width));
   }
   if (!repeats) {
-    dense.before = sum.up_to(-0.5 - centre);
-    dense.behind = sum.up_to(centre - size - 0.5);  // kernels are even
+    dense.before = sum.up_to(-0.5 - center);
+    dense.behind = sum.up_to(center - size - 0.5);  // kernels are even
   }
   return dense;
 }
@@ -166,18 +166,18 @@ AxisWeights wrapped(const Taps& taps, int size, Wrap mode) {
 }
 
 // The same place near the axis: a period further, or where only the end is read.
-double near_axis(double centre, double reach, int size, Wrap mode) {
-  if (mode == Wrap::kRepeat) return centre - std::floor(centre / size) * size;
-  return std::clamp(centre, -reach - 2.0, size + reach + 2.0);
+double near_axis(double center, double reach, int size, Wrap mode) {
+  if (mode == Wrap::kRepeat) return center - std::floor(center / size) * size;
+  return std::clamp(center, -reach - 2.0, size + reach + 2.0);
 }
 
 }  // namespace
 
-AxisWeights axis_weights(const Kernel& kernel, double centre, double width, int size, Wrap mode) {
-  assert(width >= 1.0 && std::isfinite(centre));
+AxisWeights axis_weights(const Kernel& kernel, double center, double width, int size, Wrap mode) {
+  assert(width >= 1.0 && std::isfinite(center));
   width = std::min(width, kLargestWidth);
   const double reach = kernel.radius() * width;
-  const double near = near_axis(centre, reach, size, mode);
+  const double near = near_axis(center, reach, size, mode);
   // Taps take less time one by one where they are hardly more than the texels.
   constexpr double kFewTaps = 64.0;
   constexpr double kFewPerTexel = 8.0;

@@ -17,9 +17,9 @@ struct AxisWeights {
   std::vector<double> weights;
 };
 
-/// The taps of the kernel at `centre`, in texels from the axis' low end, its unit `width` texels
+/// The taps of the kernel at `center`, in texels from the axis' low end, its unit `width` texels
 /// wide, 1 or more: kernel_taps, those that read the same texel added up. As many as the axis has
 /// texels at the most, and found in time that is proportional to them, whatever the width.
-AxisWeights axis_weights(const Kernel& kernel, double centre, double width, int size, Wrap mode);
+AxisWeights axis_weights(const Kernel& kernel, double center, double width, int size, Wrap mode);
 
 }  // namespace prefilter

@@ -48,8 +48,8 @@ int PyramidLevel::wrapped(int i, int size, double extent, Wrap mode) {
   if (mode != Wrap::kRepeat || extent == size || (i >= 0 && i < size)) {
     return wrap_index(i, size, mode);
   }
-  const double centre = i + 0.5;
-  const double in_period = centre - std::floor(centre / extent) * extent;
+  const double center = i + 0.5;
+  const double in_period = center - std::floor(center / extent) * extent;
   return std::clamp(static_cast<int>(in_period), 0, size - 1);
 }
 

@@ -120,7 +120,7 @@ void HolePatch::divide_border(std::uint32_t triangle, int edge, std::uint32_t po
 
 // Whether an edge joins a triangle's corner to another point.
 bool HolePatch::has_edge(std::uint32_t triangle, int corner, std::uint32_t other) const {
-  const std::uint32_t centre = triangles_[triangle].corners[static_cast<std::size_t>(corner)];
+  const std::uint32_t center = triangles_[triangle].corners[static_cast<std::size_t>(corner)];
   // Around the corner one way, and from the border the other way.
   for (const bool is_forward : {true, false}) {
     std::uint32_t at = triangle;
@@ -136,7 +136,7 @@ bool HolePatch::has_edge(std::uint32_t triangle, int corner, std::uint32_t other
       if (at == triangle) return false;
       if (at == kBorder) break;
       const auto& found = triangles_[at].corners;
-      i = found[0] == centre ? 0 : found[1] == centre ? 1 : 2;
+      i = found[0] == center ? 0 : found[1] == center ? 1 : 2;
     }
   }
   return false;

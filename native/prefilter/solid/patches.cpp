@@ -15,17 +15,16 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 // For each triangle's side i, from its corner i to the next, the triangle across; kNone where there
 // is not just one.
-std::vector<std::array<std::uint32_t, 3>> neighbours_of(const MeshView<std::int32_t>& mesh,
-                                                        const EdgeTable& edges) {
-  std::vector<std::array<std::uint32_t, 3>> neighbours(mesh.triangles.size(),
-                                                       {kNone, kNone, kNone});
+std::vector<std::array<std::uint32_t, 3>> neighbors_of(const MeshView<std::int32_t>& mesh,
+                                                       const EdgeTable& edges) {
+  std::vector<std::array<std::uint32_t, 3>> neighbors(mesh.triangles.size(), {kNone, kNone, kNone});
   const auto connect = [&](const EdgeUse& use, std::size_t low, std::size_t high,
                            std::uint32_t other) {
     const auto from = static_cast<std::int32_t>(use.is_down ? high : low);
     const auto& corners = mesh.triangles[use.triangle];
     for (std::size_t i = 0; i < 3; ++i) {
       const auto to = static_cast<std::int32_t>(use.is_down ? low : high);
-      if (corners[i] == from && corners[(i + 1) % 3] == to) neighbours[use.triangle][i] = other;
+      if (corners[i] == from && corners[(i + 1) % 3] == to) neighbors[use.triangle][i] = other;
     }
   };
   for (std::size_t low = 0; low < edges.vertex_count(); ++low) {
@@ -38,7 +37,7 @@ std::vector<std::array<std::uint32_t, 3>> neighbours_of(const MeshView<std::int3
       connect(b, low, high, a.triangle);
     });
   }
-  return neighbours;
+  return neighbors;
 }
 
 double area_of(const std::array<Vector3, 3>& corners) {
@@ -56,7 +55,7 @@ bool runs_along(const std::array<std::int32_t, 3>& triangle, std::int32_t from, 
 class PatchWalk {
  public:
   PatchWalk(const MeshView<std::int32_t>& mesh, const EdgeTable& edges, Patches* result)
-      : mesh_(mesh), neighbours_(neighbours_of(mesh, edges)), result_(result) {}
+      : mesh_(mesh), neighbors_(neighbors_of(mesh, edges)), result_(result) {}
 
   // The patch of a triangle that is in none yet.
   void walk(std::uint32_t seed) {
@@ -70,7 +69,7 @@ class PatchWalk {
       const auto& corners = mesh_.triangles[t];
       const std::uint8_t turned = result_->is_turned[t];
       for (std::size_t i = 0; i < 3; ++i) {
-        const std::uint32_t other = neighbours_[t][i];
+        const std::uint32_t other = neighbors_[t][i];
         if (other == kNone) continue;
         const bool same_way = runs_along(mesh_.triangles[other], corners[i], corners[(i + 1) % 3]);
         const auto fitting = static_cast<std::uint8_t>(same_way ? 1 - turned : turned);
@@ -101,7 +100,7 @@ class PatchWalk {
 
  private:
   const MeshView<std::int32_t>& mesh_;
-  std::vector<std::array<std::uint32_t, 3>> neighbours_;
+  std::vector<std::array<std::uint32_t, 3>> neighbors_;
   Patches* result_;
   std::vector<std::uint32_t> members_;
 };

@@ -61,7 +61,7 @@ std::vector<std::uint8_t> widened(std::vector<std::uint8_t> cells, const std::ar
 }  // namespace
 
 template <typename Visit>
-void ReachGrid::for_neighbours(std::size_t cell, const Visit& visit) const {
+void ReachGrid::for_neighbors(std::size_t cell, const Visit& visit) const {
   const auto ny = static_cast<std::size_t>(size_[1]);
   const auto nz = static_cast<std::size_t>(size_[2]);
   const std::size_t z = cell % nz;
@@ -184,7 +184,7 @@ void ReachGrid::grow(int steps) {
     std::size_t left = 0;
     for (const std::size_t cell : waiting) {
       Label label = kUnset;
-      for_neighbours(cell, [&](std::size_t next) {
+      for_neighbors(cell, [&](std::size_t next) {
         if (labels_[next] != kMet) label = std::min(label, labels_[next]);
       });
       if (label != kUnset) {

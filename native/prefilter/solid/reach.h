@@ -55,7 +55,7 @@ class ReachGrid {
   void flood(std::size_t seed, Label label, const std::vector<std::uint8_t>& is_blocked);
   void grow(int steps);
   template <typename Visit>
-  void for_neighbours(std::size_t cell, const Visit& visit) const;
+  void for_neighbors(std::size_t cell, const Visit& visit) const;
 
   double cell_;
   Vector3 origin_{};

@@ -62,7 +62,7 @@ void NinePointSystem<Entry>::add_cell(int column, int row, const TentProducts& p
     for (int i = 0; i < 2; ++i) {
       if (x[i] < 0) continue;
       const std::ptrdiff_t texel = at(x[i], y[j]);
-      add_to(&stencils_[texel].centre, products[3 * (2 * j) + 2 * i]);
+      add_to(&stencils_[texel].center, products[3 * (2 * j) + 2 * i]);
       right_side_[texel].v += right[2 * j + i].v;
     }
     if (x[0] >= 0 && x[1] >= 0) add_pair(x[0], y[j], dx, 0, products[3 * (2 * j) + 1]);
@@ -84,8 +84,8 @@ template <typename Entry>
 void NinePointSystem<Entry>::add_pair(int x, int y, int dx, int dy, Entry value) {
   Stencil& stencil = stencils_[at(x, y)];
   if (dx == 0 && dy == 0) {
-    add_to(&stencil.centre, value);
-    add_to(&stencil.centre, value);
+    add_to(&stencil.center, value);
+    add_to(&stencil.center, value);
   } else if (dy == 0) {
     add_to(&stencil.east, value);
   } else if (dx == 0) {
@@ -170,7 +170,7 @@ class NinePointSystem<Entry>::Row {
     sum -= of(here_[x].north_west) * north_values_[west].v;
     sum -= of(south_[east].north_west) * south_values_[east].v;
     sum -= of(here_[west].east) * values_[west].v;
-    const Lanes inverse = Lanes{} + of(here_[x].centre);
+    const Lanes inverse = Lanes{} + of(here_[x].center);
     const Lanes free = select(inverse > 0.0F, old + kRelaxation * (sum * inverse - old), old);
     Lanes scale = Lanes{} + 1.0F;
     if (times_alpha_) {
@@ -283,7 +283,7 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
     moves[y] = relax_row(y, options, typical) ? 1 : 0;
   };
   const bool odd_ring = wrap_.v == Wrap::kRepeat && height_ > 1 && height_ % 2 == 1;
-  const std::int64_t rows_of_colour[2] = {(height_ + 1) / 2 - (odd_ring ? 1 : 0), height_ / 2};
+  const std::int64_t rows_of_color[2] = {(height_ + 1) / 2 - (odd_ring ? 1 : 0), height_ / 2};
 
   int sweeps = 0;
   bool done = false;
@@ -300,13 +300,13 @@ int NinePointSystem<Entry>::solve(const SolveOptions& options, const Progress& p
   const bool small = static_cast<std::int64_t>(width_) * height_ < kTexelsWorthThreads;
   parallel_team(small ? 1 : resolve_threads(options.threads), [&](Team& team) {
     while (!done) {
-      for (int colour = 0; colour < 2; ++colour) {
-        const std::int64_t end = team.share_end(rows_of_colour[colour]);
-        for (std::int64_t i = team.share_begin(rows_of_colour[colour]); i < end; ++i) {
+      for (int color = 0; color < 2; ++color) {
+        const std::int64_t end = team.share_end(rows_of_color[color]);
+        for (std::int64_t i = team.share_begin(rows_of_color[color]); i < end; ++i) {
           if (stop.load(std::memory_order_relaxed)) break;
-          relax(static_cast<int>(2 * i) + colour);
+          relax(static_cast<int>(2 * i) + color);
           if (team.rank() == 0 && i % kRowsPerReport == 0) {
-            report(sweeps + 0.5 * (colour + static_cast<double>(i) / static_cast<double>(end)));
+            report(sweeps + 0.5 * (color + static_cast<double>(i) / static_cast<double>(end)));
           }
         }
         team.wait_for_all();
@@ -343,7 +343,7 @@ std::vector<LaneValues> NinePointSystem<Entry>::product() const {
       const int west = x > 0 ? x - 1 : repeat ? width_ - 1 : width_;
       const int east = x + 1 < width_ ? x + 1 : repeat ? 0 : width_;
       const Stencil& stencil = stencils_[here + x];
-      products[here + x].v = of(stencil.centre) * texels_[here + x].v +
+      products[here + x].v = of(stencil.center) * texels_[here + x].v +
                              of(stencil.east) * texels_[here + east].v +
                              of(stencil.north) * texels_[north + x].v +
                              of(stencil.north_east) * texels_[north + east].v +
@@ -361,7 +361,7 @@ template <typename Entry>
 void NinePointSystem<Entry>::weigh_links(const LinkForm* links, Lanes weights) {
   if (links_ != nullptr) {
     for (std::size_t k = 0; k < alone_.size(); ++k) {
-      stencils_[links_->texels()[k].at].centre = inverse_of(alone_[k]);
+      stencils_[links_->texels()[k].at].center = inverse_of(alone_[k]);
     }
   }
   alone_.clear();
@@ -372,10 +372,10 @@ void NinePointSystem<Entry>::weigh_links(const LinkForm* links, Lanes weights) {
   if (links_ == nullptr) return;
   for (std::size_t k = 0; k + 1 < links_->texels().size(); ++k) {
     const LinkForm::Texel& texel = links_->texels()[k];
-    Entry diagonal = inverse_of(stencils_[texel.at].centre);
+    Entry diagonal = inverse_of(stencils_[texel.at].center);
     alone_.push_back(diagonal);
     add_to(&diagonal, texel.own * link_weights_);
-    stencils_[texel.at].centre = inverse_of(diagonal);
+    stencils_[texel.at].center = inverse_of(diagonal);
   }
 }
 
@@ -389,12 +389,12 @@ void NinePointSystem<Entry>::clear() {
 
 template <typename Entry>
 void NinePointSystem<Entry>::invert_diagonal() {
-  for (Stencil& stencil : stencils_) stencil.centre = inverse_of(stencil.centre);
+  for (Stencil& stencil : stencils_) stencil.center = inverse_of(stencil.center);
 }
 
 template <typename Entry>
 bool NinePointSystem<Entry>::is_part(std::ptrdiff_t at) const {
-  const Lanes inverse = Lanes{} + of(stencils_[at].centre);
+  const Lanes inverse = Lanes{} + of(stencils_[at].center);
   return inverse[0] > 0.0F || inverse[1] > 0.0F || inverse[2] > 0.0F || inverse[3] > 0.0F;
 }
 
@@ -417,7 +417,7 @@ std::array<double, kMaxChannels> NinePointSystem<Entry>::form(const std::vector<
     Sums sums{};
     for (int x = 0; x < width_; ++x) {
       const bool is_linked = links_ != nullptr && links_->texels()[linked].at == at(x, y);
-      const Entry centre = is_linked ? alone_[linked++] : inverse_of(here[x].centre);
+      const Entry center = is_linked ? alone_[linked++] : inverse_of(here[x].center);
       if (!is_part(at(x, y))) continue;
       const int past_west = repeat ? width_ - 1 : width_;
       const int west = x > 0 ? x - 1 : past_west;
@@ -430,7 +430,7 @@ std::array<double, kMaxChannels> NinePointSystem<Entry>::form(const std::vector<
             product(here[x].east, values[east]) + product(here[x].north, north[x]) +
             product(here[x].north_east, north[east]) + product(here[x].north_west, north[west]);
         const double value = values[x].v[c];
-        const double diagonal = static_cast<double>(channel(centre, c)) - less;
+        const double diagonal = static_cast<double>(channel(center, c)) - less;
         sums[c] += value * (diagonal * value + 2.0 * (beside - right[x].v[c]));
       }
     }

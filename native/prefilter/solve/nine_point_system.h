@@ -52,7 +52,7 @@ class NinePointSystem {
 
   std::ptrdiff_t at(int x, int y) const { return static_cast<std::ptrdiff_t>(y) * stride_ + x; }
   std::size_t size() const { return stencils_.size(); }
-  Entry& diagonal(std::ptrdiff_t at) { return stencils_[at].centre; }
+  Entry& diagonal(std::ptrdiff_t at) { return stencils_[at].center; }
   LaneValues& right_side(std::ptrdiff_t at) { return right_side_[at]; }
   LaneValues& texel(std::ptrdiff_t at) { return texels_[at]; }
   const LaneValues& texel(std::ptrdiff_t at) const { return texels_[at]; }
@@ -99,7 +99,7 @@ class NinePointSystem {
  private:
   // Entries of a texel with itself and with its neighbors east, north, north-east and north-west.
   struct Stencil {
-    Entry centre{};
+    Entry center{};
     Entry east{};
     Entry north{};
     Entry north_east{};

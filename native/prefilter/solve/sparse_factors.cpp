@@ -30,7 +30,7 @@ struct Lists {
   }
 };
 
-Lists neighbours_of(std::size_t count, std::span<const SparseEntry> lower) {
+Lists neighbors_of(std::size_t count, std::span<const SparseEntry> lower) {
   Lists lists;
   lists.begins.assign(count + 1, 0);
   for (const SparseEntry& entry : lower) {
@@ -53,8 +53,8 @@ Lists neighbours_of(std::size_t count, std::span<const SparseEntry> lower) {
 // before the rows between them.
 class Dissection {
  public:
-  Dissection(const Lists& neighbours, std::span<const Vector3> places)
-      : neighbours_(neighbours), places_(places), stamps_(places.size(), 0) {}
+  Dissection(const Lists& neighbors, std::span<const Vector3> places)
+      : neighbors_(neighbors), places_(places), stamps_(places.size(), 0) {}
 
   void sort(std::span<std::uint32_t> rows) {
     if (rows.size() <= kUncut) return;
@@ -85,12 +85,12 @@ class Dissection {
 
  private:
   bool meets_stamp(std::uint32_t row) const {
-    const auto others = neighbours_.of(row);
+    const auto others = neighbors_.of(row);
     return std::any_of(others.begin(), others.end(),
                        [&](std::uint32_t other) { return stamps_[other] == stamp_; });
   }
 
-  const Lists& neighbours_;
+  const Lists& neighbors_;
   std::span<const Vector3> places_;
   std::vector<std::uint32_t> stamps_;
   std::uint32_t stamp_ = 0;
@@ -179,7 +179,7 @@ SparseFactors::SparseFactors(std::vector<SparseEntry> lower, std::span<const Vec
   add_up(&lower);
   progress.report(0.1);
   for (std::size_t i = 0; i < count; ++i) order_[i] = static_cast<std::uint32_t>(i);
-  Dissection(neighbours_of(count, lower), places).sort(order_);
+  Dissection(neighbors_of(count, lower), places).sort(order_);
   sort_by_steps(order_, &lower);
   progress.report(0.2);
 

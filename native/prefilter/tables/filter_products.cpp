@@ -47,11 +47,11 @@ double FilterProducts::product(const Filter& a, const Filter& b) const {
 
 double FilterProducts::integral(const Filter& a, const Filter& b) const {
   const double radius = kernel_.radius();
-  const double end = std::min(a.centre + radius * a.width, b.centre + radius * b.width);
-  double begin = std::max(a.centre - radius * a.width, b.centre - radius * b.width);
+  const double end = std::min(a.center + radius * a.width, b.center + radius * b.width);
+  double begin = std::max(a.center - radius * a.width, b.center - radius * b.width);
   const auto next_piece = [&](const Filter& filter, double x) {
     const double width = kernel_.piece_width() * filter.width;
-    const double origin = filter.centre - radius * filter.width;
+    const double origin = filter.center - radius * filter.width;
     constexpr double kOnEdge = 1e-9;
     return origin + (std::floor((x - origin) / width + kOnEdge) + 1.0) * width;
   };
@@ -62,8 +62,8 @@ double FilterProducts::integral(const Filter& a, const Filter& b) const {
     double piece = 0.0;
     for (int k = 0; k <= Kernel::kMostDegree; ++k) {
       const double x = begin + (stop - begin) * rule.nodes[k];
-      piece += rule.weights[k] * kernel_.value((x - a.centre) / a.width) *
-               kernel_.value((x - b.centre) / b.width);
+      piece += rule.weights[k] * kernel_.value((x - a.center) / a.width) *
+               kernel_.value((x - b.center) / b.width);
     }
     sum += piece * (stop - begin);
     begin = stop;
@@ -73,8 +73,8 @@ double FilterProducts::integral(const Filter& a, const Filter& b) const {
 
 double FilterProducts::sum(const Filter& a, const Filter& b) const {
   const double texels = levels_;  // of level 0 along a cell
-  const Taps left = kernel_taps(kernel_, a.centre * texels, a.width * texels);
-  const Taps right = kernel_taps(kernel_, b.centre * texels, b.width * texels);
+  const Taps left = kernel_taps(kernel_, a.center * texels, a.width * texels);
+  const Taps right = kernel_taps(kernel_, b.center * texels, b.width * texels);
   const int begin = std::max(left.first, right.first);
   const int end = std::min(left.first + static_cast<int>(left.weights.size()),
                            right.first + static_cast<int>(right.weights.size()));

@@ -41,7 +41,7 @@ class FilterProducts {
 
  private:
   struct Filter {
-    double centre;
+    double center;
     double width;
   };
   static Filter texel(int finer, int i);

@@ -125,18 +125,18 @@ const std::vector<double>& Borders::profile(int finer, int i, int* first) {
   auto& [begin, values] = place->second;
   if (is_new) {
     const double width = std::ldexp(1.0, -finer);
-    const double centre = (i + 0.5) * width;
+    const double center = (i + 0.5) * width;
     if (samples_ > 0) {
-      Taps taps = kernel_taps(kernel_, centre * samples_, width * samples_);
+      Taps taps = kernel_taps(kernel_, center * samples_, width * samples_);
       begin = taps.first;
       values = std::move(taps.weights);
     } else {
       const double reach = kernel_.radius() * width;
-      begin = static_cast<int>(std::floor((centre - reach) * kPointsOfCell));
-      const int end = static_cast<int>(std::ceil((centre + reach) * kPointsOfCell));
+      begin = static_cast<int>(std::floor((center - reach) * kPointsOfCell));
+      const int end = static_cast<int>(std::ceil((center + reach) * kPointsOfCell));
       for (int k = begin; k < end; ++k) {
         const double x = (k + 0.5) / kPointsOfCell;
-        values.push_back(kernel_.value((x - centre) / width) / (width * kPointsOfCell));
+        values.push_back(kernel_.value((x - center) / width) / (width * kPointsOfCell));
       }
     }
   }

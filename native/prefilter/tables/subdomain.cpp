@@ -90,7 +90,7 @@ OrthonormalBasis orthonormal_basis(const Subdomain& subdomain, int degree) {
       subdomain.has_f() ? (subdomain.f_low() + subdomain.f_high()) / 2.0 : 0.0};
   const auto [a, b, c] = middle;
   // Row p: the p-th power about the middle in terms of the powers about 0.
-  const std::array<Terms, kMostTerms> centred = {{
+  const std::array<Terms, kMostTerms> centered = {{
       {1.0},
       {-a, 1.0},
       {-b, 0.0, 1.0},
@@ -108,7 +108,7 @@ OrthonormalBasis orthonormal_basis(const Subdomain& subdomain, int degree) {
   for (int power = 0; power < (degree == 1 ? 4 : kMostTerms); ++power) {
     constexpr int kXy = 7;
     if (power == kXy && !subdomain.has_f()) continue;  // f is that
-    Terms row = centred[power];
+    Terms row = centered[power];
     std::vector<double> at_nodes;
     const auto value = [&](const Subdomain::Node& node) {
       const Terms terms = terms_at(node.x, node.y, node.f);

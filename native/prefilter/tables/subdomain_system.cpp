@@ -261,7 +261,7 @@ void SubdomainSystem::add_ramps(const Subdomain& subdomain, double weight) {
   const double middle_y = (subdomain.y_low() + subdomain.y_high()) / 2.0;
   for (const TexelOffset& texel : texels) {
     const double width = std::ldexp(1.0, -texel.finer);
-    centres_.push_back({(texel.x + 0.5) * width - middle_x, (texel.y + 0.5) * width - middle_y});
+    centers_.push_back({(texel.x + 0.5) * width - middle_x, (texel.y + 0.5) * width - middle_y});
   }
   for (const Subdomain::Node& node : subdomain.quadrature(1)) {
     const std::array<double, kMostTerms> polynomials = polynomials_at(basis, node);
@@ -270,15 +270,15 @@ void SubdomainSystem::add_ramps(const Subdomain& subdomain, double weight) {
       ramps_[p].y += node.weight * polynomials[p] * (node.y - middle_y);
     }
   }
-  const std::size_t count = centres_.size();
+  const std::size_t count = centers_.size();
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j < count; ++j) {
       products[i * count + j] +=
-          weight * (centres_[i].x * centres_[j].x + centres_[i].y * centres_[j].y);
+          weight * (centers_[i].x * centers_[j].x + centers_[i].y * centers_[j].y);
     }
     for (int p = 0; p < basis.count; ++p) {
       right_sides[i * basis.count + p] +=
-          weight * (centres_[i].x * ramps_[p].x + centres_[i].y * ramps_[p].y);
+          weight * (centers_[i].x * ramps_[p].x + centers_[i].y * ramps_[p].y);
     }
   }
   // The places are polynomials of the first degree, which the basis spans.
@@ -293,8 +293,8 @@ double SubdomainSystem::filter_error(const FittedSet& set) const {
     Point2 missing = ramps_[p];
     for (std::size_t i = 0; i < set.members.size(); ++i) {
       const double weight = set.weights[i * basis.count + p];
-      missing.x -= weight * centres_[set.members[i]].x;
-      missing.y -= weight * centres_[set.members[i]].y;
+      missing.x -= weight * centers_[set.members[i]].x;
+      missing.y -= weight * centers_[set.members[i]].y;
     }
     distance += missing.x * missing.x + missing.y * missing.y;
   }

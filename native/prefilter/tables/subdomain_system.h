@@ -61,7 +61,7 @@ struct SubdomainSystem {
   void add_ramps(const Subdomain& subdomain, double weight);
 
   double ramp_weight_;
-  std::vector<Point2> centres_;             // of texels, in cells from the subdomain's middle
+  std::vector<Point2> centers_;             // of texels, in cells from the subdomain's middle
   std::array<Point2, kMostTerms> ramps_{};  // x and y of a sample times polynomial p, likewise
 };
 

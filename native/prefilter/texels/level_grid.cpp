@@ -15,7 +15,7 @@ namespace {
 // the same, or farther apart than this up to sizes of 2^16.
 constexpr double kSameLine = 1e-10;
 
-void append_centres(int size, int level, std::vector<double>* lines) {
+void append_centers(int size, int level, std::vector<double>* lines) {
   const int texels = level_size(size, level);
   for (int i = 0; i < texels; ++i) {
     lines->push_back((i + 0.5) * size / texels);
@@ -66,7 +66,7 @@ AxisCells::AxisCells(int size, int level_count, int tile_size, int last_tile_lev
   lines_.resize(level_count);
   std::vector<double> lines = {0.0, static_cast<double>(size)};
   for (int level = level_count - 1; level >= 0; --level) {
-    append_centres(size, level, &lines);
+    append_centers(size, level, &lines);
     if (level == last_tile_level || (level == level_count - 1 && level < last_tile_level)) {
       for (int edge = tile_size; edge < size; edge += tile_size) lines.push_back(edge);
     }

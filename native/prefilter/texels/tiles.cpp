@@ -34,7 +34,7 @@ void for_each_tile(const MassTriangle& triangle, int columns, int rows, const Us
 
 // Colors 0 and 1 in turn. The last one is beside the first around the edge, and may be so narrow
 // that the one before it comes near the first too: they have colors of their own.
-int tile_colour(int tile, int count, int size) {
+int tile_color(int tile, int count, int size) {
   const bool narrow = size % Tiles::kSize != 0;
   if (count > 1 && tile == count - 1 && (narrow || count % 2 == 1)) return 2;
   if (count > 2 && tile == count - 2 && narrow) return 3;
@@ -83,12 +83,12 @@ CellWindow Tiles::window(std::int64_t tile) const {
 void Tiles::for_each_apart(int threads, const Progress& progress,
                            const std::function<void(std::int64_t)>& body) const {
   std::int64_t done = 0;
-  for (int pass = 0; pass < kTileColours * kTileColours; ++pass) {
+  for (int pass = 0; pass < kTileColors * kTileColors; ++pass) {
     std::vector<std::int64_t> members;
     for (int row = 0; row < rows_; ++row) {
-      if (tile_colour(row, rows_, height_) != pass / kTileColours) continue;
+      if (tile_color(row, rows_, height_) != pass / kTileColors) continue;
       for (int column = 0; column < columns_; ++column) {
-        if (tile_colour(column, columns_, width_) != pass % kTileColours) continue;
+        if (tile_color(column, columns_, width_) != pass % kTileColors) continue;
         members.push_back(static_cast<std::int64_t>(row) * columns_ + column);
       }
     }

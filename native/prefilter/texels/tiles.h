@@ -15,8 +15,8 @@ namespace prefilter {
 
 /// Numbers of tiles along an axis, colored so that those of one color are a whole tile apart,
 /// even around the edge.
-inline constexpr int kTileColours = 4;
-int tile_colour(int tile, int count, int size);
+inline constexpr int kTileColors = 4;
+int tile_color(int tile, int count, int size);
 
 /// Tiles of up to kSize x kSize texels, in rows, with the triangles of each in the order of the
 /// mesh.

@@ -291,7 +291,7 @@ Octree grown(Octree octree, const Box& box) {
           "than " +
           std::to_string(kMaxTreeDepth));
     }
-    // The old root becomes the octant that leaves room towards the box.
+    // The old root becomes the octant that leaves room toward the box.
     int place = 0;
     Box bounds = octree.bounds;
     for (int a = 0; a < 3; ++a) {

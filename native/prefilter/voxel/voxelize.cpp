@@ -122,7 +122,7 @@ Octree voxelize(const InputMesh& mesh, const VoxelizeOptions& options) {
   const RootTriangles in_root{mesh, octree.bounds};
   check_surface(in_root, options.depth, options.progress.part(0.0, 0.05), options.threads);
   HaarTree coefficients =
-      analyse_triangles(in_root, options.depth, options.progress.part(0.05, 0.9), options.threads);
+      analyze_triangles(in_root, options.depth, options.progress.part(0.05, 0.9), options.threads);
   octree.cells =
       synthesise(std::move(coefficients), -1, options.progress.part(0.9, 1.0), options.threads);
   return octree;

@@ -8,7 +8,7 @@
 namespace prefilter {
 
 /// The mean height of the surface over the low side of a column's cell, in cells: the sum of the
-/// occupancies between full and empty cells. `value(i)` is that of the cell i steps towards the
+/// occupancies between full and empty cells. `value(i)` is that of the cell i steps toward the
 /// empty end. None where the column does not run from full to empty within a few cells.
 template <typename Value>
 std::optional<float> column_height(const Value& value) {

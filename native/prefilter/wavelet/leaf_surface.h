@@ -59,7 +59,7 @@ class LeafSurface {
   bool has_heights(const CellTree& tree, int depth, const LeafPlace& at);
   void fit_height(double occupancy, int parts);
 
-  // Heights count from the leaf's center along the axis, towards the outside.
+  // Heights count from the leaf's center along the axis, toward the outside.
   int axis_ = 0;
   bool is_up_ = true;
   double height_ = 0.0;  // the mean over the leaf

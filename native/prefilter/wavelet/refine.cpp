@@ -135,7 +135,7 @@ class SideRule {
   };
   struct Part {
     Node node;
-    std::array<Node, 6> neighbours;  // 2 a is that across axis a at its low side
+    std::array<Node, 6> neighbors;  // 2 a is that across axis a at its low side
   };
 
   SideRule(const CellTree& tree, int depth)
@@ -152,7 +152,7 @@ class SideRule {
     if (part.node.is_split) return true;
     if (depth >= depth_) return false;
     for (int face = 0; face < 6; ++face) {
-      if (is_beside_other(part.node, part.neighbours[static_cast<std::size_t>(face)], face)) {
+      if (is_beside_other(part.node, part.neighbors[static_cast<std::size_t>(face)], face)) {
         return true;
       }
     }
@@ -168,7 +168,7 @@ class SideRule {
       const int bit = 1 << (face / 2);
       const bool leaves = ((o & bit) != 0) == ((face & 1) != 0);
       const auto f = static_cast<std::size_t>(face);
-      result.neighbours[f] = octant_of(leaves ? part.neighbours[f] : part.node, o ^ bit);
+      result.neighbors[f] = octant_of(leaves ? part.neighbors[f] : part.node, o ^ bit);
     }
     return result;
   }
@@ -198,23 +198,23 @@ class SideRule {
 
   // Between full and empty leaves the surface is between cells of the finer one, if that is as fine
   // as it has to be.
-  bool is_beside_other(const Node& leaf, const Node& neighbour, int face) const {
+  bool is_beside_other(const Node& leaf, const Node& neighbor, int face) const {
     const bool is_uniform = !is_fraction(leaf.value);
-    if (neighbour.is_split) {
-      if (is_uniform && (neighbour.contents & ~content_of(leaf.value) & ~kPartlyFull) == 0) {
+    if (neighbor.is_split) {
+      if (is_uniform && (neighbor.contents & ~content_of(leaf.value) & ~kPartlyFull) == 0) {
         return false;
       }
       const int axis = face / 2;
       for (int o = 0; o < 8; ++o) {
         // Those at the face.
         if (((o >> axis) & 1) == (face & 1)) continue;
-        if (is_beside_other(leaf, octant_of(neighbour, o), face)) return true;
+        if (is_beside_other(leaf, octant_of(neighbor, o), face)) return true;
       }
       return false;
     }
-    if (leaf.value == neighbour.value) return false;
-    const bool is_coarse = neighbour.depth >= 0 && neighbour.depth < depth_;
-    return !is_uniform || (is_coarse && !is_fraction(neighbour.value));
+    if (leaf.value == neighbor.value) return false;
+    const bool is_coarse = neighbor.depth >= 0 && neighbor.depth < depth_;
+    return !is_uniform || (is_coarse && !is_fraction(neighbor.value));
   }
 
   const CellTree& tree_;

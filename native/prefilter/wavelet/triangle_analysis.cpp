@@ -241,7 +241,7 @@ std::vector<std::size_t> task_starts(const std::vector<BrickTriangle>& pairs) {
   return starts;
 }
 
-BrickBlocks analyse_bricks(const RootTriangles& mesh, std::span<const BrickTriangle> pairs,
+BrickBlocks analyze_bricks(const RootTriangles& mesh, std::span<const BrickTriangle> pairs,
                            int brick_depth, double cells_per_axis) {
   BrickBlocks blocks;
   Brick brick(brick_depth);
@@ -298,7 +298,7 @@ std::vector<BrickFlux> add_parents(const std::vector<BrickFlux>& cells, TreeLeve
 }
 }  // namespace
 
-HaarTree analyse_triangles(const RootTriangles& mesh, int depth, const Progress& progress,
+HaarTree analyze_triangles(const RootTriangles& mesh, int depth, const Progress& progress,
                            int threads) {
   const int brick_depth = std::min(depth, kBrickDepth);
   const int coarse_depth = depth - brick_depth;
@@ -312,7 +312,7 @@ HaarTree analyse_triangles(const RootTriangles& mesh, int depth, const Progress&
                  const auto i = static_cast<std::size_t>(task);
                  const std::span<const BrickTriangle> pairs(scattered.pairs);
                  parts[i] =
-                     analyse_bricks(mesh, pairs.subspan(starts[i], starts[i + 1] - starts[i]),
+                     analyze_bricks(mesh, pairs.subspan(starts[i], starts[i + 1] - starts[i]),
                                     brick_depth, static_cast<double>(1 << depth));
                });
 

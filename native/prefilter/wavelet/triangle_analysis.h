@@ -31,7 +31,7 @@ struct RootTriangles {
 /// 2.03 A / s^2 for each of the cells of side s that hold both, and that of the root by what
 /// `root_mean` leaves. Preconditions: finite positions within 1e6 of the root, valid indices.
 /// Throws Error(kCancelled), and std::bad_alloc.
-HaarTree analyse_triangles(const RootTriangles& mesh, int depth, const Progress& progress,
+HaarTree analyze_triangles(const RootTriangles& mesh, int depth, const Progress& progress,
                            int threads);
 
 }  // namespace prefilter

@@ -42,7 +42,7 @@ std::array<std::array<double, 3>, 3> heights_of(const Quadratic& q) {
 
 HeightPatch patch_along(int axis, bool is_up) {
   HeightPatch patch;
-  patch.centre = {3.5, 4.5, 5.5};
+  patch.center = {3.5, 4.5, 5.5};
   patch.axis = axis;
   patch.is_up = is_up;
   return patch;
@@ -59,7 +59,7 @@ TEST(HeightPatch, IsTheQuadraticThatHasTheMeans) {
     const double up = patch.is_up ? 1.0 : -1.0;
     for (int k = 0; k < 10; ++k) {
       const std::array<double, 3> offset = {uniform(random), uniform(random), uniform(random)};
-      Vector3 point = patch.centre;
+      Vector3 point = patch.center;
       for (int a = 0; a < 3; ++a)
         point[(patch.axis + a) % 3] += offset[static_cast<std::size_t>(a)];
       Vector3 gradient;
@@ -78,7 +78,7 @@ TEST(HeightPatch, IsTheQuadraticThatHasTheMeans) {
     EXPECT_NEAR(length(patch.normal()), 1.0, 1e-12);
     EXPECT_GT(up * patch.normal()[patch.axis], 0.0);
     // Its foot has the mean height of the middle column.
-    EXPECT_NEAR(up * (patch.foot()[patch.axis] - patch.centre[patch.axis]), mean_of(q, 0.0, 0.0),
+    EXPECT_NEAR(up * (patch.foot()[patch.axis] - patch.center[patch.axis]), mean_of(q, 0.0, 0.0),
                 1e-12);
   }
 }

@@ -30,7 +30,7 @@ TEST(FillHoles, KeepsTexelsWithWeightAndFillsTheRest) {
 }
 
 // One texel of every two by two is known, so it is what the next coarser layer has there. A hole's
-// centre is a quarter of a coarse texel from that of the one above it, along both axes.
+// center is a quarter of a coarse texel from that of the one above it, along both axes.
 TEST(FillHoles, InterpolatesTheCoarserLayer) {
   Image image(4, 4, 1);
   std::vector<float> weights(16, 0.0F);

@@ -23,12 +23,12 @@ Image random_image(int width, int height, int channels) {
 // How much texel x counts for target texel t, by the definition.
 double weight(const Kernel& kernel, double ratio, int t, int x) {
   if (ratio == 1.0) return x == t ? 1.0 : 0.0;
-  const double centre = (t + 0.5) * ratio;
+  const double center = (t + 0.5) * ratio;
   if (kernel.name() == "box") {
     return std::max(
-        0.0, std::min(x + 1.0, centre + 0.5 * ratio) - std::max<double>(x, centre - 0.5 * ratio));
+        0.0, std::min(x + 1.0, center + 0.5 * ratio) - std::max<double>(x, center - 0.5 * ratio));
   }
-  return kernel.value((x + 0.5 - centre) / std::max(1.0, ratio));
+  return kernel.value((x + 0.5 - center) / std::max(1.0, ratio));
 }
 
 // Straight from the definition: a sum over the whole plane.

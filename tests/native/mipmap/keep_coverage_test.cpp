@@ -52,9 +52,9 @@ TEST(KeepCoverage, LeavesALevelThatHasIt) {
   EXPECT_EQ(kept[0].data, level.data);
 }
 
-TEST(KeepCoverage, ChangesColoursThatAreMultiplied) {
+TEST(KeepCoverage, ChangesColorsThatAreMultiplied) {
   const Image image = ramp(64, 1.0);
-  const auto with_colours = [](const Image& alpha) {
+  const auto with_colors = [](const Image& alpha) {
     Image result(alpha.width, alpha.height, 4);
     for (std::size_t i = 0; i < alpha.data.size(); ++i) {
       for (int c = 0; c < 4; ++c) {
@@ -63,8 +63,8 @@ TEST(KeepCoverage, ChangesColoursThatAreMultiplied) {
     }
     return result;
   };
-  const Image fine = with_colours(image);
-  const Image coarse = with_colours(ramp(32, 3.0));
+  const Image fine = with_colors(image);
+  const Image coarse = with_colors(ramp(32, 3.0));
   for (const bool premultiplied : {false, true}) {
     CoverageOptions options;
     options.premultiplied = premultiplied;
@@ -82,11 +82,11 @@ TEST(KeepCoverage, ChangesColoursThatAreMultiplied) {
 
 TEST(KeepCoverage, RefusesWhatItCannotRead) {
   const Image image(4, 4, 1, 0.5F);
-  const Image colour(4, 4, 3, 0.5F);
+  const Image color(4, 4, 3, 0.5F);
   const Image bad(2, 2, 1, std::numeric_limits<float>::quiet_NaN());
   CoverageOptions options;
   EXPECT_THROW(keep_coverage({}, {}, options), Error);
-  EXPECT_THROW(keep_coverage({colour.view()}, {}, options), Error);
+  EXPECT_THROW(keep_coverage({color.view()}, {}, options), Error);
   EXPECT_THROW(keep_coverage({image.view(), bad.view()}, {}, options), Error);
   EXPECT_NO_THROW(keep_coverage({bad.view(), image.view()}, {}, options));
   for (const double threshold : {0.0, 1.5, std::nan("")}) {

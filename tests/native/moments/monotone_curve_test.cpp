@@ -14,13 +14,13 @@ namespace {
 
 struct Piece {
   MonotoneCurve curve;
-  bool backwards = false;
+  bool backward = false;
 };
 
 std::vector<Piece> pieces_of(std::span<const Point2> controls, double weight) {
   std::vector<Piece> pieces;
-  for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool backwards) {
-    pieces.push_back({piece, backwards});
+  for_monotone_pieces(controls, weight, [&](const MonotoneCurve& piece, bool backward) {
+    pieces.push_back({piece, backward});
   });
   return pieces;
 }
@@ -42,14 +42,14 @@ TEST(MonotonePieces, JoinAndBeginAndEndWhereTheCurveDoes) {
     const RandomCurve curve = any_curve(&random, trial, 8.0);
     const std::vector<Piece> pieces = pieces_of(curve.controls, curve.weight);
     ASSERT_FALSE(pieces.empty());
-    const bool backwards = pieces.front().backwards;
-    const Point2 begin = backwards ? curve.controls.back() : curve.controls.front();
-    const Point2 end = backwards ? curve.controls.front() : curve.controls.back();
+    const bool backward = pieces.front().backward;
+    const Point2 begin = backward ? curve.controls.back() : curve.controls.front();
+    const Point2 end = backward ? curve.controls.front() : curve.controls.back();
     EXPECT_EQ(pieces.front().curve.begin, begin) << trial;
     EXPECT_EQ(pieces.back().curve.end, end) << trial;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       EXPECT_LE(pieces[i].curve.t_begin, pieces[i].curve.t_end) << trial;
-      EXPECT_EQ(pieces[i].backwards, backwards);
+      EXPECT_EQ(pieces[i].backward, backward);
       if (i > 0) {
         EXPECT_EQ(pieces[i].curve.begin, pieces[i - 1].curve.end) << trial;
       }
@@ -92,7 +92,7 @@ TEST(MonotonePieces, AreTheSameFromTheOtherEnd) {
     const std::vector<Piece> turned = pieces_of(curve.controls, curve.weight);
     ASSERT_EQ(pieces.size(), turned.size());
     for (std::size_t i = 0; i < pieces.size(); ++i) {
-      EXPECT_NE(pieces[i].backwards, turned[i].backwards);
+      EXPECT_NE(pieces[i].backward, turned[i].backward);
       EXPECT_EQ(pieces[i].curve.begin, turned[i].curve.begin);
       EXPECT_EQ(pieces[i].curve.end, turned[i].curve.end);
       EXPECT_EQ(pieces[i].curve.t_end, turned[i].curve.t_end);
@@ -104,7 +104,7 @@ TEST(MonotonePieces, OfALineIsTheLine) {
   const std::vector<Point2> controls = {{1.0, 2.0}, {3.0, 7.0}};
   const std::vector<Piece> pieces = pieces_of(controls, 0.0);
   ASSERT_EQ(pieces.size(), 1U);
-  EXPECT_FALSE(pieces[0].backwards);
+  EXPECT_FALSE(pieces[0].backward);
   EXPECT_EQ(pieces[0].curve.curve.kind, CurveKind::kLine);
 }
 

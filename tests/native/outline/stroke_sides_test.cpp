@@ -170,9 +170,9 @@ TEST(StrokeSides, InsidesMeetWhereLinesAreLongEnough) {
                                                             {0, -1}});
 }
 
-// The side of a tight turn runs backwards; what it winds around may count more than once, and never
+// The side of a tight turn runs backward; what it winds around may count more than once, and never
 // negatively, so that the non-zero rule keeps it.
-TEST(StrokeSides, FoldsDoNotWindBackwards) {
+TEST(StrokeSides, FoldsDoNotWindBackward) {
   Outline way;
   way.move_to({0, 0});
   way.curve_to(std::vector<Point2>{{10, 0.1}, {0, 0.2}});

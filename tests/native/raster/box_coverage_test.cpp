@@ -59,8 +59,8 @@ std::vector<double> general_coverage(const Outline& outline, Size size) {
   edges.add(outline);
   MomentCells<0> cells;
   cells.begin_band(filter, size.width, 0, size.height);
-  edges.for_pieces_between(0, size.height, filter, [&](const MonotoneCurve& piece, bool backwards) {
-    cells.add(piece, backwards ? 1 : -1);
+  edges.for_pieces_between(0, size.height, filter, [&](const MonotoneCurve& piece, bool backward) {
+    cells.add(piece, backward ? 1 : -1);
   });
   cells.finish();
   CoverageRows rows;

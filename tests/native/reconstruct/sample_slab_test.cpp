@@ -42,7 +42,7 @@ std::set<CellKey> random_keys(int depth, int low, int high, double share, unsign
   return keys;
 }
 
-int neighbours_of(const CellPosition& at, const std::set<CellPosition>& cells) {
+int neighbors_of(const CellPosition& at, const std::set<CellPosition>& cells) {
   int count = -1;
   for (int z = -1; z <= 1; ++z) {
     for (int y = -1; y <= 1; ++y) {
@@ -54,7 +54,7 @@ int neighbours_of(const CellPosition& at, const std::set<CellPosition>& cells) {
   return count;
 }
 
-TEST(SampleSlab, CellsAreMetWhereThreeNeighboursHaveSamples) {
+TEST(SampleSlab, CellsAreMetWhereThreeNeighborsHaveSamples) {
   constexpr int kDepth = 4;
   constexpr int kTop = 2;
   constexpr int kHeight = 1 << (kDepth - kTop);
@@ -83,7 +83,7 @@ TEST(SampleSlab, CellsAreMetWhereThreeNeighboursHaveSamples) {
         ASSERT_EQ(level.is_met.size(), level.size());
         for (std::size_t i = 0; i < level.size(); ++i) {
           const CellPosition at = cell_position(level.samples.cells[i].key);
-          ASSERT_EQ(level.is_met[i] != 0, neighbours_of(at, all[static_cast<std::size_t>(k)]) >= 3)
+          ASSERT_EQ(level.is_met[i] != 0, neighbors_of(at, all[static_cast<std::size_t>(k)]) >= 3)
               << seed << " " << s << " " << k;
         }
       }

@@ -42,7 +42,7 @@ HolePatch span(const Loop& loop) {
   return span_loop(loop, Loop(loop.size(), Vector3{}), Progress());
 }
 
-// Each edge of the loop once, forwards; all others once each way.
+// Each edge of the loop once, forward; all others once each way.
 void expect_disc(const HolePatch& patch, std::size_t border) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
   for (const auto& triangle : patch.triangles()) {

@@ -27,11 +27,11 @@ Soup random_soup(unsigned seed, int count, double size) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   Soup soup;
   for (int t = 0; t < count; ++t) {
-    const Vector3 centre = {uniform(random), uniform(random), uniform(random)};
+    const Vector3 center = {uniform(random), uniform(random), uniform(random)};
     for (int i = 0; i < 3; ++i) {
-      soup.positions.push_back({centre[0] + size * uniform(random),
-                                centre[1] + size * uniform(random),
-                                centre[2] + size * uniform(random)});
+      soup.positions.push_back({center[0] + size * uniform(random),
+                                center[1] + size * uniform(random),
+                                center[2] + size * uniform(random)});
     }
     soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
   }

@@ -102,7 +102,7 @@ TEST(FindSet, LeavesNoExchangeThatHelps) {
   }
 }
 
-TEST(FitSet, HasWeightsThatSumToOneAndNoBetterNeighbours) {
+TEST(FitSet, HasWeightsThatSumToOneAndNoBetterNeighbors) {
   const TableShape shape{"lanczos2", 4, 4, 2, 1};
   const SubdomainSystem system(*find_kernel("lanczos2"), shape, section_of(shape, 3), 2);
   const std::vector<int> members = {3, 40, 7, 100};

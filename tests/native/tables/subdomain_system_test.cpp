@@ -83,9 +83,9 @@ TEST(SubdomainSystem, IsEquationSixFourByTheMiddlesOfSmallCells) {
   }
 }
 
-// What the ramps add is the squared distance between a sample and the weighted centre of its
+// What the ramps add is the squared distance between a sample and the weighted center of its
 // texels.
-TEST(SubdomainSystem, RampsAddTheDistanceFromTheWeightedCentre) {
+TEST(SubdomainSystem, RampsAddTheDistanceFromTheWeightedCenter) {
   TableShape shape{"tent", 3, 4, 2, 2, 0.0};
   TableSection section;
   section.levels = 3;

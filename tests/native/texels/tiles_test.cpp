@@ -22,15 +22,15 @@ int texels_between(int a, int b, int count, int size) {
   return std::min(begin(high) - end(low), begin(low) + size - end(high));
 }
 
-TEST(Tiles, ThoseOfOneColourAreAWholeTileApart) {
+TEST(Tiles, ThoseOfOneColorAreAWholeTileApart) {
   for (int size = 1; size <= 12 * Tiles::kSize; ++size) {
     const int count = (size + Tiles::kSize - 1) / Tiles::kSize;
     for (int a = 0; a < count; ++a) {
-      const int colour = tile_colour(a, count, size);
-      EXPECT_GE(colour, 0);
-      EXPECT_LT(colour, kTileColours);
+      const int color = tile_color(a, count, size);
+      EXPECT_GE(color, 0);
+      EXPECT_LT(color, kTileColors);
       for (int b = a + 1; b < count; ++b) {
-        if (tile_colour(b, count, size) != colour) continue;
+        if (tile_color(b, count, size) != color) continue;
         EXPECT_GE(texels_between(a, b, count, size), Tiles::kSize)
             << size << ": " << a << ", " << b;
       }

@@ -47,15 +47,15 @@ inline Mesh box_mesh(const Vector3& low, const Vector3& high) {
 }
 
 /// A sphere of rings of triangles.
-inline Mesh sphere_mesh(const Vector3& centre, double radius, int rings) {
+inline Mesh sphere_mesh(const Vector3& center, double radius, int rings) {
   Mesh mesh;
   const int columns = 2 * rings;
   const auto point = [&](int ring, int column) {
     const double theta = std::numbers::pi * ring / rings;
     const double phi = 2.0 * std::numbers::pi * column / columns;
-    return Vector3{centre[0] + radius * std::sin(theta) * std::cos(phi),
-                   centre[1] + radius * std::sin(theta) * std::sin(phi),
-                   centre[2] + radius * std::cos(theta)};
+    return Vector3{center[0] + radius * std::sin(theta) * std::cos(phi),
+                   center[1] + radius * std::sin(theta) * std::sin(phi),
+                   center[2] + radius * std::cos(theta)};
   };
   mesh.positions.push_back(point(0, 0));
   for (int ring = 1; ring < rings; ++ring) {

@@ -13,15 +13,15 @@
 namespace prefilter {
 namespace {
 
-PlaneHaar analyse(const Outline& outline, const PlaneGrid& grid, int strip_rows) {
+PlaneHaar analyze(const Outline& outline, const PlaneGrid& grid, int strip_rows) {
   std::vector<StripBricks> strips;
   OutlineStrip strip;
   for (int row = 0; row < grid.height; row += strip_rows) {
     strip.begin(grid, row, std::min(row + strip_rows, grid.height));
     for (const Outline::Segment& segment : outline.segments()) {
       for_monotone_pieces(outline.controls(segment), segment.weight,
-                          [&](const MonotoneCurve& piece, bool backwards) {
-                            strip.add(piece, backwards ? -1.0 : 1.0);
+                          [&](const MonotoneCurve& piece, bool backward) {
+                            strip.add(piece, backward ? -1.0 : 1.0);
                           });
     }
     strips.push_back(strip.take());
@@ -119,7 +119,7 @@ TEST(PlaneHaar, EveryDepthIsTheMeanOfPolygons) {
   for (const double reach : {0.3, 1.0, 3.0, 1e5}) {
     const auto polygon = random.points(9, 16.0 - 16.0 * reach, 16.0 + 16.0 * reach);
     const PlaneGrid grid(32, 32);
-    const PlaneHaar tree = analyse(outline_of(polygon), grid, 8);
+    const PlaneHaar tree = analyze(outline_of(polygon), grid, 8);
     for (int cell_depth = 0; cell_depth <= 5; ++cell_depth) {
       const auto values = values_of(tree, grid, cell_depth);
       const int side = 1 << cell_depth;
@@ -139,7 +139,7 @@ TEST(PlaneHaar, GridsNeedNotBeSquares) {
   for (const auto& [width, height] : {std::pair(1, 1), {3, 9}, {40, 7}, {9, 40}, {33, 31}}) {
     const auto polygon = random.points(7, -10.0, 50.0);
     const PlaneGrid grid(width, height);
-    const auto values = values_of(analyse(outline_of(polygon), grid, 16), grid, 0);
+    const auto values = values_of(analyze(outline_of(polygon), grid, 16), grid, 0);
     for (int y = 0; y < height; ++y) {
       for (int x = 0; x < width; ++x) {
         EXPECT_NEAR(values[y * width + x], clipped_mean(polygon, x, y, 1.0), 6e-7);
@@ -158,8 +158,8 @@ TEST(PlaneHaar, CurvesAreTheirFineLines) {
       for (int i = 0; i < 40000; ++i) polygon.push_back(curve.at(i / 40000.0));
     }
     const PlaneGrid grid(32, 32);
-    const auto curved = values_of(analyse(outline, grid, 32), grid, 0);
-    const auto straight = values_of(analyse(outline_of(polygon), grid, 32), grid, 0);
+    const auto curved = values_of(analyze(outline, grid, 32), grid, 0);
+    const auto straight = values_of(analyze(outline_of(polygon), grid, 32), grid, 0);
     for (std::size_t i = 0; i < curved.size(); ++i) EXPECT_NEAR(curved[i], straight[i], 1e-6);
   }
 }
@@ -183,8 +183,8 @@ TEST(PlaneHaar, HalvesOfCurvesAreTheCurves) {
   halves.line_to(0.5 * (p[3] + p[0]));
   halves.close();
   const PlaneGrid grid(32, 32);
-  const auto one = values_of(analyse(whole, grid, 32), grid, 0);
-  const auto two = values_of(analyse(halves, grid, 32), grid, 0);
+  const auto one = values_of(analyze(whole, grid, 32), grid, 0);
+  const auto two = values_of(analyze(halves, grid, 32), grid, 0);
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_NEAR(one[i], two[i], 3e-7);
 }
 
@@ -192,7 +192,7 @@ TEST(PlaneHaar, HalvesOfCurvesAreTheCurves) {
 TEST(PlaneHaar, WholeCellsAreWhole) {
   const PlaneGrid grid(64, 40);
   const std::vector<Point2> square = {{8, 8}, {24, 8}, {24, 24}, {8, 24}};
-  auto values = values_of(analyse(outline_of(square), grid, 16), grid, 0);
+  auto values = values_of(analyze(outline_of(square), grid, 16), grid, 0);
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 64; ++x) {
       const bool is_in = x >= 8 && x < 24 && y >= 8 && y < 24;
@@ -200,7 +200,7 @@ TEST(PlaneHaar, WholeCellsAreWhole) {
     }
   }
   const std::vector<Point2> diamond = {{16, 0}, {32, 16}, {16, 32}, {0, 16}};
-  values = values_of(analyse(outline_of(diamond), grid, 16), grid, 0);
+  values = values_of(analyze(outline_of(diamond), grid, 16), grid, 0);
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 64; ++x) {
       EXPECT_EQ(values[64 * y + x], static_cast<float>(clipped_mean(diamond, x, y, 1.0)));
@@ -208,7 +208,7 @@ TEST(PlaneHaar, WholeCellsAreWhole) {
   }
   for (const Point2 far : {Point2{-1e9, -1e9}, Point2{-1.0, -1.0}}) {
     const std::vector<Point2> around = {far, {1e9, far.y}, {1e9, 1e9}, {far.x, 1e9}};
-    for (const float value : values_of(analyse(outline_of(around), grid, 16), grid, 0)) {
+    for (const float value : values_of(analyze(outline_of(around), grid, 16), grid, 0)) {
       EXPECT_EQ(value, 1.0F);
     }
   }
@@ -222,20 +222,20 @@ TEST(PlaneHaar, WhatIsNoAreaLeavesNothing) {
                                           {{0, 0}, {30, 0}, {10, 0}},
                                           {{-5, -9}, {-5, 90}},
                                           {{-9, -9}, {90, 90}}}) {
-    for (const float value : values_of(analyse(outline_of(flat), grid, 8), grid, 0)) {
+    for (const float value : values_of(analyze(outline_of(flat), grid, 8), grid, 0)) {
       EXPECT_EQ(value, 0.0F);
     }
   }
-  for (const float value : values_of(analyse({}, grid, 8), grid, 0)) EXPECT_EQ(value, 0.0F);
+  for (const float value : values_of(analyze({}, grid, 8), grid, 0)) EXPECT_EQ(value, 0.0F);
 }
 
 TEST(PlaneHaar, StripsChangeNothing) {
   Random random(5);
   const Outline outline = curves(&random, -10.0, 110.0);
   const PlaneGrid grid(100, 90);
-  const auto whole = values_of(analyse(outline, grid, 96), grid, 0);
+  const auto whole = values_of(analyze(outline, grid, 96), grid, 0);
   for (const int rows : {8, 24}) {
-    const auto values = values_of(analyse(outline, grid, rows), grid, 0);
+    const auto values = values_of(analyze(outline, grid, rows), grid, 0);
     for (std::size_t i = 0; i < whole.size(); ++i) EXPECT_NEAR(values[i], whole[i], 2e-7);
   }
 }
@@ -251,7 +251,7 @@ TEST(PlaneHaar, GapsHarmWhatIsNear) {
     const double angle = 2.0 * std::numbers::pi * i / kCorners;
     circle.push_back({61.0 + 50.0 * std::cos(angle), 66.0 + 50.0 * std::sin(angle)});
   }
-  const auto closed = values_of(analyse(outline_of(circle), grid, side), grid, 0);
+  const auto closed = values_of(analyze(outline_of(circle), grid, side), grid, 0);
   for (int missing = 0; missing < kCorners; missing += 7) {
     Outline open;
     open.move_to(circle[(missing + 1) % kCorners]);
@@ -259,7 +259,7 @@ TEST(PlaneHaar, GapsHarmWhatIsNear) {
     const Point2& a = circle[missing];
     const Point2& b = circle[(missing + 1) % kCorners];
     const double length = std::hypot(b.x - a.x, b.y - a.y);
-    const auto values = values_of(analyse(open, grid, side), grid, 0);
+    const auto values = values_of(analyze(open, grid, side), grid, 0);
     double most = 0.0;
     for (int y = 0; y < side; ++y) {
       for (int x = 0; x < side; ++x) {

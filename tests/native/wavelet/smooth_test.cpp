@@ -112,7 +112,7 @@ TEST(SmoothLeaves, IsAConvolutionOnAGrid) {
   }
 }
 
-TEST(SmoothLeaves, TakesLargerLeavesForNeighbours) {
+TEST(SmoothLeaves, TakesLargerLeavesForNeighbors) {
   for (unsigned seed = 0; seed < 5; ++seed) {
     const CellTree tree = random_tree(seed, 5);
     CellTree smoothed = tree;

@@ -19,7 +19,7 @@ using testing::Mesh;
 using testing::sphere_mesh;
 
 std::vector<float> occupancies(const Mesh& mesh, int depth, int shown_depth = -1, int threads = 1) {
-  HaarTree coefficients = analyse_triangles(mesh.view(), depth, Progress(), threads);
+  HaarTree coefficients = analyze_triangles(mesh.view(), depth, Progress(), threads);
   Octree octree{synthesise(std::move(coefficients), shown_depth, Progress(), threads),
                 {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}},
                 depth};
@@ -133,7 +133,7 @@ TEST(TriangleAnalysis, AMissingFaceLeavesTheMeanOfTheRoot) {
     Mesh mesh = box_mesh(low, high);
     const auto first = mesh.triangles.begin() + static_cast<std::ptrdiff_t>(2 * face);
     mesh.triangles.erase(first, first + 2);
-    EXPECT_NEAR(analyse_triangles(mesh.view(), 5, Progress(), 1).mean, volume, 1e-12) << face;
+    EXPECT_NEAR(analyze_triangles(mesh.view(), 5, Progress(), 1).mean, volume, 1e-12) << face;
   }
 }
 
@@ -187,7 +187,7 @@ TEST(TriangleAnalysis, FarFromAHoleLittleChanges) {
 TEST(TriangleAnalysis, CanBeStopped) {
   const Mesh mesh = sphere_mesh({0.5, 0.5, 0.5}, 0.4, 200);
   const Progress stop([](double) { return false; });
-  EXPECT_THROW(analyse_triangles(mesh.view(), 8, stop, 2), Error);
+  EXPECT_THROW(analyze_triangles(mesh.view(), 8, stop, 2), Error);
 }
 
 }  // namespace

@@ -72,10 +72,10 @@ struct Taps {
   std::vector<double> weights;  // sum to 1
 };
 
-/// Taps of a kernel at `centre`, in texels of the source, where its unit is `width` texels wide: it
+/// Taps of a kernel at `center`, in texels of the source, where its unit is `width` texels wide: it
 /// is taken at the texels' centers, and never narrower than they are. Where it jumps it is
 /// integrated over each texel, at any width: the box gives the mean over its square.
-Taps kernel_taps(const Kernel& kernel, double centre, double width);
+Taps kernel_taps(const Kernel& kernel, double center, double width);
 
 /// Taps of target texel `target` where a target texel is as wide as `ratio` source texels.
 Taps resampling_taps(const Kernel& kernel, double ratio, int target);

@@ -11,8 +11,8 @@
 
 namespace prefilter {
 
-inline constexpr int kLeastNeighbours = 3;
-inline constexpr int kMostNeighbours = 1000;
+inline constexpr int kLeastNeighbors = 3;
+inline constexpr int kMostNeighbors = 1000;
 
 /// The normal of each point: that of the plane which fits its `neighbours` nearest distinct
 /// positions best, itself among them, near ones counting up to twice as much as far ones. Where

@@ -39,7 +39,7 @@ struct ReconstructOptions {
   bool smooth = true;  // the indicator function, over the neighboring cells
   Isovalue isovalue = Isovalue::kMean;
   double given_isovalue = 0.5;   // of a function that is 0 outside and 1 inside
-  bool are_sides_known = false;  // normals point outward for sure: towards the scanner
+  bool are_sides_known = false;  // normals point outward for sure: toward the scanner
   bool fit = true;               // move vertices onto the surface of the points around them
   // Leave out what is farther from all points than so many cells, above 0 and up to 1e6.
   std::optional<double> trim;

@@ -22,7 +22,7 @@ struct VoxelizeOptions {
 ///
 /// The mesh may be anything: open, leaky, intersecting itself. Inside is where it winds around once
 /// or more; values are clamped to [0, 1]. A hole disturbs the cells around it alone (see
-/// analyse_triangles). Without `bounds` the root is cube_around the mesh's box.
+/// analyze_triangles). Without `bounds` the root is cube_around the mesh's box.
 ///
 /// Throws Error for a depth out of range, a mesh without triangles or where all have zero area, an
 /// index that names no vertex, a position that is not finite, and bounds of no volume;

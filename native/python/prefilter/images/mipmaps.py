@@ -105,7 +105,7 @@ def mipmaps(
         levels: How many levels to return, level 0 included; None = down to 1 x 1.
         premultiplied: Whether the colors of a 4-channel image are multiplied by alpha already, or
             its fourth channel is no coverage: then every channel is filtered as it stands.
-            Otherwise they are multiplied for filtering and divided afterwards.
+            Otherwise they are multiplied for filtering and divided afterward.
         reader: What will look up the levels, for "pam-bilinear": "linear" decodes texels, then
             filters (GPUs, and float textures everywhere); "srgb-after" filters sRGB-encoded texels,
             then decodes (Cycles on 8-bit sRGB images). The image and the levels are scene-linear in
@@ -239,7 +239,7 @@ def mipmap_error(
             read the nearest one, as on a GPU.
         wrap: As for `mipmaps`.
         reader: As for `mipmaps`: with "srgb-after" each bilinear lookup, also of the image, is of
-            encoded texels and decoded afterwards; the integrals are by quadrature in the cells of
+            encoded texels and decoded afterward; the integrals are by quadrature in the cells of
             the image then.
         progress: As for `mipmaps`.
         threads: As for `mipmaps`.

@@ -57,7 +57,7 @@ def resize(
             (zero), or a pair of these for x and y.
         premultiplied: Whether the colors of an image of 2 or 4 channels are multiplied by alpha
             already, or its last channel is no alpha: then every channel is filtered as it stands.
-            Otherwise they are multiplied for filtering and divided afterwards; where alpha is not
+            Otherwise they are multiplied for filtering and divided afterward; where alpha is not
             1 everywhere, colors stay within the range that those of visible pixels have, and alpha
             within [0, 1].
         progress: Called with the fraction done, in [0, 1]; may return False to stop.

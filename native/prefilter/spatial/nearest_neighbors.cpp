@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/spatial/nearest_neighbours.h"
+#include "prefilter/spatial/nearest_neighbors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,14 +51,14 @@ void sort_by_position(std::span<const Vector3> points, std::vector<CurvePlace>* 
 
 }  // namespace
 
-void Neighbours::clear(std::size_t most) {
+void Neighbors::clear(std::size_t most) {
   most_ = most;
   worst_ = std::numeric_limits<double>::infinity();
   places_.clear();
   squares_.clear();
 }
 
-void Neighbours::add(std::uint32_t place, double square) {
+void Neighbors::add(std::uint32_t place, double square) {
   if (places_.size() < most_) {
     places_.push_back(place);
     squares_.push_back(square);
@@ -73,8 +73,8 @@ void Neighbours::add(std::uint32_t place, double square) {
   if (places_.size() == most_) worst_ = squares_.back();
 }
 
-NeighbourSearch::NeighbourSearch(std::span<const Vector3> points, const Progress& progress,
-                                 int threads) {
+NeighborSearch::NeighborSearch(std::span<const Vector3> points, const Progress& progress,
+                               int threads) {
   constexpr std::size_t kMost = std::numeric_limits<std::int32_t>::max();
   if (points.size() > kMost) {
     throw_invalid("points: found " + std::to_string(points.size()) + "; " + std::to_string(kMost) +
@@ -109,7 +109,7 @@ NeighbourSearch::NeighbourSearch(std::span<const Vector3> points, const Progress
   tree_ = BoxTree(keys, kLeafPoints, box_of, progress.part(0.8, 1.0));
 }
 
-void NeighbourSearch::find(std::uint32_t place, std::size_t count, Neighbours* found) const {
+void NeighborSearch::find(std::uint32_t place, std::size_t count, Neighbors* found) const {
   const Vector3 point = positions_[place];
   found->clear(count);
   const auto may_be = [&](double squared, std::size_t) { return squared < found->worst_; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "prefilter/spatial/nearest_neighbours.h"
+#include "prefilter/spatial/nearest_neighbors.h"
 
 #include <gtest/gtest.h>
 
@@ -27,10 +27,10 @@ double square(const Vector3& a, const Vector3& b) { return dot(a - b, a - b); }
 
 // Compares with a search through all distinct positions.
 void expect_nearest(const std::vector<Vector3>& points, std::size_t count) {
-  const NeighbourSearch search(points, Progress(), 1);
+  const NeighborSearch search(points, Progress(), 1);
   const std::set<Vector3> distinct(points.begin(), points.end());
   ASSERT_EQ(search.positions().size(), distinct.size());
-  Neighbours found;
+  Neighbors found;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t place = search.places()[i];
     ASSERT_EQ(search.positions()[place], points[i]);
@@ -50,7 +50,7 @@ void expect_nearest(const std::vector<Vector3>& points, std::size_t count) {
   }
 }
 
-TEST(NeighbourSearch, AgreesWithASearchThroughAll) {
+TEST(NeighborSearch, AgreesWithASearchThroughAll) {
   for (const std::size_t count : {1U, 5U, 16U, 100U}) {
     expect_nearest(random_points(1, 300, {1, 1, 1}), count);
     expect_nearest(random_points(2, 300, {1, 1, 0}), count);
@@ -58,7 +58,7 @@ TEST(NeighbourSearch, AgreesWithASearchThroughAll) {
   }
 }
 
-TEST(NeighbourSearch, TakesGridsWhereManyDistancesAreTheSame) {
+TEST(NeighborSearch, TakesGridsWhereManyDistancesAreTheSame) {
   std::vector<Vector3> points;
   for (int i = 0; i < 8 * 8 * 8; ++i) {
     points.push_back(
@@ -67,12 +67,12 @@ TEST(NeighbourSearch, TakesGridsWhereManyDistancesAreTheSame) {
   expect_nearest(points, 16);
 }
 
-TEST(NeighbourSearch, TakesCopiesForOne) {
+TEST(NeighborSearch, TakesCopiesForOne) {
   std::vector<Vector3> points = random_points(4, 40, {1, 1, 1});
   for (int i = 0; i < 400; ++i) points.push_back(points[static_cast<std::size_t>(i * 7 % 40)]);
   points.push_back({0.0, 0.0, 0.0});
   points.push_back({-0.0, 0.0, -0.0});
-  const NeighbourSearch search(points, Progress(), 2);
+  const NeighborSearch search(points, Progress(), 2);
   EXPECT_EQ(search.positions().size(), 41U);
   EXPECT_EQ(search.places()[440], search.places()[441]);
   // Different points at one place of the curve, which a far one makes coarse.
@@ -82,30 +82,30 @@ TEST(NeighbourSearch, TakesCopiesForOne) {
   expect_nearest(close, 7);
 }
 
-TEST(NeighbourSearch, OfManyCopiesIsSoonDone) {
+TEST(NeighborSearch, OfManyCopiesIsSoonDone) {
   std::vector<Vector3> points(300000, Vector3{1.0, 2.0, 3.0});
   for (std::size_t i = 0; i < points.size(); i += 2) points[i][0] = 1.0 + 1e-12;
   points.push_back({9.0, 9.0, 9.0});
-  const NeighbourSearch search(points, Progress(), 2);
+  const NeighborSearch search(points, Progress(), 2);
   EXPECT_EQ(search.positions().size(), 3U);
 }
 
-TEST(NeighbourSearch, LeavesOutWhatIsNotFinite) {
+TEST(NeighborSearch, LeavesOutWhatIsNotFinite) {
   std::vector<Vector3> points = random_points(6, 10, {1, 1, 1});
   points[3][1] = NAN;
   points[5][2] = INFINITY;
   points[7][0] = -1e200;
-  const NeighbourSearch search(points, Progress(), 1);
+  const NeighborSearch search(points, Progress(), 1);
   EXPECT_EQ(search.positions().size(), 7U);
   for (const std::size_t i : {3U, 5U, 7U}) {
-    EXPECT_EQ(search.places()[i], NeighbourSearch::kNowhere);
+    EXPECT_EQ(search.places()[i], NeighborSearch::kNowhere);
   }
   const std::vector<Vector3> none(3, Vector3{NAN, 0.0, 0.0});
-  EXPECT_TRUE(NeighbourSearch(none, Progress(), 1).positions().empty());
-  EXPECT_TRUE(NeighbourSearch({}, Progress(), 1).positions().empty());
+  EXPECT_TRUE(NeighborSearch(none, Progress(), 1).positions().empty());
+  EXPECT_TRUE(NeighborSearch({}, Progress(), 1).positions().empty());
 }
 
-TEST(NeighbourSearch, TakesLargeAndSmallNumbers) {
+TEST(NeighborSearch, TakesLargeAndSmallNumbers) {
   expect_nearest(random_points(7, 100, {1e150, 1e150, 1e150}), 9);
   expect_nearest(random_points(8, 100, {1e-100, 1e-100, 1e-100}), 9);
   std::vector<Vector3> far = random_points(9, 100, {1, 1, 1});

@@ -16,14 +16,14 @@
 namespace prefilter {
 
 /// What a search found; used for one search after another.
-class Neighbours {
+class Neighbors {
  public:
   /// Places from near to far, and the squares of their distances.
   std::span<const std::uint32_t> places() const { return places_; }
   std::span<const double> squares() const { return squares_; }
 
  private:
-  friend class NeighbourSearch;
+  friend class NeighborSearch;
   void clear(std::size_t most);
   void add(std::uint32_t place, double square);
 
@@ -35,14 +35,14 @@ class Neighbours {
 
 /// Points made ready for searches of their neighbors: each position once, along the Morton curve,
 /// under a tree of boxes. All that follows names them by their places on the curve.
-class NeighbourSearch {
+class NeighborSearch {
  public:
   /// The place of a point that has none.
   static constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
   /// Points that hold a value that is not finite, or above 1e150, whose square would overflow, are
   /// left out. Throws Error for more than 2^31 - 1 points; Error(kCancelled).
-  NeighbourSearch(std::span<const Vector3> points, const Progress& progress, int threads);
+  NeighborSearch(std::span<const Vector3> points, const Progress& progress, int threads);
 
   /// The distinct positions, by their places.
   std::span<const Vector3> positions() const { return positions_; }
@@ -52,7 +52,7 @@ class NeighbourSearch {
   /// The `count` positions (at least 1) nearest to one of them, which is one of these; all of them
   /// where there are fewer. Which of several at one distance it is depends on nothing but the
   /// points.
-  void find(std::uint32_t place, std::size_t count, Neighbours* found) const;
+  void find(std::uint32_t place, std::size_t count, Neighbors* found) const;
 
  private:
   std::vector<Vector3> positions_;
