@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "prefilter/base/elementary.h"
 #include "prefilter/base/gauss_rule.h"
@@ -33,20 +33,24 @@ void add_centered(const Kernel::Piece& piece, int degree, double scale, std::vec
   }
 }
 
-CellFilter of_kernel(const Kernel& kernel) {
+}  // namespace
+
+CellFilter cell_filter(const Kernel& kernel) {
   CellFilter filter;
   filter.cells_per_pixel = static_cast<int>(std::lround(1.0 / kernel.piece_width()));
   filter.taps = static_cast<int>(kernel.pieces().size());
-  filter.degree = kernel.degree();
+  filter.degree = kernel.degree() <= 3 ? kernel.degree() : Kernel::kMostDegree;
   // Pixel i's first cell begins at i + 1/2 - radius.
   const double low = (0.5 - kernel.radius()) * filter.cells_per_pixel;
   filter.first = static_cast<int>(std::ceil(low));
   filter.shift = filter.first - low;
   for (const Kernel::Piece& piece : kernel.pieces()) {
-    add_centered(piece, kernel.degree(), kernel.piece_width(), &filter.along);
+    add_centered(piece, filter.degree, kernel.piece_width(), &filter.along);
   }
   return filter;
 }
+
+namespace {
 
 // Legendre's polynomials of degrees 0 to N - 1 on [-1/2, 1/2], by powers, with squares of
 // integral 1.
@@ -127,11 +131,6 @@ CellFilter of_radial(double radius) {
   return filter;
 }
 
-CellFilter cell_filter(const PixelFilter& filter) {
-  assert(filter.is_radial || filter.kernel != nullptr);
-  return filter.is_radial ? of_radial(filter.radius) : of_kernel(*filter.kernel);
-}
-
 }  // namespace
 
 std::span<const std::string_view> raster_filters() {
@@ -150,7 +149,9 @@ const CellFilter* find_cell_filter(std::string_view name) {
   const std::lock_guard lock(mutex);
   if (const auto found = made.find(name); found != made.end()) return &found->second;
   for (const PixelFilter& filter : filters_for(FilterUse::kRaster)) {
-    if (filter.name == name) return &made.emplace(filter.name, cell_filter(filter)).first->second;
+    if (filter.name != name) continue;
+    CellFilter cells = filter.is_radial ? of_radial(filter.radius) : cell_filter(*filter.kernel);
+    return &made.emplace(filter.name, std::move(cells)).first->second;
   }
   return nullptr;
 }

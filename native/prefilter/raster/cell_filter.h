@@ -18,7 +18,7 @@ struct CellFilter {
   double shift = 0.0;
   int first = 0;
   int taps = 1;
-  int degree = 0;
+  int degree = 0;  // 0 to 3, or Kernel::kMostDegree: what rasterize has code for
   bool is_separable = true;
   /// Separable: of tap o, the coefficient of power a at [o * (degree + 1) + a].
   std::vector<double> along;
@@ -39,6 +39,8 @@ struct CellFilter {
                       : -((cells_per_pixel - 1 - cells) / cells_per_pixel);
   }
 };
+
+CellFilter cell_filter(const Kernel& kernel);
 
 /// The filter of a name, or none.
 const CellFilter* find_cell_filter(std::string_view name);

@@ -8,7 +8,6 @@
 #include "prefilter/raster/rasterize.h"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -238,8 +237,7 @@ Image rasterize(std::span<const Shape> shapes, const RasterOptions& options) {
       make_bands<3>(job, *filter, options, &image);
       break;
     default:
-      assert(filter->degree == 7);
-      make_bands<7>(job, *filter, options, &image);
+      make_bands<Kernel::kMostDegree>(job, *filter, options, &image);
       break;
   }
   return image;

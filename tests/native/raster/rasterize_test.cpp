@@ -43,6 +43,7 @@ RasterOptions options_of(int width, int height, std::string_view filter) {
   options.width = width;
   options.height = height;
   options.filter = filter;
+  options.overlap = Overlap::kAdd;
   options.threads = 1;
   return options;
 }
@@ -171,6 +172,24 @@ TEST(Rasterize, TakesManyVerticesInsideOfAPixel) {
   shape.outline = polygon(corners);
   const double sum = sum_of(values_of({shape}, options_of(3, 3, "box")));
   EXPECT_NEAR(sum, std::numbers::pi * 0.45 * 0.45, 2e-6);
+}
+
+// There is code for degrees 0 to 3 and for the highest one, whose other coefficients are zero.
+TEST(CellFilters, OfKernelsOfAnyDegreeAreRasterized) {
+  for (int degree = 0; degree <= Kernel::kMostDegree; ++degree) {
+    const Kernel kernel("any", 2.0, 1.0, degree, [](double x) { return std::exp(-x * x); });
+    const CellFilter filter = cell_filter(kernel);
+    EXPECT_EQ(filter.degree, degree <= 3 ? degree : Kernel::kMostDegree);
+    for (int tap = 0; tap < filter.taps; ++tap) {
+      for (const double x : {-0.4, -0.1, 0.3}) {
+        double value = 0.0;
+        for (int power = filter.degree; power >= 0; --power) {
+          value = value * x + filter.along[tap * (filter.degree + 1) + power];
+        }
+        EXPECT_NEAR(value, kernel.value(tap + 0.5 + x - 2.0), 1e-13) << degree;
+      }
+    }
+  }
 }
 
 }  // namespace
