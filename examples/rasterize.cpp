@@ -58,7 +58,6 @@ int main(int argc, char** argv) {
     options.width = 160;
     options.height = 160;
     options.filter = "box";
-    options.overlap = prefilter::Overlap::kCover;
     options.background = {1.0F, 1.0F, 1.0F};
     const prefilter::Image image = prefilter::rasterize(shapes, options);
 

@@ -53,7 +53,6 @@ int main(int argc, char** argv) {
     std::printf("volume: %.6f\n", prefilter::volume(both));
 
     prefilter::ContourOptions contour;
-    contour.interpolant = prefilter::Interpolant::kSharp;
     contour.adaptivity = 0.01;  // larger triangles, no farther off than a hundredth of a cell
     const prefilter::TriangleMesh mesh =
         prefilter::contour_occupancies(both.cells, both.bounds, contour);

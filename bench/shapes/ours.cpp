@@ -49,6 +49,7 @@ class FilteredDrawing final : public Drawing {
     options_.height = pattern.height;
     options_.filter = filter;
     options_.method = method;
+    options_.overlap = Overlap::kAdd;
     options_.threads = 1;
     shapes_[0].winds_once = true;
     build();
@@ -126,6 +127,7 @@ std::vector<float> our_sum(const Pattern& pattern) {
   RasterOptions options;
   options.width = pattern.width;
   options.height = pattern.height;
+  options.overlap = Overlap::kAdd;
   std::vector<Shape> shapes;
   for (const Path& path : contours(pattern.path)) shapes.push_back({outline_of(path), {}, {}});
   return rasterize(shapes, options).data;

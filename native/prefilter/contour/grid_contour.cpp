@@ -218,8 +218,9 @@ TriangleMesh contour_grid(const GridView& grid, const GridFrame& frame,
     root.high[a] = frame.origin[a] + std::ldexp(frame.spacing[a], depth);
   }
   check_box(root, "spacing: the grid");
-  const CellTree tree = tree_of(grid, depth, options, options.progress.part(0.0, 0.3));
   ContourOptions rest = options;
+  rest.interpolant = options.interpolant.value_or(Interpolant::kOccupancy);
+  const CellTree tree = tree_of(grid, depth, rest, options.progress.part(0.0, 0.3));
   rest.progress = options.progress.part(0.3, 1.0);
   return contour_tree(tree, root, rest);
 }

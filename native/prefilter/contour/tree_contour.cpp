@@ -371,21 +371,26 @@ FacetedMesh sharpened(LoopedMesh looped, const EdgeSource& edges, const Progress
   return mesh;
 }
 
+Interpolant interpolant_of(const ContourOptions& options) {
+  return options.interpolant.value_or(Interpolant::kSharp);
+}
+
 // The full contour, in the frame. With `sources_of_labels`, all triangles get labels, of each of
 // which that is a triangle.
 FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
                      const Progress& progress, std::vector<std::int64_t>* sources_of_labels) {
   const int threads = options.threads;
   ContourTree tree(cells, options.isovalue, progress.part(0.0, 0.1), threads);
-  const bool fits = options.isovalue == 0.5F && (options.interpolant == Interpolant::kPlane ||
-                                                 options.interpolant == Interpolant::kSharp);
-  const bool is_sharp = fits && options.interpolant == Interpolant::kSharp;
+  const Interpolant interpolant = interpolant_of(options);
+  const bool fits = options.isovalue == 0.5F &&
+                    (interpolant == Interpolant::kPlane || interpolant == Interpolant::kSharp);
+  const bool is_sharp = fits && interpolant == Interpolant::kSharp;
   if (fits) settle_sides(progress.part(0.1, 0.2), threads, &tree);
   EdgeSource edges;
   if (is_sharp && !options.sources.empty()) {
     read_sources(cells, frame, options, progress.part(0.2, 0.35), &tree, &edges);
   }
-  SurfaceVertices vertices(tree, frame, options.interpolant, progress.part(0.35, 0.45), threads);
+  SurfaceVertices vertices(tree, frame, interpolant, progress.part(0.35, 0.45), threads);
   if (fits) fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
   if (!is_sharp) {
     LoopedMesh looped = make_loops(tree, nullptr, progress.part(0.6, 0.85), threads, &vertices);
@@ -514,7 +519,7 @@ TriangleMesh contour_occupancies(const CellTree& cells, const Box& root,
 }
 
 TracedMesh contour_traced(const CellTree& cells, const Box& root, const ContourOptions& options) {
-  if (options.interpolant != Interpolant::kSharp || options.sources.empty()) {
+  if (interpolant_of(options) != Interpolant::kSharp || options.sources.empty()) {
     throw_invalid("sources: there are none; origins need at least one, and 'sharp'");
   }
   if (options.isovalue != 0.5F) {

@@ -145,6 +145,7 @@ TriangleMesh filled_regions(const MeshView<std::int32_t>& mesh, const ReachGrid&
       filled_cells(grid, is_filled, planes_of(mesh, grid, is_filled, progress.part(0.0, 0.5)));
   ContourOptions options;
   options.interpolant = Interpolant::kPlane;
+  options.clean_up = false;
   options.threads = threads;
   options.progress = progress.part(0.6, 1.0);
   const double cell = grid.cell();

@@ -31,6 +31,7 @@ constexpr std::array<Interpolant, 3> kInterpolants = {Interpolant::kOccupancy, I
 ContourOptions options_of(Interpolant interpolant, int threads = 1) {
   ContourOptions options;
   options.interpolant = interpolant;
+  options.clean_up = false;
   options.threads = threads;
   return options;
 }
@@ -338,11 +339,25 @@ TEST(ContourTree, ThreadsDoNotChangeTheResult) {
   }
 }
 
+// As the package does.
+TEST(ContourOptions, StandForSharpOctreesAndOccupanciesOfGrids) {
+  const CellTree tree = random_tree(4, 4);
+  ContourOptions sharp = options_of(Interpolant::kSharp);
+  sharp.clean_up = true;
+  const TriangleMesh whole = contour_tree(tree, kUnitBox, {});
+  EXPECT_EQ(whole.positions, contour_tree(tree, kUnitBox, sharp).positions);
+  const std::vector<float> values = {0.0F, 0.9F, 0.3F, 0.6F, 0.7F, 1.0F, 0.4F, 0.1F};
+  const GridView grid{values.data(), {2, 2, 2}};
+  ContourOptions occupancy = options_of(Interpolant::kOccupancy);
+  occupancy.clean_up = true;
+  EXPECT_EQ(contour_grid(grid, {}, {}).positions, contour_grid(grid, {}, occupancy).positions);
+}
+
 TEST(ContourTree, FullAndEmptyRoots) {
   CellTree tree;
   EXPECT_TRUE(contour_tree(tree, kUnitBox, {}).triangles.empty());
   tree.root = 1.0F;
-  const TriangleMesh cube = contour_tree(tree, kUnitBox, {});
+  const TriangleMesh cube = contour_tree(tree, kUnitBox, options_of(Interpolant::kOccupancy));
   EXPECT_EQ(fault_of(cube), "");
   // The root's faces, and what is cut off at its edges and corners.
   EXPECT_NEAR(volume_of(cube), 17.0 / 24.0, 1e-6);

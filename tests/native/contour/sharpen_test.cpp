@@ -54,6 +54,7 @@ Octree tree_of(const Cube& cube) {
 ContourOptions sharp(const std::vector<SourceMesh>& sources) {
   ContourOptions options;
   options.interpolant = Interpolant::kSharp;
+  options.clean_up = false;
   options.sources = sources;
   return options;
 }

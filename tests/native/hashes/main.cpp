@@ -180,6 +180,7 @@ void solids(const Run& run) {
   for (const auto& [name, interpolant] : kInterpolants) {
     ContourOptions contour;
     contour.interpolant = interpolant;
+    contour.clean_up = false;
     contour.threads = run.threads;
     run.print(std::string("solid contour ") + name,
               Hash().add(contour_tree(octree.cells, octree.bounds, contour)));
@@ -242,6 +243,7 @@ void pictures(const Run& run) {
   if (!run.wants("raster")) return;
   RasterOptions options;
   options.width = options.height = 96;
+  options.overlap = Overlap::kAdd;
   options.threads = run.threads;
   const std::vector<Shape> all = shapes(96.0);
   for (const char* filter : {"box", "tent", "gaussian", "lanczos3", "radial2"}) {

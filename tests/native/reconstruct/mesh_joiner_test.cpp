@@ -75,6 +75,7 @@ TEST(MeshJoiner, SlabsAreTheWhole) {
       ASSERT_EQ(tree.depth(), kDepth);
       ContourOptions options;
       options.interpolant = interpolant;
+      options.clean_up = false;
       options.threads = 1;
       const TriangleMesh whole = contour_tree(tree, kUnitCube, options);
       for (const int height : {1, 4, kSide / 2, kSide}) {
@@ -97,6 +98,7 @@ TEST(MeshJoiner, LeavesOutTrianglesOfTrimmedVertices) {
   const CellTree tree = random_tree(3, kDepth);
   ContourOptions options;
   options.interpolant = Interpolant::kLinear;
+  options.clean_up = false;
   options.threads = 1;
   const TriangleMesh whole = contour_tree(tree, kUnitCube, options);
   const auto is_trimmed = [](const Vector3& p) { return p[0] + p[2] > 0.7; };

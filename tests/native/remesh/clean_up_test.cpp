@@ -30,7 +30,9 @@ FacetedMesh contour_of(int size, const Function& function) {
     const double value = function(i / (size * size), i / size % size, i % size);
     values.push_back(static_cast<float>(std::clamp(value, 0.0, 1.0)));
   }
-  TriangleMesh mesh = contour_grid({values.data(), {size, size, size}}, {}, {});
+  ContourOptions options;
+  options.clean_up = false;
+  TriangleMesh mesh = contour_grid({values.data(), {size, size, size}}, {}, options);
   return {std::move(mesh.positions), std::move(mesh.triangles), {}, {}};
 }
 

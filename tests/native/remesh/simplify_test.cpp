@@ -110,6 +110,7 @@ FacetedMesh contour_of(int size, Interpolant interpolant, const Inside& inside) 
   }
   ContourOptions options;
   options.interpolant = interpolant;
+  options.clean_up = false;
   TriangleMesh mesh = contour_grid({values.data(), {size, size, size}}, {}, options);
   return {std::move(mesh.positions), std::move(mesh.triangles), {}, {}};
 }
@@ -206,6 +207,7 @@ TEST(Simplify, StaysWithinTheToleranceOnRoughSurfaces) {
     for (float& value : values) value = uniform(random);
     ContourOptions options;
     options.interpolant = i % 2 == 0 ? Interpolant::kLinear : Interpolant::kOccupancy;
+    options.clean_up = false;
     TriangleMesh mesh = contour_grid({values.data(), {kSize, kSize, kSize}}, {}, options);
     const FacetedMesh before = {std::move(mesh.positions), std::move(mesh.triangles), {}, {}};
     for (const double tolerance : {0.03, 0.1, 0.4}) {

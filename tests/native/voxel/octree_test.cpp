@@ -231,6 +231,7 @@ TEST(Combine, OctreesOfAnyCellsHaveContoursThatDoNotCrossThemselves) {
       for (const Interpolant interpolant : {Interpolant::kOccupancy, Interpolant::kPlane}) {
         ContourOptions options;
         options.interpolant = interpolant;
+        options.clean_up = false;
         const TriangleMesh mesh = contour_tree(both.cells, both.bounds, options);
         EXPECT_TRUE(
             intersecting_triangles({mesh.positions, mesh.triangles}, {}, Progress(), 1).empty())

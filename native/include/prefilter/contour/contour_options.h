@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "prefilter/base/geometry.h"
@@ -32,9 +33,10 @@ struct SourceMesh {
 };
 
 struct ContourOptions {
-  Interpolant interpolant = Interpolant::kOccupancy;
+  // None: kSharp of octrees, and kOccupancy of grids.
+  std::optional<Interpolant> interpolant;
   float isovalue = 0.5F;  // samples of at least this are inside
-  bool clean_up = false;  // widen narrow triangles
+  bool clean_up = true;   // widen narrow triangles
   // How far a surface may be from the full contour where it gets larger triangles, in cells of the
   // finest depth, along their shortest side; 0: it is the full one.
   double adaptivity = 0.0;

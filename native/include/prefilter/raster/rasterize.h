@@ -59,7 +59,7 @@ struct RasterOptions {
   /// Of kWavelet: the synthesis ends at cells of which so many, doubled, make the side of the
   /// square of the smallest power of two that holds the image; -1: at pixels.
   int depth = -1;
-  Overlap overlap = Overlap::kAdd;
+  Overlap overlap = Overlap::kCover;
   /// What shows where no shape is; none for 0.
   std::vector<float> background;
   int threads = 0;
