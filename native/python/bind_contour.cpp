@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
@@ -23,16 +24,16 @@ namespace py = pybind11;
 namespace prefilter::python {
 namespace {
 
-ContourOptions contour_options(const std::string& interpolant, float isovalue, bool clean_up,
-                               double adaptivity, const py::object& progress, int threads) {
-  ContourOptions options;
-  options.interpolant = value_named("interpolant", interpolant, kInterpolants);
-  options.isovalue = isovalue;
-  options.clean_up = clean_up;
-  options.adaptivity = adaptivity;
-  options.threads = threads;
-  options.progress = to_progress(progress);
-  return options;
+void bind_contour_options(py::module_& m) {
+  using Options = ContourOptions;
+  bind_options<Options>(m, "ContourOptions")
+      .def_property("interpolant", nullptr,
+                    [](Options& o, const std::string& name) {
+                      o.interpolant = value_named("interpolant", name, kInterpolants);
+                    })
+      .def_readwrite("isovalue", &Options::isovalue)
+      .def_readwrite("cleanup", &Options::clean_up)
+      .def_readwrite("adaptivity", &Options::adaptivity);
 }
 
 using MeshArrays = std::pair<Array<double>, Array<std::int32_t>>;
@@ -55,12 +56,10 @@ std::vector<SourceMesh> sources_of(const std::vector<SourceArrays>& arrays) {
   return sources;
 }
 
-MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpolant,
-                                float isovalue, const std::vector<SourceArrays>& source_arrays,
-                                bool clean_up, double adaptivity, const py::object& progress,
-                                int threads) {
-  ContourOptions options =
-      contour_options(interpolant, isovalue, clean_up, adaptivity, progress, threads);
+MeshArrays bound_contour_octree(const Octree& octree,
+                                const std::vector<SourceArrays>& source_arrays,
+                                ContourOptions options, const py::object& progress) {
+  options.progress = to_progress(progress);
   const std::vector<SourceMesh> sources = sources_of(source_arrays);
   options.sources = sources;
   TriangleMesh mesh;
@@ -74,9 +73,9 @@ MeshArrays bound_contour_octree(const Octree& octree, const std::string& interpo
 using TracedArrays = std::tuple<Array<double>, Array<std::int32_t>, Array<std::int64_t>>;
 
 TracedArrays bound_traced_contour(const Octree& octree,
-                                  const std::vector<SourceArrays>& source_arrays, bool clean_up,
-                                  double adaptivity, const py::object& progress, int threads) {
-  ContourOptions options = contour_options("sharp", 0.5F, clean_up, adaptivity, progress, threads);
+                                  const std::vector<SourceArrays>& source_arrays,
+                                  ContourOptions options, const py::object& progress) {
+  options.progress = to_progress(progress);
   const std::vector<SourceMesh> sources = sources_of(source_arrays);
   options.sources = sources;
   TracedMesh traced;
@@ -101,12 +100,10 @@ std::array<int, N> sides_of(const Array<float>& grid) {
   return sides;
 }
 
-MeshArrays bound_contour_grid(const Array<float>& grid, const std::string& interpolant,
-                              float isovalue, const Vector3& spacing, const Vector3& origin,
-                              bool clean_up, double adaptivity, const py::object& progress,
-                              int threads) {
-  const ContourOptions options =
-      contour_options(interpolant, isovalue, clean_up, adaptivity, progress, threads);
+MeshArrays bound_contour_grid(const Array<float>& grid, const Vector3& spacing,
+                              const Vector3& origin, ContourOptions options,
+                              const py::object& progress) {
+  options.progress = to_progress(progress);
   const GridView view{grid.data(), sides_of<3>(grid)};
   TriangleMesh mesh;
   {
@@ -118,11 +115,10 @@ MeshArrays bound_contour_grid(const Array<float>& grid, const std::string& inter
 
 using Pair = std::array<double, 2>;
 
-std::vector<Array<double>> bound_contour_outlines(const Array<float>& grid,
-                                                  const std::string& interpolant, float isovalue,
-                                                  const Pair& spacing, const Pair& origin,
+std::vector<Array<double>> bound_contour_outlines(const Array<float>& grid, const Pair& spacing,
+                                                  const Pair& origin, ContourOptions options,
                                                   const py::object& progress) {
-  const ContourOptions options = contour_options(interpolant, isovalue, false, 0.0, progress, 1);
+  options.progress = to_progress(progress);
   const PlaneView view{grid.data(), sides_of<2>(grid)};
   std::vector<OutlinePoints> outlines;
   {
@@ -140,16 +136,15 @@ std::vector<Array<double>> bound_contour_outlines(const Array<float>& grid,
 }  // namespace
 
 void bind_contour(py::module_& m) {
-  m.def("contour_grid", &bound_contour_grid, py::arg("grid"), py::arg("interpolant"),
-        py::arg("isovalue"), py::arg("spacing"), py::arg("origin"), py::arg("clean_up"),
-        py::arg("adaptivity"), py::arg("progress"), py::arg("threads"));
-  m.def("contour_outlines", &bound_contour_outlines, py::arg("grid"), py::arg("interpolant"),
-        py::arg("isovalue"), py::arg("spacing"), py::arg("origin"), py::arg("progress"));
+  bind_contour_options(m);
+  m.def("contour_grid", &bound_contour_grid, py::arg("grid"), py::arg("spacing"), py::arg("origin"),
+        py::arg("options"), py::arg("progress"));
+  m.def("contour_outlines", &bound_contour_outlines, py::arg("grid"), py::arg("spacing"),
+        py::arg("origin"), py::arg("options"), py::arg("progress"));
   m.def("traced_contour", &bound_traced_contour, py::arg("octree"), py::arg("sources"),
-        py::arg("clean_up"), py::arg("adaptivity"), py::arg("progress"), py::arg("threads"));
-  m.def("contour_octree", &bound_contour_octree, py::arg("octree"), py::arg("interpolant"),
-        py::arg("isovalue"), py::arg("sources"), py::arg("clean_up"), py::arg("adaptivity"),
-        py::arg("progress"), py::arg("threads"));
+        py::arg("options"), py::arg("progress"));
+  m.def("contour_octree", &bound_contour_octree, py::arg("octree"), py::arg("sources"),
+        py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/mipmap/keep_coverage.h"
@@ -14,16 +15,12 @@ namespace py = pybind11;
 namespace prefilter::python {
 
 void bind_cutout(py::module_& m) {
+  bind_options<CoverageOptions>(m, "CoverageOptions")
+      .def_readwrite("threshold", &CoverageOptions::threshold);
   m.def(
       "keep_coverage",
       [](const std::vector<Array<float>>& levels, const std::vector<const Surface*>& surfaces,
-         double threshold, const WrapNames& wrap, bool premultiplied, const py::object& progress,
-         int threads) {
-        CoverageOptions options;
-        options.threshold = threshold;
-        options.wrap = wrap_modes(wrap);
-        options.premultiplied = premultiplied;
-        options.threads = threads;
+         CoverageOptions options, const py::object& progress) {
         options.progress = to_progress(progress);
         const std::vector<ImageView> views = views_of(levels);
         std::vector<Image> kept;
@@ -33,8 +30,7 @@ void bind_cutout(py::module_& m) {
         }
         return to_arrays(std::move(kept));
       },
-      py::arg("levels"), py::arg("surfaces"), py::arg("threshold"), py::arg("wrap"),
-      py::arg("premultiplied"), py::arg("progress"), py::arg("threads"));
+      py::arg("levels"), py::arg("surfaces"), py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
@@ -28,26 +29,21 @@ using Surfaces = std::vector<const Surface*>;
 
 void bind_mipmap_options(py::module_& m) {
   using Options = MipmapOptions;
-  py::class_<Options>(m, "MipmapOptions")
-      .def(py::init<>())
+  using Pair = std::pair<std::optional<float>, std::optional<float>>;
+  auto bound = bind_options<Options>(m, "MipmapOptions");
+  bind_named(bound, "reader", &Options::reader, kReaders);
+  bound
       .def_property(
           "filter", [](const Options& o) { return name_of(o.filter); },
           [](Options& o, const std::string& name) { o.filter = mipmap_filter(name); })
-      .def_property("wrap", nullptr,
-                    [](Options& o, const WrapNames& names) { o.wrap = wrap_modes(names); })
-      .def_property("bounds", nullptr,
-                    [](Options& o, const std::pair<std::optional<float>, std::optional<float>>& b) {
-                      o.bounds = {b.first, b.second};
-                    })
+      .def_property(
+          "bounds", [](const Options& o) { return Pair(o.bounds.low, o.bounds.high); },
+          [](Options& o, const Pair& pair) {
+            o.bounds = {pair.first, pair.second};
+          })
       .def_readwrite("levels", &Options::levels)
-      .def_readwrite("premultiplied", &Options::premultiplied)
-      .def_property("reader", nullptr,
-                    [](Options& o, const std::string& name) {
-                      o.reader = value_named("reader", name, kReaders);
-                    })
       .def_readwrite("seam_budget", &Options::seam_budget)
-      .def_readwrite("footprint", &Options::footprint)
-      .def_readwrite("threads", &Options::threads);
+      .def_readwrite("footprint", &Options::footprint);
 }
 
 std::vector<Array<float>> bound_float_levels(const Array<float>& array, const Surfaces& surfaces,

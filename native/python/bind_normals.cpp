@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/mipmap/normal_mipmaps.h"
@@ -14,19 +15,18 @@ namespace py = pybind11;
 namespace prefilter::python {
 
 void bind_normals(py::module_& m) {
+  using Options = NormalMipmapOptions;
+  bind_options<Options>(m, "NormalMipmapOptions")
+      .def_property(
+          "filter", [](const Options& o) { return name_of(o.filter); },
+          [](Options& o, const std::string& name) { o.filter = mipmap_filter(name); })
+      .def_readwrite("footprint", &Options::footprint)
+      .def_readwrite("encoded", &Options::encoded)
+      .def_readwrite("levels", &Options::levels);
   m.def(
       "normal_mipmaps",
       [](const Array<float>& normals, const std::optional<Array<float>>& roughness,
-         const std::vector<const Surface*>& surfaces, const std::string& filter,
-         const WrapNames& wrap, double footprint, bool encoded, int levels,
-         const py::object& progress, int threads) {
-        NormalMipmapOptions options;
-        options.filter = mipmap_filter(filter);
-        options.wrap = wrap_modes(wrap);
-        options.footprint = footprint;
-        options.encoded = encoded;
-        options.levels = levels;
-        options.threads = threads;
+         const std::vector<const Surface*>& surfaces, Options options, const py::object& progress) {
         options.progress = to_progress(progress);
         const ImageView normals_view = view_of(normals);
         const ImageView roughness_view = roughness ? view_of(*roughness) : ImageView();
@@ -38,9 +38,8 @@ void bind_normals(py::module_& m) {
         }
         return std::pair(to_arrays(std::move(made.normals)), to_arrays(std::move(made.roughness)));
       },
-      py::arg("normals"), py::arg("roughness"), py::arg("surfaces"), py::arg("filter"),
-      py::arg("wrap"), py::arg("footprint"), py::arg("encoded"), py::arg("levels"),
-      py::arg("progress"), py::arg("threads"));
+      py::arg("normals"), py::arg("roughness"), py::arg("surfaces"), py::arg("options"),
+      py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
@@ -140,19 +141,34 @@ Paint stops_paint(bool is_radial, const std::array<double, 2>& start, double sta
   return paint;
 }
 
-Array<float> bound_rasterize(
-    const std::vector<std::tuple<const Outline*, std::string, Paint, bool>>& drawn, int width,
-    int height, const std::string& filter, const std::string& method, const std::string& overlap,
-    const std::vector<float>& background, int depth, const py::object& progress, int threads) {
-  RasterOptions options;
-  options.width = width;
-  options.height = height;
-  options.filter = filter;
-  options.method = value_named("method", method, kRasterMethods);
-  options.overlap = value_named("overlap", overlap, kOverlaps);
-  options.background = background;
-  options.depth = depth;
-  options.threads = threads;
+void bind_raster_options(py::module_& m) {
+  using Options = RasterOptions;
+  auto bound = bind_options<Options>(m, "RasterOptions");
+  bind_named(bound, "method", &Options::method, kRasterMethods);
+  bind_named(bound, "overlap", &Options::overlap, kOverlaps);
+  bound.def_readwrite("width", &Options::width)
+      .def_readwrite("height", &Options::height)
+      .def_readwrite("filter", &Options::filter)
+      .def_readwrite("background", &Options::background)
+      .def_readwrite("depth", &Options::depth);
+}
+
+void bind_stroke_options(py::module_& m) {
+  using Options = StrokeOptions;
+  auto bound = bind_options<Options>(m, "StrokeOptions");
+  bind_named(bound, "join", &Options::join, kStrokeJoins);
+  bind_named(bound, "cap", &Options::cap, kStrokeCaps);
+  bound.def_readwrite("width", &Options::width)
+      .def_readwrite("miter_limit", &Options::miter_limit)
+      .def_readwrite("dashes", &Options::dashes)
+      .def_readwrite("dash_offset", &Options::dash_offset);
+}
+
+// An outline, the name of its fill rule, its paint, and whether it winds once.
+using DrawnShape = std::tuple<const Outline*, std::string, Paint, bool>;
+
+Array<float> bound_rasterize(const std::vector<DrawnShape>& drawn, RasterOptions options,
+                             const py::object& progress) {
   options.progress = to_progress(progress);
   std::vector<Shape> shapes;
   for (const auto& [outline, fill_rule, paint, winds_once] : drawn) {
@@ -167,20 +183,6 @@ Array<float> bound_rasterize(
   return to_array(std::move(image));
 }
 
-Outline bound_stroked(const Outline& outline, double width, const std::string& join,
-                      const std::string& cap, double miter_limit, const std::vector<double>& dashes,
-                      double dash_offset, double tolerance) {
-  StrokeOptions options;
-  options.width = width;
-  options.join = value_named("join", join, kStrokeJoins);
-  options.cap = value_named("cap", cap, kStrokeCaps);
-  options.miter_limit = miter_limit;
-  options.dashes = dashes;
-  options.dash_offset = dash_offset;
-  const py::gil_scoped_release unlocked;
-  return stroke(outline, options, tolerance);
-}
-
 py::object bound_bounds(const Outline& outline) {
   const Box2 box = control_box(outline);
   if (outline.empty()) return py::none();
@@ -191,6 +193,8 @@ py::object bound_bounds(const Outline& outline) {
 }  // namespace
 
 void bind_raster(py::module_& m) {
+  bind_raster_options(m);
+  bind_stroke_options(m);
   py::class_<Outline>(m, "Outline")
       .def(py::init<>())
       .def(
@@ -227,8 +231,8 @@ void bind_raster(py::module_& m) {
           },
           py::arg("matrix"))
       .def("copy", [](const Outline& outline) { return Outline(outline); })
-      .def("stroked", &bound_stroked, py::arg("width"), py::arg("join"), py::arg("cap"),
-           py::arg("miter_limit"), py::arg("dashes"), py::arg("dash_offset"), py::arg("tolerance"))
+      .def("stroked", &stroke, py::arg("options"), py::arg("tolerance"),
+           py::call_guard<py::gil_scoped_release>())
       .def("bounds", &bound_bounds)
       .def_property_readonly("contour_count", &Outline::contour_count);
   py::class_<Paint>(m, "Paint")
@@ -242,9 +246,7 @@ void bind_raster(py::module_& m) {
             return paint.transformed(map_of(matrix));
           },
           py::arg("matrix"));
-  m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("width"), py::arg("height"),
-        py::arg("filter"), py::arg("method"), py::arg("overlap"), py::arg("background"),
-        py::arg("depth"), py::arg("progress"), py::arg("threads"));
+  m.def("rasterize", &bound_rasterize, py::arg("shapes"), py::arg("options"), py::arg("progress"));
   m.attr("FILL_RULES") = names_of(kFillRules);
 }
 

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
@@ -41,24 +42,19 @@ void set_isovalue(ReconstructOptions* options, const Level& level) {
   }
 }
 
-void bind_options(py::module_& m) {
+void bind_reconstruct_options(py::module_& m) {
   using Options = ReconstructOptions;
-  py::class_<Options>(m, "ReconstructOptions")
-      .def(py::init<>())
-      .def_readwrite("depth", &Options::depth)
+  auto bound = bind_options<Options>(m, "ReconstructOptions");
+  bind_named(bound, "wavelet", &Options::basis, kWaveletBases);
+  bound.def_readwrite("depth", &Options::depth)
       .def_readwrite("cell_size", &Options::cell_size)
-      .def_property("wavelet", nullptr,
-                    [](Options* o, const std::string& name) {
-                      o->basis = value_named("wavelet", name, kWaveletBases);
-                    })
       .def_readwrite("smooth", &Options::smooth)
       .def_property("isovalue", nullptr, &set_isovalue)
       .def_readwrite("are_sides_known", &Options::are_sides_known)
       .def_readwrite("fit", &Options::fit)
       .def_readwrite("trim", &Options::trim)
       .def_readwrite("memory_limit", &Options::memory_limit)
-      .def_readwrite("folder", &Options::folder)
-      .def_readwrite("threads", &Options::threads);
+      .def_readwrite("folder", &Options::folder);
 }
 
 using Rows = std::variant<Array<float>, Array<double>>;
@@ -130,7 +126,7 @@ py::dict bound_reconstruct_file(PointSource* source, const std::string& target,
 }  // namespace
 
 void bind_reconstruct(py::module_& m) {
-  bind_options(m);
+  bind_reconstruct_options(m);
   // The arrays are to live as long as it does.
   py::class_<ArraySource, PointSource>(m, "ArrayPoints")
       .def(py::init(&array_points), py::arg("positions"), py::arg("normals"), py::arg("weights"),

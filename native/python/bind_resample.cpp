@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/error.h"
@@ -41,13 +42,28 @@ SamplePlaces sample_places(const Array<double>& coordinates, const Array<double>
   return {places_of(coordinates), {scales.data(), static_cast<std::size_t>(scales.size())}};
 }
 
-template <typename Options>
-Options to_options(const WrapNames& wrap, const py::object& progress, int threads) {
-  Options options;
-  options.wrap = wrap_modes(wrap);
-  options.threads = threads;
-  options.progress = to_progress(progress);
-  return options;
+void bind_sampling_options(py::module_& m) {
+  auto exact = bind_options<ExactOptions>(m, "ExactOptions");
+  bind_kernel(exact);
+  bind_options<EllipticalOptions>(m, "EllipticalOptions");
+  bind_options<AnisotropicOptions>(m, "AnisotropicOptions")
+      .def_readwrite("max_probes", &AnisotropicOptions::max_probes);
+  auto levels = bind_options<SamplingLevelsOptions>(m, "SamplingLevelsOptions");
+  bind_kernel(levels);
+  levels.def_readwrite("levels", &SamplingLevelsOptions::levels);
+}
+
+void bind_resample_options(py::module_& m) {
+  using Options = ResampleOptions;
+  auto bound = bind_options<Options>(m, "ResampleOptions");
+  bind_kernel(bound);
+  bound
+      .def_property(
+          "exact", [](const Options& o) { return o.method == Options::Method::kExact; },
+          [](Options& o, bool exact) {
+            o.method = exact ? Options::Method::kExact : Options::Method::kTrilinear;
+          })
+      .def_readwrite("max_probes", &Options::max_probes);
 }
 
 Array<float> to_samples(std::vector<float> values, const Array<double>& coordinates, int channels) {
@@ -55,14 +71,10 @@ Array<float> to_samples(std::vector<float> values, const Array<double>& coordina
 }
 
 std::vector<Array<float>> bound_sampling_levels(const Array<float>& array,
-                                                const std::string& filter, const WrapNames& wrap,
-                                                int levels, bool premultiplied,
-                                                const py::object& progress, int threads) {
+                                                SamplingLevelsOptions options,
+                                                const py::object& progress) {
+  options.progress = to_progress(progress);
   const ImageView image = view_of(array);
-  auto options = to_options<SamplingLevelsOptions>(wrap, progress, threads);
-  options.kernel = &kernel_named(filter);
-  options.levels = levels;
-  options.premultiplied = premultiplied;
   std::vector<Image> images;
   {
     const py::gil_scoped_release unlocked;
@@ -72,11 +84,10 @@ std::vector<Array<float>> bound_sampling_levels(const Array<float>& array,
 }
 
 Array<float> bound_sample_exact(const Array<float>& array, const Array<double>& coordinates,
-                                const Array<double>& scales, const std::string& filter,
-                                const WrapNames& wrap, const py::object& progress, int threads) {
+                                const Array<double>& scales, ExactOptions options,
+                                const py::object& progress) {
+  options.progress = to_progress(progress);
   const ImageView image = view_of(array);
-  auto options = to_options<ExactOptions>(wrap, progress, threads);
-  options.kernel = &kernel_named(filter);
   std::vector<float> values;
   {
     const py::gil_scoped_release unlocked;
@@ -86,10 +97,10 @@ Array<float> bound_sample_exact(const Array<float>& array, const Array<double>& 
 }
 
 Array<float> bound_sample_ewa(const Array<float>& array, const Array<double>& coordinates,
-                              const Array<double>& jacobians, const WrapNames& wrap,
-                              const py::object& progress, int threads) {
+                              const Array<double>& jacobians, EllipticalOptions options,
+                              const py::object& progress) {
+  options.progress = to_progress(progress);
   const ImageView image = view_of(array);
-  const auto options = to_options<EllipticalOptions>(wrap, progress, threads);
   std::vector<float> values;
   {
     const py::gil_scoped_release unlocked;
@@ -100,12 +111,10 @@ Array<float> bound_sample_ewa(const Array<float>& array, const Array<double>& co
 
 Array<float> bound_sample_anisotropic(const std::vector<py::array>& levels,
                                       const SamplingTable* table, const Array<double>& coordinates,
-                                      const Array<double>& jacobians, int max_probes,
-                                      const WrapNames& wrap, const py::object& progress,
-                                      int threads) {
+                                      const Array<double>& jacobians, AnisotropicOptions options,
+                                      const py::object& progress) {
+  options.progress = to_progress(progress);
   const Pyramid pyramid = pyramid_of(levels);
-  auto options = to_options<AnisotropicOptions>(wrap, progress, threads);
-  options.max_probes = max_probes;
   std::vector<float> values(static_cast<std::size_t>(coordinates.shape(0) * pyramid.channels));
   {
     const py::gil_scoped_release unlocked;
@@ -123,10 +132,10 @@ TexelChoice texel_choice(const SamplingTable* table, bool bilinear) {
 Array<float> bound_sample_stochastic(const std::vector<py::array>& levels,
                                      const SamplingTable* table, bool bilinear,
                                      const Array<double>& coordinates, const Array<double>& scales,
-                                     const Array<double>& numbers, const WrapNames& wrap,
-                                     const py::object& progress, int threads) {
+                                     const Array<double>& numbers, SampleOptions options,
+                                     const py::object& progress) {
+  options.progress = to_progress(progress);
   const Pyramid pyramid = pyramid_of(levels);
-  const auto options = to_options<SampleOptions>(wrap, progress, threads);
   const std::span<const double> picks(numbers.data(), static_cast<std::size_t>(numbers.size()));
   std::vector<float> values(static_cast<std::size_t>(coordinates.shape(0) * pyramid.channels));
   {
@@ -143,9 +152,9 @@ using PickedArrays = std::pair<Array<std::int32_t>, Array<double>>;
 PickedArrays bound_pick_texels(const std::vector<py::array>& levels, const SamplingTable* table,
                                bool bilinear, const Array<double>& coordinates,
                                const Array<double>& scales, const Array<double>& numbers,
-                               const WrapNames& wrap, const py::object& progress, int threads) {
+                               SampleOptions options, const py::object& progress) {
+  options.progress = to_progress(progress);
   const Pyramid pyramid = pyramid_of(levels);
-  const auto options = to_options<SampleOptions>(wrap, progress, threads);
   const std::span<const double> picks(numbers.data(), static_cast<std::size_t>(numbers.size()));
   std::vector<std::int32_t> texels;
   std::vector<double> weights;
@@ -163,24 +172,17 @@ PickedArrays bound_pick_texels(const std::vector<py::array>& levels, const Sampl
           to_array<double>(std::move(weights), {count})};
 }
 
-ResampleOptions::Method method_of(const SamplingTable* table, bool exact) {
-  if (exact) return ResampleOptions::Method::kExact;
-  return table != nullptr ? ResampleOptions::Method::kTable : ResampleOptions::Method::kTrilinear;
-}
-
 Array<float> bound_resample(const Array<float>& array, const Array<double>& transform, int width,
-                            int height, const SamplingTable* table, const std::string& filter,
-                            bool exact, int max_probes, const WrapNames& wrap, bool premultiplied,
-                            const py::object& progress, int threads) {
+                            int height, const SamplingTable* table, ResampleOptions options,
+                            const py::object& progress) {
   const ImageView image = view_of(array);
   Homography homography{};
   std::copy_n(transform.data(), homography.size(), homography.begin());
-  auto options = to_options<ResampleOptions>(wrap, progress, threads);
-  options.method = method_of(table, exact);
-  options.table = table;
-  options.kernel = &kernel_named(filter);
-  options.max_probes = max_probes;
-  options.premultiplied = premultiplied;
+  options.progress = to_progress(progress);
+  if (table != nullptr) {
+    options.method = ResampleOptions::Method::kTable;
+    options.table = table;
+  }
   Image result;
   {
     const py::gil_scoped_release unlocked;
@@ -192,27 +194,24 @@ Array<float> bound_resample(const Array<float>& array, const Array<double>& tran
 }  // namespace
 
 void bind_resample(py::module_& m) {
-  m.def("sampling_levels", &bound_sampling_levels, py::arg("image"), py::arg("filter"),
-        py::arg("wrap"), py::arg("levels"), py::arg("premultiplied"), py::arg("progress"),
-        py::arg("threads"));
+  bind_sampling_options(m);
+  bind_resample_options(m);
+  m.def("sampling_levels", &bound_sampling_levels, py::arg("image"), py::arg("options"),
+        py::arg("progress"));
   m.def("sample_exact", &bound_sample_exact, py::arg("image"), py::arg("coordinates"),
-        py::arg("scales"), py::arg("filter"), py::arg("wrap"), py::arg("progress"),
-        py::arg("threads"));
+        py::arg("scales"), py::arg("options"), py::arg("progress"));
   m.def("sample_ewa", &bound_sample_ewa, py::arg("image"), py::arg("coordinates"),
-        py::arg("jacobians"), py::arg("wrap"), py::arg("progress"), py::arg("threads"));
+        py::arg("jacobians"), py::arg("options"), py::arg("progress"));
   m.def("sample_anisotropic", &bound_sample_anisotropic, py::arg("levels"), py::arg("table"),
-        py::arg("coordinates"), py::arg("jacobians"), py::arg("max_probes"), py::arg("wrap"),
-        py::arg("progress"), py::arg("threads"));
+        py::arg("coordinates"), py::arg("jacobians"), py::arg("options"), py::arg("progress"));
   m.def("sample_stochastic", &bound_sample_stochastic, py::arg("levels"), py::arg("table"),
         py::arg("bilinear"), py::arg("coordinates"), py::arg("scales"), py::arg("numbers"),
-        py::arg("wrap"), py::arg("progress"), py::arg("threads"));
+        py::arg("options"), py::arg("progress"));
   m.def("pick_texels", &bound_pick_texels, py::arg("levels"), py::arg("table"), py::arg("bilinear"),
-        py::arg("coordinates"), py::arg("scales"), py::arg("numbers"), py::arg("wrap"),
-        py::arg("progress"), py::arg("threads"));
+        py::arg("coordinates"), py::arg("scales"), py::arg("numbers"), py::arg("options"),
+        py::arg("progress"));
   m.def("resample", &bound_resample, py::arg("image"), py::arg("transform"), py::arg("width"),
-        py::arg("height"), py::arg("table"), py::arg("filter"), py::arg("exact"),
-        py::arg("max_probes"), py::arg("wrap"), py::arg("premultiplied"), py::arg("progress"),
-        py::arg("threads"));
+        py::arg("height"), py::arg("table"), py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

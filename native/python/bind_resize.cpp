@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include <pybind11/stl.h>
-
 #include <string>
 #include <utility>
-#include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "prefilter/filters/pixel_filter.h"
 #include "prefilter/resize/resize.h"
@@ -13,8 +11,33 @@
 namespace py = pybind11;
 
 namespace prefilter::python {
+namespace {
+
+void bind_resize_options(py::module_& m) {
+  using Options = ResizeOptions;
+  bind_options<Options>(m, "ResizeOptions")
+      .def_property(
+          "filter", [](const Options& o) { return name_of(o.filter); },
+          [](Options& o, const std::string& name) { o.filter = resize_filter(name); })
+      .def_readwrite("constrained", &Options::constrained);
+}
+
+Array<float> bound_resize(const Array<float>& array, int width, int height, ResizeOptions options,
+                          const py::object& progress) {
+  options.progress = to_progress(progress);
+  const ImageView image = view_of(array);
+  Image result;
+  {
+    const py::gil_scoped_release unlocked;
+    result = resize(image, width, height, options);
+  }
+  return to_array(std::move(result));
+}
+
+}  // namespace
 
 void bind_resize(py::module_& m) {
+  bind_resize_options(m);
   m.def("pixel_filters", [] {
     py::list filters;
     for (const PixelFilter& filter : pixel_filters()) {
@@ -24,29 +47,8 @@ void bind_resize(py::module_& m) {
     }
     return filters;
   });
-  m.def(
-      "resize",
-      [](const Array<float>& array, int width, int height, const std::string& filter,
-         bool constrained, const WrapNames& wrap, bool premultiplied, const py::object& progress,
-         int threads) {
-        const ImageView image = view_of(array);
-        ResizeOptions options;
-        options.filter = resize_filter(filter);
-        options.constrained = constrained;
-        options.wrap = wrap_modes(wrap);
-        options.premultiplied = premultiplied;
-        options.threads = threads;
-        options.progress = to_progress(progress);
-        Image result;
-        {
-          const py::gil_scoped_release unlocked;
-          result = resize(image, width, height, options);
-        }
-        return to_array(std::move(result));
-      },
-      py::arg("image"), py::arg("width"), py::arg("height"), py::arg("filter"),
-      py::arg("constrained"), py::arg("wrap"), py::arg("premultiplied"), py::arg("progress"),
-      py::arg("threads"));
+  m.def("resize", &bound_resize, py::arg("image"), py::arg("width"), py::arg("height"),
+        py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/sampling/sample.h"
@@ -17,11 +18,8 @@ namespace {
 
 Array<float> bound_sample(const std::vector<py::array>& levels, const SamplingTable* table,
                           const Array<double>& coordinates, const Array<double>& scales,
-                          const WrapNames& wrap, const py::object& progress, int threads) {
+                          SampleOptions options, const py::object& progress) {
   const Pyramid pyramid = pyramid_of(levels);
-  SampleOptions options;
-  options.wrap = wrap_modes(wrap);
-  options.threads = threads;
   options.progress = to_progress(progress);
   Array<float> result({coordinates.shape(0), static_cast<py::ssize_t>(pyramid.channels)});
   const std::span<const std::array<double, 2>> places(
@@ -39,8 +37,9 @@ Array<float> bound_sample(const std::vector<py::array>& levels, const SamplingTa
 }  // namespace
 
 void bind_sampling(py::module_& m) {
+  bind_options<SampleOptions>(m, "SampleOptions");
   m.def("sample", &bound_sample, py::arg("levels"), py::arg("table"), py::arg("coordinates"),
-        py::arg("scales"), py::arg("wrap"), py::arg("progress"), py::arg("threads"));
+        py::arg("scales"), py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

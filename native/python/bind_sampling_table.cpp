@@ -26,19 +26,20 @@ namespace {
 using SectionArrays =
     std::tuple<Array<int>, Array<double>, Array<double>, Array<double>, Array<double>>;
 
-TableShape to_shape(const std::string& filter, int texels, int grid, int slices, int degree,
-                    double ramp_weight) {
-  return {filter, texels, grid, slices, degree, ramp_weight};
+void bind_table_shape(py::module_& m) {
+  py::class_<TableShape>(m, "TableShape")
+      .def(py::init<>())
+      .def_readwrite("filter", &TableShape::filter)
+      .def_readwrite("texels", &TableShape::texels)
+      .def_readwrite("grid", &TableShape::grid)
+      .def_readwrite("slices", &TableShape::slices)
+      .def_readwrite("degree", &TableShape::degree)
+      .def_readwrite("ramp_weight", &TableShape::ramp_weight);
 }
 
-SamplingTable bound_build(const std::string& filter, int texels, int grid, int slices, int degree,
-                          double ramp_weight, bool certify, const py::object& progress,
+SamplingTable bound_build(const TableShape& shape, bool certify, const py::object& progress,
                           int threads) {
-  BuildTableOptions options;
-  options.shape = to_shape(filter, texels, grid, slices, degree, ramp_weight);
-  options.certify = certify;
-  options.progress = to_progress(progress);
-  options.threads = threads;
+  const BuildTableOptions options{shape, certify, to_progress(progress), threads};
   const py::gil_scoped_release unlocked;
   return build_sampling_table(options);
 }
@@ -47,16 +48,15 @@ std::vector<double> numbers_of(const Array<double>& array) {
   return {array.data(), array.data() + array.size()};
 }
 
-SamplingTable bound_make(const std::string& filter, int texels, int grid, int slices, int degree,
-                         double ramp_weight, const std::array<SectionArrays, 3>& sections) {
+SamplingTable bound_make(const TableShape& shape, const std::array<SectionArrays, 3>& sections) {
   SamplingTable table;
-  table.shape = to_shape(filter, texels, grid, slices, degree, ramp_weight);
+  table.shape = shape;
   check_shape(table.shape);
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const auto& [offsets, coefficients, errors, trilinear_errors, gaps] = sections[i];
     TableSection& section = table.sections[i];
     section.levels = 3 - static_cast<int>(i);
-    section.slices = section.levels == 1 ? 1 : slices;
+    section.slices = section.levels == 1 ? 1 : shape.slices;
     for (py::ssize_t k = 0; k + 2 < offsets.size(); k += 3) {
       const int* const offset = offsets.data() + k;
       section.texels.push_back({offset[0], offset[1], offset[2]});
@@ -94,20 +94,10 @@ SectionArrays bound_section(const SamplingTable& table, int levels) {
 }  // namespace
 
 void bind_sampling_table(py::module_& m) {
+  bind_table_shape(m);
   py::class_<SamplingTable>(m, "SamplingTable")
-      .def(py::init(&bound_make), py::arg("filter"), py::arg("texels"), py::arg("grid"),
-           py::arg("slices"), py::arg("degree"), py::arg("ramp_weight"), py::arg("sections"))
-      .def_property_readonly("filter",
-                             [](const SamplingTable& table) { return table.shape.filter; })
-      .def_property_readonly("texels",
-                             [](const SamplingTable& table) { return table.shape.texels; })
-      .def_property_readonly("grid", [](const SamplingTable& table) { return table.shape.grid; })
-      .def_property_readonly("slices",
-                             [](const SamplingTable& table) { return table.shape.slices; })
-      .def_property_readonly("degree",
-                             [](const SamplingTable& table) { return table.shape.degree; })
-      .def_property_readonly("ramp_weight",
-                             [](const SamplingTable& table) { return table.shape.ramp_weight; })
+      .def(py::init(&bound_make), py::arg("shape"), py::arg("sections"))
+      .def_readonly("shape", &SamplingTable::shape)
       .def("section", &bound_section, py::arg("levels"))
       .def(
           "error_ratio",
@@ -115,8 +105,7 @@ void bind_sampling_table(py::module_& m) {
           py::arg("levels"))
       .def("largest_jump", &largest_jump, py::arg("levels"),
            py::call_guard<py::gil_scoped_release>());
-  m.def("build_sampling_table", &bound_build, py::arg("filter"), py::arg("texels"), py::arg("grid"),
-        py::arg("slices"), py::arg("degree"), py::arg("ramp_weight"), py::arg("certify"),
+  m.def("build_sampling_table", &bound_build, py::arg("shape"), py::arg("certify"),
         py::arg("progress"), py::arg("threads"));
 }
 

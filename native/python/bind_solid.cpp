@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "prefilter/base/error.h"
 #include "prefilter/base/names.h"
@@ -50,16 +51,9 @@ std::tuple<py::array, py::array, std::size_t, std::size_t, std::size_t> bound_cl
 
 // Nothing where the mesh stays as it is, or its positions, triangles, and where these came from;
 // and the report.
-py::tuple bound_as_solid(const py::array& positions, const py::array& triangles, double cell,
-                         double weld, double gap, double thickness, const py::object& callback,
-                         int threads) {
-  SolidOptions options;
-  options.cell = cell;
-  options.weld = weld;
-  options.gap = gap;
-  options.thickness = thickness;
-  options.threads = threads;
-  options.progress = to_progress(callback);
+py::tuple bound_as_solid(const py::array& positions, const py::array& triangles,
+                         SolidOptions options, const py::object& progress) {
+  options.progress = to_progress(progress);
   const InputMesh mesh_view = mesh_of(positions, triangles);
   Solid solid;
   {
@@ -84,9 +78,13 @@ py::tuple bound_as_solid(const py::array& positions, const py::array& triangles,
 }  // namespace
 
 void bind_solid(py::module_& m) {
-  m.def("as_solid", &bound_as_solid, py::arg("positions"), py::arg("triangles"), py::arg("cell"),
-        py::arg("weld"), py::arg("gap"), py::arg("thickness"), py::arg("progress"),
-        py::arg("threads"));
+  bind_options<SolidOptions>(m, "SolidOptions")
+      .def_readwrite("cell", &SolidOptions::cell)
+      .def_readwrite("weld", &SolidOptions::weld)
+      .def_readwrite("gap", &SolidOptions::gap)
+      .def_readwrite("thickness", &SolidOptions::thickness);
+  m.def("as_solid", &bound_as_solid, py::arg("positions"), py::arg("triangles"), py::arg("options"),
+        py::arg("progress"));
   m.def("close_holes", &bound_close_holes, py::arg("positions"), py::arg("triangles"),
         py::arg("method"), py::arg("progress"), py::arg("threads"));
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/base/names.h"
@@ -93,40 +94,64 @@ std::optional<Surface> bound_udim_tile(const Surface& surface, int number) {
   return tile;
 }
 
-Surface bound_subdivide(const Array<double>& positions, const Array<std::int64_t>& face_sizes,
-                        const Array<std::int64_t>& face_vertices, const Array<double>& face_uvs,
-                        const Array<std::int64_t>& crease_edges,
-                        const Array<double>& crease_sharpness,
-                        const Array<std::int64_t>& corner_vertices,
-                        const Array<double>& corner_sharpness,
-                        const std::optional<Array<double>>& weights, const std::string& weights_of,
-                        const std::optional<Array<bool>>& kept, const std::string& scheme,
-                        const std::string& boundary, const std::string& uv_smooth, int level,
+// What PolygonArrays points to.
+struct PolygonMesh {
+  Array<double> positions;
+  Array<std::int64_t> face_sizes;
+  Array<std::int64_t> face_vertices;
+  Array<double> face_uvs;
+  Array<std::int64_t> crease_edges;
+  Array<double> crease_sharpness;
+  Array<std::int64_t> corner_vertices;
+  Array<double> corner_sharpness;
+  std::optional<Array<double>> weights;
+  std::string weights_of;
+  std::optional<Array<bool>> kept;
+};
+
+void bind_subdivision(py::module_& m) {
+  using Options = SubdivisionOptions;
+  auto bound = bind_options<Options>(m, "SubdivisionOptions");
+  bind_named(bound, "scheme", &Options::scheme, kSubdivisionSchemes);
+  bind_named(bound, "boundary", &Options::boundary, kSubdivisionBoundaries);
+  bind_named(bound, "uv_smooth", &Options::uv_interpolation, kUvInterpolations);
+  bound.def_readwrite("level", &Options::level);
+  py::class_<PolygonMesh>(m, "PolygonMesh")
+      .def(py::init<>())
+      .def_readwrite("positions", &PolygonMesh::positions)
+      .def_readwrite("face_sizes", &PolygonMesh::face_sizes)
+      .def_readwrite("face_vertices", &PolygonMesh::face_vertices)
+      .def_readwrite("face_uvs", &PolygonMesh::face_uvs)
+      .def_readwrite("crease_edges", &PolygonMesh::crease_edges)
+      .def_readwrite("crease_sharpness", &PolygonMesh::crease_sharpness)
+      .def_readwrite("corner_vertices", &PolygonMesh::corner_vertices)
+      .def_readwrite("corner_sharpness", &PolygonMesh::corner_sharpness)
+      .def_readwrite("weights", &PolygonMesh::weights)
+      .def_readwrite("weights_of", &PolygonMesh::weights_of)
+      .def_readwrite("kept", &PolygonMesh::kept);
+}
+
+Surface bound_subdivide(const PolygonMesh& arrays, SubdivisionOptions options,
                         const py::object& progress) {
   PolygonArrays mesh;
-  mesh.positions = positions.data();
-  mesh.vertex_count = length(positions);
-  mesh.face_sizes = face_sizes.data();
-  mesh.face_count = length(face_sizes);
-  mesh.face_vertices = face_vertices.data();
-  mesh.face_uvs = face_uvs.data();
-  mesh.corner_count = length(face_vertices);
-  mesh.crease_edges = crease_edges.data();
-  mesh.crease_sharpness = crease_sharpness.data();
-  mesh.crease_count = length(crease_sharpness);
-  mesh.corner_vertices = corner_vertices.data();
-  mesh.corner_sharpness = corner_sharpness.data();
-  mesh.sharp_corner_count = length(corner_sharpness);
-  if (weights) {
-    mesh.weights = weights->data();
-    mesh.weights_of = weights_kind(weights_of);
+  mesh.positions = arrays.positions.data();
+  mesh.vertex_count = length(arrays.positions);
+  mesh.face_sizes = arrays.face_sizes.data();
+  mesh.face_count = length(arrays.face_sizes);
+  mesh.face_vertices = arrays.face_vertices.data();
+  mesh.face_uvs = arrays.face_uvs.data();
+  mesh.corner_count = length(arrays.face_vertices);
+  mesh.crease_edges = arrays.crease_edges.data();
+  mesh.crease_sharpness = arrays.crease_sharpness.data();
+  mesh.crease_count = length(arrays.crease_sharpness);
+  mesh.corner_vertices = arrays.corner_vertices.data();
+  mesh.corner_sharpness = arrays.corner_sharpness.data();
+  mesh.sharp_corner_count = length(arrays.corner_sharpness);
+  if (arrays.weights) {
+    mesh.weights = arrays.weights->data();
+    mesh.weights_of = weights_kind(arrays.weights_of);
   }
-  if (kept) mesh.kept = kept->data();
-  SubdivisionOptions options;
-  options.scheme = value_named("scheme", scheme, kSubdivisionSchemes);
-  options.boundary = value_named("boundary", boundary, kSubdivisionBoundaries);
-  options.uv_interpolation = value_named("uv_smooth", uv_smooth, kUvInterpolations);
-  options.level = level;
+  if (arrays.kept) mesh.kept = arrays.kept->data();
   options.progress = to_progress(progress);
   const py::gil_scoped_release unlocked;
   return subdivide(mesh, options);
@@ -155,11 +180,8 @@ void bind_surface(py::module_& m) {
       .def_property_readonly("areas", [](const Surface& s) { return rows<double>(s.areas, {}); });
   m.def("uv_charts", &bound_uv_charts, py::arg("positions"), py::arg("triangles"), py::arg("uvs"),
         py::arg("progress"), py::arg("threads"));
-  m.def("subdivide", &bound_subdivide, py::arg("positions"), py::arg("face_sizes"),
-        py::arg("face_vertices"), py::arg("face_uvs"), py::arg("crease_edges"),
-        py::arg("crease_sharpness"), py::arg("corner_vertices"), py::arg("corner_sharpness"),
-        py::arg("weights"), py::arg("weights_of"), py::arg("kept"), py::arg("scheme"),
-        py::arg("boundary"), py::arg("uv_smooth"), py::arg("level"), py::arg("progress"));
+  bind_subdivision(m);
+  m.def("subdivide", &bound_subdivide, py::arg("mesh"), py::arg("options"), py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -159,8 +159,8 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_contour(m);
   prefilter::python::bind_reconstruct(m);
   prefilter::python::bind_raster(m);
+  prefilter::python::bind_sampling(m);
   prefilter::python::bind_resample(m);
   prefilter::python::bind_resize(m);
-  prefilter::python::bind_sampling(m);
   prefilter::python::bind_sampling_table(m);
 }

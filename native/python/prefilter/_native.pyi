@@ -57,29 +57,19 @@ class NearestPoints:
         self, points: npt.NDArray[np.float64], progress: ProgressCallback | None, threads: int
     ) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.float64], npt.NDArray[np.float64]]: ...
 
+class TableShape:
+    def __init__(self) -> None: ...
+    filter: str
+    texels: int
+    grid: int
+    slices: int
+    degree: int
+    ramp_weight: float
+
 class SamplingTable:
-    def __init__(
-        self,
-        filter: str,
-        texels: int,
-        grid: int,
-        slices: int,
-        degree: int,
-        ramp_weight: float,
-        sections: Sequence[tuple[np.ndarray, ...]],
-    ) -> None: ...
+    def __init__(self, shape: TableShape, sections: Sequence[tuple[np.ndarray, ...]]) -> None: ...
     @property
-    def filter(self) -> str: ...
-    @property
-    def texels(self) -> int: ...
-    @property
-    def grid(self) -> int: ...
-    @property
-    def slices(self) -> int: ...
-    @property
-    def degree(self) -> int: ...
-    @property
-    def ramp_weight(self) -> float: ...
+    def shape(self) -> TableShape: ...
     def section(
         self, levels: int
     ) -> tuple[
@@ -93,51 +83,77 @@ class SamplingTable:
     def largest_jump(self, levels: int) -> float: ...
 
 def build_sampling_table(
-    filter: str,
-    texels: int,
-    grid: int,
-    slices: int,
-    degree: int,
-    ramp_weight: float,
-    certify: bool,
-    progress: ProgressCallback | None,
-    threads: int,
+    shape: TableShape, certify: bool, progress: ProgressCallback | None, threads: int
 ) -> SamplingTable: ...
+
+class SampleOptions:
+    def __init__(self) -> None: ...
+    wrap: tuple[str, str]
+    threads: int
+
+class AnisotropicOptions:
+    def __init__(self) -> None: ...
+    wrap: tuple[str, str]
+    max_probes: int
+    threads: int
+
+class ExactOptions:
+    def __init__(self) -> None: ...
+    filter: str
+    wrap: tuple[str, str]
+    threads: int
+
+class EllipticalOptions:
+    def __init__(self) -> None: ...
+    wrap: tuple[str, str]
+    threads: int
+
+class SamplingLevelsOptions:
+    def __init__(self) -> None: ...
+    filter: str
+    wrap: tuple[str, str]
+    levels: int
+    premultiplied: bool
+    threads: int
+
+class ResampleOptions:
+    def __init__(self) -> None: ...
+    filter: str
+    exact: bool
+    max_probes: int
+    wrap: tuple[str, str]
+    premultiplied: bool
+    threads: int
+
 def sample(
     levels: Sequence[np.ndarray],
     table: SamplingTable | None,
     coordinates: npt.NDArray[np.float64],
     scales: npt.NDArray[np.float64],
-    wrap: tuple[str, str],
+    options: SampleOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> npt.NDArray[np.float32]: ...
 def sample_exact(
     image: npt.NDArray[np.float32],
     coordinates: npt.NDArray[np.float64],
     scales: npt.NDArray[np.float64],
-    filter: str,
-    wrap: tuple[str, str],
+    options: ExactOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> npt.NDArray[np.float32]: ...
 def sample_ewa(
     image: npt.NDArray[np.float32],
     coordinates: npt.NDArray[np.float64],
     jacobians: npt.NDArray[np.float64],
-    wrap: tuple[str, str],
+    options: EllipticalOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> npt.NDArray[np.float32]: ...
 def sample_anisotropic(
     levels: Sequence[np.ndarray],
     table: SamplingTable | None,
     coordinates: npt.NDArray[np.float64],
     jacobians: npt.NDArray[np.float64],
-    max_probes: int,
-    wrap: tuple[str, str],
+    options: AnisotropicOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> npt.NDArray[np.float32]: ...
 def sample_stochastic(
     levels: Sequence[np.ndarray],
@@ -146,9 +162,8 @@ def sample_stochastic(
     coordinates: npt.NDArray[np.float64],
     scales: npt.NDArray[np.float64],
     numbers: npt.NDArray[np.float64],
-    wrap: tuple[str, str],
+    options: SampleOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> npt.NDArray[np.float32]: ...
 def pick_texels(
     levels: Sequence[np.ndarray],
@@ -157,9 +172,8 @@ def pick_texels(
     coordinates: npt.NDArray[np.float64],
     scales: npt.NDArray[np.float64],
     numbers: npt.NDArray[np.float64],
-    wrap: tuple[str, str],
+    options: SampleOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.float64]]: ...
 def resample(
     image: npt.NDArray[np.float32],
@@ -167,14 +181,18 @@ def resample(
     width: int,
     height: int,
     table: SamplingTable | None,
-    filter: str,
-    exact: bool,
-    max_probes: int,
-    wrap: tuple[str, str],
-    premultiplied: bool,
+    options: ResampleOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> npt.NDArray[np.float32]: ...
+
+class StrokeOptions:
+    def __init__(self) -> None: ...
+    width: float
+    join: str
+    cap: str
+    miter_limit: float
+    dashes: Sequence[float]
+    dash_offset: float
 
 class Outline:
     def __init__(self) -> None: ...
@@ -187,16 +205,7 @@ class Outline:
     def add_path(self, letters: str, numbers: npt.NDArray[np.float64]) -> None: ...
     def transformed(self, matrix: Sequence[float]) -> Outline: ...
     def copy(self) -> Outline: ...
-    def stroked(
-        self,
-        width: float,
-        join: str,
-        cap: str,
-        miter_limit: float,
-        dashes: Sequence[float],
-        dash_offset: float,
-        tolerance: float,
-    ) -> Outline: ...
+    def stroked(self, options: StrokeOptions, tolerance: float) -> Outline: ...
     def bounds(self) -> tuple[tuple[float, float], tuple[float, float]] | None: ...
     @property
     def contour_count(self) -> int: ...
@@ -282,23 +291,30 @@ def uv_charts(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.int32]: ...
+
+class PolygonMesh:
+    def __init__(self) -> None: ...
+    positions: npt.NDArray[np.float64]
+    face_sizes: npt.NDArray[np.int64]
+    face_vertices: npt.NDArray[np.int64]
+    face_uvs: npt.NDArray[np.float64]
+    crease_edges: npt.NDArray[np.int64]
+    crease_sharpness: npt.NDArray[np.float64]
+    corner_vertices: npt.NDArray[np.int64]
+    corner_sharpness: npt.NDArray[np.float64]
+    weights: npt.NDArray[np.float64] | None
+    weights_of: str
+    kept: npt.NDArray[np.bool_] | None
+
+class SubdivisionOptions:
+    def __init__(self) -> None: ...
+    scheme: str
+    boundary: str
+    uv_smooth: str
+    level: int
+
 def subdivide(
-    positions: npt.NDArray[np.float64],
-    face_sizes: npt.NDArray[np.int64],
-    face_vertices: npt.NDArray[np.int64],
-    face_uvs: npt.NDArray[np.float64],
-    crease_edges: npt.NDArray[np.int64],
-    crease_sharpness: npt.NDArray[np.float64],
-    corner_vertices: npt.NDArray[np.int64],
-    corner_sharpness: npt.NDArray[np.float64],
-    weights: npt.NDArray[np.float64] | None,
-    weights_of: str,
-    kept: npt.NDArray[np.bool_] | None,
-    scheme: str,
-    boundary: str,
-    uv_smooth: str,
-    level: int,
-    progress: ProgressCallback | None,
+    mesh: PolygonMesh, options: SubdivisionOptions, progress: ProgressCallback | None
 ) -> Surface: ...
 def atan2(y: float, x: float) -> float: ...
 def cos(x: float) -> float: ...
@@ -310,24 +326,25 @@ def decode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.
 def encode_srgb(image: npt.NDArray[np.float32], threads: int) -> npt.NDArray[np.float32]: ...
 def sampling_levels(
     image: npt.NDArray[np.float32],
-    filter: str,
-    wrap: tuple[str, str],
-    levels: int,
-    premultiplied: bool,
+    options: SamplingLevelsOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
 def pixel_filters() -> list[tuple[str, str, float, tuple[str, ...]]]: ...
+
+class ResizeOptions:
+    def __init__(self) -> None: ...
+    filter: str
+    constrained: bool
+    wrap: tuple[str, str]
+    premultiplied: bool
+    threads: int
+
 def resize(
     image: npt.NDArray[np.float32],
     width: int,
     height: int,
-    filter: str,
-    constrained: bool,
-    wrap: tuple[str, str],
-    premultiplied: bool,
+    options: ResizeOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> npt.NDArray[np.float32]: ...
 def compress_blocks(
     rgba: npt.NDArray[np.uint8] | npt.NDArray[np.uint16],
@@ -353,14 +370,19 @@ def exr_tiles(
     threads: int,
 ) -> tuple[npt.NDArray[np.uint8], list[int]]: ...
 def to_bytes(image: npt.NDArray[np.float32], srgb: bool, threads: int) -> npt.NDArray[np.uint8]: ...
+
+class CoverageOptions:
+    def __init__(self) -> None: ...
+    threshold: float
+    wrap: tuple[str, str]
+    premultiplied: bool
+    threads: int
+
 def keep_coverage(
     levels: Sequence[npt.NDArray[np.float32]],
     surfaces: Sequence[Surface],
-    threshold: float,
-    wrap: tuple[str, str],
-    premultiplied: bool,
+    options: CoverageOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> list[npt.NDArray[np.float32]]: ...
 def mipmap_filters() -> list[tuple[str, bool, bool]]: ...
 
@@ -433,17 +455,22 @@ def fill_unused(
     progress: ProgressCallback | None,
     threads: int,
 ) -> npt.NDArray[np.float32]: ...
+
+class NormalMipmapOptions:
+    def __init__(self) -> None: ...
+    filter: str
+    wrap: tuple[str, str]
+    footprint: float
+    encoded: bool
+    levels: int
+    threads: int
+
 def normal_mipmaps(
     normals: npt.NDArray[np.float32],
     roughness: npt.NDArray[np.float32] | None,
     surfaces: Sequence[Surface],
-    filter: str,
-    wrap: tuple[str, str],
-    footprint: float,
-    encoded: bool,
-    levels: int,
+    options: NormalMipmapOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> tuple[list[npt.NDArray[np.float32]], list[npt.NDArray[np.float32]]]: ...
 def mesh_normals(
     points: npt.NDArray[np.floating],
@@ -513,15 +540,20 @@ def voxelize(
 def cube_around(
     box: tuple[list[float], list[float]], depth: int
 ) -> tuple[list[float], list[float]]: ...
+
+class SolidOptions:
+    def __init__(self) -> None: ...
+    cell: float
+    weld: float
+    gap: float
+    thickness: float
+    threads: int
+
 def as_solid(
     positions: npt.NDArray[np.floating],
     triangles: npt.NDArray[np.integer],
-    cell: float,
-    weld: float,
-    gap: float,
-    thickness: float,
+    options: SolidOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> tuple[
     tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]] | None,
     tuple[int, int, int, int, int, int, int, int],
@@ -541,39 +573,41 @@ def make_octree(
 ) -> Octree: ...
 def traced_contour(
     octree: Octree,
-    sources: list[tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]],
-    clean_up: bool,
-    adaptivity: float,
+    sources: Sequence[
+        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]
+    ],
+    options: ContourOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32], npt.NDArray[np.int64]]: ...
+
+class ContourOptions:
+    def __init__(self) -> None: ...
+    interpolant: str
+    isovalue: float
+    cleanup: bool
+    adaptivity: float
+    threads: int
+
 def contour_octree(
     octree: Octree,
-    interpolant: str,
-    isovalue: float,
-    sources: list[tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]],
-    clean_up: bool,
-    adaptivity: float,
+    sources: Sequence[
+        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]
+    ],
+    options: ContourOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]: ...
 def contour_grid(
     grid: npt.NDArray[np.float32],
-    interpolant: str,
-    isovalue: float,
     spacing: list[float],
     origin: list[float],
-    clean_up: bool,
-    adaptivity: float,
+    options: ContourOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]: ...
 def contour_outlines(
     grid: npt.NDArray[np.float32],
-    interpolant: str,
-    isovalue: float,
     spacing: list[float],
     origin: list[float],
+    options: ContourOptions,
     progress: ProgressCallback | None,
 ) -> list[npt.NDArray[np.float64]]: ...
 
@@ -619,17 +653,22 @@ def reconstruct_file(
     options: ReconstructOptions,
     progress: ProgressCallback | None,
 ) -> dict[str, float]: ...
+
+class RasterOptions:
+    def __init__(self) -> None: ...
+    width: int
+    height: int
+    filter: str
+    method: str
+    depth: int
+    background: Sequence[float]
+    overlap: str
+    threads: int
+
 def rasterize(
     shapes: Sequence[tuple[Outline, str, Paint, bool]],
-    width: int,
-    height: int,
-    filter: str,
-    method: str,
-    overlap: str,
-    background: Sequence[float],
-    depth: int,
+    options: RasterOptions,
     progress: ProgressCallback | None,
-    threads: int,
 ) -> npt.NDArray[np.float32]: ...
 
 FILL_RULES: Final[tuple[str, ...]]

@@ -31,7 +31,8 @@ def set_options(
 ) -> Options:
     """Options of the native module, set from the arguments of a function by their names.
 
-    A check raises ValueError, or returns what the native module takes.
+    A check raises ValueError, or returns what the native module takes. Its defaults are those of
+    the functions.
     """
     for name, check in checks.items():
         setattr(options, name, check(arguments[name]))

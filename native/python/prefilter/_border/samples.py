@@ -7,8 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from .arguments import as_int
-from .arrays import FloatArray, as_array, as_floats, as_image, as_texels, check_shape, in_form_of
+from .arguments import Check, as_int, as_wrap
+from .arrays import (
+    FloatArray,
+    as_array,
+    as_floats,
+    as_image,
+    as_texels,
+    as_threads,
+    check_shape,
+    in_form_of,
+)
+
+SAMPLE_CHECKS: dict[str, Check] = {"wrap": as_wrap, "threads": as_threads}
+"""Of what all functions that take samples have."""
 
 
 def as_pyramid(levels: Sequence[npt.ArrayLike]) -> list[np.ndarray]:

@@ -3,13 +3,29 @@
 """Alpha-tested cut-outs: levels that keep as much of the surface as the image does."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, Wrap, as_number, as_progress, as_wrap
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    Wrap,
+    as_number,
+    as_progress,
+    as_wrap,
+    set_options,
+)
 from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
 from ..meshes.surface import Surface, as_surfaces
+
+_CHECKS: dict[str, Check] = {
+    "threshold": partial(as_number, "threshold"),
+    "wrap": as_wrap,
+    "premultiplied": bool,
+    "threads": as_threads,
+}
 
 
 def keep_coverage(
@@ -52,17 +68,10 @@ def keep_coverage(
         ValueError: An argument is out of range, or alpha is not finite in a level above 0.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.CoverageOptions(), _CHECKS, locals())
     if not isinstance(levels, Sequence):
         raise ValueError(f"levels: a {type(levels).__name__}; a list of arrays is needed")
     images = [as_image(f"levels: level {k}", level) for k, level in enumerate(levels)]
-    kept = _native.keep_coverage(
-        images,
-        as_surfaces(surface),
-        as_number("threshold", threshold),
-        as_wrap(wrap),
-        bool(premultiplied),
-        as_progress(progress),
-        as_threads(threads),
-    )
+    kept = _native.keep_coverage(images, as_surfaces(surface), options, as_progress(progress))
     made = [images[0].copy(), *kept]
     return [in_form_of(level, image) for level, image in zip(levels, made, strict=True)]

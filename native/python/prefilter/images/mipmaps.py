@@ -49,7 +49,6 @@ MIPMAP_FILTERS = tuple(MipmapFilter(*found) for found in _native.mipmap_filters(
 """
 
 
-# What checks an option, and turns it into what the native module takes.
 _CHECKS: dict[str, Check] = {
     "filter": partial(as_name, "filter"),
     "wrap": as_wrap,

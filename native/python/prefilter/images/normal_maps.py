@@ -3,6 +3,7 @@
 """Mipmaps of normal maps, and the roughness that takes what averaging normals loses."""
 
 from collections.abc import Sequence
+from functools import partial
 from typing import overload
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import (
+    Check,
     ProgressCallback,
     Wrap,
     as_level_count,
@@ -17,9 +19,19 @@ from .._border.arguments import (
     as_number,
     as_progress,
     as_wrap,
+    set_options,
 )
 from .._border.arrays import FloatArray, as_array, as_image, as_threads, check_shape, in_form_of
 from ..meshes.surface import Surface, as_surfaces
+
+_CHECKS: dict[str, Check] = {
+    "filter": partial(as_name, "filter"),
+    "wrap": as_wrap,
+    "footprint": partial(as_number, "footprint"),
+    "encoded": bool,
+    "levels": as_level_count,
+    "threads": as_threads,
+}
 
 
 @overload
@@ -101,21 +113,13 @@ def normal_mipmaps(
         ValueError: An argument is out of range, or a texel that counts is not finite.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.NormalMipmapOptions(), _CHECKS, locals())
     given = as_array("normals", normals)
     check_shape("normals", given, ("height", "width", 3))
     image = as_image("normals", normals)
     rough = None if roughness is None else _as_roughness(roughness, image.shape[:2])
     made, rougher = _native.normal_mipmaps(
-        image,
-        rough,
-        as_surfaces(surface),
-        as_name("filter", filter),
-        as_wrap(wrap),
-        as_number("footprint", footprint),
-        bool(encoded),
-        as_level_count(levels),
-        as_progress(progress),
-        as_threads(threads),
+        image, rough, as_surfaces(surface), options, as_progress(progress)
     )
     directions = [image.copy(), *made]
     if roughness is None or rough is None:

@@ -2,15 +2,34 @@
 
 """Images of other sizes (chapter 1)."""
 
+from functools import partial
+
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, Wrap, as_name, as_progress, as_size, as_wrap
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    Wrap,
+    as_name,
+    as_progress,
+    as_size,
+    as_wrap,
+    set_options,
+)
 from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
 from .pixel_filters import names_for
 
 RESIZE_FILTERS = names_for("resize")
 """All filters of `resize`."""
+
+_CHECKS: dict[str, Check] = {
+    "filter": partial(as_name, "filter"),
+    "constrained": bool,
+    "wrap": as_wrap,
+    "premultiplied": bool,
+    "threads": as_threads,
+}
 
 
 def resize(
@@ -71,15 +90,12 @@ def resize(
         MemoryError: The result does not fit into memory.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.ResizeOptions(), _CHECKS, locals())
     made = _native.resize(
         as_image("image", image),
         as_size("width", width),
         as_size("height", height),
-        as_name("filter", filter),
-        bool(constrained),
-        as_wrap(wrap),
-        bool(premultiplied),
+        options,
         as_progress(progress),
-        as_threads(threads),
     )
     return in_form_of(image, made)

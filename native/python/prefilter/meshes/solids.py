@@ -3,13 +3,22 @@
 """Any mesh as one that has an inside."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_number, as_progress
+from .._border.arguments import Check, ProgressCallback, as_number, as_progress, set_options
 from .._border.arrays import as_mesh, as_threads
+
+_CHECKS: dict[str, Check] = {
+    "cell": partial(as_number, "cell"),
+    "weld": partial(as_number, "weld"),
+    "gap": partial(as_number, "gap"),
+    "thickness": partial(as_number, "thickness"),
+    "threads": as_threads,
+}
 
 
 @dataclass(frozen=True)
@@ -85,16 +94,8 @@ def as_solid(
         MemoryError: The work would not fit into memory.
         Cancelled: `progress` returned False.
     """
+    options = set_options(_native.SolidOptions(), _CHECKS, locals())
     points, indices = as_mesh(positions, triangles)
-    mesh, report = _native.as_solid(
-        points,
-        indices,
-        as_number("cell", cell),
-        as_number("weld", weld),
-        as_number("gap", gap),
-        as_number("thickness", thickness),
-        as_progress(progress),
-        as_threads(threads),
-    )
+    mesh, report = _native.as_solid(points, indices, options, as_progress(progress))
     found, corners, origins = mesh or (points, indices, None)
     return SolidMesh(found, corners, origins, *report)

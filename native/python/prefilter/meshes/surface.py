@@ -3,16 +3,31 @@
 """Surfaces: triangles in space with texture coordinates."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_int, as_name, as_progress
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    as_int,
+    as_name,
+    as_progress,
+    set_options,
+)
 from .._border.arrays import as_array, as_corner_uvs, as_floats, as_indices, check_shape, is_real
 
 Sharp = tuple[npt.ArrayLike, npt.ArrayLike]
+
+_SUBDIVISION_CHECKS: dict[str, Check] = {
+    "scheme": partial(as_name, "scheme"),
+    "boundary": partial(as_name, "boundary"),
+    "uv_smooth": partial(as_name, "uv_smooth"),
+    "level": partial(as_int, "level", allowed="a whole number from 1 to 10 is needed"),
+}
 
 
 class Surface(_native.Surface):
@@ -113,34 +128,20 @@ class Surface(_native.Surface):
                 edge of a face.
             Cancelled: The progress callback returned False.
         """
-        points = as_floats("positions", positions, ("vertices", 3), np.float64)
-        sizes = as_indices("face_sizes", face_sizes, ("faces",))
-        vertices = as_indices("face_vertices", face_vertices, ("corners",))
-        uvs = as_floats("face_uvs", face_uvs, ("corners", 2), np.float64)
-        check_shape("face_uvs", uvs, (len(vertices), 2))
-        crease_edges, crease_sharpness = _sharp("creases", creases, ("creases", 2))
-        corner_vertices, corner_sharpness = _sharp("corners", corners, ("corners",))
-        importance, kind = _weights(weights, len(points), len(sizes), "faces", corners=None)
-        return cls._take(
-            _native.subdivide(
-                points,
-                sizes,
-                vertices,
-                uvs,
-                crease_edges,
-                crease_sharpness,
-                corner_vertices,
-                corner_sharpness,
-                importance,
-                kind,
-                _mask("faces", faces, len(sizes)),
-                as_name("scheme", scheme),
-                as_name("boundary", boundary),
-                as_name("uv_smooth", uv_smooth),
-                as_int("level", level, "a whole number from 1 to 10 is needed"),
-                as_progress(progress),
-            )
+        options = set_options(_native.SubdivisionOptions(), _SUBDIVISION_CHECKS, locals())
+        mesh = _native.PolygonMesh()
+        mesh.positions = as_floats("positions", positions, ("vertices", 3), np.float64)
+        mesh.face_sizes = as_indices("face_sizes", face_sizes, ("faces",))
+        mesh.face_vertices = as_indices("face_vertices", face_vertices, ("corners",))
+        mesh.face_uvs = as_floats("face_uvs", face_uvs, ("corners", 2), np.float64)
+        check_shape("face_uvs", mesh.face_uvs, (len(mesh.face_vertices), 2))
+        mesh.crease_edges, mesh.crease_sharpness = _sharp("creases", creases, ("creases", 2))
+        mesh.corner_vertices, mesh.corner_sharpness = _sharp("corners", corners, ("corners",))
+        mesh.weights, mesh.weights_of = _weights(
+            weights, len(mesh.positions), len(mesh.face_sizes), "faces", corners=None
         )
+        mesh.kept = _mask("faces", faces, len(mesh.face_sizes))
+        return cls._take(_native.subdivide(mesh, options, as_progress(progress)))
 
     def placed(self, matrices: npt.ArrayLike) -> Self:
         """The surface placed in space, once or several times.

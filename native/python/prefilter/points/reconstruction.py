@@ -3,15 +3,24 @@
 """Scans: oriented points to closed surfaces."""
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias, cast
+from functools import partial
+from typing import TypeAlias, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    as_int,
+    as_name,
+    as_number,
+    as_progress,
+    set_options,
+)
 from .._border.arrays import as_threads
 from .._border.staging import as_target
 from .scan_files import AttributeArray
@@ -26,6 +35,7 @@ MeshWithAttributes: TypeAlias = tuple[
 
 _MIB = 1 << 20
 _MOST_MIB = 1 << 40
+_NO_LIMIT = 2**64 - 1
 
 
 @dataclass
@@ -117,7 +127,7 @@ def reconstruct(
         OSError: A file cannot be read, or a temporary one not written.
         Cancelled: `progress` returned False.
     """
-    options = _options(locals())
+    options = set_options(_native.ReconstructOptions(), _CHECKS, locals())
     _check_report(report)
     sources = sources_in(points)
     if sources is None:
@@ -184,7 +194,7 @@ def reconstruct_file(
         MemoryError: Points have no normals, and would not fit into memory.
         Cancelled: `progress` returned False.
     """
-    options = _options(locals())
+    options = set_options(_native.ReconstructOptions(), _CHECKS, locals())
     place = as_target(target)
     if place.suffix.lower() != ".ply":
         raise ValueError(f"target: '{os.fspath(target)}'; a name that ends in .ply is needed")
@@ -204,7 +214,13 @@ def _as_isovalue(isovalue: str | float) -> str | float:
     return as_number("isovalue", isovalue)
 
 
-def _as_bytes(memory_limit: int) -> int:
+def _as_number_or_none(argument: str, number: float | None) -> float | None:
+    return None if number is None else as_number(argument, number)
+
+
+def _as_bytes(memory_limit: int | None) -> int:
+    if memory_limit is None:
+        return _NO_LIMIT
     is_count = isinstance(memory_limit, int | np.integer) and not isinstance(memory_limit, bool)
     if not is_count or memory_limit < 0:
         raise ValueError(
@@ -213,30 +229,17 @@ def _as_bytes(memory_limit: int) -> int:
     return min(int(memory_limit), _MOST_MIB) * _MIB
 
 
-# What checks an option, and turns it into what the native module takes.
-_CHECKS: dict[str, Callable[[Any], object]] = {
-    "depth": lambda depth: as_int("depth", depth, "a whole number from 1 to 12 is needed"),
-    "cell_size": lambda cell_size: as_number("cell_size", cell_size),
-    "wavelet": lambda wavelet: as_name("wavelet", wavelet),
+_CHECKS: dict[str, Check] = {
+    "depth": partial(as_int, "depth", allowed="a whole number from 1 to 12 is needed"),
+    "cell_size": partial(_as_number_or_none, "cell_size"),
+    "wavelet": partial(as_name, "wavelet"),
     "smooth": bool,
     "isovalue": _as_isovalue,
     "fit": bool,
-    "trim": lambda trim: as_number("trim", trim),
+    "trim": partial(_as_number_or_none, "trim"),
     "memory_limit": _as_bytes,
     "threads": as_threads,
 }
-
-
-_MAY_BE_NONE = {"cell_size", "trim", "memory_limit"}
-
-
-def _options(arguments: Mapping[str, object]) -> _native.ReconstructOptions:
-    """The options among the arguments of a function, by the names that the native module has."""
-    options = _native.ReconstructOptions()
-    for name, check in _CHECKS.items():
-        if arguments[name] is not None or name not in _MAY_BE_NONE:
-            setattr(options, name, check(arguments[name]))
-    return options
 
 
 def _check_sources(normals: object, weights: object, attributes: object) -> None:

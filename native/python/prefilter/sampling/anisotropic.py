@@ -7,11 +7,20 @@ from collections.abc import Sequence
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
-from .._border.arrays import FloatArray, as_threads
-from .._border.samples import as_coordinates, as_jacobians, as_probe_count, as_pyramid, as_samples
+from .._border.arguments import ProgressCallback, Wrap, as_progress, set_options
+from .._border.arrays import FloatArray
+from .._border.samples import (
+    SAMPLE_CHECKS,
+    as_coordinates,
+    as_jacobians,
+    as_probe_count,
+    as_pyramid,
+    as_samples,
+)
 from .samples import native_table
 from .sampling_table import SamplingTable
+
+_CHECKS = {**SAMPLE_CHECKS, "max_probes": as_probe_count}
 
 
 def sample_anisotropic(
@@ -56,6 +65,7 @@ def sample_anisotropic(
         ValueError: An argument is out of range, or the levels are known to have another filter.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.AnisotropicOptions(), _CHECKS, locals())
     pyramid = as_pyramid(levels)
     places = as_coordinates(coordinates)
     found = _native.sample_anisotropic(
@@ -63,9 +73,7 @@ def sample_anisotropic(
         native_table(table, levels),
         places,
         as_jacobians(jacobians, len(places)),
-        as_probe_count(max_probes),
-        as_wrap(wrap),
+        options,
         as_progress(progress),
-        as_threads(threads),
     )
     return as_samples(levels, found)

@@ -2,12 +2,16 @@
 
 """Samples of an image by the filters themselves: what tables and probes approximate."""
 
+from functools import partial
+
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, Wrap, as_name, as_progress, as_wrap
-from .._border.arrays import FloatArray, as_image, as_threads, check_texels, in_form_of
-from .._border.samples import as_coordinates, as_jacobians, as_scales
+from .._border.arguments import Check, ProgressCallback, Wrap, as_name, as_progress, set_options
+from .._border.arrays import FloatArray, as_image, check_texels, in_form_of
+from .._border.samples import SAMPLE_CHECKS, as_coordinates, as_jacobians, as_scales
+
+_CHECKS: dict[str, Check] = {**SAMPLE_CHECKS, "filter": partial(as_name, "filter")}
 
 
 def sample_exact(
@@ -46,6 +50,7 @@ def sample_exact(
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.ExactOptions(), _CHECKS, locals())
     stored = as_image("image", image)
     check_texels("image", stored)
     places = as_coordinates(coordinates)
@@ -53,10 +58,8 @@ def sample_exact(
         stored,
         places,
         as_scales(scales, len(places)).reshape(-1),
-        as_name("filter", filter),
-        as_wrap(wrap),
+        options,
         as_progress(progress),
-        as_threads(threads),
     )
     return in_form_of(image, found)
 
@@ -93,6 +96,7 @@ def sample_ewa(
         ValueError: An argument is out of range, or a texel is not finite or beyond 1e30.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.EllipticalOptions(), SAMPLE_CHECKS, locals())
     stored = as_image("image", image)
     check_texels("image", stored)
     places = as_coordinates(coordinates)
@@ -100,8 +104,7 @@ def sample_ewa(
         stored,
         places,
         as_jacobians(jacobians, len(places)),
-        as_wrap(wrap),
+        options,
         as_progress(progress),
-        as_threads(threads),
     )
     return in_form_of(image, found)

@@ -3,6 +3,7 @@
 """Levels of a mipmap that know which filter made them (section 6.2)."""
 
 from collections.abc import Iterable
+from functools import partial
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -10,18 +11,28 @@ import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import (
+    Check,
     ProgressCallback,
     Wrap,
     as_level_count,
     as_name,
     as_wrap,
+    set_options,
 )
-from .._border.arrays import as_image, as_threads, in_form_of
+from .._border.arrays import FloatArray, as_image, as_threads, in_form_of
 from .._border.channels import in_channel_groups
 from ..images.pixel_filters import names_for
 
 SAMPLING_FILTERS = names_for("sampling")
 """The kernels that sampling tables and `sampling_levels` are made for."""
+
+_CHECKS: dict[str, Check] = {
+    "filter": partial(as_name, "filter"),
+    "wrap": as_wrap,
+    "levels": as_level_count,
+    "premultiplied": bool,
+    "threads": as_threads,
+}
 
 Value = TypeVar("Value", bound=np.generic)
 
@@ -81,19 +92,16 @@ def sampling_levels(
         MemoryError: The levels do not fit into memory.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.SamplingLevelsOptions(), _CHECKS, locals())
+
+    def of_channels(
+        part: FloatArray, multiplied: bool, reports: ProgressCallback | None
+    ) -> list[FloatArray]:
+        options.premultiplied = multiplied
+        return _native.sampling_levels(part, options, reports)
+
     found = in_channel_groups(
-        as_image("image", image),
-        bool(premultiplied),
-        lambda part, multiplied, reports: _native.sampling_levels(
-            part,
-            as_name("filter", filter),
-            as_wrap(wrap),
-            as_level_count(levels),
-            multiplied,
-            reports,
-            as_threads(threads),
-        ),
-        progress,
+        as_image("image", image), options.premultiplied, of_channels, progress
     )
     joined = [
         level[0] if len(level) == 1 else np.concatenate(level, axis=2)

@@ -2,11 +2,21 @@
 
 """Images moved by affine and projective maps (section 6.3)."""
 
+from functools import partial
+
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, Wrap, as_name, as_size, as_wrap
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    Wrap,
+    as_name,
+    as_size,
+    as_wrap,
+    set_options,
+)
 from .._border.arrays import FloatArray, as_array, as_image, as_threads, in_form_of
 from .._border.channels import in_channel_groups
 from .._border.samples import as_probe_count
@@ -14,6 +24,15 @@ from .samples import native_table
 from .sampling_table import SamplingTable
 
 _STANDARD_TEXELS = 8
+
+_CHECKS: dict[str, Check] = {
+    "filter": partial(as_name, "filter"),
+    "exact": bool,
+    "max_probes": as_probe_count,
+    "wrap": as_wrap,
+    "premultiplied": bool,
+    "threads": as_threads,
+}
 
 
 def resample(
@@ -71,35 +90,25 @@ def resample(
         MemoryError: The result does not fit into memory.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.ResampleOptions(), _CHECKS, locals())
     stored = as_image("image", image)
-    kernel = as_name("filter", filter)
     if exact and table is not None:
         raise ValueError(f"table: {table!r} with exact=True; None is needed, as no table is used")
     if isinstance(table, SamplingTable):
-        kernel = table.filter
+        options.filter = table.filter
     elif table is None and not exact:
-        table = SamplingTable.standard(kernel, _STANDARD_TEXELS)
+        table = SamplingTable.standard(options.filter, _STANDARD_TEXELS)
     sampler = None if table is None else native_table(table, [])
     homography = _as_homography(transform)
-    found = in_channel_groups(
-        stored,
-        bool(premultiplied),
-        lambda part, multiplied, reports: _native.resample(
-            part,
-            homography,
-            as_size("width", width),
-            as_size("height", height),
-            sampler,
-            kernel,
-            bool(exact),
-            as_probe_count(max_probes),
-            as_wrap(wrap),
-            multiplied,
-            reports,
-            as_threads(threads),
-        ),
-        progress,
-    )
+    size = as_size("width", width), as_size("height", height)
+
+    def of_channels(
+        part: FloatArray, multiplied: bool, reports: ProgressCallback | None
+    ) -> FloatArray:
+        options.premultiplied = multiplied
+        return _native.resample(part, homography, *size, sampler, options, reports)
+
+    found = in_channel_groups(stored, options.premultiplied, of_channels, progress)
     return in_form_of(image, found[0] if len(found) == 1 else np.concatenate(found, axis=2))
 
 

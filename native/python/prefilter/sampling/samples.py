@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
-from .._border.arrays import FloatArray, as_threads
-from .._border.samples import as_coordinates, as_pyramid, as_samples, as_scales
+from .._border.arguments import ProgressCallback, Wrap, as_progress, set_options
+from .._border.arrays import FloatArray
+from .._border.samples import SAMPLE_CHECKS, as_coordinates, as_pyramid, as_samples, as_scales
 from .sampling_table import SamplingTable
 
 
@@ -57,6 +57,7 @@ def sample(
         ValueError: An argument is out of range, or the levels are known to have another filter.
         Cancelled: The progress callback returned False.
     """
+    options = set_options(_native.SampleOptions(), SAMPLE_CHECKS, locals())
     pyramid = as_pyramid(levels)
     places = as_coordinates(coordinates)
     found = _native.sample(
@@ -64,9 +65,8 @@ def sample(
         native_table(table, levels),
         places,
         as_scales(scales, len(places)).reshape(-1),
-        as_wrap(wrap),
+        options,
         as_progress(progress),
-        as_threads(threads),
     )
     return as_samples(levels, found)
 

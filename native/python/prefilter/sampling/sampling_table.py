@@ -4,6 +4,7 @@
 
 import json
 import os
+from functools import partial
 from importlib import resources
 from typing import Any, BinaryIO, NamedTuple
 
@@ -11,7 +12,16 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_int, as_name, as_number, as_one_of, as_progress
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    as_int,
+    as_name,
+    as_number,
+    as_one_of,
+    as_progress,
+    set_options,
+)
 from .._border.arrays import as_threads
 from .._border.input import as_path, open_file
 from .._border.staging import as_target, write_output
@@ -24,6 +34,13 @@ STANDARD_TEXELS = (4, 6, 8)
 _FORMAT = "prefilter sampling table"
 _VERSION = 1
 _LEVELS = (3, 2, 1)
+
+_CHECKS: dict[str, Check] = {
+    "filter": partial(as_name, "filter"),
+    "texels": partial(as_int, "texels", allowed="a whole number from 2 to 16 is needed"),
+    "degree": partial(as_int, "degree", allowed="1 or 2 is needed"),
+    "ramp_weight": partial(as_number, "ramp_weight"),
+}
 
 
 class TableSection(NamedTuple):
@@ -111,18 +128,11 @@ class SamplingTable:
             ValueError: An argument is out of range.
             Cancelled: The progress callback returned False.
         """
-        grid, slices = _as_subdomains(subdomains)
+        shape = set_options(_native.TableShape(), _CHECKS, locals())
+        shape.grid, shape.slices = _as_subdomains(subdomains)
         return cls(
             _native.build_sampling_table(
-                as_name("filter", filter),
-                as_int("texels", texels, "a whole number from 2 to 16 is needed"),
-                grid,
-                slices,
-                as_int("degree", degree, "1 or 2 is needed"),
-                as_number("ramp_weight", ramp_weight),
-                bool(certify),
-                as_progress(progress),
-                as_threads(threads),
+                shape, bool(certify), as_progress(progress), as_threads(threads)
             )
         )
 
@@ -185,27 +195,28 @@ class SamplingTable:
     @property
     def filter(self) -> str:
         """The name of the filter that it reproduces, and that the levels are to be made with."""
-        return self._native.filter
+        return self._native.shape.filter
 
     @property
     def texels(self) -> int:
         """How many each sample reads."""
-        return self._native.texels
+        return self._native.shape.texels
 
     @property
     def subdomains(self) -> tuple[int, int, int]:
         """Parts of a cell along x and y, and parts from level to level."""
-        return self._native.grid, self._native.grid, self._native.slices
+        shape = self._native.shape
+        return shape.grid, shape.grid, shape.slices
 
     @property
     def degree(self) -> int:
         """Of the weights, as polynomials of the place and the scale."""
-        return self._native.degree
+        return self._native.shape.degree
 
     @property
     def ramp_weight(self) -> float:
         """How much it counted, when it was built, that ramps come out as they are."""
-        return self._native.ramp_weight
+        return self._native.shape.ramp_weight
 
     @property
     def error_ratio(self) -> float:
@@ -354,21 +365,19 @@ def _parsed(data: bytes) -> _native.SamplingTable:
         raise ValueError(
             f"it is '{name}' of version {version}; '{_FORMAT}' of {_VERSION} is needed"
         )
-    texels = _count(found, "texels")
-    degree = _count(found, "degree")
-    grid, slices = _as_subdomains(_member(found, "subdomains", list))
+    shape = _native.TableShape()
+    shape.filter = _member(found, "filter", str)
+    shape.texels = _count(found, "texels")
+    shape.degree = _count(found, "degree")
+    shape.grid, shape.slices = _as_subdomains(_member(found, "subdomains", list))
+    shape.ramp_weight = as_number("ramp_weight", _member(found, "ramp_weight", int, float))
     sections = _member(found, "sections", list)
     if len(sections) != len(_LEVELS):
         raise ValueError(f"sections: found {len(sections)}; {len(_LEVELS)} are needed")
     return _native.SamplingTable(
-        _member(found, "filter", str),
-        texels,
-        grid,
-        slices,
-        degree,
-        as_number("ramp_weight", _member(found, "ramp_weight", int, float)),
+        shape,
         tuple(
-            _section(section, levels, texels)
+            _section(section, levels, shape.texels)
             for section, levels in zip(sections, _LEVELS, strict=True)
         ),
     )

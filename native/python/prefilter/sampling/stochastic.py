@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, Wrap, as_progress, as_wrap
-from .._border.arrays import FloatArray, as_floats, as_threads
-from .._border.samples import as_coordinates, as_pyramid, as_samples, as_scales
+from .._border.arguments import ProgressCallback, Wrap, as_progress, set_options
+from .._border.arrays import FloatArray, as_floats
+from .._border.samples import SAMPLE_CHECKS, as_coordinates, as_pyramid, as_samples, as_scales
 from .samples import native_table
 from .sampling_table import SamplingTable
 
@@ -66,9 +66,9 @@ def sample_stochastic(
         ValueError: An argument is out of range, or the levels are known to have another filter.
         Cancelled: The progress callback returned False.
     """
-    found = _native.sample_stochastic(
-        *_arguments(levels, table, coordinates, scales, numbers, wrap, progress, threads)
-    )
+    options = set_options(_native.SampleOptions(), SAMPLE_CHECKS, locals())
+    places = _places(levels, table, coordinates, scales, numbers)
+    found = _native.sample_stochastic(*places, options, as_progress(progress))
     return as_samples(levels, found)
 
 
@@ -101,36 +101,28 @@ def pick_texels(
         ValueError: An argument is out of range, or the levels are known to have another filter.
         Cancelled: The progress callback returned False.
     """
-    return PickedTexels(
-        *_native.pick_texels(
-            *_arguments(levels, table, coordinates, scales, numbers, wrap, progress, threads)
-        )
-    )
+    options = set_options(_native.SampleOptions(), SAMPLE_CHECKS, locals())
+    places = _places(levels, table, coordinates, scales, numbers)
+    return PickedTexels(*_native.pick_texels(*places, options, as_progress(progress)))
 
 
-_Arguments = tuple[
+_Places = tuple[
     list[np.ndarray],
     _native.SamplingTable | None,
     bool,
     npt.NDArray[np.float64],
     npt.NDArray[np.float64],
     npt.NDArray[np.float64],
-    tuple[str, str],
-    ProgressCallback | None,
-    int,
 ]
 
 
-def _arguments(
+def _places(
     levels: Sequence[npt.ArrayLike],
     table: SamplingTable | str,
     coordinates: npt.ArrayLike,
     scales: npt.ArrayLike,
     numbers: npt.ArrayLike,
-    wrap: Wrap,
-    progress: ProgressCallback | None,
-    threads: int,
-) -> _Arguments:
+) -> _Places:
     """As the native functions take them."""
     pyramid = as_pyramid(levels)
     places = as_coordinates(coordinates)
@@ -142,7 +134,4 @@ def _arguments(
         places,
         as_scales(scales, len(places)).reshape(-1),
         as_floats("numbers", numbers, (len(places),), np.float64),
-        as_wrap(wrap),
-        as_progress(progress),
-        as_threads(threads),
     )

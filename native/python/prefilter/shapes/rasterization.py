@@ -3,17 +3,20 @@
 """Images of vector shapes."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
 from .._border.arguments import (
+    Check,
     ProgressCallback,
     as_int,
     as_name,
     as_progress,
     as_size,
+    set_options,
 )
 from .._border.arrays import FloatArray, as_threads
 from ..images.pixel_filters import names_for
@@ -77,6 +80,7 @@ def rasterize(
         MemoryError: The image does not fit into memory.
         Cancelled: `progress` returned False.
     """
+    options = set_options(_native.RasterOptions(), _CHECKS, locals())
     try:
         drawn = list(shapes)
     except TypeError as error:
@@ -85,26 +89,18 @@ def rasterize(
         if not isinstance(shape, Shape):
             raise ValueError(f"shapes: item {index} is {type(shape).__name__}; Shape is needed")
     channels = drawn[0].channels if drawn else 1
-    behind: tuple[float, ...] = ()
-    if background is not None:
-        behind = as_color("background", background)
-        if len(behind) != channels and drawn:
-            raise ValueError(f"background: {len(behind)} values; {channels}, as the shapes have")
+    if background is not None and drawn and len(options.background) != channels:
+        raise ValueError(
+            f"background: {len(options.background)} values; {channels}, as the shapes have"
+        )
     try:
         is_bytes = {"float32": False, "uint8": True}[np.dtype(dtype).name]
     except (KeyError, TypeError) as error:
         raise ValueError(f"dtype: {dtype!r} is not one of float32, uint8") from error
     image = _native.rasterize(
         [(shape._outline, shape._fill_rule, shape._paint, shape._winds_once) for shape in drawn],
-        as_size("width", width),
-        as_size("height", height),
-        as_name("filter", filter),
-        as_name("method", method),
-        as_name("overlap", overlap),
-        behind,
-        _as_depth(depth),
+        options,
         as_progress(progress),
-        as_threads(threads),
     )
     if is_bytes:
         levels: FloatArray = np.clip(image, 0.0, 1.0) * np.float32(255.0)
@@ -120,3 +116,19 @@ def _as_depth(depth: int | None) -> int:
     if number < 0:
         raise ValueError(f"depth: {depth!r}; {needed}")
     return number
+
+
+def _as_background(background: Sequence[float] | None) -> list[float]:
+    return [] if background is None else list(as_color("background", background))
+
+
+_CHECKS: dict[str, Check] = {
+    "width": partial(as_size, "width"),
+    "height": partial(as_size, "height"),
+    "filter": partial(as_name, "filter"),
+    "method": partial(as_name, "method"),
+    "depth": _as_depth,
+    "background": _as_background,
+    "overlap": partial(as_name, "overlap"),
+    "threads": as_threads,
+}

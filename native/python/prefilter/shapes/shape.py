@@ -3,15 +3,33 @@
 """Shapes: contours, and what fills them."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import as_name, as_number, as_one_of
+from .._border.arguments import Check, as_name, as_number, as_one_of, set_options
 from .._border.arrays import as_array
 from .arguments import Stop, as_color, as_matrix, as_point, as_stops, determinant
 from .contours import Contours
+
+
+def _as_dashes(dashes: Sequence[float]) -> list[float]:
+    pattern = as_array("dashes", dashes)
+    if pattern.ndim != 1 or (pattern.size and pattern.dtype.kind not in "fiu"):
+        raise ValueError(f"dashes: {dashes!r}; lengths are needed")
+    return [float(length) for length in pattern]
+
+
+_STROKE_CHECKS: dict[str, Check] = {
+    "width": partial(as_number, "width"),
+    "join": partial(as_name, "join"),
+    "cap": partial(as_name, "cap"),
+    "miter_limit": partial(as_number, "miter_limit"),
+    "dashes": _as_dashes,
+    "dash_offset": partial(as_number, "dash_offset"),
+}
 
 
 class Shape(Contours):
@@ -198,22 +216,11 @@ class Shape(Contours):
         Raises:
             ValueError: An argument is not as said.
         """
-        pattern = as_array("dashes", dashes)
-        if pattern.ndim != 1 or (pattern.size and pattern.dtype.kind not in "fiu"):
-            raise ValueError(f"dashes: {dashes!r}; lengths are needed")
+        pen = set_options(_native.StrokeOptions(), _STROKE_CHECKS, locals())
         reach = as_number("tolerance", tolerance)
         if not 0.0 < reach < np.inf:
             raise ValueError(f"tolerance: {tolerance!r}; a finite number above 0 is needed")
-        outline = self._outline.stroked(
-            as_number("width", width),
-            as_name("join", join),
-            as_name("cap", cap),
-            as_number("miter_limit", miter_limit),
-            [float(length) for length in pattern],
-            as_number("dash_offset", dash_offset),
-            reach,
-        )
-        drawn = self._with(outline, self._paint)
+        drawn = self._with(self._outline.stroked(pen, reach), self._paint)
         drawn._fill_rule, drawn._winds_once = "nonzero", True
         return drawn
 

@@ -2,15 +2,44 @@
 
 """Contours: grids of samples to outlines and closed meshes."""
 
+from functools import partial
+
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_name, as_number, as_progress
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    as_name,
+    as_number,
+    as_progress,
+    set_options,
+)
 from .._border.arrays import as_floats, as_threads
 
 Mesh = tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]
 Outlines = list[npt.NDArray[np.float64]]
+
+
+def _as_isovalue(isovalue: float) -> float:
+    level = as_number("isovalue", isovalue)
+    if not np.isfinite(level):
+        raise ValueError(f"isovalue: {isovalue!r}; a finite number is needed")
+    return level
+
+
+CLEANUP_CHECKS: dict[str, Check] = {
+    "cleanup": bool,
+    "adaptivity": partial(as_number, "adaptivity"),
+    "threads": as_threads,
+}
+"""Of what all contours have."""
+_CHECKS: dict[str, Check] = {
+    **CLEANUP_CHECKS,
+    "interpolant": partial(as_name, "interpolant"),
+    "isovalue": _as_isovalue,
+}
 
 
 def contour(
@@ -59,31 +88,17 @@ def contour(
         MemoryError: The surface would not fit into memory.
         Cancelled: `progress` returned False.
     """
+    options = set_options(_native.ContourOptions(), _CHECKS, locals())
     axes = np.ndim(grid)
     shape = ("x", "y") if axes == 2 else ("x", "y", "z")
     samples = as_floats("grid", grid, shape, np.float32)
-    name = as_name("interpolant", interpolant)
-    level = as_number("isovalue", isovalue)
-    if not np.isfinite(level):
-        raise ValueError(f"isovalue: {isovalue!r}; a finite number is needed")
-    tolerance = as_number("adaptivity", adaptivity)
     size = _as_vector("spacing", spacing, axes)
     if min(size) <= 0.0:
         raise ValueError(f"spacing: {spacing!r}; sizes above 0 are needed")
     corner = _as_vector("origin", origin, axes)
     if axes == 2:
-        return _native.contour_outlines(samples, name, level, size, corner, as_progress(progress))
-    return _native.contour_grid(
-        samples,
-        name,
-        level,
-        size,
-        corner,
-        bool(cleanup),
-        tolerance,
-        as_progress(progress),
-        as_threads(threads),
-    )
+        return _native.contour_outlines(samples, size, corner, options, as_progress(progress))
+    return _native.contour_grid(samples, size, corner, options, as_progress(progress))
 
 
 def _as_vector(name: str, value: npt.ArrayLike, axes: int) -> list[float]:

@@ -5,14 +5,24 @@
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Self
 
 import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_int, as_name, as_number, as_progress
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    as_int,
+    as_name,
+    as_number,
+    as_progress,
+    set_options,
+)
 from .._border.arrays import as_floats, as_labels, as_mesh, as_threads
+from .contours import CLEANUP_CHECKS
 
 Corner = Sequence[float] | npt.NDArray[np.floating]
 Box = tuple[Corner, Corner]
@@ -20,6 +30,20 @@ Source = tuple[npt.ArrayLike, npt.ArrayLike] | tuple[npt.ArrayLike, npt.ArrayLik
 """A mesh: positions, triangles and maybe a group, a whole number, for each triangle."""
 
 MAX_DEPTH = _native.MAX_DEPTH
+
+
+def _as_isovalue(isovalue: float) -> float:
+    level = as_number("isovalue", isovalue)
+    if not 0.0 < level <= 1.0:
+        raise ValueError(f"isovalue: {isovalue!r}; a number above 0 and up to 1 is needed")
+    return level
+
+
+_CONTOUR_CHECKS: dict[str, Check] = {
+    **CLEANUP_CHECKS,
+    "interpolant": partial(as_name, "interpolant"),
+    "isovalue": _as_isovalue,
+}
 
 
 class Octree(_native.Octree):
@@ -181,19 +205,8 @@ class Octree(_native.Octree):
             MemoryError: The surface would not fit into memory.
             Cancelled: `progress` returned False.
         """
-        level = as_number("isovalue", isovalue)
-        if not 0.0 < level <= 1.0:
-            raise ValueError(f"isovalue: {isovalue!r}; a number above 0 and up to 1 is needed")
-        return _native.contour_octree(
-            self,
-            as_name("interpolant", interpolant),
-            level,
-            _as_sources(sources),
-            bool(cleanup),
-            as_number("adaptivity", adaptivity),
-            as_progress(progress),
-            as_threads(threads),
-        )
+        options = set_options(_native.ContourOptions(), _CONTOUR_CHECKS, locals())
+        return _native.contour_octree(self, _as_sources(sources), options, as_progress(progress))
 
     def traced_contour(
         self,
@@ -221,15 +234,9 @@ class Octree(_native.Octree):
             MemoryError: The surface would not fit into memory.
             Cancelled: `progress` returned False.
         """
+        options = set_options(_native.ContourOptions(), CLEANUP_CHECKS, locals())
         return TracedContour(
-            *_native.traced_contour(
-                self,
-                _as_sources(sources),
-                bool(cleanup),
-                as_number("adaptivity", adaptivity),
-                as_progress(progress),
-                as_threads(threads),
-            )
+            *_native.traced_contour(self, _as_sources(sources), options, as_progress(progress))
         )
 
     def coarsened(self, depth: int) -> "Octree":

@@ -2,7 +2,7 @@
 
 """What a drawing consists of: outlines that are filled or stroked."""
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from .values import Matrix, multiplied
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """How an outline is stroked, in its own units."""
+    """How an outline is stroked, in its own units, as `Shape.stroked` takes it."""
 
     width: float
     cap: str
@@ -52,15 +52,7 @@ class Painted:
         shape = self.outline.shape(self.fill_rule)
         if self.stroke is not None:
             scale = max(_native.hypot(*whole[:2]), _native.hypot(*whole[2:4]))
-            shape = shape.stroked(
-                self.stroke.width,
-                join=self.stroke.join,
-                cap=self.stroke.cap,
-                miter_limit=self.stroke.miter_limit,
-                dashes=self.stroke.dashes,
-                dash_offset=self.stroke.dash_offset,
-                tolerance=tolerance / scale,
-            )
+            shape = shape.stroked(**asdict(self.stroke), tolerance=tolerance / scale)
         a, b, c, d, e, f = whole
         shape = shape.transformed(np.array([[a, c, e], [b, d, f]]))
         if isinstance(self.paint, Gradient):

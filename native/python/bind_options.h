@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The library's structures of options as classes that the Python package sets by name.
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <string>
+#include <utility>
+
+#include "convert.h"
+#include "prefilter/base/names.h"
+#include "prefilter/base/wrap.h"
+#include "prefilter/filters/kernel.h"
+
+namespace prefilter::python {
+
+/// A class of options, made with the library's defaults, that has those that most have: `wrap`,
+/// `premultiplied` and `threads`.
+template <typename Options>
+pybind11::class_<Options> bind_options(pybind11::module_& m, const char* name) {
+  pybind11::class_<Options> bound(m, name);
+  bound.def(pybind11::init<>());
+  if constexpr (requires { &Options::wrap; }) {
+    bound.def_property(
+        "wrap",
+        [](const Options& o) {
+          return WrapNames(name_in(kWraps, o.wrap.u), name_in(kWraps, o.wrap.v));
+        },
+        [](Options& o, const WrapNames& names) { o.wrap = wrap_modes(names); });
+  }
+  if constexpr (requires { &Options::premultiplied; }) {
+    bound.def_readwrite("premultiplied", &Options::premultiplied);
+  }
+  if constexpr (requires { &Options::threads; }) {
+    bound.def_readwrite("threads", &Options::threads);
+  }
+  return bound;
+}
+
+/// An option that has one of the names in a table.
+template <typename Options, typename Value, std::size_t kCount>
+void bind_named(pybind11::class_<Options>& bound, const char* name, Value Options::*member,
+                const Named<Value> (&table)[kCount]) {
+  bound.def_property(
+      name, [member, &table](const Options& o) { return std::string(name_in(table, o.*member)); },
+      [name, member, &table](Options& o, const std::string& given) {
+        o.*member = value_named(name, given, table);
+      });
+}
+
+/// The option "filter", a kernel's name.
+template <typename Options>
+void bind_kernel(pybind11::class_<Options>& bound) {
+  bound.def_property(
+      "filter", [](const Options& o) { return std::string(o.kernel->name()); },
+      [](Options& o, const std::string& name) { o.kernel = &kernel_named(name); });
+}
+
+}  // namespace prefilter::python
