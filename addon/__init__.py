@@ -37,14 +37,14 @@ def _collector_paused() -> Iterator[None]:
 with _collector_paused():
     from . import preferences
     from .commands import Commands
-    from .core import menus, presets, remembered, running, sidebar
+    from .core import menus, preset_menu, remembered, running, sidebar
     from .core.registration import registration
     from .manual import Manual
 
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 
 register, unregister = registration(
-    *(preferences, presets, running, remembered, menus, sidebar),
+    *(preferences, preset_menu, running, remembered, menus, sidebar),
     *_packages,
     *(Commands(SUBJECTS), Manual(_packages)),
 )

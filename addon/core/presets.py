@@ -3,8 +3,8 @@
 """Presets: settings for a purpose, by Blender's own menus of them, for commands and scripts too.
 
 Those that come with the add-on lie in its folder presets/, those of users in Blender's. A preset is
-a program of lines such as `settings.depth = 9`, which Blender runs when a user chooses it; commands
-and operators read the values and run nothing.
+a program of lines such as `settings.depth = 9`, as those of Blender are; the values are read, and
+nothing is run.
 """
 
 import ast
@@ -13,8 +13,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import bpy
-from bl_operators.presets import AddPresetBase
-from bl_ui.utils import PresetPanel
 from bpy.props import StringProperty
 
 from .options import Option, declared
@@ -28,7 +26,7 @@ if TYPE_CHECKING:
 Settings = TypeVar("Settings")
 
 _ROOM = "prefilter"
-_SUFFIX = ".py"
+SUFFIX = ".py"
 
 
 class Kind(NamedTuple):
@@ -68,8 +66,8 @@ class Kind(NamedTuple):
         """Returns the files of all presets by their names; one of the user goes first."""
         found: dict[str, Path] = {}
         for folder in bpy.utils.preset_paths(self.folder):
-            for path in sorted(Path(folder).glob(f"*{_SUFFIX}")):
-                found.setdefault(bpy.path.display_name(path.name, title_case=False), path)
+            for path in sorted(Path(folder).glob(f"*{SUFFIX}")):
+                found.setdefault(shown_name(path), path)
         return found
 
     def values(self, name: str) -> dict[str, Any]:
@@ -86,7 +84,22 @@ class Kind(NamedTuple):
         if path is None:
             known = listed(sorted(files)) or "none"
             raise ValueError(f"found no preset named '{name}'; there are {known}")
+        return self.read(path)
+
+    def read(self, path: Path) -> dict[str, Any]:
+        """Returns what the preset of a file sets.
+
+        Args:
+            path: The file.
+
+        Raises:
+            ValueError: It is no preset, or sets what is no setting or not allowed.
+            OSError: The file cannot be read.
+        """
+        name = shown_name(path)
         found = _assigned(path)
+        if not found:
+            raise ValueError(f"preset '{name}': it sets none of these settings")
         options = {key: (default, option) for key, default, option in self.options()}
         for key, value in found.items():
             if key not in options:
@@ -97,6 +110,20 @@ class Kind(NamedTuple):
                     f"preset '{name}': {option.label}: found {value!r}; allowed: {option.allowed}"
                 )
         return found
+
+    def written(self, group: Any) -> str:
+        """Returns the text of a preset.
+
+        Args:
+            group: The settings of a scene that it is to set.
+        """
+        lines = ["import bpy", "", f"settings = bpy.context.scene.{self.group}", ""]
+        for name, default, option in self.options():
+            value = getattr(group, name)
+            if isinstance(default, tuple) and not option.choices:
+                value = tuple(value)
+            lines.append(f"settings.{name} = {value!r}")
+        return "\n".join([*lines, ""])
 
     def complete(self, operator: bpy.types.Operator, preset: str) -> None:
         """Sets what the caller of an operator has not: by a preset, then by the preferences.
@@ -143,57 +170,9 @@ class PresetsPanel:
         getattr(bpy.types, self.presets.panel).draw_panel_header(self.layout)
 
 
-class PREFILTER_OT_add_preset(AddPresetBase, bpy.types.Operator):
-    """Keeps the settings of a panel as a preset, or removes one."""
-
-    bl_idname = "prefilter.add_preset"
-    bl_label = "Add Preset"
-    bl_description = "Add or remove a preset"
-
-    panel: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
-
-    @property
-    def preset_menu(self) -> str:
-        """The panel of the presets."""
-        return self.panel
-
-    @property
-    def preset_subdir(self) -> str:
-        """Their folder."""
-        return self._kind.folder
-
-    @property
-    def _kind(self) -> Kind:
-        return getattr(bpy.types, self.panel).kind
-
-    def add(self, context: bpy.types.Context, filepath: str) -> None:
-        """Writes a preset; Blender 4.x cannot where Python is 3.13."""
-        kind = self._kind
-        group = getattr(context.scene, kind.group)
-        lines = ["import bpy", "", f"settings = bpy.context.scene.{kind.group}", ""]
-        for name, default, option in kind.options():
-            value = getattr(group, name)
-            if isinstance(default, tuple) and not option.choices:
-                value = tuple(value)
-            lines.append(f"settings.{name} = {value!r}")
-        Path(filepath).write_text("\n".join([*lines, ""]), encoding="utf-8")
-
-
-def panel(kind: Kind) -> type[bpy.types.Panel]:
-    """Returns the panel that opens from a header, with the presets of a kind."""
-    return type(
-        kind.panel,
-        (PresetPanel, bpy.types.Panel),
-        {
-            "__doc__": "The presets, and how to add one.",
-            "bl_label": "Presets",
-            "kind": kind,
-            "preset_subdir": kind.folder,
-            "preset_operator": "script.execute_preset",
-            "preset_add_operator": PREFILTER_OT_add_preset.bl_idname,
-            "preset_add_operator_properties": {"panel": kind.panel},
-        },
-    )
+def shown_name(path: Path) -> str:
+    """Returns what users see of the name of a preset's file."""
+    return bpy.path.display_name(path.name, title_case=False)
 
 
 def add_flag(parser: "argparse.ArgumentParser") -> None:
@@ -234,21 +213,6 @@ def settings_given(
     named = values_named(options, kind).items()
     found = {name: value for name, value in named if name in names}
     return flags.settings_given(options, settings, **found | flags.given(options, settings) | more)
-
-
-def register() -> None:
-    """Registers the operator that adds presets, and where those of the add-on are."""
-    bpy.utils.register_class(PREFILTER_OT_add_preset)
-    bpy.utils.register_preset_path(_HERE)
-
-
-def unregister() -> None:
-    """Takes them back."""
-    bpy.utils.unregister_preset_path(_HERE)
-    bpy.utils.unregister_class(PREFILTER_OT_add_preset)
-
-
-_HERE = str(Path(__file__).resolve().parents[1])
 
 
 def _plain(name: str) -> str:

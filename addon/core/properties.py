@@ -97,6 +97,13 @@ def copy(source: Any, target: Any, settings: type, without: Collection[str] = ()
         setattr(target, name, getattr(source, name))
 
 
+def reset(group: bpy.types.PropertyGroup, names: Collection[str]) -> None:
+    """Sets properties of a group to their defaults, or has them follow the preferences again."""
+    for name in names:
+        kept = f"{name}{_SET}"
+        group.property_unset(kept if kept in group.bl_rna.properties else name)
+
+
 def _accessors(
     name: str, default: Any, declaration: Option
 ) -> tuple[Callable[[Any], Any], Callable[[Any, Any], None]]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import bpy
 
-from ..core import presets
+from ..core import preset_menu, presets
 from ..core.properties import following, properties, single_property, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import subpanel
@@ -233,5 +233,5 @@ class PREFILTER_PG_bake(BakeProperties, bpy.types.PropertyGroup):
 register, unregister = registration(
     state(bpy.types.Scene, BAKE.group, PREFILTER_PG_bake),
     state(bpy.types.Scene, MODEL.group, PREFILTER_PG_model),
-    classes(presets.panel(BAKE), presets.panel(MODEL)),
+    classes(preset_menu.panel(BAKE), preset_menu.panel(MODEL)),
 )

@@ -6,7 +6,7 @@ from typing import Any
 
 import bpy
 
-from ..core import presets
+from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
 from .choices import CORNERS, ResampleSettings, ResizeSettings, TableSettings
@@ -152,5 +152,5 @@ register, unregister = registration(
     state(bpy.types.Scene, RESIZE.group, PREFILTER_PG_resize),
     state(bpy.types.Scene, RESAMPLE.group, PREFILTER_PG_resample),
     state(bpy.types.Scene, "prefilter_sampling_table", PREFILTER_PG_sampling_table),
-    classes(presets.panel(RESIZE), presets.panel(RESAMPLE)),
+    classes(preset_menu.panel(RESIZE), preset_menu.panel(RESAMPLE)),
 )

@@ -4,7 +4,7 @@
 
 import bpy
 
-from ..core import presets
+from ..core import preset_menu, presets
 from ..core.properties import following, properties, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import subpanel
@@ -52,5 +52,5 @@ class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):
 
 register, unregister = registration(
     state(bpy.types.Scene, RECONSTRUCT.group, PREFILTER_PG_reconstruct),
-    classes(presets.panel(RECONSTRUCT)),
+    classes(preset_menu.panel(RECONSTRUCT)),
 )

@@ -5,7 +5,7 @@
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, PointerProperty
 
-from ..core import presets
+from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import subpanel
@@ -99,5 +99,5 @@ register, unregister = registration(
     state(bpy.types.Scene, RASTERIZE.group, PREFILTER_PG_rasterize),
     classes(PREFILTER_PG_drawn_object),
     state(bpy.types.Image, "prefilter_drawn", PREFILTER_PG_drawn),
-    classes(presets.panel(RASTERIZE)),
+    classes(preset_menu.panel(RASTERIZE)),
 )

@@ -4,7 +4,7 @@
 
 import bpy
 
-from ..core import presets
+from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import note, subpanel
@@ -119,5 +119,5 @@ class PREFILTER_PG_boolean(BooleanProperties, bpy.types.PropertyGroup):
 register, unregister = registration(
     state(bpy.types.Scene, VOXELIZE.group, PREFILTER_PG_voxelize),
     state(bpy.types.Scene, BOOLEAN.group, PREFILTER_PG_boolean),
-    classes(presets.panel(VOXELIZE), presets.panel(BOOLEAN)),
+    classes(preset_menu.panel(VOXELIZE), preset_menu.panel(BOOLEAN)),
 )

@@ -46,7 +46,7 @@ def kind(addon):
 
 
 def apply(kind, path):
-    return bpy.ops.script.execute_preset(filepath=str(path), menu_idname=kind.panel)
+    return bpy.ops.prefilter.apply_preset(filepath=str(path), menu_idname=kind.panel)
 
 
 def shown(kind):
@@ -108,6 +108,62 @@ def test_what_no_preset_sets(kind):
         assert not options & {"memory_limit", "threads"}
 
 
+@pytest.mark.parametrize(("name", "stem"), SHIPPED)
+def test_no_preset_drops_what_meshes_have(kind, name, stem):
+    carried = {"use_materials", "use_uv_maps", "use_colors", "use_attributes"}
+    found = kind(name).values(stem)
+    assert all(found[key] for key in carried & set(found))
+
+
+def test_a_preset_is_a_step_to_undo(kind):
+    """What undoes the run after it leaves what it has set."""
+    found = kind("voxelize")
+    bodies.cube()
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.prefilter.apply_preset(
+        "EXEC_DEFAULT", True, filepath=str(found.files()["Preview"]), menu_idname=found.panel
+    )
+    bpy.ops.prefilter.voxelize("EXEC_DEFAULT", True, depth=4)
+    bpy.ops.ed.undo()
+    assert shown(found).depth == 6
+    bpy.ops.ed.undo()
+    assert shown(found).depth == 8
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_reset(kind, name):
+    found = kind(name)
+    group = shown(found)
+    defaults = {key: getattr(group, key) for key, _, _ in found.options()}
+    for path in found.files().values():
+        apply(found, path)
+    bpy.ops.prefilter.reset_settings(panel=found.panel)
+    assert {key: getattr(group, key) for key in defaults} == defaults
+
+
+def test_presets_are_shared_as_files(kind, tmp_path):
+    found = kind("voxelize")
+    shown(found).depth = 5
+    bpy.ops.prefilter.export_preset(panel=found.panel, filepath=str(tmp_path / "From_a_friend"))
+    bpy.ops.prefilter.reset_settings(panel=found.panel)
+    path = str(tmp_path / "From_a_friend.py")
+    bpy.ops.prefilter.import_preset(panel=found.panel, filepath=path)
+    try:
+        assert found.values("From a friend")["depth"] == 5
+        assert shown(found).depth == 8
+        with pytest.raises(RuntimeError, match="there is a preset 'From a friend' already"):
+            bpy.ops.prefilter.import_preset(panel=found.panel, filepath=path)
+    finally:
+        bpy.ops.prefilter.add_preset(name="From a friend", remove_name=True, panel=found.panel)
+    Path(path).write_text("import os\nos.abort()\n")
+    before = found.files()
+    with pytest.raises(RuntimeError, match="preset 'From a friend'"):
+        bpy.ops.prefilter.import_preset(panel=found.panel, filepath=path)
+    with pytest.raises(RuntimeError, match="No such file"):
+        bpy.ops.prefilter.import_preset(panel=found.panel, filepath=str(tmp_path / "none.py"))
+    assert found.files() == before
+
+
 def test_bad_presets(kind, tmp_path, monkeypatch):
     found = kind("voxelize")
     paths = bpy.utils.preset_paths
@@ -132,7 +188,7 @@ def test_scripts_name_a_preset():
     ball.data.materials.append(bpy.data.materials.new("Paint"))
     bpy.ops.prefilter.voxelize(preset="print-ready solid", depth=4)
     assert bodies.is_closed(ball)
-    assert not ball.data.materials or ball.data.materials[0] is None
+    assert ball.data.materials[0].name.startswith("Paint")
     operator = bpy.context.window_manager.operators
     assert not operator or operator[-1].properties.depth == 4
     with pytest.raises(RuntimeError, match="found no preset named 'Fast'; there are 'Game asset'"):
@@ -243,14 +299,14 @@ def test_flags_go_first(model, tmp_path):
 
 
 def test_flags_turn_on_what_a_preset_turns_off(addon):
-    """The preset Preview leaves UV maps out; what is neither named nor set is as declared."""
+    """The preset Preview leaves clean-up out; what is neither named nor set is as declared."""
     presets, voxels = addon("core.presets"), addon("voxels.choices")
     parser = addon("commands").Commands(["voxels"]).parser()
     kind = addon("voxels.properties").VOXELIZE
-    for flags, expected in (([], False), (["--uv-maps"], True), (["--no-uv-maps"], False)):
+    for flags, expected in (([], False), (["--cleanup"], True), (["--no-cleanup"], False)):
         options = parser.parse_args(["voxelize", "a.ply", "b.ply", "--preset", "Preview", *flags])
         found = presets.settings_given(options, kind, voxels.VoxelizeSettings)
-        assert (found.use_uv_maps, found.use_colors, found.depth) == (expected, False, 6)
+        assert (found.use_cleanup, found.use_colors, found.depth) == (expected, True, 6)
 
 
 def test_what_does_not_go_with_the_file_is_left_out(model, tmp_path):

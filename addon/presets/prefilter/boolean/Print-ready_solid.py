@@ -13,7 +13,3 @@ settings.gap = 2.0
 settings.use_close_holes = True
 settings.holes = "smooth"
 settings.use_cleanup = True
-settings.use_materials = False
-settings.use_uv_maps = False
-settings.use_colors = False
-settings.use_attributes = False
