@@ -13,7 +13,11 @@ from types import ModuleType
 import bpy
 
 FOLDER = Path(__file__).with_name("manual")
-_OWN = {"preferences": ("add_preset",)}
+_OWN = {
+    "preferences": (
+        *("add_preset", "apply_preset", "reset_settings", "import_preset", "export_preset"),
+    )
+}
 """What belongs to no subject; see `Manual`."""
 
 

@@ -88,7 +88,8 @@ class PREFILTER_OT_reset_settings(_OfKind, bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Resets them."""
         kind = self.kind
-        reset(getattr(context.scene, kind.group), [name for name, _, _ in kind.options()])
+        defaults = {name: default for name, default, _ in kind.options()}
+        reset(getattr(context.scene, kind.group), defaults)
         return {"FINISHED"}
 
 

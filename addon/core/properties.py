@@ -60,6 +60,27 @@ def following(settings: type, **more: Mapping[str, Any]) -> dict[str, Any]:
     return found
 
 
+def shared(
+    settings: type, owner: str, without: Collection[str] = (), **more: Mapping[str, Any]
+) -> dict[str, Any]:
+    """Returns the annotations of options that a scene keeps in another of its groups.
+
+    They stand for those of the same name that `properties` returns: both groups show one value.
+
+    Args:
+        settings: A dataclass.
+        owner: The property of the scene that has the values.
+        without: Fields to leave out.
+        more: For a field, more arguments of its property.
+    """
+    found: dict[str, Any] = {}
+    for name, default, declaration in declared(settings):
+        if declaration.label and name not in without:
+            get, put = _shared_accessors(owner, name, declaration)
+            found[name] = _property(default, declaration, get=get, set=put, **more.get(name, {}))
+    return found
+
+
 def set_unset(operator: bpy.types.Operator, values: Mapping[str, Any]) -> None:
     """Sets those of an operator's properties that its caller has not set."""
     for name, value in values.items():
@@ -97,11 +118,30 @@ def copy(source: Any, target: Any, settings: type, without: Collection[str] = ()
         setattr(target, name, getattr(source, name))
 
 
-def reset(group: bpy.types.PropertyGroup, names: Collection[str]) -> None:
-    """Sets properties of a group to their defaults, or has them follow the preferences again."""
-    for name in names:
+def reset(group: bpy.types.PropertyGroup, defaults: Mapping[str, Any]) -> None:
+    """Sets properties of a group to defaults, or has them follow the preferences again."""
+    for name, default in defaults.items():
         kept = f"{name}{_SET}"
-        group.property_unset(kept if kept in group.bl_rna.properties else name)
+        if kept in group.bl_rna.properties:
+            group.property_unset(kept)
+        else:
+            setattr(group, name, default)
+
+
+def _shared_accessors(
+    owner: str, name: str, declaration: Option
+) -> tuple[Callable[[Any], Any], Callable[[Any, Any], None]]:
+    """Returns the functions of a property whose value another group of the scene has."""
+    keys = {number_of(key): key for key in declaration.choices}
+
+    def get(group: Any) -> Any:
+        value = getattr(getattr(group.id_data, owner), name)
+        return number_of(value) if keys else value
+
+    def put(group: Any, value: Any) -> None:
+        setattr(getattr(group.id_data, owner), name, keys[value] if keys else value)
+
+    return get, put
 
 
 def _accessors(

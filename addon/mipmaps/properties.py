@@ -9,7 +9,7 @@ from typing import Any
 import bpy
 
 from ..core import preset_menu, presets
-from ..core.properties import following, properties, single_property, values
+from ..core.properties import following, properties, shared, single_property, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import subpanel
 from .choices import (
@@ -22,6 +22,7 @@ from .choices import (
 from .importance import suggested_names
 
 _FRAMES = ("use_frames", "frame_start", "frame_end", "frame_step")
+_OF_FILES = ("texture_format", "supercompression")
 BAKE = presets.Kind("bake", "prefilter_bake", [(ResultSettings, ()), (Settings, _FRAMES)])
 MODEL = presets.Kind(
     "model", "prefilter_model", [(ModelSettings, ()), (Settings, {*NOT_OF_MODELS, *_FRAMES})]
@@ -219,9 +220,15 @@ def _draw_lookups(settings: Any, layout: bpy.types.UILayout) -> None:
 
 
 class PREFILTER_PG_model(ModelProperties, bpy.types.PropertyGroup):
-    """The settings that the panel shows; they stay with the scene."""
+    """The settings that the panel shows; they stay with the scene.
 
-    __annotations__ = following(ModelSettings)
+    What a level is made of is that of `PREFILTER_PG_bake`: a bake of all images makes the levels
+    that the preview of an image shows.
+    """
+
+    __annotations__ = following(ModelSettings) | shared(
+        Settings, BAKE.group, {*NOT_OF_MODELS, *_OF_FILES}, importance=_SEARCH
+    )
 
 
 class PREFILTER_PG_bake(BakeProperties, bpy.types.PropertyGroup):

@@ -2,6 +2,7 @@
 
 """The settings, by what of them is shown."""
 
+import dataclasses
 from types import SimpleNamespace
 
 import bpy
@@ -101,3 +102,19 @@ def test_panels_are_told_apart():
     bpy.context.scene.prefilter_rasterize.draw_in(layout, "curves")
     names += layout.panels
     assert len(names) == len(set(names)) > 10
+
+
+def test_the_preview_shows_what_a_bake_of_all_images_makes(addon):
+    """One set of what a level is made of, in both editors; each has its own place for results."""
+    choices = addon("mipmaps.choices")
+    one, all_images = bpy.context.scene.prefilter_bake, bpy.context.scene.prefilter_model
+    one.filter, one.wrap, one.importance, one.bounds = "box", "repeat", "Weight", "none"
+    all_images.reader, all_images.seam_budget, all_images.use_frames = "srgb-after", 0.5, True
+    _, made = all_images.to_settings()
+    shown = one.to_settings()
+    own = {*choices.NOT_OF_MODELS, "use_images", "filepath", "texture_format", "supercompression"}
+    fields = {field.name for field in dataclasses.fields(choices.Settings)} - own
+    assert {name: getattr(made, name) for name in fields} == {
+        name: getattr(shown, name) for name in fields
+    }
+    assert (made.filter, shown.reader, shown.seam_budget) == ("box", "srgb-after", 0.5)
