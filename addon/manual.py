@@ -14,9 +14,10 @@ import bpy
 
 FOLDER = Path(__file__).with_name("manual")
 _OWN = {
+    "bake": ("confirm_cancel",),
     "preferences": (
         *("add_preset", "apply_preset", "reset_settings", "import_preset", "export_preset"),
-    )
+    ),
 }
 """What belongs to no subject; see `Manual`."""
 

@@ -112,7 +112,8 @@ class BackgroundOperator(Doing):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Shows progress, and writes the result once the thread is done."""
         if event.type == "ESC" and event.value == "PRESS":
-            return self._stop(context)
+            is_asking = self._run is not None and self._run.ask_to_cancel()
+            return {"RUNNING_MODAL"} if is_asking else self._stop(context)
         if event.type != "TIMER":
             is_free = self._parts.job is not None and not self._replaced
             return running.handed_on(context, event, is_free=is_free)

@@ -2,11 +2,17 @@
 
 """Operators at work: how far they are, in panels and in the status bar, with buttons to cancel."""
 
+import time
+
 import bpy
-from bpy.props import BoolProperty, CollectionProperty
+from bpy.props import BoolProperty, CollectionProperty, StringProperty
 
 TICK_SECONDS = 0.05
 """How often a running operator looks at its thread."""
+ASKING_SECONDS = 10.0
+"""How much work Esc throws away without asking; many an Esc is meant for a menu or a search."""
+_REDRAW_SECONDS = 0.25
+"""How often progress is drawn: drawing the panels takes as long as some of the work."""
 
 # While settings are applied, the view may be turned, but nothing may change.
 _HARMLESS_EVENTS = frozenset(
@@ -33,6 +39,39 @@ class PREFILTER_PG_run(bpy.types.PropertyGroup):
     )
 
 
+class PREFILTER_OT_confirm_cancel(bpy.types.Operator):
+    """Asks whether long work is to be thrown away."""
+
+    bl_idname = "prefilter.confirm_cancel"
+    bl_label = "Cancel"
+    bl_description = "Stop and discard the result"
+    bl_options = frozenset({"INTERNAL"})
+
+    key: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Asks."""
+        run = _runs.get(self.key)
+        if run is None:
+            return {"CANCELLED"}
+        return context.window_manager.invoke_confirm(
+            self,
+            event,
+            title="Cancel?",
+            message=f"{run.text}. It has worked for {run.seconds:.0f} s",
+            confirm_text="Stop and Discard",
+            icon="QUESTION",
+        )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Presses the button that cancels."""
+        switch = _switch(context.window_manager, self.key)
+        if switch is None:
+            return {"CANCELLED"}
+        switch.use_cancel = True
+        return {"FINISHED"}
+
+
 class Run:
     """An operator at work, and what Blender shows of that."""
 
@@ -48,6 +87,8 @@ class Run:
         self.fraction = 0.0
         self.text = ""
         self._key = key
+        self._began = time.monotonic()
+        self._drawn_at = 0.0
         manager = context.window_manager
         switch = _switch(manager, key)
         if switch is None:
@@ -64,13 +105,26 @@ class Run:
         switch = _switch(context.window_manager, self._key)
         return switch is not None and switch.use_cancel
 
+    @property
+    def seconds(self) -> float:
+        """How long it has worked."""
+        return time.monotonic() - self._began
+
+    def ask_to_cancel(self) -> bool:
+        """Asks whether to cancel, if much would be thrown away; False if there is no need."""
+        if self.seconds < ASKING_SECONDS:
+            return False
+        bpy.ops.prefilter.confirm_cancel("INVOKE_DEFAULT", key=self._key)
+        return True
+
     def show(self, context: bpy.types.Context, what: str, fraction: float) -> None:
-        """Shows what goes on, and how much of all is done."""
+        """Shows what goes on, and how much of all is done; a few times a second."""
         percent = round(100 * fraction)
         text = f"{what}: {percent} %"
-        if text == self.text:
+        now = time.monotonic()
+        if text == self.text or now - self._drawn_at < _REDRAW_SECONDS:
             return
-        self.fraction, self.text = fraction, text
+        self.fraction, self.text, self._drawn_at = fraction, text, now
         context.window_manager.progress_update(percent)
         context.workspace.status_text_set(_draw_status)
         _redraw_panels(context)
@@ -136,14 +190,19 @@ def handed_on(context: bpy.types.Context, event: bpy.types.Event, *, is_free: bo
 
 def register() -> None:
     """Registers the buttons."""
-    bpy.utils.register_class(PREFILTER_PG_run)
+    _register_classes()
     bpy.types.WindowManager.prefilter_runs = CollectionProperty(type=PREFILTER_PG_run)
 
 
 def unregister() -> None:
     """Removes them."""
     del bpy.types.WindowManager.prefilter_runs
-    bpy.utils.unregister_class(PREFILTER_PG_run)
+    _unregister_classes()
+
+
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (PREFILTER_PG_run, PREFILTER_OT_confirm_cancel)
+)
 
 
 def _switch(manager: bpy.types.WindowManager, key: str) -> PREFILTER_PG_run | None:

@@ -49,5 +49,10 @@ def test_bake_waits_for_apply(found):
     assert told["frame"] == 1
 
 
+def test_esc_asks_where_much_would_be_lost(found):
+    """Esc opens the question, a second one closes it, and the work goes on; Return ends it."""
+    assert found["asks"][:2] == [["PREFILTER_OT_bake_mipmaps"]] * 2
+
+
 def test_first_click_after_esc_counts(found):
     assert found["click_after_esc"] == ["PREFILTER_OT_bake_mipmaps"]
