@@ -35,7 +35,7 @@ vec3 decoded(vec3 value)
 
 _LINE_WIDTH = 2  # In pixels.
 _LABEL_SIZE, _LABEL_GAP = 13, 10
-_SHADOW = 6 if bpy.app.version >= (4, 3, 0) else 5  # An outline, or a blur.
+_PLATE, _PLATE_MARGIN = (0.0, 0.0, 0.0, 0.85), 4
 
 
 def uploaded(pixels: FloatArray) -> gpu.types.GPUTexture:
@@ -60,23 +60,31 @@ def draw_wipe(share: float, left: str, right: str) -> None:
     # The header may lie over the region's upper edge.
     y = _LABEL_GAP * scale
     blf.size(0, _LABEL_SIZE * scale)
-    blf.enable(0, blf.SHADOW)
-    blf.shadow(0, _SHADOW, 0.0, 0.0, 0.0, 1.0)
-    blf.color(0, 1.0, 1.0, 1.0, 1.0)
-    blf.position(0, x + _LABEL_GAP * scale, y, 0)
-    blf.draw(0, right)
     if left:
-        blf.position(0, x - blf.dimensions(0, left)[0] - _LABEL_GAP * scale, y, 0)
-        blf.draw(0, left)
-        _draw_line(x, _LINE_WIDTH * scale / 2)
-    blf.disable(0, blf.SHADOW)
+        half = _LINE_WIDTH * scale / 2
+        _draw_box((x - half, 0.0), (x + half, bpy.context.region.height), (1.0, 1.0, 1.0, 1.0))
+        _draw_label(left, x - blf.dimensions(0, left)[0] - _LABEL_GAP * scale, y)
+    _draw_label(right, x + _LABEL_GAP * scale, y)
 
 
-def _draw_line(x: float, half: float) -> None:
+def _draw_label(text: str, x: float, y: float) -> None:
+    """Draws white letters on a dark plate: they are read over any image."""
+    width, height = blf.dimensions(0, text)
+    margin = _PLATE_MARGIN * bpy.context.preferences.system.ui_scale
+    gpu.state.blend_set("ALPHA")
+    _draw_box((x - margin, y - margin), (x + width + margin, y + height + margin), _PLATE)
+    gpu.state.blend_set("NONE")
+    blf.color(0, 1.0, 1.0, 1.0, 1.0)
+    blf.position(0, x, y, 0)
+    blf.draw(0, text)
+
+
+def _draw_box(
+    low: tuple[float, float], high: tuple[float, float], color: tuple[float, float, float, float]
+) -> None:
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-    height = bpy.context.region.height
-    corners = [(x - half, 0), (x + half, 0), (x + half, height), (x - half, height)]
-    line = batch_for_shader(shader, "TRI_FAN", {"pos": corners})
+    corners = [low, (high[0], low[1]), high, (low[0], high[1])]
+    box = batch_for_shader(shader, "TRI_FAN", {"pos": corners})
     shader.bind()
-    shader.uniform_float("color", (1.0, 1.0, 1.0, 1.0))
-    line.draw(shader)
+    shader.uniform_float("color", color)
+    box.draw(shader)

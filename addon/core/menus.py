@@ -26,6 +26,12 @@ class PREFILTER_MT_image(bpy.types.Menu):
         """Draws nothing; subjects append to it."""
 
 
+def _draw_object_first(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    del context
+    menu.layout.menu(PREFILTER_MT_object.__name__)
+    menu.layout.separator()
+
+
 def _draw_object(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     del context
     menu.layout.separator()
@@ -38,8 +44,9 @@ def _draw_image(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.menu(PREFILTER_MT_image.__name__)
 
 
-_PLACES = {
-    "VIEW3D_MT_object": _draw_object,
+# What is last in Object is out of sight on small screens.
+_FIRST = {"VIEW3D_MT_object": _draw_object_first}
+_LAST = {
     "VIEW3D_MT_object_context_menu": _draw_object,
     "IMAGE_MT_image": _draw_image,
 }
@@ -51,12 +58,14 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
 def register() -> None:
     """Registers the menus, and puts them into Blender's."""
     _register_classes()
-    for name, draw in _PLACES.items():
+    for name, draw in _FIRST.items():
+        getattr(bpy.types, name).prepend(draw)
+    for name, draw in _LAST.items():
         getattr(bpy.types, name).append(draw)
 
 
 def unregister() -> None:
     """Takes them out again."""
-    for name, draw in _PLACES.items():
+    for name, draw in (_FIRST | _LAST).items():
         getattr(bpy.types, name).remove(draw)
     _unregister_classes()

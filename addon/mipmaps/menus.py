@@ -38,7 +38,7 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     layout.operator(PREFILTER_OT_end_preview.bl_idname, icon="X")
     layout.operator(PREFILTER_OT_remove_levels.bl_idname, icon="TRASH")
     layout.operator(PREFILTER_OT_plot_error.bl_idname, icon="FCURVE").filters = view.plot_filters
-    layout.operator(PREFILTER_OT_show_weights.bl_idname, icon="TEXTURE")
+    layout.operator(PREFILTER_OT_show_weights.bl_idname, icon="MOD_VERTEX_WEIGHT")
     layout.operator(PREFILTER_OT_show_source.bl_idname, icon="LOOP_BACK")
     layout.separator()
     layout.operator(PREFILTER_OT_fill_unused.bl_idname, icon="SNAP_FACE")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Reconstructing: a tab in the 3D view's sidebar, entries in the Object and the Convert menu."""
+"""Reconstructing: a tab in the 3D view's sidebar, an entry in Object > Prefilter."""
 
 import bpy
 
@@ -37,33 +37,10 @@ class PREFILTER_PT_reconstruct(_SidebarPanel, SettingsPanel, bpy.types.Panel):
     button = _RECONSTRUCT
 
 
-class PREFILTER_MT_scans(bpy.types.Menu):
-    """What makes something of scans.
-
-    Object > Prefilter and Object > Convert both have this menu, rather than its entries: a search
-    (F3) goes through each menu once.
-    """
-
-    bl_label = "Scans"
-
-    def draw(self, context: bpy.types.Context) -> None:
-        """Draws the menu."""
-        _RECONSTRUCT.draw(self.layout, context)
-
-
-def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    del context
-    menu.layout.menu(PREFILTER_MT_scans.__name__)
-
-
-def _draw_convert_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
-    del context
-    menu.layout.separator()
-    menu.layout.menu(PREFILTER_MT_scans.__name__, text="Prefilter")
+def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    _RECONSTRUCT.draw(menu.layout, context)
 
 
 register, unregister = registration(
-    classes(PREFILTER_PT_reconstruct, PREFILTER_MT_scans),
-    entry(PREFILTER_MT_object, _draw_object_menu),
-    entry(bpy.types.VIEW3D_MT_object_convert, _draw_convert_menu),
+    classes(PREFILTER_PT_reconstruct), entry(PREFILTER_MT_object, _draw_menu)
 )

@@ -14,11 +14,14 @@ if TYPE_CHECKING:
     from .bake import CacheBake
 
 
+ICON = "FILE_CACHE"
+
+
 class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     """Bakes PAM into Cycles' texture cache."""
 
     bl_idname = "prefilter.bake_texture_cache"
-    bl_label = "Bake PAM into Texture Cache"
+    bl_label = "Bake into Texture Cache"
     bl_description = (
         "Generate the texture cache of the scene's images, and replace its levels with "
         "parameterization-aware mipmaps (PAM), fitted to the meshes that use the images. "
@@ -32,6 +35,13 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
         "use these files: Cycles caches only files",
         default=False,
         options={"SKIP_SAVE"},
+    )
+
+    use_others: BoolProperty(
+        name="Without Packed Images",
+        description="Bake the images that are files, and do not ask about packed ones",
+        default=False,
+        options={"HIDDEN", "SKIP_SAVE"},
     )
 
     doing = "Baking PAM into the texture cache"
@@ -50,6 +60,19 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
             return False
         return True
 
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Bakes; asks first what to do with images that are packed."""
+        from . import states
+
+        if bpy.app.background or self.use_unpack or self.use_others:
+            return super().invoke(context, event)
+        found = states.states_now(context)
+        count = sum(one.state == "packed" for one in found)
+        if not count:
+            return super().invoke(context, event)
+        _ask(context, count, len(found))
+        return {"CANCELLED"}
+
     def read_work(self, context: bpy.types.Context) -> "CacheBake":
         """Copies the surfaces of the scene."""
         from .bake import CacheBake
@@ -58,6 +81,22 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
         return CacheBake.read(
             context.scene, depsgraph, unpack=self.use_unpack, threads=preference("threads", 0)
         )
+
+
+def _ask(context: bpy.types.Context, packed: int, total: int) -> None:
+    """Opens a menu of what can be done with packed images, which Cycles does not cache."""
+
+    def draw(menu: bpy.types.Menu, _: bpy.types.Context) -> None:
+        name = PREFILTER_OT_bake_texture_cache.bl_idname
+        menu.layout.operator_context = "INVOKE_DEFAULT"
+        unpacking = menu.layout.operator(name, text="Unpack and Bake", icon="PACKAGE")
+        unpacking.use_unpack = True
+        if packed < total:
+            rest = menu.layout.operator(name, text="Bake the Other Images", icon=ICON)
+            rest.use_others = True
+
+    title = f"{packed} of {total} images are packed, and Cycles caches only files"
+    context.window_manager.popup_menu(draw, title=title, icon="QUESTION")
 
 
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_OT_bake_texture_cache,))

@@ -5,9 +5,8 @@
 import bpy
 
 from ..core.sidebar import button
-from .operator import PREFILTER_OT_bake_texture_cache
+from .operator import ICON, PREFILTER_OT_bake_texture_cache
 
-_ICON = "TEXTURE"
 _ICONS = {"stale": "FILE_REFRESH", "missing": "X", "packed": "PACKAGE", "unfit": "ERROR"}
 _MOST_IMAGES = 8
 _PARENT = "CYCLES_RENDER_PT_performance_texture_cache"
@@ -39,7 +38,7 @@ class PREFILTER_PT_texture_cache(bpy.types.Panel):
         found = states.states(context)
         place = button(column, context, PREFILTER_OT_bake_texture_cache)
         if place:
-            place.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=_ICON)
+            place.operator(PREFILTER_OT_bake_texture_cache.bl_idname, icon=ICON)
         if place and any(one.state == "packed" for one in found):
             operator = place.operator(
                 PREFILTER_OT_bake_texture_cache.bl_idname, text="Unpack and Bake", icon="PACKAGE"

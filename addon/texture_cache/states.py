@@ -53,6 +53,12 @@ def states(context: bpy.types.Context) -> list[ImageState]:
     return known.states
 
 
+def states_now(context: bpy.types.Context) -> list[ImageState]:
+    """Returns what `states` does, of what is there at this moment."""
+    files = _look(context.scene, context.evaluated_depsgraph_get()).files
+    return [ImageState(name, _state(found)) for name, found in files]
+
+
 def summary(found: list[ImageState]) -> str:
     """Returns how many images are in which state, such as "2 baked, 1 stale"."""
     counts = Counter(one.state for one in found)

@@ -100,7 +100,7 @@ class PREFILTER_PT_texel_use(ImagePanel, bpy.types.Panel):
         """Draws the panel."""
         layout = self.layout
         for operator, icon in (
-            (PREFILTER_OT_show_weights, "TEXTURE"),
+            (PREFILTER_OT_show_weights, "MOD_VERTEX_WEIGHT"),
             (PREFILTER_OT_fill_unused, "SNAP_FACE"),
         ):
             place = button(layout, context, operator)

@@ -36,7 +36,7 @@ def session() -> Iterator[None]:
     clouds.scan(*clouds.torus(3_000))
     yield from stage.open_tab()
     found["tab"] = stage.tab
-    yield from stage.menus("VIEW3D_MT_object", "VIEW3D_MT_object_convert", "PREFILTER_MT_scans")
+    yield from stage.menus("VIEW3D_MT_object", "PREFILTER_MT_object")
     yield from reconstructed(stage)
 
     with held():

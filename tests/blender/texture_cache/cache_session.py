@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import cycles_scenes as cycles
 import scenes
-from window import Stage, begun, held, idle, play, refused, until, without_objects
+from window import Stage, begun, held, idle, largest, play, refused, until, without_objects
 
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -47,6 +47,7 @@ def session() -> Iterator[None]:
     yield
     yield from baked(stage)
     yield from interrupted(stage)
+    yield from packed(stage)
     (FOLDER / "result.json").write_text(json.dumps(found))
 
 
@@ -90,6 +91,26 @@ def interrupted(stage: Stage) -> Iterator[None]:
     yield
     found["polls_in_next_file"] = bpy.ops.prefilter.bake_texture_cache.poll()
     found["next_file_leaves_files"] = contents() == before
+
+
+def packed(stage: Stage) -> Iterator[None]:
+    """Presses the button where the only image is packed: the menu that opens has the remedy."""
+    without_objects()
+    image = picture("packed.png", 64)
+    image.pack()
+    cycles.shown_on(image)
+    bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "scene.blend"))
+    yield
+    stage = largest()
+    with bpy.context.temp_override(**stage.override):
+        found["asked"] = list(bpy.ops.prefilter.bake_texture_cache("INVOKE_DEFAULT"))
+    yield
+    for key in ("DOWN_ARROW", "RET"):
+        stage.window.event_simulate(type=key, value="PRESS")
+        yield
+        yield
+    yield from until(idle)
+    found["unpacked"] = not image.packed_file
 
 
 def picture(name: str, side: int) -> bpy.types.Image:

@@ -24,6 +24,8 @@ def test_panel_and_modal_bake_into_the_cache(in_window, tmp_path):
     assert not found["cache_after_cancel"]
     assert found["polls_in_next_file"]
     assert found["next_file_leaves_files"]
+    assert found["asked"] == ["CANCELLED"]
+    assert found["unpacked"]
 
 
 @pytest.mark.skipif(bpy.app.version >= (5, 2, 0), reason="this Blender has a texture cache")

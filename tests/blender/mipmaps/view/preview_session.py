@@ -50,6 +50,7 @@ def session() -> Iterator[None]:
         yield from levels(stage, name, image)
     yield from settings(stage, images["byte"])
     yield from readers(stage, images["byte"])
+    yield from captions(stage)
     yield from in_uv_editor(stage, images["byte"])
     yield from changes(stage)
     yield from ends(stage)
@@ -127,6 +128,20 @@ def readers(stage: Stage, image: bpy.types.Image) -> Iterator[None]:
     bpy.context.scene.prefilter_bake.reader = "linear"
     with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.preview_levels("EXEC_DEFAULT", compare="tent")
+
+
+def captions(stage: Stage) -> Iterator[None]:
+    """Shows the wipe over white, which covers the whole editor."""
+    white = scenes.image("White", np.ones((8, 8, 4), np.float32))
+    scenes.textured_quad(white, "white")
+    stage.area.spaces.active.image = white
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.image.view_all(fit_view=True)
+        bpy.ops.prefilter.preview_levels("EXEC_DEFAULT", compare="tent")
+        bpy.ops.image.view_zoom_ratio(ratio=200.0)
+    state().use_wipe = True
+    yield from shoot(stage, "white")
+    state().use_wipe = False
 
 
 def in_uv_editor(stage: Stage, image: bpy.types.Image) -> Iterator[None]:

@@ -154,6 +154,17 @@ def test_wipe(shown, stored):
     assert np.abs(other - expected)[mask].mean() > 5
 
 
+def test_captions_are_read_over_white(shown):
+    """White letters on a dark plate, to both sides of the wipe."""
+    screen = shown["white.screen"].astype(float).mean(axis=-1)
+    middle = screen.shape[1] // 2
+    assert (screen[60:-60, middle - 100 : middle + 100] > 250).mean() > 0.9
+    for columns in (slice(middle - 35, middle - 12), slice(middle + 12, middle + 80)):
+        caption = screen[10:22, columns]
+        assert 0.4 < (caption < 120).mean() < 0.95
+        assert (caption > 220).any()
+
+
 def test_between_levels_and_zoomed_out(shown, stored):
     made = levels(stored["byte"], "byte")
     u, v, x, y, mask = places(shown, "byte.zoomed", (64, 32))
