@@ -94,7 +94,7 @@ def assert_fails(result: Result, *words: str, status: int = 1) -> None:
 
 def loaded(path: Path) -> dict[str, bpy.types.Object]:
     """Opens or imports a file, and returns its mesh objects."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
     if path.suffix == ".blend":
         bpy.ops.wm.open_mainfile(filepath=str(path))
     else:

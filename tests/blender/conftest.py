@@ -65,9 +65,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(autouse=True)
 def empty_blender() -> None:
-    """Starts each test from an empty file."""
+    """Starts each test from an empty file, with the add-on and the preferences as installed.
+
+    Blender unpacks the wheels of an extension whenever it is enabled, which takes longer than most
+    tests do; so it stays enabled unless a test has changed the preferences.
+    """
+    preferences = bpy.context.preferences
+    if PACKAGE in preferences.addons and not preferences.is_dirty:
+        bpy.ops.wm.read_homefile(use_factory_startup=True, use_empty=True)
+        return
     bpy.ops.wm.read_factory_settings(use_empty=True)
     assert addon_utils.enable(PACKAGE, default_set=True) is not None
+    preferences.is_dirty = False
 
 
 @pytest.fixture
