@@ -2,7 +2,10 @@
 
 """Which compressed blocks suit what an image holds."""
 
+from collections.abc import Iterable
+
 import numpy as np
+import prefilter
 
 from ..bridge.images import Encoding, Picture
 
@@ -15,7 +18,7 @@ def suiting(
     is_height: bool = False,
     is_one_channel: bool = False,
 ) -> str:
-    """Returns the key of the texel format that suits an image.
+    """Returns the key of the texel format that suits an image: the smallest that keeps it.
 
     Args:
         picture: Its pixels.
@@ -26,14 +29,40 @@ def suiting(
     """
     reads_alpha = reads_alpha or picture.alpha_is_coverage
     if content == "normal":
-        return "bc7" if reads_alpha else "bc5"
+        return _smallest(4 if reads_alpha else 2)
     if picture.is_float and (not picture.is_integer or is_height):
-        return "rgba16f" if reads_alpha or not _is_positive(picture) else "bc6h"
+        is_signed = not _is_positive(picture)
+        return _smallest(4 if reads_alpha else 3, is_float=True, is_signed=is_signed)
     has_no_srgb = picture.is_float or picture.encoding is Encoding.NONE
     is_data = has_no_srgb and content != "color" and not reads_alpha
     if is_data and (is_one_channel or is_gray(picture)):
-        return "bc4"
-    return "bc7"
+        return _smallest(1)
+    return _smallest(4 if reads_alpha else 3)
+
+
+def suiting_all(keys: Iterable[str]) -> str:
+    """Returns the one of several formats that suits what all of them suit."""
+
+    def extent(key: str) -> tuple[bool, float, int]:
+        found = prefilter.TEXEL_FORMATS[key]
+        return found.is_float, found.texel_bytes, found.channels
+
+    return max(keys, key=extent)
+
+
+def _smallest(channels: int, *, is_float: bool = False, is_signed: bool = False) -> str:
+    """Returns the key of the smallest format of DDS files that keeps so many channels well."""
+    fitting = (
+        found
+        for found in prefilter.TEXEL_FORMATS.values()
+        if found.is_in_dds
+        and found.channels >= channels
+        and found.is_float == is_float
+        and (found.keeps_negatives or not is_signed)
+        and (found.alpha == "full" or channels < 4)
+        and not found.is_coarse
+    )
+    return min(fitting, key=lambda found: (found.texel_bytes, found.channels)).name
 
 
 def is_gray(picture: Picture) -> bool:

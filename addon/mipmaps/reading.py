@@ -257,8 +257,9 @@ def odd_uses(request: Request, level_0: Level0, rough: Rough) -> list[str]:
 
 def _blocks(pictures: Sequence[Picture], content: str) -> str:
     """Returns the format that suits an image; of several tiles, one that suits them all."""
-    found = {blocks.suiting(one, content, reads_alpha=one.shape[2] == 4) for one in pictures}
-    return next(one for one in ("rgba16f", "bc6h", "bc7", "bc5", "bc4") if one in found)
+    return blocks.suiting_all(
+        blocks.suiting(one, content, reads_alpha=one.shape[2] == 4) for one in pictures
+    )
 
 
 def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:

@@ -28,6 +28,13 @@ py::bytes compressed(const py::array& rgba, const BlockOptions& options, const P
 }  // namespace
 
 void bind_blocks(py::module_& m) {
+  m.def("block_layouts", [] {
+    py::dict layouts;
+    for (const BlockLayout& one : block_layouts()) {
+      layouts[one.name] = py::make_tuple(one.columns, one.rows, one.bytes, one.is_float);
+    }
+    return layouts;
+  });
   m.def(
       "compress_blocks",
       [](const py::array& rgba, const std::string& format, bool srgb, bool weigh_by_alpha,

@@ -32,6 +32,8 @@ constexpr BlockLayout kLayouts[] = {
 
 }  // namespace
 
+std::span<const BlockLayout> block_layouts() { return kLayouts; }
+
 const BlockLayout& layout_of(BlockFormat format) {
   return *std::find_if(std::begin(kLayouts), std::end(kLayouts),
                        [format](const BlockLayout& one) { return one.format == format; });

@@ -346,6 +346,7 @@ def resize(
     options: ResizeOptions,
     progress: ProgressCallback | None,
 ) -> npt.NDArray[np.float32]: ...
+def block_layouts() -> dict[str, tuple[int, int, int, bool]]: ...
 def compress_blocks(
     rgba: npt.NDArray[np.uint8] | npt.NDArray[np.uint16],
     format: str,

@@ -3,6 +3,7 @@
 // The formats of compressed blocks: how many texels and bytes a block has.
 #pragma once
 
+#include <span>
 #include <string>
 
 namespace prefilter {
@@ -35,6 +36,8 @@ struct BlockLayout {
   int bytes;
   bool is_float;  // compressed from half floats, not from bytes
 };
+
+std::span<const BlockLayout> block_layouts();
 
 const BlockLayout& layout_of(BlockFormat format);
 

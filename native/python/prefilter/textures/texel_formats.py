@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .. import _native
+
 Channel = type[np.uint8] | type[np.float16] | type[np.float32]
 Codes = tuple[int | None, int | None]
 """What a container calls a format with linear and with sRGB colors; None where it has no word."""
@@ -30,6 +32,7 @@ class TexelFormat:
         opaque_khronos: The channels of textures without alpha, where that matters.
         alpha: "full", "cut-out" (0 or 1), or "none".
         has_sign: Whether its type has negative values; see `keeps_negatives`.
+        is_coarse: Whether the colors that a block mixes are rounded to 4 to 6 bits a channel.
     """
 
     name: str
@@ -43,6 +46,13 @@ class TexelFormat:
     opaque_khronos: tuple[int, ...] | None = None
     alpha: str = "none"
     has_sign: bool = False
+    is_coarse: bool = False
+
+    @property
+    def texel_bytes(self) -> float:
+        """Of a texel, on average over a block."""
+        columns, rows = self.block or (1, 1)
+        return self.unit_bytes / (columns * rows)
 
     @property
     def is_block(self) -> bool:
@@ -134,48 +144,41 @@ def _plain(
     )
 
 
+_LAYOUTS = _native.block_layouts()
+
+
 def _blocks(
     name: str,
     channels: int,
-    unit_bytes: int,
     dxgi: Codes,
     vulkan: Codes,
     model: int,
     *khronos: int,
-    block: tuple[int, int] = (4, 4),
-    channel_type: Channel = np.uint8,
     opaque_khronos: tuple[int, ...] | None = None,
     alpha: str = "",
     has_sign: bool = False,
+    is_coarse: bool = False,
 ) -> TexelFormat:
+    columns, rows, unit_bytes, is_float = _LAYOUTS[name]
     return TexelFormat(
         name,
         channels,
         unit_bytes,
-        block,
-        channel_type,
+        (columns, rows),
+        np.float16 if is_float else np.uint8,
         dxgi,
         vulkan,
         (model, khronos),
         opaque_khronos,
         alpha or ("full" if channels == 4 else "none"),
         has_sign,
+        is_coarse,
     )
 
 
-def _astc(columns: int, rows: int, vulkan: Codes, *, is_hdr: bool = False) -> TexelFormat:
-    return _blocks(
-        f"astc-{columns}x{rows}" + "-hdr" * is_hdr,
-        4,
-        16,
-        _NONE,
-        vulkan,
-        _ASTC,
-        _COLOR,
-        block=(columns, rows),
-        channel_type=np.float16 if is_hdr else np.uint8,
-        has_sign=is_hdr,
-    )
+def _astc(name: str, vulkan: Codes) -> TexelFormat:
+    is_float = _LAYOUTS[name][3]
+    return _blocks(name, 4, _NONE, vulkan, _ASTC, _COLOR, has_sign=is_float)
 
 
 TEXEL_FORMATS = {
@@ -186,24 +189,28 @@ TEXEL_FORMATS = {
         _plain("rgba8", 4, np.uint8, (28, 29), (37, 43)),
         _plain("rgba16f", 4, np.float16, (10, None), (97, None)),
         _plain("rgba32f", 4, np.float32, (2, None), (109, None)),
-        _blocks("bc1", 4, 8, (71, 72), (133, 134), _BC1, _COLOR_AND_CUT_OUT, alpha="cut-out"),
-        _blocks("bc1-rgb", 3, 8, (71, 72), (131, 132), _BC1, _COLOR),
-        _blocks("bc3", 4, 16, (77, 78), (137, 138), _BC3, ALPHA, _COLOR),
-        _blocks("bc4", 1, 8, (80, None), (139, None), _BC4, RED),
-        _blocks("bc5", 2, 16, (83, None), (141, None), _BC5, RED, GREEN),
-        _blocks("bc6h", 3, 16, (95, None), (143, None), _BC6H, _COLOR, channel_type=np.float16),
-        _blocks("bc7", 4, 16, (98, 99), (145, 146), _BC7, _COLOR),
-        _blocks("etc2-rgb", 3, 8, _NONE, (147, 148), _ETC2, _ETC2_COLOR),
-        _blocks("etc2-rgba", 4, 16, _NONE, (151, 152), _ETC2, ALPHA, _ETC2_COLOR),
-        _blocks("eac-r11", 1, 8, _NONE, (153, None), _ETC2, RED),
-        _blocks("eac-rg11", 2, 16, _NONE, (155, None), _ETC2, RED, GREEN),
-        _astc(4, 4, (157, 158)),
-        _astc(6, 6, (165, 166)),
-        _astc(8, 8, (171, 172)),
-        _astc(4, 4, (1000066000, None), is_hdr=True),
-        _astc(6, 6, (1000066004, None), is_hdr=True),
         _blocks(
-            *("uastc", 4, 16, _NONE, (_UNDEFINED, _UNDEFINED), _UASTC, _UASTC_RGBA),
+            *("bc1", 4, (71, 72), (133, 134), _BC1, _COLOR_AND_CUT_OUT),
+            alpha="cut-out",
+            is_coarse=True,
+        ),
+        _blocks("bc1-rgb", 3, (71, 72), (131, 132), _BC1, _COLOR, is_coarse=True),
+        _blocks("bc3", 4, (77, 78), (137, 138), _BC3, ALPHA, _COLOR, is_coarse=True),
+        _blocks("bc4", 1, (80, None), (139, None), _BC4, RED),
+        _blocks("bc5", 2, (83, None), (141, None), _BC5, RED, GREEN),
+        _blocks("bc6h", 3, (95, None), (143, None), _BC6H, _COLOR),
+        _blocks("bc7", 4, (98, 99), (145, 146), _BC7, _COLOR),
+        _blocks("etc2-rgb", 3, _NONE, (147, 148), _ETC2, _ETC2_COLOR, is_coarse=True),
+        _blocks("etc2-rgba", 4, _NONE, (151, 152), _ETC2, ALPHA, _ETC2_COLOR, is_coarse=True),
+        _blocks("eac-r11", 1, _NONE, (153, None), _ETC2, RED),
+        _blocks("eac-rg11", 2, _NONE, (155, None), _ETC2, RED, GREEN),
+        _astc("astc-4x4", (157, 158)),
+        _astc("astc-6x6", (165, 166)),
+        _astc("astc-8x8", (171, 172)),
+        _astc("astc-4x4-hdr", (1000066000, None)),
+        _astc("astc-6x6-hdr", (1000066004, None)),
+        _blocks(
+            *("uastc", 4, _NONE, (_UNDEFINED, _UNDEFINED), _UASTC, _UASTC_RGBA),
             opaque_khronos=(_UASTC_RGB,),
         ),
     )
