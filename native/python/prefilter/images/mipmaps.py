@@ -2,9 +2,9 @@
 
 """Mipmaps of a texture on a surface (chapter 7)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
-from typing import Any, NamedTuple
+from typing import Any, Concatenate, NamedTuple, ParamSpec, Protocol, cast, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -28,6 +28,8 @@ from .._border.arrays import as_image, as_texels, as_threads, in_form_of
 from ..meshes.surface import Surface, as_surfaces
 from ..sampling.levels import FilteredLevels
 from .color import to_linear, to_srgb
+
+_Arguments = ParamSpec("_Arguments")
 
 
 class MipmapFilter(NamedTuple):
@@ -62,6 +64,34 @@ _CHECKS: dict[str, Check] = {
 }
 
 
+class _TypedByImage(Protocol[_Arguments]):
+    """A function whose levels have the type of its image: bytes, words, or else float32."""
+
+    @overload
+    def __call__(
+        self, image: npt.NDArray[np.uint8], *args: _Arguments.args, **named: _Arguments.kwargs
+    ) -> FilteredLevels[np.uint8]: ...
+    @overload
+    def __call__(
+        self, image: npt.NDArray[np.uint16], *args: _Arguments.args, **named: _Arguments.kwargs
+    ) -> FilteredLevels[np.uint16]: ...
+    @overload
+    def __call__(
+        self, image: npt.NDArray[np.floating], *args: _Arguments.args, **named: _Arguments.kwargs
+    ) -> FilteredLevels[np.float32]: ...
+    @overload
+    def __call__(
+        self, image: npt.ArrayLike, *args: _Arguments.args, **named: _Arguments.kwargs
+    ) -> FilteredLevels[Any]: ...
+
+
+def _typed_by_image(
+    function: Callable[Concatenate[npt.ArrayLike, _Arguments], FilteredLevels[Any]],
+) -> _TypedByImage[_Arguments]:
+    return cast("_TypedByImage[_Arguments]", function)
+
+
+@_typed_by_image
 def mipmaps(
     image: npt.ArrayLike,
     surface: Surface | Sequence[Surface] | None = None,
