@@ -8,7 +8,7 @@ with all coefficients of a subdomain as its unknowns.
 """
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from itertools import combinations
 
 import numpy as np
@@ -42,14 +42,15 @@ def kernel(filter, x):
 
 
 def taps(filter, center, width, first, last):
-    """The weights of texels `first` to `last` under a kernel whose unit is `width` texels."""
+    """The weights of texels `first` to `last` under kernels whose units are `width` texels."""
     texel = np.arange(first, last + 1)
+    center, width = np.asarray(center)[..., None], np.asarray(width)[..., None]
     if filter == "box":
         low = np.maximum(texel, center - width / 2)
         weights = np.maximum(0.0, np.minimum(texel + 1, center + width / 2) - low)
     else:
-        weights = kernel(filter, (texel + 0.5 - center) / max(1.0, width))
-    return weights / weights.sum()
+        weights = kernel(filter, (texel + 0.5 - center) / np.maximum(1.0, width))
+    return weights / weights.sum(axis=-1, keepdims=True)
 
 
 def filter_width(levels, f):
@@ -67,6 +68,7 @@ def _gauss(low, high, panels, count):
     )
 
 
+@lru_cache(maxsize=1024)
 def line(filter, levels, texels, x, f):
     """Along an axis: the sample's filter, those of texels (finer, index), and weights of places.
 
@@ -74,6 +76,8 @@ def line(filter, levels, texels, x, f):
     """
     width = filter_width(levels, f)
     reach = RADII[filter]
+    of_all = {texel: k for k, texel in enumerate(dict.fromkeys(texels))}
+    which, texels = [of_all[texel] for texel in texels], list(of_all)
     low = min([x - reach * width] + [(i + 0.5 - reach) / 2**d for d, i in texels])
     high = max([x + reach * width] + [(i + 0.5 + reach) / 2**d for d, i in texels])
     if levels == 3:
@@ -87,14 +91,14 @@ def line(filter, levels, texels, x, f):
         half = np.diff(edges) / 2
         place = ((edges[1:] + edges[:-1])[:, None] / 2 + half[:, None] * nodes).ravel()
         sample = kernel(filter, (place - x) / width) / width
-        of_texels = [kernel(filter, place * 2**d - i - 0.5) * 2**d for d, i in texels]
-        return sample, np.array(of_texels), (half[:, None] * weights).ravel()
+        unit, i = 2.0 ** np.array(texels)[:, :1], np.array(texels)[:, 1:]
+        of_texels = kernel(filter, place * unit - i - 0.5) * unit
+        return sample, of_texels[which], (half[:, None] * weights).ravel()
     first, last = int(np.floor(low * levels)) - 1, int(np.ceil(high * levels)) + 1
     sample = taps(filter, x * levels, width * levels, first, last)
-    of_texels = [
-        taps(filter, (i + 0.5) * levels / 2**d, levels / 2**d, first, last) for d, i in texels
-    ]
-    return sample, np.array(of_texels), np.ones(last - first + 1)
+    width = levels / 2.0 ** np.array(texels)[:, 0]
+    of_texels = taps(filter, (np.array(texels)[:, 1] + 0.5) * width, width, first, last)
+    return sample, of_texels[which], np.ones(last - first + 1)
 
 
 @dataclass
@@ -113,8 +117,8 @@ class Fields:
 
 def fields(filter, levels, offsets, x, y, f):
     """Those of a place, for texels (finer, x, y)."""
-    along_x = line(filter, levels, [(d, i) for d, i, _ in offsets], x, f)
-    along_y = line(filter, levels, [(d, j) for d, _, j in offsets], y, f)
+    along_x = line(filter, levels, tuple((d, i) for d, i, _ in offsets), x, f)
+    along_y = line(filter, levels, tuple((d, j) for d, _, j in offsets), y, f)
     return Fields(
         np.multiply.outer(along_y[0], along_x[0]),
         along_y[1][:, :, None] * along_x[1][:, None, :],
@@ -220,10 +224,10 @@ class System:
         self.square = 0.0
         for x, y, f, weight in part.nodes(panels, count):
             sample_x, texels_x, along_x = line(
-                filter, part.levels, [(d, i) for d, i, _ in offsets], x, f
+                filter, part.levels, tuple((d, i) for d, i, _ in offsets), x, f
             )
             sample_y, texels_y, along_y = line(
-                filter, part.levels, [(d, j) for d, _, j in offsets], y, f
+                filter, part.levels, tuple((d, j) for d, _, j in offsets), y, f
             )
             found = terms(degree, x, y, f)
             inner = (texels_x @ (along_x * sample_x)) * (texels_y @ (along_y * sample_y))

@@ -363,8 +363,12 @@ def touched_cells(corners: np.ndarray, low, high, n: int) -> np.ndarray:
     scaled = (corners - low) * (n / (high - low))
     first, last = (np.floor(f).astype(int) for f in (scaled.min(axis=1), scaled.max(axis=1)))
     within = ((last >= 0) & (first < n)).all(axis=1)
+    first, last = np.maximum(first[within], 0), last[within]
     found = np.zeros((n, n, n), bool)
-    for (x, y, z), (p, q, r) in zip(np.maximum(first[within], 0), last[within], strict=True):
+    small = ((last - first) <= 1).all(axis=1) & (last < n).all(axis=1)
+    for corner in np.ndindex(2, 2, 2):
+        found[tuple(np.where(corner, last[small], first[small]).T)] = True
+    for (x, y, z), (p, q, r) in zip(first[~small], last[~small], strict=True):
         found[x : p + 1, y : q + 1, z : r + 1] = True
     return found
 

@@ -133,7 +133,7 @@ def crossings(positions, triangles):
 
 def waves():
     """Sheets that are as thin as cells, as far apart, and nowhere in a plane."""
-    size = 15
+    size = 13
     x, y, z = np.indices((size,) * 3)
     values = np.sin(0.7 * z + 4 * np.sin(0.31 * x) + 3 * np.cos(0.43 * y)) + 0.7
     values = values.clip(0, 1) * np.random.default_rng(0).uniform(0.8, 1, (size,) * 3)

@@ -154,7 +154,7 @@ def test_alpha(had):
 
 @pytest.mark.parametrize("had", [*GRAY, *ALPHA], **named)
 def test_cut_outs(had):
-    coarser = prefilter.mipmaps(had.meant, filter="tent")[1:]
+    coarser = prefilter.mipmaps(had.meant, filter="tent")[1:2]
     flat = [level[..., 0] for level in coarser] if np.ndim(had.image) == 2 else coarser
     found = prefilter.keep_coverage([had.image, *flat])
     check_levels(had, found, prefilter.keep_coverage([had.meant, *coarser]))

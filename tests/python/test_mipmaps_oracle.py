@@ -36,38 +36,49 @@ WRAPS = [
 ]
 
 
+class Quadrature:
+    """Points of a surface, their weights, and what an image is there."""
+
+    def __init__(self, mesh, image, wrap, steps):
+        self.wrap = wrap
+        self.uvs, self.weights = samples_inside(mesh, steps, wrap)
+        for axis, mode in enumerate(wrap):
+            if mode == "clamp":
+                self.uvs[:, axis] = np.clip(self.uvs[:, axis], 0, 1)
+        self.source = bilinear(image, self.uvs, wrap)
+
+    def taps(self, shape):
+        """The texels of a level that lookups read, and weights, both with those of the points."""
+        taps, shares = bilinear_taps(self.uvs, *shape, self.wrap)
+        return taps.T, shares.T * self.weights, shares.T
+
+    def times_tents(self, values, shape):
+        """Integrals of values at the points, (n, channels), times the tents of a level."""
+        taps, masses, _ = self.taps(shape)
+        return np.stack(
+            [
+                sum(np.bincount(t, m * channel, np.prod(shape))
+                    for t, m in zip(taps, masses, strict=True))
+                for channel in values.T
+            ],
+            1,
+        )  # fmt: skip
+
+
 class Oracle:
     """The least-squares problem of one level, by quadrature."""
 
-    def __init__(self, mesh, image, shape, wrap, steps):
-        uvs, weights = samples_inside(mesh, steps, wrap)
-        if "clamp" in wrap:
-            uvs = uvs.copy()
-            for axis, mode in enumerate(wrap):
-                if mode == "clamp":
-                    uvs[:, axis] = np.clip(uvs[:, axis], 0, 1)
-        source = bilinear(image, uvs, wrap)
-        height, width = shape
-        taps, shares = bilinear_taps(uvs, height, width, wrap)
-        count = height * width
+    def __init__(self, quadrature, shape):
+        taps, shares, plain = quadrature.taps(shape)
+        count = np.prod(shape)
         self.matrix = np.zeros((count, count))
         for i in range(4):
             for j in range(i, 4):
-                flat = taps[:, i] * count + taps[:, j]
-                products = weights * shares[:, i] * shares[:, j]
-                part = np.bincount(flat, products, count * count).reshape(count, count)
+                flat = taps[i] * count + taps[j]
+                part = np.bincount(flat, shares[i] * plain[j], count * count).reshape(count, count)
                 self.matrix += part if i == j else part + part.T
-        self.right = np.stack(
-            [
-                sum(
-                    np.bincount(taps[:, i], weights * shares[:, i] * source[:, c], count)
-                    for i in range(4)
-                )
-                for c in range(image.shape[2])
-            ],
-            1,
-        )
-        masses = sum(np.bincount(taps[:, i], weights * shares[:, i], count) for i in range(4))
+        self.right = quadrature.times_tents(quadrature.source, shape)
+        masses = np.bincount(taps.ravel(), shares.ravel(), count)
         self.used = np.diag(self.matrix) > 0
         diagonal = np.diag(self.matrix)
         self.pull = PULL * diagonal[self.used].mean()
@@ -76,14 +87,15 @@ class Oracle:
         self.pulled = self.matrix + self.pull * np.diag(self.used.astype(float))
         self.pulled_right = self.right + self.pull * means
 
-    def gradient(self, level):
+    def gradient(self, level, more=0.0):
         """Of half the objective, over the diagonal: how far each texel would move by itself.
 
+        `more` is what the right side has beyond that of the image.
         Where a texel has next to no weight, quadrature cannot tell it: the diagonal counts as at
         least a hundredth of the mean one.
         """
         texels = level.reshape(-1, level.shape[2]).astype(np.float64)
-        residual = self.pulled @ texels - self.pulled_right
+        residual = self.pulled @ texels - self.pulled_right - more
         diagonal = np.diag(self.pulled)[self.used]
         return residual[self.used] / np.maximum(diagonal, 0.01 * diagonal.mean())[:, None]
 
@@ -96,17 +108,16 @@ def halved(height, width):
     return sizes
 
 
-@pytest.mark.parametrize("wrap", WRAPS)
 @pytest.mark.parametrize(
-    ("size", "channels"),
+    ("size", "channels", "wrap"),
     [
-        ((16, 8), 1),
-        ((16, 8), 3),
-        ((7, 13), 1),
-        ((10, 7), 2),
-        ((1, 19), 1),
-        ((5, 1), 3),
-        ((3, 3), 1),
+        *(((16, 8), 1, wrap) for wrap in WRAPS),
+        *(((7, 13), 1, wrap) for wrap in WRAPS),
+        *(((16, 8), 3, wrap) for wrap in WRAPS[:1]),
+        *(((10, 7), 2, wrap) for wrap in WRAPS[1:3]),
+        *(((1, 19), 1, wrap) for wrap in WRAPS[:3]),
+        *(((5, 1), 3, wrap) for wrap in WRAPS[3:]),
+        *(((3, 3), 1, wrap) for wrap in WRAPS[1:4]),
     ],
 )
 def test_unbounded_levels_solve_the_normal_equations(wrap, size, channels):
@@ -114,8 +125,9 @@ def test_unbounded_levels_solve_the_normal_equations(wrap, size, channels):
     image = random_image(1, *size, channels)
     levels = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=None)
     assert [level.shape[:2] for level in levels] == halved(*size)
+    quadrature = Quadrature(mesh, image, wrap, steps=160)
     for level in levels[1:]:
-        oracle = Oracle(mesh, image, level.shape[:2], wrap, steps=160)
+        oracle = Oracle(quadrature, level.shape[:2])
         assert np.abs(oracle.gradient(level)).max() < TOLERANCE
 
 
@@ -134,8 +146,9 @@ def test_bounded_levels_meet_the_optimality_conditions(wrap):
     image = (random_image(2, 16, 16, 3) > 0.5).astype(np.float32)
     levels = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=(0.0, 1.0))
     clipped = 0
+    quadrature = Quadrature(mesh, image, wrap, steps=300)
     for level in levels[1:4]:
-        oracle = Oracle(mesh, image, level.shape[:2], wrap, steps=300)
+        oracle = Oracle(quadrature, level.shape[:2])
         gradient = oracle.gradient(level)
         texels = level.reshape(-1, 3)[oracle.used]
         clipped += clipped_optimally(texels, gradient)
@@ -147,7 +160,7 @@ def test_bounded_level_matches_a_dense_solver():
     mesh = random_soup(7, 8)
     image = (random_image(4, 16, 16, 1) > 0.5).astype(np.float32)
     level = prefilter.mipmaps(image, mesh.surface, bounds=(0.0, 1.0))[1]
-    oracle = Oracle(mesh, image, level.shape[:2], ("clamp", "clamp"), steps=300)
+    oracle = Oracle(Quadrature(mesh, image, ("clamp", "clamp"), steps=300), level.shape[:2])
     used = oracle.used
     factor = np.linalg.cholesky(oracle.pulled[np.ix_(used, used)])
     target = np.linalg.solve(factor, oracle.pulled_right[used, 0])
@@ -169,8 +182,9 @@ def test_levels_across_tiles_solve_the_normal_equations():
     image = random_image(6, 64, 128, 1)
     wrap = ("repeat", "repeat")
     levels = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=None)
+    quadrature = Quadrature(mesh, image, wrap, steps=500)
     for k in (3, 4, 5, 6, 7):
-        oracle = Oracle(mesh, image, levels[k].shape[:2], wrap, steps=500)
+        oracle = Oracle(quadrature, levels[k].shape[:2])
         assert np.abs(oracle.gradient(levels[k])).max() < TOLERANCE, f"level {k}"
 
 
@@ -183,8 +197,9 @@ def test_levels_that_do_not_nest_solve_the_normal_equations_across_tiles(size):
     image = random_image(6, *size, 1)
     wrap = ("repeat", "repeat")
     levels = prefilter.mipmaps(image, mesh.surface, wrap=wrap, bounds=None)
+    quadrature = Quadrature(mesh, image, wrap, steps=500)
     for k in range(3, len(levels)):
-        oracle = Oracle(mesh, image, levels[k].shape[:2], wrap, steps=500)
+        oracle = Oracle(quadrature, levels[k].shape[:2])
         assert np.abs(oracle.gradient(levels[k])).max() < TOLERANCE, f"level {k}"
 
 
@@ -194,12 +209,9 @@ def trilinear_gradient(levels, mesh, image, wrap, steps):
     Quadrature over the surface, and Simpson's rule over each interval of mip values, which is
     exact for products of the levels' weights.
     """
-    uvs, weights = samples_inside(mesh, steps, wrap)
-    for axis, mode in enumerate(wrap):
-        if mode == "clamp":
-            uvs[:, axis] = np.clip(uvs[:, axis], 0, 1)
-    lookups = [bilinear(level, uvs, wrap) for level in levels]
-    source = bilinear(image, uvs, wrap)
+    quadrature = Quadrature(mesh, image, wrap, steps)
+    lookups = [bilinear(level, quadrature.uvs, wrap) for level in levels]
+    source = quadrature.source
     pulls = [np.zeros_like(source) for _ in levels]
     for k in range(len(levels) - 1):
         for f, share in ((0.0, 1 / 6), (0.5, 4 / 6), (1.0, 1 / 6)):
@@ -207,18 +219,8 @@ def trilinear_gradient(levels, mesh, image, wrap, steps):
             pulls[k] += share * (1 - f) * residual
             pulls[k + 1] += share * f * residual
     for level, pull in zip(levels[1:-1], pulls[1:-1], strict=True):
-        oracle = Oracle(mesh, image, level.shape[:2], wrap, steps)
-        taps, shares = bilinear_taps(uvs, *level.shape[:2], wrap)
-        gradient = np.stack(
-            [
-                sum(
-                    np.bincount(taps[:, i], weights * shares[:, i] * pull[:, c], len(oracle.used))
-                    for i in range(4)
-                )
-                for c in range(image.shape[2])
-            ],
-            1,
-        )
+        oracle = Oracle(quadrature, level.shape[:2])
+        gradient = quadrature.times_tents(pull, level.shape[:2])
         texels = level.reshape(-1, image.shape[2])
         pulled = oracle.pulled - oracle.matrix
         gradient += 2 / 3 * (pulled @ texels - (oracle.pulled_right - oracle.right))

@@ -77,12 +77,12 @@ def test_the_measures_find_what_was_done_to_a_cube():
     np.testing.assert_allclose(moved.crease_mean, 8 / 12 * 0.1, rtol=0.01)
     np.testing.assert_allclose(moved.corner, 0.1)
     whole = measures.surface_errors(
-        cube.positions, cube.triangles, cube.positions, cube.triangles, lines, cell
+        cube.positions, cube.triangles, cube.positions, cube.triangles, lines, cell, 20_000
     )
     assert whole.wrong == 0
     sheared = cube.positions + 0.5 * cube.positions[:, [2, 0, 0]] * [1, 0, 0]
     leaning = measures.surface_errors(
-        sheared, cube.triangles, cube.positions, cube.triangles, lines, cell
+        sheared, cube.triangles, cube.positions, cube.triangles, lines, cell, 20_000
     )
     side = 2 * 4 * np.sqrt(1.25)
     np.testing.assert_allclose(leaning.wrong, side / (side + 16), atol=0.01)

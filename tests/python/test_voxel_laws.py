@@ -34,13 +34,13 @@ SOLIDS = {
 @pytest.mark.parametrize("name", SOLIDS)
 def test_threads_do_not_change_a_bit(name):
     solid = SOLIDS[name]
-    first = voxelized(solid, 8, threads=1)
-    other = voxelized(B, 7, threads=1)
+    first = voxelized(solid, 7, threads=1)
+    other = voxelized(B, 6, threads=1)
     dense = first.dense(6, threads=1)
     operations = ("union", "intersection", "difference")
     expected = {name: getattr(first, name)(other, threads=1) for name in operations}
     for threads in (2, 3, 7, 0):
-        again = voxelized(solid, 8, threads=threads)
+        again = voxelized(solid, 7, threads=threads)
         assert octrees_are_same(first, again)
         assert np.array_equal(dense, again.dense(6, threads=threads))
         for operation, made in expected.items():
