@@ -3,6 +3,7 @@
 """What tests of bad input have in common."""
 
 import re
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -21,13 +22,17 @@ def changed(array, index, value):
     return copy
 
 
-def check_refusal(function, arguments, words, error=ValueError):
-    """A function comes with good arguments, of which these differ; the message holds the words.
-
-    The argument's name is the first of them.
-    """
-    call, good = function
+@contextmanager
+def refused(words, error=ValueError):
+    """What is within raises the error, whose message holds the words: the argument's name first."""
     with pytest.raises(error, match=re.escape(words[0])) as caught:
-        call(**{**good, **arguments})
+        yield
     for word in words:
         assert word in str(caught.value)
+
+
+def check_refusal(function, arguments, words, error=ValueError):
+    """A function comes with good arguments, of which these differ."""
+    call, good = function
+    with refused(words, error):
+        call(**{**good, **arguments})

@@ -6,7 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 from clouds import sphere
-from refusals import NAN, NUMBERS, THREADS, changed, check_refusal
+from refusals import NAN, NUMBERS, changed, check_refusal
 from scenes import square
 
 MESH = square()
@@ -60,21 +60,6 @@ ROWS = [
         "Surface",
         {"uvs": POINTS[:, :2], "triangles": TRIANGLES + 1},
         ["triangles: ", "vertex 6", "6 vertices (0 to 5)"],
-    ),
-    (
-        "Surface",
-        {"uvs": POINTS[:, :2], "triangles": TRIANGLES - 1},
-        ["triangles: triangle 0 names vertex -1", "(0 to"],
-    ),
-    (
-        "Surface",
-        {"triangles": TRIANGLES.astype(np.uint64) + 2**63},
-        ["triangles: found 9223372036854775813", "63 bits"],
-    ),
-    (
-        "Surface",
-        {"positions": changed(POINTS, (4, 1), NAN)},
-        ["positions: vertex 4", "nan", "finite"],
     ),
     (
         "Surface",
@@ -192,23 +177,8 @@ ROWS = [
         {"matrices": np.eye(4) * [1e200, 1e200, 1, 1]},
         ["matrices: the area of triangle 0", "too large"],
     ),
-    ("Surface", {"positions": POINTS[:, :2]}, ["positions: shape (6, 2)", "(vertices, 3) is"]),
-    ("Surface", {"positions": "abc"}, ["positions: dtype <U3", NUMBERS]),
-    ("Surface", {"triangles": TRIANGLES[:, :2]}, ["triangles: shape (2, 2)", "(triangles, 3) is"]),
-    ("Surface", {"triangles": TRIANGLES * 1.0}, ["triangles: dtype float64", "integers are"]),
-    ("Surface", {"triangles": TRIANGLES + 1}, ["triangles: ", "vertex 6", "6 vertices (0 to 5)"]),
-    ("Surface", {"triangles": TRIANGLES - 1}, ["triangles: triangle 0 names vertex -1", "(0 to"]),
-    ("Surface", {"uvs": UVS[:1]}, ["uvs: shape (1, 3, 2)", "(2, 3, 2) for", "(6, 2) for"]),
-    ("Surface", {"uvs": POINTS[:5, :2]}, ["uvs: shape (5, 2)", "(6, 2) for the vertices"]),
     ("Surface", {"uvs": POINTS}, ["uvs: shape (6, 3)", "(6, 2) for the vertices"]),
     ("Surface", {"uvs": POINTS[:, :2] * NAN}, ["uvs: triangle 0", "nan", "finite"]),
-    ("Surface", {"uvs": POINTS[:, :2] + 1j}, ["uvs: dtype complex128", NUMBERS]),
-    ("Surface", {"positions": []}, ["positions: shape (0,)", "(vertices, 3) is needed"]),
-    ("Surface", {"positions": POINTS > 0}, ["positions: dtype bool", NUMBERS]),
-    ("Surface", {"triangles": []}, ["triangles: shape (0,)", "(triangles, 3) is needed"]),
-    ("Surface", {"triangles": [[0, 1, 2.5]]}, ["triangles: dtype float64", "integers are"]),
-    ("Surface", {"triangles": TRIANGLES > 0}, ["triangles: dtype bool", "integers are"]),
-    ("Surface", {"uvs": None}, ["uvs: dtype object", NUMBERS]),
     ("Surface", {"uvs": changed(UVS, (1, 2, 0), NAN)}, ["uvs: triangle 1", "nan", "finite"]),
     ("Surface", {"positions": POINTS * 1e200}, ["positions: the area of triangle 0", "too large"]),
     ("Surface", {"weights": np.ones(6, bool)}, ["weights: shape (6,) of bool", "real numbers"]),
@@ -235,23 +205,16 @@ ROWS = [
             {"weights": ONES * 0},
         )
     ),
-    ("reconstruct", {"points": [[1.0], [1.0, 2.0]]}, ["points: found no array", "inhomogeneous"]),
     ("reconstruct", {"points": CLOUD.points[:, :2]}, ["points: shape (1000, 2)", "(points, 3)"]),
-    ("reconstruct", {"points": np.ones((9, 3), bool)}, ["points: dtype bool", NUMBERS]),
-    ("reconstruct", {"points": None}, ["points: dtype object", NUMBERS]),
     ("reconstruct", {"normals": "up"}, ["normals: dtype <U2", NUMBERS]),
     ("reconstruct", {"normals": CLOUD.normals[:9]}, ["normals: 9 rows", "1000 are needed"]),
     *(
         ("reconstruct", {"depth": depth}, [f"depth: {depth!r}; ", "from 1 to 12 is needed"])
-        for depth in (0, -1, 13, True, 2.5, "9", None, 10**30)
+        for depth in (0, 2.5)
     ),
     ("reconstruct", {"wavelet": "d6"}, ["wavelet: 'd6' is not one of haar, d4"]),
-    ("reconstruct", {"wavelet": None}, ["wavelet: None", "a name is needed"]),
     ("reconstruct", {"isovalue": "mode"}, ["isovalue: 'mode'", "auto, mean, half, or a number"]),
-    *(
-        ("reconstruct", {"isovalue": isovalue}, [f"isovalue: {isovalue!r}", "a number is needed"])
-        for isovalue in (True, None, [0.5])
-    ),
+    ("reconstruct", {"isovalue": None}, ["isovalue: None", "a number is needed"]),
     *(
         ("reconstruct", {"isovalue": isovalue}, ["isovalue: ", "finite number of at most 1e30"])
         for isovalue in (NAN, np.inf, -np.inf, 1e300)
@@ -268,11 +231,6 @@ ROWS = [
         ("reconstruct", {"memory_limit": limit}, [f"memory_limit: {limit!r}", "MiB from 0"])
         for limit in (-1, 2.5, True, "1 GB")
     ),
-    *(
-        ("reconstruct", {"threads": threads}, [f"threads: {threads!r}", THREADS])
-        for threads in (-1, 1.5, True)
-    ),
-    ("reconstruct", {"progress": 5}, ["progress: 5", "a callable of one number is needed"]),
     ("reconstruct", {"report": {}}, ["report: {}", "a ReconstructionReport is needed, or None"]),
     ("placed", {"matrices": np.eye(3)}, ["matrices: shape (3, 3)", "(4, 4), (3, 4) or several"]),
     ("placed", {"matrices": np.empty((0, 4, 4))}, ["matrices: none", "at least one is needed"]),

@@ -5,7 +5,7 @@
 import numpy as np
 import prefilter
 import pytest
-from refusals import NAN, NUMBERS, THREADS, changed, check_refusal
+from refusals import NAN, NUMBERS, changed, check_refusal
 from solids import box
 
 BOX = box()
@@ -66,31 +66,15 @@ VOXEL_ROWS = [
     *(
         ("voxelize", arguments, words)
         for arguments, words in (
-            ({"positions": BOX.positions[:, :2]}, ["positions: shape (8, 2)", "(vertices, 3) is"]),
-            (
-                {"positions": changed(BOX.positions, (3, 1), NAN)},
-                ["positions: vertex 3", "nan", "finite"],
-            ),
             ({"positions": changed(BOX.positions, (3, 1), np.inf)}, ["positions: vertex 3", "inf"]),
-            ({"positions": "abc"}, ["positions: dtype <U3", NUMBERS]),
-            ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one is needed"]),
-            ({"triangles": BOX.triangles[:, :2]}, ["triangles: shape (12, 2)", "(triangles, 3)"]),
-            ({"triangles": BOX.triangles * 1.0}, ["triangles: dtype float64", "integers are"]),
-            ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8", "(0 to 7)"]),
-            ({"triangles": BOX.triangles - 1}, ["triangles: triangle ", "vertex -1", "(0 to 7)"]),
             ({"triangles": BOX.triangles * 0}, ["triangles: all 12 have zero area"]),
             ({"positions": BOX.positions * 0}, ["triangles: all 12 have zero area"]),
             ({"depth": 0}, ["depth: 0", "from 1 to 12"]),
-            ({"depth": 13}, ["depth: 13", "from 1 to 12"]),
-            ({"depth": 8.0}, ["depth: 8.0", "a whole number from 1 to 12"]),
-            ({"depth": True}, ["depth: True", "a whole number"]),
             ({"bounds": ((0, 0, 0), (1, 1, 0))}, ["bounds: ", "along z"]),
             ({"bounds": ((0, 0, 0), (-1, 1, 1))}, ["bounds: ", "along x"]),
             ({"bounds": ((0, 0, 0), (1, 1, NAN))}, ["bounds: ", "nan"]),
             ({"bounds": (0, 1)}, ["bounds: shape (2,)", "(2, 3)"]),
             ({"bounds": "all"}, ["bounds: 'all'", "two corners"]),
-            ({"threads": -1}, ["threads: -1", THREADS]),
-            ({"progress": 3}, ["progress: "]),
         )
     ),
     *(
@@ -132,72 +116,42 @@ NEAREST_ROWS = [
     for arguments, words in (
         ({"points": QUAD[:, :2]}, ["points: shape (4, 2)", "(points, 3)"]),
         ({"points": changed(QUAD, (2, 1), NAN)}, ["points: row 2", "nan"]),
-        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: vertex 3", "nan"]),
-        ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
-        ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
     )
 ]
 CORNER_ROWS = [
     ("corner_points", arguments, words)
     for arguments, words in (
-        ({"origins": np.zeros(12)}, ["origins: dtype float64", "integers"]),
         ({"origins": np.arange(11)}, ["origins: found 11 for 12 triangles"]),
         ({"origins": np.arange(1, 13)}, ["origins: item 11 names triangle 12", "there are 12"]),
         ({"origins": np.arange(12) - 1}, ["origins: item 0 names triangle -1"]),
         ({"labels": np.arange(13)}, ["labels: found 13 for 12 source triangles"]),
-        ({"labels": np.arange(12) + 2**31}, ["labels: found 2147483648", "32 bits"]),
-        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: vertex 3", "nan"]),
         ({"source_triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
         ({"source_positions": BOX.positions[:, :2]}, ["source_positions: shape (8, 2)"]),
-        ({"threads": -1}, ["threads: -1", THREADS]),
     )
 ]
-MEASURE_ROWS = [
-    (name, arguments, words)
-    for name in ("measure_mesh", "uv_charts")
-    for arguments, words in (
-        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: vertex 3", "nan"]),
-        ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
-        ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
-        ({"progress": 3}, ["progress: 3", "a callable"]),
-    )
-    if not (name == "uv_charts" and "triangles: none" in words)
+EMPTY_ROWS = [
+    (name, {"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"])
+    for name in ("voxelize", "nearest_points", "measure_mesh", "close_holes", "as_solid")
 ]
 CHART_ROWS = [
     ("uv_charts", {"uvs": [np.zeros((11, 3, 2))]}, ["uvs[0]: shape (11, 3, 2)", "(12, 3, 2)"]),
 ]
 CUBE_ROWS = [
     ("cube_around", {"bounds": (0, 0, 0)}, ["bounds: shape (3,)", "(2, 3)"]),
-    ("cube_around", {"depth": 13}, ["depth: 13", "a whole number from 1 to 12"]),
 ]
 CLOSE_ROWS = [
     ("close_holes", arguments, words)
-    for arguments, words in (
-        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: vertex 3", "nan"]),
-        ({"positions": BOX.positions[:, :2]}, ["positions: shape (8, 2)", "(vertices, 3) is"]),
-        ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
-        ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
-        ({"progress": 3}, ["progress: 3", "a callable"]),
-        ({"method": "round"}, ["method: 'round'", "smooth, flat, fan"]),
-        ({"method": None}, ["method: None", "a name"]),
-        ({"threads": -1}, ["threads: -1"]),
-    )
+    for arguments, words in (({"method": "round"}, ["method: 'round'", "smooth, flat, fan"]),)
 ]
 SOLID_ROWS = [
     ("as_solid", arguments, words)
     for arguments, words in (
-        ({"positions": changed(BOX.positions, (3, 1), NAN)}, ["positions: vertex 3", "nan"]),
-        ({"positions": BOX.positions[:, :2]}, ["positions: shape (8, 2)", "(vertices, 3) is"]),
-        ({"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"]),
-        ({"triangles": BOX.triangles + 1}, ["triangles: triangle ", "vertex 8"]),
         ({"cell": 0}, ["cell: 0", "above 0"]),
         ({"cell": NAN}, ["cell: nan", "above 0"]),
         ({"cell": "small"}, ["cell: 'small'"]),
         ({"weld": -0.1}, ["weld: -0.1", "0 or more"]),
         ({"gap": np.inf}, ["gap: inf", "finite"]),
         ({"thickness": -1}, ["thickness: -1", "0 or more"]),
-        ({"threads": -1}, ["threads: -1", THREADS]),
-        ({"progress": 3}, ["progress: 3", "a callable"]),
     )
 ]
 CONTOUR_ROWS = [
@@ -209,22 +163,19 @@ CONTOUR_ROWS = [
         ({"grid": np.full((2, 2, 2), np.nan)}, ["grid: holds nan", "finite"]),
         ({"grid": np.full((2, 2), np.inf)}, ["grid: holds inf", "finite"]),
         ({"interpolant": "cubic"}, ["interpolant: 'cubic'", "occupancy, plane, linear, sharp"]),
-        ({"interpolant": 1}, ["interpolant: 1", "a name is needed"]),
         ({"isovalue": np.nan}, ["isovalue: nan", "a finite number"]),
         ({"isovalue": "half"}, ["isovalue: 'half'", "a number is needed"]),
         ({"spacing": 0}, ["spacing: 0", "above 0"]),
         ({"spacing": (1, -1, 1)}, ["spacing: (1, -1, 1)", "above 0"]),
         ({"spacing": (1, 1)}, ["spacing: shape (2,)", "one number, or (3,)"]),
         ({"origin": np.inf}, ["origin: inf", "finite"]),
-        ({"threads": -1}, ["threads: -1", "0 meaning all processors"]),
-        ({"progress": 3}, ["progress: 3", "a callable"]),
     )
 ]
 ROWS = (
     VOXEL_ROWS
     + NEAREST_ROWS
     + CORNER_ROWS
-    + MEASURE_ROWS
+    + EMPTY_ROWS
     + CHART_ROWS
     + CUBE_ROWS
     + CLOSE_ROWS

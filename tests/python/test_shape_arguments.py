@@ -2,11 +2,10 @@
 
 """What shapes and `rasterize` refuse: each message names the argument, and what is allowed."""
 
-import re
-
 import numpy as np
 import prefilter
 import pytest
+from refusals import refused
 
 NAN, INF = np.nan, np.inf
 NUMBERS = "one to 4 numbers are needed"
@@ -112,10 +111,8 @@ METHODS = [
 def test_refusal_by_a_method(method, arguments, words):
     shape = begun()
     before = shape.bounds, shape.color
-    with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+    with refused(words):
         getattr(shape, method)(*arguments)
-    for word in words:
-        assert word in str(caught.value)
     assert (shape.bounds, shape.color) == before
 
 
@@ -132,10 +129,8 @@ def test_refusal_by_a_method(method, arguments, words):
     ],
 )
 def test_refusal_by_a_shape(arguments, words):
-    with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+    with refused(words):
         prefilter.Shape(**arguments)
-    for word in words:
-        assert word in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -152,10 +147,8 @@ def test_refusal_by_both_gradients(options, words):
         lambda **given: begun().linear_gradient((0, 0), (1, 0), STOPS, **given),
         lambda **given: begun().radial_gradient((0, 0), 1, STOPS, **given),
     ):
-        with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+        with refused(words):
             set_gradient(**options)
-        for word in words:
-            assert word in str(caught.value)
 
 
 @pytest.mark.parametrize(
@@ -169,10 +162,8 @@ def test_refusal_by_both_gradients(options, words):
     ],
 )
 def test_refusal_by_a_radial_gradient(options, words):
-    with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+    with refused(words):
         begun().radial_gradient((0, 0), 1, STOPS, **options)
-    for word in words:
-        assert word in str(caught.value)
 
 
 @pytest.mark.parametrize("method", ["line_to", "curve_to", "conic_to"])
@@ -226,10 +217,8 @@ ROWS = [
 def test_refusal_by_rasterize(arguments, words):
     good = {"shapes": [begun()], "width": 3, "height": 2}
     prefilter.rasterize(**good)
-    with pytest.raises(ValueError, match=re.escape(words[0])) as caught:
+    with refused(words):
         prefilter.rasterize(**{**good, **arguments})
-    for word in words:
-        assert word in str(caught.value)
 
 
 def test_an_image_beyond_memory_is_refused_before_it_is_made():
