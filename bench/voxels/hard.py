@@ -26,7 +26,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import prefilter
 
 from bench.report import Report, add_json_option
-from bench.voxels.hard_meshes import HardMesh, hard_meshes, read_meshes, volume_of
+from bench.solids import mesh_volume
+from bench.voxels.hard_meshes import HardMesh, hard_meshes, read_meshes
 
 NEAR = 3.0  # Cells.
 SAMPLES = 20_000
@@ -134,7 +135,7 @@ def alpha_wrap(program: Path, mesh: HardMesh, cell: float) -> Outcome:
     positions = np.array(words[4 : 4 + 3 * count], float).reshape(-1, 3)
     triangles = np.array(words[4 + 3 * count :], float).reshape(faces, -1)[:, 1:4].astype(int)
     kept = kept_share(mesh, positions, triangles, NEAR * cell)
-    return Outcome(kept, volume_of(positions, triangles), float(done.stdout), len(triangles))
+    return Outcome(kept, mesh_volume(positions, triangles), float(done.stdout), len(triangles))
 
 
 def main() -> None:

@@ -6,13 +6,14 @@ With numpy alone. `hard_meshes()` has those that are made; `read_meshes(folder)`
 models that are gathered beside the checkout.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bench import solids
 from bench.voxels import meshes
 
 Array = NDArray[np.float64]
@@ -34,56 +35,30 @@ class HardMesh:
     volume: float | None = None
 
 
+def closed(solid: solids.Solid) -> HardMesh:
+    """A solid, whose volume is known."""
+    return HardMesh(solid.positions, solid.triangles, solid.volume)
+
+
 def sphere(rounds: int = 5, radius: float = 1.0, center: tuple[float, ...] = (0, 0, 0)) -> HardMesh:
-    """An octahedron whose triangles are split into four, again and again."""
-    points = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)], float)
-    triangles = np.array(
-        [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
-    )
-    for _ in range(rounds):
-        edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        unique, which = np.unique(edges, axis=0, return_inverse=True)
-        middles = points[unique].sum(axis=1)
-        middles /= np.linalg.norm(middles, axis=1, keepdims=True)
-        ab, bc, ca = (len(points) + which.reshape(-1, 3)).T
-        a, b, c = triangles.T
-        points = np.concatenate([points, middles])
-        parts = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
-        triangles = np.concatenate([np.stack(part, axis=1) for part in parts])
-    points = points * radius + center
-    return HardMesh(points, triangles, volume_of(points, triangles))
+    """As it is made by splitting an octahedron."""
+    return closed(solids.sphere(radius, rounds, center))
 
 
 def box(low: tuple[float, ...] = (-1, -1, -1), high: tuple[float, ...] = (1, 1, 1)) -> HardMesh:
     """Two triangles a side: those at low x, high x, low y, ... in order."""
-    corners = np.array([[(i >> a) & 1 for a in range(3)] for i in range(8)], float)
-    quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
-    triangles = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
-    points = np.asarray(low) + corners * np.subtract(high, low)
-    return HardMesh(points, triangles, volume_of(points, triangles))
+    return closed(solids.box(low, high))
 
 
 def torus(major: float = 0.7, minor: float = 0.3, around: int = 96, across: int = 48) -> HardMesh:
     """Closed along both ways."""
-
-    def place(u: Array, v: Array) -> Array:
-        ring = major + minor * np.cos(2 * np.pi * v)
-        angle = 2 * np.pi * u
-        heights = minor * np.sin(2 * np.pi * v)
-        return np.stack([ring * np.cos(angle), ring * np.sin(angle), heights], axis=-1)
-
-    made = welded(grid(place, around, across))
-    return HardMesh(made.positions, made.triangles, volume_of(made.positions, made.triangles))
+    return closed(solids.torus(major, minor, around, across))
 
 
-def grid(place, columns: int, rows: int) -> HardMesh:
+def grid(place: Callable[[Array, Array], Array], columns: int, rows: int) -> HardMesh:
     """The image of the unit square: `place(u, v)` gives points (..., 3)."""
-    u, v = np.meshgrid(np.linspace(0, 1, columns + 1), np.linspace(0, 1, rows + 1), indexing="ij")
-    i, j = np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij")
-    a = i * (rows + 1) + j
-    quads = np.stack([a, a + rows + 1, a + rows + 2, a + 1], axis=-1).reshape(-1, 4)
-    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-    return HardMesh(place(u, v).reshape(-1, 3), triangles)
+    made = solids.grid(place, columns, rows)
+    return HardMesh(made.positions, made.triangles)
 
 
 def welded(mesh: HardMesh, digits: int = 9) -> HardMesh:
@@ -114,20 +89,13 @@ def flipped(mesh: HardMesh) -> HardMesh:
 
 def shuffled(mesh: HardMesh, seed: int = 0) -> HardMesh:
     """Half of the faces inside out, at random."""
-    triangles = mesh.triangles.copy()
-    turned = np.random.default_rng(seed).random(len(triangles)) < 0.5
-    triangles[turned] = triangles[turned][:, ::-1]
-    return HardMesh(mesh.positions, triangles, mesh.volume)
+    return HardMesh(mesh.positions, solids.shuffled(mesh.triangles, seed), mesh.volume)
 
 
-def soup(mesh: HardMesh, jitter: float = 0.0, shrunk: float = 0.0, seed: int = 0) -> HardMesh:
+def soup(mesh: HardMesh, jitter: float = 0.0, shrunk: float = 0.0) -> HardMesh:
     """Triangles that share no vertices: these are moved at random, and toward the middles."""
-    corners = mesh.positions[mesh.triangles]
-    middles = corners.mean(axis=1, keepdims=True)
-    moved = corners + shrunk * (middles - corners)
-    moved += np.random.default_rng(seed).uniform(-jitter, jitter, corners.shape)
-    names = np.arange(3 * len(corners)).reshape(-1, 3)
-    return HardMesh(moved.reshape(-1, 3), names, mesh.volume)
+    made = solids.soup(solids.Solid(mesh.positions, mesh.triangles), jitter=jitter, shrunk=shrunk)
+    return HardMesh(made.positions, made.triangles, mesh.volume)
 
 
 def without(mesh: HardMesh, removed: Indices | NDArray[np.bool_]) -> HardMesh:
@@ -138,15 +106,7 @@ def without(mesh: HardMesh, removed: Indices | NDArray[np.bool_]) -> HardMesh:
 
 def turned(mesh: HardMesh, seed: int = 3) -> HardMesh:
     """Rotated at random, so that nothing lies along the cells."""
-    rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
-    rotation *= np.linalg.det(rotation)
-    return HardMesh(mesh.positions @ rotation.T, mesh.triangles, mesh.volume)
-
-
-def volume_of(positions: Array, triangles: Indices) -> float:
-    """What a closed surface holds."""
-    a, b, c = np.moveaxis(positions[triangles], 1, 0)
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
+    return HardMesh(mesh.positions @ solids.random_rotation(seed).T, mesh.triangles, mesh.volume)
 
 
 def six_patches(gap: float, rows: int = 24, uneven: bool = False) -> HardMesh:

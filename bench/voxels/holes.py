@@ -26,6 +26,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import prefilter
 
 from bench.report import Report, add_json_option
+from bench.solids import mesh_volume, sphere, torus
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -44,34 +45,11 @@ class Hole:
     distance: Callable[[Floats], Floats]
 
 
-def sphere(rounds: int) -> tuple[Floats, Ints]:
-    """An octahedron whose triangles are split into four, `rounds` times."""
-    corners = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
-    faces = [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
-    points, triangles = np.array(corners, float), np.array(faces)
-    for _ in range(rounds):
-        edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        unique, which = np.unique(edges, axis=0, return_inverse=True)
-        middles = points[unique].sum(axis=1)
-        middles /= np.linalg.norm(middles, axis=1, keepdims=True)
-        ab, bc, ca = (len(points) + which.reshape(-1, 3)).T
-        a, b, c = triangles.T
-        points = np.concatenate([points, middles])
-        parts = ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
-        triangles = np.concatenate([np.stack(t, axis=1) for t in parts])
-    return points, triangles
-
-
-def volume(positions: Floats, triangles: Ints) -> float:
-    """The volume within a closed mesh."""
-    a, b, c = np.moveaxis(positions[triangles], 1, 0)
-    return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6
-
-
 def holes() -> Iterator[Hole]:
     """Caps of spheres of two densities, and the side of a torus."""
     for rounds, degrees in ((4, 30), (5, 10), (5, 20), (5, 30), (5, 45), (5, 60), (7, 45)):
-        points, triangles = sphere(rounds)
+        made = sphere(1.0, rounds)
+        points, triangles = made.positions, made.triangles
         middles = points[triangles].mean(axis=1)
         along = middles @ np.array([0.3, -0.5, 0.8]) / np.linalg.norm([0.3, -0.5, 0.8])
         kept = along / np.linalg.norm(middles, axis=1) < np.cos(np.radians(degrees))
@@ -79,23 +57,11 @@ def holes() -> Iterator[Hole]:
             f"sphere of {len(triangles):,} triangles, a cap of {degrees}&deg;",
             points,
             triangles[kept],
-            volume(points, triangles),
+            mesh_volume(points, triangles),
             lambda p: np.abs(np.linalg.norm(p, axis=1) - 1),
         )
-    around, across = 160, 64
-    u, v = np.meshgrid(
-        2 * np.pi * np.arange(around) / around,
-        2 * np.pi * np.arange(across) / across,
-        indexing="ij",
-    )
-    ring = 1 + 0.4 * np.cos(v)
-    points = np.stack([ring * np.cos(u), ring * np.sin(u), 0.4 * np.sin(v)], -1).reshape(-1, 3)
-    i, j = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
-    a = (i * across + j).ravel()
-    b = ((i + 1) % around * across + j).ravel()
-    c = ((i + 1) % around * across + (j + 1) % across).ravel()
-    d = (i * across + (j + 1) % across).ravel()
-    triangles = np.concatenate([np.c_[a, b, c], np.c_[a, c, d]])
+    made = torus(1.0, 0.4, 160, 64)
+    points, triangles = made.positions, made.triangles
     middles = points[triangles].mean(axis=1)
 
     def distance(p: Floats) -> Floats:
@@ -104,7 +70,7 @@ def holes() -> Iterator[Hole]:
     for name, center in (("outer", (1.4, 0, 0)), ("inner", (0.6, 0, 0)), ("upper", (1, 0, 0.4))):
         kept = np.linalg.norm(middles - center, axis=1) > 0.3
         title = f"torus, {name} side"
-        yield Hole(title, points, triangles[kept], volume(points, triangles), distance)
+        yield Hole(title, points, triangles[kept], mesh_volume(points, triangles), distance)
 
 
 @dataclass(frozen=True)
@@ -170,7 +136,7 @@ def row(hole: Hole, name: str, patch: Patch) -> list[str]:
     points = np.einsum("nc,ncd->nd", random.dirichlet((1, 1, 1), SAMPLES), caps[chosen])
     away = hole.distance(points)
     angle = np.percentile(border_angles(patch, first), 95)
-    error = 100 * (volume(patch.positions, patch.triangles) / hole.volume - 1)
+    error = 100 * (mesh_volume(patch.positions, patch.triangles) / hole.volume - 1)
     distances = [f"{away.mean():.4f}", f"{away.max():.4f}", f"{angle:.1f}"]
     cost = [f"{len(caps):,}", f"{patch.seconds:.3f}"]
     return [hole.name, name, *distances, f"{error:+.2f}", *cost]

@@ -14,51 +14,36 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench.solids import (
+    Solid,
+    box,
+    grid,
+    join,
+    mesh_volume,
+    random_rotation,
+    sheet,
+    shuffled,
+    soup,
+    sphere,
+    torus,
+)
 from bench.voxels import meshes
 
+__all__ = [
+    "Solid",
+    "box",
+    "grid",
+    "join",
+    "mesh_volume",
+    "random_rotation",
+    "sheet",
+    "shuffled",
+    "soup",
+    "sphere",
+    "torus",
+]
+
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data" / "meshes"
-
-
-@dataclass(frozen=True)
-class Solid:
-    """The arguments of prefilter.voxelize."""
-
-    positions: np.ndarray
-    triangles: np.ndarray
-
-    @property
-    def corners(self) -> np.ndarray:
-        return self.positions[self.triangles]
-
-    @property
-    def volume(self) -> float:
-        return mesh_volume(self.positions, self.triangles)
-
-    def transformed(self, matrix, offset=(0.0, 0.0, 0.0)) -> "Solid":
-        """Turned, scaled and moved; a mirror turns the inside out."""
-        return Solid(self.positions @ np.asarray(matrix, float).T + offset, self.triangles)
-
-    def flipped(self) -> "Solid":
-        return Solid(self.positions, self.triangles[:, ::-1])
-
-    def without(self, removed) -> "Solid":
-        return Solid(self.positions, np.delete(self.triangles, removed, axis=0))
-
-    def fitted(self, low, high) -> "Solid":
-        """Scaled evenly and moved so that it has its middle where the box has it, and fits in."""
-        low, high = np.asarray(low, float), np.asarray(high, float)
-        own_low, own_high = self.positions.min(axis=0), self.positions.max(axis=0)
-        scale = np.min((high - low) / (own_high - own_low))
-        middle = (own_low + own_high) / 2
-        return Solid((self.positions - middle) * scale + (low + high) / 2, self.triangles)
-
-
-def join(*solids: Solid) -> Solid:
-    starts = np.cumsum([0] + [len(s.positions) for s in solids[:-1]])
-    return Solid(
-        np.concatenate([s.positions for s in solids]),
-        np.concatenate([s.triangles + k for s, k in zip(solids, starts, strict=True)]),
-    )
 
 
 def load(name: str) -> Solid:
@@ -68,50 +53,6 @@ def load(name: str) -> Solid:
         pytest.skip(f"the model {name} is not there")
     read = meshes.read(path)
     return Solid(read.positions, read.triangles)
-
-
-def box(low=(0.0, 0.0, 0.0), high=(1.0, 1.0, 1.0)) -> Solid:
-    corners = np.array([[(i >> a) & 1 for a in range(3)] for i in range(8)], float)
-    quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
-    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
-    return Solid(np.asarray(low) + corners * np.subtract(high, low), np.array(triangles))
-
-
-def torus(major: float, minor: float, around: int, across: int) -> Solid:
-    u, v = np.meshgrid(
-        np.arange(around) * 2 * np.pi / around,
-        np.arange(across) * 2 * np.pi / across,
-        indexing="ij",
-    )
-    ring = major + minor * np.cos(v)
-    positions = np.stack([ring * np.cos(u), ring * np.sin(u), minor * np.sin(v)], axis=-1)
-    i, j = np.meshgrid(np.arange(around), np.arange(across), indexing="ij")
-    a, b = i * across + j, (i + 1) % around * across + j
-    c, d = (i + 1) % around * across + (j + 1) % across, i * across + (j + 1) % across
-    quads = np.stack([a, b, c, d], axis=-1).reshape(-1, 4)
-    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-    return Solid(positions.reshape(-1, 3), triangles)
-
-
-def sphere(radius: float = 1.0, rounds: int = 4, center=(0.0, 0.0, 0.0)) -> Solid:
-    """An octahedron whose triangles are split into four, again and again."""
-    positions = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
-    points = np.array(positions, float)
-    triangles = np.array(
-        [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)]
-    )
-    for _ in range(rounds):
-        edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-        unique, which = np.unique(edges, axis=0, return_inverse=True)
-        middles = points[unique].sum(axis=1)
-        middles /= np.linalg.norm(middles, axis=1, keepdims=True)
-        ab, bc, ca = (len(points) + which.reshape(-1, 3)).T
-        a, b, c = triangles.T
-        points = np.concatenate([points, middles])
-        triangles = np.concatenate(
-            [np.stack(t, axis=1) for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-        )
-    return Solid(points * radius + center, triangles)
 
 
 def crumpled(seed: int, rounds: int = 2, strength: float = 0.35) -> Solid:
@@ -124,17 +65,6 @@ def crumpled(seed: int, rounds: int = 2, strength: float = 0.35) -> Solid:
     moved = made.positions * (1 + strength * random.uniform(-1, 1, (len(made.positions), 1)))
     turned = Solid(moved, made.triangles).transformed(random_rotation(seed))
     return turned.transformed(0.31 * np.eye(3), random.uniform(0.45, 0.55, 3))
-
-
-def random_rotation(seed: int) -> np.ndarray:
-    rotation, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
-    return rotation * np.linalg.det(rotation)
-
-
-def mesh_volume(positions: np.ndarray, triangles: np.ndarray) -> float:
-    """The volume that a closed surface holds."""
-    a, b, c = np.moveaxis(np.asarray(positions, float)[triangles], 1, 0)
-    return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 
 
 def pieces(corners: np.ndarray, low, high, n: int) -> tuple[np.ndarray, np.ndarray]:

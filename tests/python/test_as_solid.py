@@ -5,29 +5,29 @@
 import numpy as np
 import prefilter
 import pytest
-from solids import Solid, box, crumpled, join, random_rotation, sphere, torus
+from solids import (
+    Solid,
+    box,
+    crumpled,
+    join,
+    mesh_volume,
+    random_rotation,
+    sheet,
+    shuffled,
+    soup,
+    sphere,
+    torus,
+)
 
 CELL = 2 / 128
 
 
-def soup(solid, jitter=0.0):
-    """Triangles that share no vertices, each corner moved by up to `jitter` along each axis."""
-    corners = solid.corners.reshape(-1, 3)
-    moved = corners + np.random.default_rng(1).uniform(-jitter, jitter, corners.shape)
-    return moved, np.arange(len(corners)).reshape(-1, 3)
-
-
-def shuffled(solid):
-    """Half of the faces turned."""
-    triangles = solid.triangles.copy()
-    turned = np.random.default_rng(2).random(len(triangles)) < 0.5
-    triangles[turned] = triangles[turned][:, ::-1]
-    return triangles
+def level(x, y):
+    return 0 * x
 
 
 def volume(found):
-    a, b, c = np.moveaxis(found.positions[found.triangles], 1, 0)
-    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+    return mesh_volume(found.positions, found.triangles)
 
 
 CLOSED = {
@@ -61,9 +61,9 @@ def test_faces_are_turned_the_right_way(name, change):
     if change == "flipped":
         triangles = triangles[:, ::-1]
     elif change == "shuffled":
-        triangles = shuffled(solid)
+        triangles = shuffled(solid.triangles)
     else:
-        positions, triangles = soup(solid)
+        positions, triangles = vars(soup(solid)).values()
     found = prefilter.as_solid(positions, triangles, cell=CELL)
     assert volume(found) == pytest.approx(solid.volume, rel=1e-12)
 
@@ -77,7 +77,7 @@ def test_a_hollow_inside_out_stays_hollow():
 
 def test_shells_in_shells_are_cavities_where_faces_say_nothing():
     shells = join(sphere(), sphere(0.8), sphere(0.6))
-    found = prefilter.as_solid(shells.positions, shuffled(shells), cell=CELL)
+    found = prefilter.as_solid(shells.positions, shuffled(shells.triangles), cell=CELL)
     expected = sphere().volume - sphere(0.8).volume + sphere(0.6).volume
     assert volume(found) == pytest.approx(expected)
 
@@ -126,7 +126,7 @@ def test_faces_that_are_there_twice_count_once():
 
 def test_borders_are_welded_across_small_gaps():
     solid = sphere()
-    positions, triangles = soup(solid, 0.01 * CELL)
+    positions, triangles = vars(soup(solid, jitter=0.01 * CELL)).values()
     found = prefilter.as_solid(positions, triangles, cell=CELL)
     assert found.welded_vertices == len(positions) - len(solid.positions)
     assert found.parts == 1
@@ -135,16 +135,16 @@ def test_borders_are_welded_across_small_gaps():
 
 def test_fine_details_are_not_welded():
     solid = sphere(0.01 * CELL)
-    found = prefilter.as_solid(*soup(solid), cell=CELL, thickness=0)
+    found = prefilter.as_solid(*vars(soup(solid)).values(), cell=CELL, thickness=0)
     assert volume(found) == pytest.approx(solid.volume)
 
 
 @pytest.mark.parametrize("change", ["shuffled", "soup"])
 def test_threads_change_nothing(change):
     solid = join(torus(0.8, 0.3, 120, 60), sphere(0.2))
-    positions, triangles = solid.positions, shuffled(solid)
+    positions, triangles = solid.positions, shuffled(solid.triangles)
     if change == "soup":
-        positions, triangles = soup(solid, 0.01 * CELL)
+        positions, triangles = vars(soup(solid, jitter=0.01 * CELL)).values()
     one, several = (
         prefilter.as_solid(positions, triangles, cell=CELL, threads=threads) for threads in (1, 5)
     )
@@ -175,16 +175,6 @@ def kept_share(solid, positions, triangles, distance):
     return np.mean(distances <= distance)
 
 
-def square(rows=4, height=lambda x, y: 0 * x):
-    """A sheet over [-1, 1]^2."""
-    x, y = np.meshgrid(np.linspace(-1, 1, rows + 1), np.linspace(-1, 1, rows + 1), indexing="ij")
-    i, j = np.meshgrid(np.arange(rows), np.arange(rows), indexing="ij")
-    a = i * (rows + 1) + j
-    quads = np.stack([a, a + rows + 1, a + rows + 2, a + 1], axis=-1).reshape(-1, 4)
-    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-    return Solid(np.stack([x, y, height(x, y)], axis=-1).reshape(-1, 3), triangles)
-
-
 def edge_balance(triangles):
     """How many edges are not run through as often one way as the other."""
     edges = triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
@@ -195,10 +185,10 @@ def edge_balance(triangles):
 
 
 SHEETS = {
-    "plane": square(),
-    "hills": square(24, lambda x, y: 0.3 * np.sin(4 * x) * np.cos(5 * y)),
+    "plane": sheet(4, level),
+    "hills": sheet(24, lambda x, y: 0.3 * np.sin(4 * x) * np.cos(5 * y)),
     "one triangle": Solid(np.eye(3), np.array([(0, 1, 2)])),
-    "turned": square().transformed(random_rotation(4)),
+    "turned": sheet(4, level).transformed(random_rotation(4)),
 }
 
 
@@ -219,8 +209,8 @@ def test_sheets_get_a_thickness(name):
 
 
 def test_sheets_may_stay_sheets():
-    sheet = square()
-    found = prefilter.as_solid(sheet.positions, sheet.triangles, cell=0.05, thickness=0)
+    plane = sheet(4, level)
+    found = prefilter.as_solid(plane.positions, plane.triangles, cell=0.05, thickness=0)
     assert found.is_unchanged
     assert found.thickened_parts == 0
     assert found.lost_parts == 1
@@ -265,7 +255,7 @@ def test_open_parts_have_their_outside_outside():
     """A box without a bottom, each way around."""
     solid = box((-1, -1, -1), (1, 1, 1)).transformed(random_rotation(2))
     lidless = Solid(solid.positions, solid.triangles[:10])
-    for triangles in (lidless.triangles, lidless.triangles[:, ::-1], shuffled(lidless)):
+    for triangles in (lidless.triangles, lidless.triangles[:, ::-1], shuffled(lidless.triangles)):
         found = prefilter.as_solid(lidless.positions, triangles, cell=4 / 64)
         closed = prefilter.close_holes(found.positions, found.triangles)
         a, b, c = np.moveaxis(closed.positions[closed.triangles], 1, 0)
@@ -277,14 +267,14 @@ def test_walls_inside_are_dropped():
     left = box((-1, -0.5, -0.5), (0, 0.5, 0.5))
     right = Solid(box((0, -0.5, -0.5), (1, 0.5, 0.5)).positions, left.triangles[2:])
     both = join(left, right).transformed(random_rotation(6))
-    found = prefilter.as_solid(both.positions, shuffled(both), cell=2.2 / 64)
+    found = prefilter.as_solid(both.positions, shuffled(both.triangles), cell=2.2 / 64)
     assert volume(found) == pytest.approx(2.0)
     assert len(found.triangles) == 20
     assert found.thickened_parts == found.lost_parts == 0
 
 
 def test_origins_name_the_triangles_that_others_come_from():
-    both = join(sphere(0.5), square().transformed(np.eye(3), (0, 0, 2)))
+    both = join(sphere(0.5), sheet(4, level).transformed(np.eye(3), (0, 0, 2)))
     found = prefilter.as_solid(both.positions, both.triangles, cell=0.05)
     assert found.thickened_parts == 1
     assert set(found.origins) == set(range(len(both.triangles)))
@@ -301,15 +291,15 @@ def test_nothing_with_an_area_is_no_solid():
 
 @pytest.mark.parametrize("scale", [1e-30, 1e30])
 def test_units_do_not_matter(scale):
-    sheet, ball = square(), sphere()
-    small = prefilter.as_solid(sheet.positions * scale, sheet.triangles, cell=0.05 * scale)
-    usual = prefilter.as_solid(sheet.positions, sheet.triangles, cell=0.05)
+    plane, ball = sheet(4, level), sphere()
+    small = prefilter.as_solid(plane.positions * scale, plane.triangles, cell=0.05 * scale)
+    usual = prefilter.as_solid(plane.positions, plane.triangles, cell=0.05)
     assert np.allclose(small.positions / scale, usual.positions)
     assert np.array_equal(small.triangles, usual.triangles)
-    found = prefilter.as_solid(ball.positions * scale, shuffled(ball), cell=0.05 * scale)
+    found = prefilter.as_solid(ball.positions * scale, shuffled(ball.triangles), cell=0.05 * scale)
     assert (
         found.turned_faces
-        == prefilter.as_solid(ball.positions, shuffled(ball), cell=0.05).turned_faces
+        == prefilter.as_solid(ball.positions, shuffled(ball.triangles), cell=0.05).turned_faces
     )
 
 
@@ -317,8 +307,8 @@ def test_threads_change_nothing_about_sheets_and_leaks():
     leaky = sphere(1.0, 3)
     middles = leaky.corners.mean(axis=1, keepdims=True)
     corners = leaky.corners + 0.05 * (middles - leaky.corners)
-    sheet = square(16, lambda x, y: 2 + 0.2 * np.sin(3 * x))
-    both = join(Solid(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)), sheet)
+    lifted = sheet(16, lambda x, y: 2 + 0.2 * np.sin(3 * x))
+    both = join(Solid(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3)), lifted)
     one, several = (
         prefilter.as_solid(both.positions, both.triangles, cell=0.04, threads=threads)
         for threads in (1, 5)

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import prefilter
 import pytest
-from solids import Solid, box, join, load, mesh_volume, sphere, winding_numbers
+from solids import Solid, box, join, load, mesh_volume, sheet, soup, sphere, winding_numbers
 
 METHODS = ("smooth", "flat", "fan")
 
@@ -60,14 +60,6 @@ def bends(whole, first):
     return np.degrees(np.arccos(np.clip(cosines, -1, 1)))
 
 
-def sheet(height, count=60):
-    x, y = np.meshgrid(*2 * [np.linspace(-1, 1, count)], indexing="ij")
-    i, j = np.meshgrid(*2 * [np.arange(count - 1)], indexing="ij")
-    a = (i * count + j).ravel()
-    triangles = np.concatenate([np.c_[a, a + count, a + count + 1], np.c_[a, a + count + 1, a + 1]])
-    return Solid(np.stack([x, y, height(x, y)], -1).reshape(-1, 3), triangles)
-
-
 def tube(columns, rows, *, jag=0.0):
     """A cylinder of radius 1 around z, from -1 to 1, open at both ends."""
     angle = 2 * np.pi * np.arange(columns) / columns
@@ -77,14 +69,6 @@ def tube(columns, rows, *, jag=0.0):
     a, b = (i * columns + j).ravel(), (i * columns + (j + 1) % columns).ravel()
     triangles = np.concatenate([np.c_[a, b, b + columns], np.c_[a, b + columns, a + columns]])
     return Solid(points, triangles)
-
-
-def soup(solid, gap):
-    """Triangles that share no vertices, each smaller by a share."""
-    corners = solid.corners
-    middle = corners.mean(axis=1, keepdims=True)
-    apart = (middle + (corners - middle) * (1 - gap)).reshape(-1, 3)
-    return Solid(apart, np.arange(len(apart)).reshape(-1, 3))
 
 
 def pieces(solid, gap):
@@ -144,7 +128,7 @@ def test_a_saddle_is_continued():
     def height(x, y):
         return 0.4 * (x * x - y * y)
 
-    whole = sheet(height)
+    whole = sheet(59, height)
     opened = kept(whole, np.hypot(*middles(whole)[:, :2].T) > 0.4)
     away = {}
     for method in METHODS:
@@ -174,7 +158,7 @@ def test_a_missing_half_of_a_side_is_flat_again():
     faces = []
     for axis in range(3):
         for side in (-1.0, 1.0):
-            flat = sheet(lambda x, y: np.ones_like(x), n)
+            flat = sheet(n - 1, lambda x, y: np.ones_like(x))
             turn = np.roll(np.eye(3), axis, axis=0)
             faces.append(flat.transformed(turn @ np.diag([1, side, side])))
     joined = join(*faces)
@@ -216,7 +200,7 @@ def test_long_loops_do_not_take_long():
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("gap", [1e-9, 1e-4, 1e-2, 0.1])
 def test_a_soup_loses_nothing(method, gap):
-    solid = soup(sphere(1.0, 4), gap)
+    solid = soup(sphere(1.0, 4), shrunk=gap)
     whole, found = closed(solid, method)[1:]
     assert found.left_open == found.holes == len(solid.triangles)
     assert len(whole.triangles) == len(solid.triangles)
@@ -240,7 +224,7 @@ def test_pieces_of_a_sphere_lose_nothing(method, gap):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_sheet_stays_open_but_for_its_holes(method):
-    whole = sheet(lambda x, y: 0.1 * np.sin(5 * x) * np.cos(4 * y))
+    whole = sheet(59, lambda x, y: 0.1 * np.sin(5 * x) * np.cos(4 * y))
     _, _, found = closed(whole, method)
     assert (found.holes, found.left_open, len(found.triangles)) == (1, 1, len(whole.triangles))
     opened = kept(whole, np.hypot(middles(whole)[:, 0], middles(whole)[:, 1] - 0.2) > 0.2)

@@ -2,26 +2,15 @@
 
 """Contours with edges and corners: polyhedra whose edges are known, and what they combine to."""
 
-import itertools
-
 import numpy as np
 import prefilter
 import pytest
-
-
-def rotation(seed):
-    """A rotation at random."""
-    q, _ = np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))
-    return q * np.sign(np.linalg.det(q))
+from solids import box, random_rotation
 
 
 def cube(seed, scale=1.0, middle=(0.0, 0.0, 0.0)):
-    corners = np.array(list(itertools.product((-0.5, 0.5), repeat=3)))
-    quads = np.array(
-        [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
-    )
-    triangles = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]], axis=1).reshape(-1, 3)
-    return scale * corners @ rotation(seed).T + np.array(middle), triangles
+    made = box((-0.5,) * 3, (0.5,) * 3).transformed(scale * random_rotation(seed), middle)
+    return made.positions, made.triangles
 
 
 def cone(facets=256):
