@@ -20,11 +20,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import bodies
 import scenes
-import window as windows
 from window import PACKAGE, RedoPanel, begun, clicked, play, region, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
-windows.SECONDS_PER_STEP = 0.05
 
 found: dict[str, object] = {}
 

@@ -17,11 +17,9 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
-import window as windows
 from window import RedoPanel, begun, held, idle, play, refused, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
-windows.SECONDS_PER_STEP = 0.05
 
 
 def session() -> Iterator[None]:

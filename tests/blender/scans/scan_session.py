@@ -19,11 +19,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import bodies
 import clouds
-import window as windows
 from window import RedoPanel, Stage, begun, held, idle, play, refused, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
-windows.SECONDS_PER_STEP = 0.05
 
 
 found: dict[str, object] = {}

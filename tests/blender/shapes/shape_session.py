@@ -18,12 +18,10 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import outlines
-import window as windows
 from window import RedoPanel, Stage, begun, held, idle, play, refused, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"><path d="M0 0H8V8Z"/></svg>'
-windows.SECONDS_PER_STEP = 0.05
 
 
 found: dict[str, object] = {}

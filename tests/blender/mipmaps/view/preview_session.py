@@ -24,7 +24,12 @@ import scenes
 from window import PACKAGE, Stage, begun, play, region, until
 
 RESULT = sys.argv[sys.argv.index("--") + 1]
-CHANNELS = ("COLOR_ALPHA", "COLOR", "ALPHA", "GREEN")
+CHANNELS = {
+    "byte": ("COLOR_ALPHA", "GREEN"),
+    "float": ("COLOR_ALPHA", "COLOR"),
+    "alpha": ("COLOR_ALPHA", "COLOR", "ALPHA", "GREEN"),
+    "data": ("COLOR_ALPHA",),
+}
 SIDE = 48  # Of an offscreen picture.
 
 found: dict[str, object] = {}
@@ -86,7 +91,7 @@ def levels(stage: Stage, name: str, image: bpy.types.Image) -> Iterator[None]:
     space.image = image
     with bpy.context.temp_override(**stage.override):
         bpy.ops.image.view_all(fit_view=True)
-    for channels in CHANNELS:
+    for channels in CHANNELS[name]:
         space.display_channels = channels
         yield from shoot(stage, f"{name}.plain.{channels}")
     space.display_channels = "COLOR_ALPHA"
@@ -95,7 +100,7 @@ def levels(stage: Stage, name: str, image: bpy.types.Image) -> Iterator[None]:
     assert started == {"RUNNING_MODAL"}, started
     yield from until(lambda: module().find(image) is not None)
     state().mip_value, state().use_wipe = 0.0, False
-    for channels in CHANNELS:
+    for channels in CHANNELS[name]:
         space.display_channels = channels
         yield from shoot(stage, f"{name}.level0.{channels}")
     space.display_channels = "COLOR_ALPHA"
