@@ -103,6 +103,16 @@ def bake(addon: Callable[[str], ModuleType]) -> Callable[..., Any]:
 
 
 @pytest.fixture
+def scene() -> bpy.types.Scene:
+    """Returns the scene, set up for Cycles and its texture cache, which Blender has since 5.2."""
+    if "use_texture_cache" not in bpy.types.RenderSettings.bl_rna.properties:
+        pytest.skip("Blender 5.2 or later is needed")
+    # It needs OpenImageIO's Python module, and test_smoke.py does without.
+    importlib.import_module("cycles_scenes").set_up(bpy.context.scene)
+    return bpy.context.scene
+
+
+@pytest.fixture
 def textured() -> Path:
     """Returns the folder of the gathered textured models."""
     if not TEXTURED.is_dir():

@@ -9,7 +9,6 @@ import prefilter
 import pytest
 import scenes
 from cycles_scenes import (
-    HAS_CACHE,
     bake,
     contents,
     generate,
@@ -18,21 +17,7 @@ from cycles_scenes import (
     udim,
 )
 
-needs_cache = pytest.mark.skipif(not HAS_CACHE, reason="Blender 5.2 or later is needed")
 
-LEFT = ((0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (0.0, 1.0))
-RIGHT = ((0.5, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0))
-
-
-@pytest.fixture
-def scene():
-    """Returns the scene, set up for Cycles."""
-    made = bpy.context.scene
-    cycles.set_up(made)
-    return made
-
-
-@needs_cache
 def test_an_image_of_one_color_stays(scene, tmp_path, capfd):
     pixels = np.full((128, 128, 3), 0.5, np.float32)
     cycles.shown_on(cycles.write_picture(tmp_path / "flat.png", pixels, "uint8"))
@@ -43,7 +28,6 @@ def test_an_image_of_one_color_stays(scene, tmp_path, capfd):
     assert "1 of one color stay" in capfd.readouterr().out
 
 
-@needs_cache
 def test_canceling_leaves_the_cache(scene, tmp_path, addon):
     for name in ("one.png", "two.png"):
         pixels = smooth(128, 128, 3, seed=len(name) + ord(name[0]))
@@ -58,7 +42,6 @@ def test_canceling_leaves_the_cache(scene, tmp_path, addon):
         assert contents(tmp_path) == before
 
 
-@needs_cache
 def test_no_space_leaves_the_cache(scene, tmp_path, addon, monkeypatch):
     for name in ("one.png", "two.png"):
         pixels = smooth(128, 128, 3, seed=len(name) + ord(name[0]))
@@ -80,7 +63,6 @@ def test_no_space_leaves_the_cache(scene, tmp_path, addon, monkeypatch):
     assert contents(tmp_path) == before
 
 
-@needs_cache
 @pytest.mark.parametrize("has_cache", [False, True])
 def test_a_read_only_folder_is_an_error(scene, tmp_path, has_cache):
     folder = tmp_path / "textures"
@@ -100,7 +82,6 @@ def test_a_read_only_folder_is_an_error(scene, tmp_path, has_cache):
         locked.chmod(0o755)
 
 
-@needs_cache
 def test_what_has_no_file_is_passed_over(scene, tmp_path, capfd):
     cycles.shown_on(cycles.write_picture(tmp_path / "good.png", smooth(64, 64, 3), "uint8"))
     made = bpy.data.images.new("Generated", 16, 16)
@@ -131,7 +112,6 @@ def test_what_has_no_file_is_passed_over(scene, tmp_path, capfd):
     assert [path.name.split(".")[0] for path in cycles.cache_files(tmp_path)] == ["good"]
 
 
-@needs_cache
 def test_packed_images_are_unpacked_and_baked_in_one_step(scene, tmp_path, capfd):
     names = ("one", "two")
     for seed, name in enumerate(names):
@@ -155,7 +135,6 @@ def test_packed_images_are_unpacked_and_baked_in_one_step(scene, tmp_path, capfd
     assert "texture cache of 2 images (2 files)" in output
 
 
-@needs_cache
 def test_a_tile_without_a_file_is_told(scene, tmp_path):
     image = udim(tmp_path, missing=True)
     cycles.shown_on(image)
@@ -185,7 +164,6 @@ def of_a_curve(tree, node):
     assert node.image is not None
 
 
-@needs_cache
 @pytest.mark.parametrize(
     ("spoil", "reason"),
     [
@@ -199,7 +177,8 @@ def test_levels_of_what_is_seen_otherwise_are_blenders(scene, tmp_path, capfd, s
         cycles.write_picture(tmp_path / "good.png", smooth(64, 64, 3), "uint8"), name="G"
     )
     image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3, seed=9), "uint8")
-    tree = cycles.shown_on(image, LEFT).data.materials[0].node_tree
+    half = ((0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (0.0, 1.0))
+    tree = cycles.shown_on(image, half).data.materials[0].node_tree
     spoil(tree, tree.nodes["Image Texture"])
     generate()
     path = cycles.cache_file(tmp_path, "paint.png")
@@ -211,7 +190,6 @@ def test_levels_of_what_is_seen_otherwise_are_blenders(scene, tmp_path, capfd, s
     assert "it keeps Blender's levels" in output
 
 
-@needs_cache
 def test_what_lies_beyond_the_edges_must_be_of_one_kind(scene, tmp_path):
     image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
     wide = ((-0.5, 0), (1.5, 0), (1.5, 1), (-0.5, 1))
@@ -230,7 +208,6 @@ def test_what_lies_beyond_the_edges_must_be_of_one_kind(scene, tmp_path):
         bake()
 
 
-@needs_cache
 def test_nothing_to_bake_says_why(scene, tmp_path):
     cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
     with pytest.raises(RuntimeError, match="no image texture to bake; it has no mesh"):
@@ -240,7 +217,6 @@ def test_nothing_to_bake_says_why(scene, tmp_path):
         bake()
 
 
-@needs_cache
 def test_bad_geometry_is_told(scene, tmp_path):
     image = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
     obj = cycles.shown_on(image)

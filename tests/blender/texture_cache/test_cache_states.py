@@ -11,12 +11,9 @@ import pytest
 import scenes
 from cycles_scenes import smooth
 
-HAS_CACHE = "use_texture_cache" in bpy.types.RenderSettings.bl_rna.properties
 
-
-@pytest.mark.skipif(not HAS_CACHE, reason="Blender 5.2 or later is needed")
+@pytest.mark.usefixtures("scene")
 def test_what_the_panel_says_of_images(tmp_path, addon, monkeypatch):
-    cycles.set_up(bpy.context.scene)
     module = addon("texture_cache.states")
     monkeypatch.setattr(module, "_SECONDS", -1.0)
     monkeypatch.setattr(addon("core.remembered"), "SHARE_OF_TIME", 1e9)

@@ -23,19 +23,6 @@ from cycles_scenes import (
     udim,
 )
 
-needs_cache = pytest.mark.skipif(not HAS_CACHE, reason="Blender 5.2 or later is needed")
-
-LEFT = ((0.0, 0.0), (0.5, 0.0), (0.5, 1.0), (0.0, 1.0))
-RIGHT = ((0.5, 0.0), (1.0, 0.0), (1.0, 1.0), (0.5, 1.0))
-
-
-@pytest.fixture
-def scene():
-    """Returns the scene, set up for Cycles."""
-    made = bpy.context.scene
-    cycles.set_up(made)
-    return made
-
 
 @pytest.mark.skipif(HAS_CACHE, reason="this Blender has a texture cache")
 def test_an_older_blender_says_what_is_needed():
@@ -45,7 +32,6 @@ def test_an_older_blender_says_what_is_needed():
         bake()
 
 
-@needs_cache
 def test_levels_are_removed_again(scene, tmp_path):
     image = cycles.write_picture(tmp_path / "paint.png", smooth(256, 256, 3), "uint8")
     cycles.shown_on(image)
@@ -66,7 +52,6 @@ def test_levels_are_removed_again(scene, tmp_path):
     np.testing.assert_array_equal(cycles.level(cycles.cache_file(tmp_path), 3), *levels)
 
 
-@needs_cache
 def test_who_renders_with_another_engine_is_told(scene, tmp_path, capfd):
     cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(256, 256, 3), "uint8"))
     bake()
@@ -76,16 +61,14 @@ def test_who_renders_with_another_engine_is_told(scene, tmp_path, capfd):
     assert "Warning: scene 'Scene' is not rendered by Cycles" in capfd.readouterr().out
 
 
-@needs_cache
+@pytest.mark.usefixtures("scene")
 def test_poll_without_images():
     assert not bpy.ops.prefilter.bake_texture_cache.poll()
     with pytest.raises(RuntimeError, match="no image in this file"):
         bake()
 
 
-@needs_cache
-@pytest.mark.parametrize("kind", ["float", "uint8"])
-@pytest.mark.parametrize("number", [1, 2])
+@pytest.mark.parametrize(("kind", "number"), [("float", 2), ("uint8", 1)])
 def test_cycles_renders_the_levels(scene, tmp_path, kind, number):
     name = "paint.exr" if kind == "float" else "paint.png"
     image = cycles.write_picture(tmp_path / name, smooth(256, 256, 3), kind)
@@ -116,7 +99,6 @@ def test_cycles_renders_the_levels(scene, tmp_path, kind, number):
     assert rmse(of_ours, true) < 0.8 * rmse(of_blender, true)
 
 
-@needs_cache
 def test_cycles_renders_whatever_the_levels_are(scene, tmp_path, addon):
     tx_files = addon("bridge.files.tx")
     cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(256, 256, 3), "uint8"))
@@ -131,7 +113,6 @@ def test_cycles_renders_whatever_the_levels_are(scene, tmp_path, addon):
     np.testing.assert_allclose(colors, np.broadcast_to((1, 0, 0), colors.shape), atol=1e-3)
 
 
-@needs_cache
 @pytest.mark.parametrize(
     ("name", "kind", "channels"),
     [
@@ -164,7 +145,6 @@ def test_all_but_the_levels_stays(scene, tmp_path, name, kind, channels):
     assert not reader.seek_subimage(0, 8)
 
 
-@needs_cache
 def test_blender_leaves_it_alone_until_the_image_changes(scene, tmp_path, capfd):
     name = tmp_path / "paint.png"
     cycles.shown_on(cycles.write_picture(name, smooth(128, 128, 3), "uint8"))
@@ -185,7 +165,6 @@ def test_blender_leaves_it_alone_until_the_image_changes(scene, tmp_path, capfd)
     assert path.stat().st_mtime == 1.6e9
 
 
-@needs_cache
 @pytest.mark.parametrize(
     ("kind", "colorspace", "is_encoded"),
     [
@@ -226,7 +205,6 @@ def test_levels_are_closer_to_the_image_as_cycles_reads_it(
     assert np.all(np.array(ours) < 0.96 * np.array(box)), (ours, box)
 
 
-@needs_cache
 @pytest.mark.parametrize(
     ("name", "kind", "mode"),
     [
@@ -259,7 +237,6 @@ def test_color_and_alpha_are_associated(scene, tmp_path, name, kind, mode):
     )
 
 
-@needs_cache
 @pytest.mark.parametrize("is_cut_out", [False, True])
 @pytest.mark.parametrize("kind", ["uint8", "float"])
 def test_covered_colors_are_closer_to_the_image(scene, tmp_path, is_cut_out, kind):
@@ -293,7 +270,6 @@ def test_covered_colors_are_closer_to_the_image(scene, tmp_path, is_cut_out, kin
     assert np.all(errors() < box)
 
 
-@needs_cache
 @pytest.mark.parametrize("mode", ["CHANNEL_PACKED", "NONE"])
 def test_channels_that_are_no_alpha_do_not_mix(scene, tmp_path, mode):
     pixels = np.ones((64, 64, 4), np.float32)
@@ -308,7 +284,6 @@ def test_channels_that_are_no_alpha_do_not_mix(scene, tmp_path, mode):
     np.testing.assert_allclose(stored[..., 3], 0.5 if mode == "CHANNEL_PACKED" else 1, atol=0.01)
 
 
-@needs_cache
 @pytest.mark.parametrize("kind", ["uint8", "float"])
 def test_packed_alpha_that_a_material_shows_by_is_coverage(scene, tmp_path, kind):
     """As Blender's glTF importer sets images up: what alpha hides is in no level."""
@@ -333,7 +308,6 @@ def test_packed_alpha_that_a_material_shows_by_is_coverage(scene, tmp_path, kind
         assert stored[..., 3].mean() == pytest.approx(0.25, abs=0.02)
 
 
-@needs_cache
 def test_levels_fall_no_deeper_than_the_image(scene, tmp_path):
     pixels = np.full((64, 64, 3), 0.01, np.float32)
     pixels[:, ::5] = 50
@@ -344,7 +318,6 @@ def test_levels_fall_no_deeper_than_the_image(scene, tmp_path):
     assert min(cycles.level(path, number).min() for number in range(1, 7)) >= -1e-6
 
 
-@needs_cache
 def test_deep_integers_stay_within_one(scene, tmp_path):
     """Blender caches a 16-bit file of another color space as floats."""
     pixels = np.ones((64, 64, 3), np.float32)
@@ -360,7 +333,6 @@ def test_deep_integers_stay_within_one(scene, tmp_path):
     assert max(cycles.level(path, number).max() for number in range(1, 7)) <= max(1, highest)
 
 
-@needs_cache
 def test_weights_are_those_of_all_objects(scene, tmp_path):
     pixels = np.zeros((64, 64, 3), np.float32)
     pixels[:] = MAGENTA
@@ -385,7 +357,6 @@ def test_weights_are_those_of_all_objects(scene, tmp_path):
     np.testing.assert_allclose(stored[3], np.broadcast_to(GREEN, (4, 3)), atol=0.03)
 
 
-@needs_cache
 def test_two_images_of_a_file_share_their_surfaces(scene, tmp_path):
     pixels = np.zeros((64, 64, 3), np.float32)
     pixels[:] = MAGENTA
@@ -405,7 +376,6 @@ def test_two_images_of_a_file_share_their_surfaces(scene, tmp_path):
     np.testing.assert_allclose(stored[:, 3], np.broadcast_to(BLUE, (4, 3)), atol=0.03)
 
 
-@needs_cache
 def test_color_spaces_of_a_file_have_a_cache_file_each(scene, tmp_path, capfd):
     first = cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8")
     second = bpy.data.images.load(str(tmp_path / "paint.png"), check_existing=False)
@@ -417,7 +387,6 @@ def test_color_spaces_of_a_file_have_a_cache_file_each(scene, tmp_path, capfd):
     assert "2 images (2 files), over 2 objects" in capfd.readouterr().out
 
 
-@needs_cache
 def test_tiles_are_weighed_by_what_lies_in_them(scene, tmp_path):
     image = udim(tmp_path)
     squares = [
@@ -433,7 +402,6 @@ def test_tiles_are_weighed_by_what_lies_in_them(scene, tmp_path):
         np.testing.assert_allclose(stored, np.broadcast_to(color, stored.shape), atol=0.03)
 
 
-@needs_cache
 def test_nan_in_the_image_stays_there(scene, tmp_path):
     pixels = smooth(64, 64, 3)
     pixels[10, 10] = np.nan
@@ -443,7 +411,6 @@ def test_nan_in_the_image_stays_there(scene, tmp_path):
         assert np.isfinite(cycles.level(cycles.cache_file(tmp_path), number)).all()
 
 
-@needs_cache
 @pytest.mark.parametrize("is_absolute", [False, True])
 def test_the_folder_of_the_preferences_is_used(scene, tmp_path, is_absolute):
     folder = tmp_path / "cache" / "of textures"
@@ -462,7 +429,6 @@ def test_the_folder_of_the_preferences_is_used(scene, tmp_path, is_absolute):
         paths.texture_cache_directory = ""
 
 
-@needs_cache
 def test_instances_count(scene, tmp_path):
     pixels = np.zeros((64, 64, 3), np.float32)
     pixels[:] = GREEN
@@ -476,7 +442,6 @@ def test_instances_count(scene, tmp_path):
     assert bake() == {"FINISHED"}
 
 
-@needs_cache
 def test_the_command(tmp_path, scene):
     cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(64, 64, 3), "uint8"))
     scene.render.use_texture_cache = False
@@ -501,7 +466,6 @@ def test_the_command(tmp_path, scene):
         assert "Traceback" not in result.stderr
 
 
-@needs_cache
 def test_results_do_not_depend_on_threads(scene, tmp_path, addon):
     cycles.shown_on(cycles.write_picture(tmp_path / "paint.png", smooth(128, 64, 4), "uint8"))
     module = addon("texture_cache.bake")
