@@ -2,7 +2,8 @@
 
 """Bad input gets a report that says what is wrong, and neither images nor files are made.
 
-A row is what is wrong with a good scene, and what the message must hold.
+A row is what is wrong with a good scene, and what the message must hold. Other values that are
+refused are in the tests of what refuses them: here is one of a kind, as users get to see it.
 """
 
 from dataclasses import dataclass, field
@@ -79,20 +80,12 @@ def of_a_broken_texel(quad):
     quad.data.materials[0] = scenes.material("Light", image)
 
 
+def of_no_importance(quad):
+    quad.data.attributes.new("Care", "FLOAT", "POINT")
+
+
 def with_a_small_roughness(quad):
     scenes.image("Rough", scenes.noise(4, 4), colorspace="Non-Color")
-
-
-def with_care(value):
-    def change(quad):
-        care = quad.data.attributes.new("Care", "FLOAT", "POINT")
-        care.data.foreach_set("value", [value] * 4)
-
-    return change
-
-
-def with_vectors(quad):
-    quad.data.attributes.new("Care", "FLOAT_VECTOR", "POINT")
 
 
 ROWS = {
@@ -107,7 +100,6 @@ ROWS = {
         {"objects": "selected"},
         change=without_material,
     ),
-    "no UVs": Row(["image 'Paint'", "object 'Quad' has no UV map"], change=without_uvs),
     "no faces": Row(["image 'Paint'", "no surface to bake for", "'Quad'"], change=without_faces),
     "no area": Row(["object 'Quad'", "area of 0 in all", "positive"], change=of_no_area),
     "broken vertex": Row(
@@ -125,58 +117,18 @@ ROWS = {
         change=of_a_broken_texel,
         named="Light",
     ),
-    "too many levels": Row(
-        ["Levels: found 9", "8 x 8 has 1 to 4"],
-        {"levels": 9},
-    ),
     "no folder": Row(["there is no folder", "nowhere"], {"filepath": "nowhere/out.exr"}),
     "folder": Row(["folder.exr", "is a folder"], {"filepath": "folder.exr"}),
     "read-only file": Row(["kept.exr", "is read-only"], {"filepath": "kept.exr"}),
-    "frames": Row(
-        ["End: 1 is before", "before Start, 5"],
-        {"use_frames": True, "frame_start": 5, "frame_end": 1},
-    ),
-    "importance": Row(
-        ["Importance: found no vertex group or attribute named 'Care'", "'Quad'"],
-        {"importance": "Care"},
-    ),
     "importance of 0": Row(
         ["Importance: 'Care' is 0 wherever", "'Quad'"],
         {"importance": "Care"},
-        change=with_care(0.0),
-    ),
-    "negative importance": Row(
-        ["object 'Quad': importance 'Care': vertex 0 has -1", "0 and up"],
-        {"importance": "Care"},
-        change=with_care(-1.0),
-    ),
-    "importance of vectors": Row(
-        ["'Care'", "FLOAT_VECTOR", "a number, a color or a boolean is needed"],
-        {"importance": "Care"},
-        change=with_vectors,
-    ),
-    "reader": Row(
-        ["reader: 'srgb-after' requires pam-bilinear"],
-        {"reader": "srgb-after", "filter": "pam-trilinear"},
-    ),
-    "cut-out": Row(
-        ["image 'Paint'", "has no alpha", "a cut-out needs alpha"], {"content": "cutout"}
-    ),
-    "no roughness image": Row(
-        ["no image named 'Rough'"], {"content": "normal", "roughness": "Rough"}
+        change=of_no_importance,
     ),
     "roughness of another size": Row(
         ["Roughness: 'Rough' has 4 x 4 texels", "8 x 8"],
         {"content": "normal", "roughness": "Rough"},
         change=with_a_small_roughness,
-    ),
-    "roughness is the normal map": Row(
-        ["Roughness: 'Paint' is the normal map itself"],
-        {"content": "normal", "roughness": "Paint"},
-    ),
-    "roughness file alone": Row(
-        ["Roughness File: choose a Roughness image"],
-        {"content": "normal", "roughness_filepath": "rough.exr"},
     ),
     **{
         f"{operator} without {what}": Row(["Paint", words], change=change, operator=operator)
@@ -241,20 +193,13 @@ def test_operator(name, folder):
         (["bake", "none.blend", "--save"], ["FILE: there is no file", "none.blend"], 1),
         (["bake", "broken.blend", "--save"], ["FILE: cannot load", "broken.blend"], 1),
         (["bake", "scene.blend", "--save", "--filter", "best"], ["--filter", "'best'"], 2),
-        (["bake", "scene.blend", "--save", "--levels", "-1"], ["--levels: found '-1'"], 2),
-        (["bake", "scene.blend", "--save", "--seams", "nan"], ["--seams", "'nan'"], 2),
-        (["bake", "scene.blend", "--save", "--threads", "two"], ["--threads", "'two'"], 2),
-        (["bake", "scene.blend", "--save", "--reader", "gpu"], ["--reader", "srgb-after"], 2),
         (["bake", "scene.blend", "--save", "--image", "Pain"], ["'Pain'", "'Paint'"], 1),
         (["bake", "scene.blend", "--save", "--object", "Qua"], ["'Qua'", "'Quad'"], 1),
         (["bake", "scene.blend", "--save", "--levels", "9"], ["Levels: found 9", "1 to 4"], 1),
         (["bake", "quad.obj", "--output", "out.exr"], ["--image: needed", "no image"], 1),
         (["bake", "scene.blend", "--output", "no/out.exr"], ["there is no folder"], 1),
         (["bake", "scene.blend", "--output", "kept.exr"], ["kept.exr", "read-only"], 1),
-        (["plot", "scene.blend"], ["nothing to write", "--output", "--table"], 2),
-        (["plot", "scene.blend", "--table", "error.png"], ["'.png'", ".csv"], 1),
         (["bake-cache", "quad.obj"], ["FILE: found 'quad.obj'", ".blend"], 2),
-        (["bake-cache", "none.blend"], ["FILE: there is no file", "none.blend"], 1),
     ],
 )
 def test_command(arguments, words, status, saved):

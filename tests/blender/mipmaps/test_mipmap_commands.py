@@ -153,12 +153,6 @@ def test_normal_map_and_roughness_from_picture_files(obj_and_picture, tmp_path):
     assert oiio.ImageBuf(str(tmp_path / "r.tif"), 0, 2).spec().width == 4
 
 
-def test_wrong_thresholds_exit_with_2(blend):
-    for threshold in ("0", "1.5", "nan", "much"):
-        assert_fails(run("bake", blend, "--save", "--threshold", threshold), threshold, status=2)
-    assert_fails(run("bake", blend, "--save", "--content", "bumps"), "bumps", status=2)
-
-
 def test_plot(blend, tmp_path):
     picture, table = tmp_path / "error.png", tmp_path / "error.csv"
     result = run(
@@ -210,7 +204,6 @@ def test_reader(blend, tmp_path):
         (["--output", "error.jpg"], ["'.jpg'", ".png"], 1),
         (["--table", "error.png"], ["'.png'", ".csv"], 1),
         (["--output", "nowhere/error.png"], ["there is no folder"], 1),
-        (["--filters", "sinc", "--output", "error.png"], ["'sinc'"], 2),
         (["--image", "Pain", "--output", "error.png"], ["'Pain'", "'Paint'"], 1),
     ],
 )

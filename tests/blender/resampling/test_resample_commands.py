@@ -164,15 +164,11 @@ def test_wrong_arguments(sky, tmp_path):
         ((*places, "--scale", 5), ("--rectify: not allowed with --scale",)),
         (("--corners", 1, 2, 3), ("--corners", "8 arguments")),
         (("--corners", *CORNERS[:7], "nan"), ("Upper Left", "found 0 nan")),
-        (("--corners", *CORNERS[:7], "x"), ("--corners", "'x'")),
         (("--pixels",), ("--pixels: give --corners or --rectify",)),
         (("--width", 5), ("both --width and --height",)),
         (("--size", "pixels"), ("both --width and --height",)),
         (("--size", "fit", "--width", 5, "--height", 5), ("--width: not allowed with --size fit",)),
-        (("--scale", "nan"), ("Scale X", "found nan")),
         (("--scale-x", "1e9"), ("--scale-x", "allowed: -1000 to 1000")),
-        (("--filter", "radial3"), ("--filter", "'radial3'", "lanczos3")),
-        (("--method", "5"), ("--method", "'5'", "exact, 8, 6, 4")),
         (("--method", "table"), ("--method table: give --table",)),
         (("--table", "x.json"), ("--table: not allowed without --method table",)),
         (("--max-probes", 4), ("--max-probes: not allowed without --filter gaussian",)),
@@ -187,12 +183,10 @@ def test_failures(sky, tmp_path):
     for arguments, words in (
         ((tmp_path / "none.png", target), ("INPUT", "none.png")),
         ((path, tmp_path / "none" / "new.png"), ("there is no folder",)),
-        ((path, target, "--scale", 0), ("Scale X: found 0",)),
         (
             (path, target, "--corners", 0, 0, 1, 1, 1, 0, 0, 1),
             ("Corners: found", "convex quadrilateral"),
         ),
-        ((path, target, "--corners", 0, 0, 9e5, 0, 9e5, 1, 0, 1), ("18000000 pixels long",)),
         ((path, target, "--method", "table", "--table", "no.json"), ("no.json",)),
     ):
         assert_fails(run("resample", *arguments), *words)

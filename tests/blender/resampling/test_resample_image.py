@@ -181,7 +181,6 @@ def test_in_place_and_undo():
     [
         ({"image": "Pain"}, "no image named 'Pain'"),
         ({"image": ""}, "image: no name is given"),
-        ({"scale_x": 0.0}, "Scale X: found 0"),
         ({"warp": "corners", "lower_left": (2.0, 2.0)}, "Corners: found .*convex quadrilateral"),
         ({"scale_x": 1000.0, "scale_y": 1000.0}, "."),
         ({"method": "table"}, "Table: no file is named"),

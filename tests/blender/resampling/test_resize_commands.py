@@ -119,8 +119,6 @@ def test_wrong_arguments(paint, tmp_path):
     for arguments, words in (
         ((path, target), ("no size", "--percent, --width or --height")),
         ((path, target, "--percent", 5, "--width", 5), ("--percent: not allowed with",)),
-        ((path, target, "--percent", 0), ("--percent", "allowed: above 0")),
-        ((path, target, "--width", "x"), ("--width", "allowed: 1 to 1048576")),
         ((path, target, "--filter", "cubic"), ("--filter", "'cubic'", "least-squares")),
         ((path, tmp_path / "new.jpg", "--width", 5), ("OUTPUT", "new.jpg", ".png, .exr")),
     ):

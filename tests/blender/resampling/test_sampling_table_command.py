@@ -48,8 +48,6 @@ def test_certified_and_loaded_again(tmp_path):
     ("arguments", "words"),
     [
         (("table.txt",), ("OUTPUT", "table.txt", ".glsl, .hlsl, .osl, .json")),
-        (("table.json", "--texels", 1), ("--texels", "allowed: 2 to 16")),
-        (("table.json", "--degree", 3), ("--degree", "allowed: 1 to 2")),
         (("table.json", "--filter", "radial3"), ("--filter", "'radial3'", "lanczos2")),
         (("table.glsl", "--table", "a.json", "--texels", 4), ("--table: not allowed", "--texels")),
         ((), ("OUTPUT",)),

@@ -331,20 +331,8 @@ def test_meshes_with_faces_are_no_scans():
     assert_torus(surface(), 2 * CELL)
 
 
-def one_point():
-    return clouds.scan(np.zeros((1, 3)), np.ones((1, 3)))
-
-
-def coincident():
-    return clouds.scan(np.ones((100, 3)), clouds.sphere(100)[1])
-
-
 def not_finite():
     return clouds.scan(np.full((100, 3), np.nan), clouds.sphere(100)[1])
-
-
-def without_normals():
-    return clouds.scan(clouds.sphere(100)[0], np.zeros((100, 3)))
 
 
 def flat():
@@ -363,10 +351,7 @@ def with_faces():
 @pytest.mark.parametrize(
     ("make", "options", "words"),
     [
-        (one_point, {}, "point"),
-        (coincident, {}, "coincide|extent"),
         (not_finite, {}, "point"),
-        (without_normals, {}, "normal"),
         (flat, {}, "object 'Scan': its scale is 0 along an axis"),
         (with_faces, {}, "object 'Scan': its modifiers make faces"),
         (

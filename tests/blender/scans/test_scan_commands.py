@@ -172,8 +172,6 @@ def test_failures_leave_nothing(scan, tmp_path):
         ((scan, tmp_path / "out.vdb"), ["TARGET: found", "allowed: "], 2),
         (("image.png", target), ["SOURCE: found 'image.png'", "allowed: "], 2),
         ((scan, target, "--depth", 13), ["--depth: found '13'", "1 to 12"], 2),
-        ((scan, target, "--custom-isovalue", 0), ["--custom-isovalue: found '0'"], 2),
-        ((scan, target, "--wavelet", "d6"), ["--wavelet: found 'd6'", "haar, d4"], 2),
         ((scan, target, "--object", "Scan"), ["--object: only .blend files"], 2),
         ((scan, blend, target), ["SOURCE: .blend files"], 2),
         ((blend, target), ["no visible object with points and no faces"], 1),

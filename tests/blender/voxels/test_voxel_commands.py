@@ -130,7 +130,6 @@ def test_failures_leave_nothing(blend, tmp_path):
         (("voxelize", blend, tmp_path / "out.txt"), ["OUTPUT: found", "allowed: "], 2),
         (("voxelize", "image.png", target), ["FILE: found 'image.png'", "allowed: "], 2),
         (("voxelize", blend, target, "--depth", 13), ["--depth: found '13'", "1 to 12"], 2),
-        (("voxelize", blend, target, "--voxel-size", 0), ["--voxel-size: found '0'"], 2),
         (
             ("voxelize", blend, target, "--object", "Hidden"),
             ["no visible object with a surface named 'Hidden'", "'Body', 'Hole'"],
