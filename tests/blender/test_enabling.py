@@ -23,7 +23,7 @@ WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
 # Of the package: what options take their limits and choices from.
 OF_PACKAGE = re.compile(
     r"prefilter(\.(_native|_border(\..*)?|images(\.(mipmaps|color|pixel_filters))?|meshes(\.surface)?"
-    r"|points(\.scan_files)?|sampling(\.levels)?|voxels(\.octree)?))?"
+    r"|points(\.scan_files)?|sampling(\.levels)?|voxels(\.(octree|contours))?))?"
 )
 SLOW = {"argparse", "concurrent.futures", "logging", "tempfile", "zipfile", "OpenImageIO"}
 PROGRAM = f"""

@@ -209,3 +209,40 @@ def test_add_preset():
     arguments = {"name": "Smoke", "remove_name": True, "panel": kind.panel}
     assert bpy.ops.prefilter.add_preset(**arguments) == FINISHED
     assert "Smoke" not in kind.files()
+
+
+@pytest.fixture
+def panel() -> str:
+    """Returns the identifier of a panel of presets."""
+    return bpy.types.PREFILTER_PT_voxelize_presets.kind.panel
+
+
+def test_apply_preset(panel):
+    path = next(iter(bpy.types.PREFILTER_PT_voxelize_presets.kind.files().values()))
+    options = {"filepath": str(path), "menu_idname": panel}
+    assert bpy.ops.prefilter.apply_preset(**options) == FINISHED
+
+
+def test_reset_settings(panel):
+    bpy.context.scene.prefilter_voxelize.depth = 3
+    assert bpy.ops.prefilter.reset_settings(panel=panel) == FINISHED
+    assert bpy.context.scene.prefilter_voxelize.depth > 3
+
+
+def test_export_preset(panel, tmp_path):
+    path = str(tmp_path / "Smoke.py")
+    assert bpy.ops.prefilter.export_preset(panel=panel, filepath=path) == FINISHED
+    assert [one.name for one in tmp_path.iterdir()] == ["Smoke.py"]
+
+
+def test_import_preset(panel, tmp_path):
+    path = str(tmp_path / "Smoke.py")
+    bpy.ops.prefilter.export_preset(panel=panel, filepath=path)
+    assert bpy.ops.prefilter.import_preset(panel=panel, filepath=path) == FINISHED
+    arguments = {"name": "Smoke", "remove_name": True, "panel": panel}
+    assert bpy.ops.prefilter.add_preset(**arguments) == FINISHED
+
+
+def test_confirm_cancel():
+    """Of an operator at work, which is in windows only."""
+    assert bpy.ops.prefilter.confirm_cancel(key="") == {"CANCELLED"}
