@@ -186,7 +186,7 @@ void expect_sound(const FacetedMesh& mesh) {
 TEST(Simplify, StaysWithinTheTolerance) {
   for (const Interpolant interpolant :
        {Interpolant::kPlane, Interpolant::kOccupancy, Interpolant::kLinear}) {
-    const FacetedMesh before = blob(24, interpolant);
+    const FacetedMesh before = blob(16, interpolant);
     for (const double tolerance : {0.02, 0.1, 0.3, 1.0}) {
       const FacetedMesh after = simplify(before, tolerance, Progress(), 1);
       expect_sound(after);

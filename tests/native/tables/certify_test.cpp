@@ -159,10 +159,10 @@ TEST(CertifySet, LeavesAGapThatTheBestSetIsWithin) {
 TEST(CertifySet, IsTheSameOnAnyNumberOfThreads) {
   const SubdomainSystem system = system_of({"lanczos2", 6, 4, 2, 1}, 3, 1);
   const FittedSet start = poor_set(system, 6);
-  const CertifiedSet one = certify_set(system, start, {20000, Progress(), 1});
+  const CertifiedSet one = certify_set(system, start, {8000, Progress(), 1});
   EXPECT_GT(one.gap, 0.0);
   for (const int threads : {2, 5}) {
-    const CertifiedSet other = certify_set(system, start, {20000, Progress(), threads});
+    const CertifiedSet other = certify_set(system, start, {8000, Progress(), threads});
     EXPECT_EQ(other.set.members, one.set.members);
     EXPECT_EQ(other.set.weights, one.set.weights);
     EXPECT_EQ(other.gap, one.gap);

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "prefilter/tables/bordered_rows.h"
@@ -54,13 +55,13 @@ TEST(SubdomainSystem, IsEquationSixFourByTheMiddlesOfSmallCells) {
     std::vector<double> sides(static_cast<std::size_t>(system.candidates()) * 10);
     for_middles(subdomain, 16, [&](double x, double y, double f, double weight) {
       filter_square += weight * filters.of_sample(x, f) * filters.of_sample(y, f);
+      std::array<double, 10> polynomials;
+      for (int p = 0; p < 10; ++p) polynomials[p] = polynomial(system.basis, p, x, y, f);
       for (int i = 0; i < system.candidates(); ++i) {
         const TexelOffset& texel = system.texels[i];
         const double product = weight * filters.with_sample(texel.finer, texel.x, x, f) *
                                filters.with_sample(texel.finer, texel.y, y, f);
-        for (int p = 0; p < 10; ++p) {
-          sides[i * 10 + p] += product * polynomial(system.basis, p, x, y, f);
-        }
+        for (int p = 0; p < 10; ++p) sides[i * 10 + p] += product * polynomials[p];
       }
     });
     EXPECT_NEAR(system.filter_square, filter_square, 5e-3 * filter_square);

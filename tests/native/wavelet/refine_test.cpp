@@ -42,8 +42,8 @@ CellTree sampled_tree(int depth, const std::function<double(const Vector3&)>& oc
 }
 
 // The share of a cell that is inside, by samples in it.
-std::function<double(const Vector3&)> share_of(double side,
-                                               const std::function<bool(const Vector3&)>& inside) {
+template <typename Inside>
+std::function<double(const Vector3&)> share_of(double side, const Inside& inside) {
   return [=](const Vector3& middle) {
     int count = 0;
     for (int i = 0; i < kSamples * kSamples * kSamples; ++i) {
