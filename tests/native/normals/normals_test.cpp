@@ -52,14 +52,6 @@ TEST(EstimateNormals, TakeAnyPoints) {
   }
 }
 
-TEST(EstimateNormals, NameWhatIsWrong) {
-  const std::vector<Vector3> points = sphere(4, 10);
-  const std::vector<Vector3> two(2, Vector3{});
-  EXPECT_THROW(estimate_normals({}, 16, {}, Progress(), 1), Error);
-  EXPECT_THROW(estimate_normals(points, 2, {}, Progress(), 1), Error);
-  EXPECT_THROW(estimate_normals(points, 16, two, Progress(), 1), Error);
-}
-
 TEST(GridNormals, LeaveOutWhatIsFarBehind) {
   constexpr std::int64_t kSide = 20;
   std::vector<Vector3> points;

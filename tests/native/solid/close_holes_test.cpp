@@ -202,12 +202,5 @@ TEST(CloseHoles, StopsWithinLongLoops) {
   EXPECT_EQ(calls, 6);
 }
 
-TEST(CloseHoles, NamesWhatIsWrong) {
-  const std::vector<Vector3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  EXPECT_THROW(close_holes({positions, Triangles()}, {}), Error);
-  const Triangles bad = {{0, 1, 7}};
-  EXPECT_THROW(close_holes({positions, bad}, {}), Error);
-}
-
 }  // namespace
 }  // namespace prefilter

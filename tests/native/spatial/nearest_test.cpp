@@ -8,8 +8,6 @@
 #include <cmath>
 #include <random>
 
-#include "prefilter/base/error.h"
-
 namespace prefilter {
 namespace {
 
@@ -213,17 +211,6 @@ TEST(NearestPoints, AreTheSameInStacksAndFans) {
     EXPECT_EQ(found[i].triangle, wanted[i].triangle);
     EXPECT_EQ(found[i].weights, wanted[i].weights);
   }
-}
-
-TEST(NearestPoints, NameWhatIsWrong) {
-  const std::vector<Vector3> positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  const std::vector<Triangle> triangles = {{0, 1, 2}};
-  const std::vector<Vector3> points = {{0, 0, 1}};
-  EXPECT_THROW(nearest_points(points, {positions, {}}, Progress(), 1), Error);
-  const std::vector<Triangle> bad = {{0, 1, 3}};
-  EXPECT_THROW(nearest_points(points, {positions, bad}, Progress(), 1), Error);
-  const std::vector<Vector3> nan = {{0, NAN, 1}};
-  EXPECT_THROW(nearest_points(nan, {positions, triangles}, Progress(), 1), Error);
 }
 
 }  // namespace
