@@ -6,7 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 import scenes
-from test_mipmaps_oracle import TOLERANCE, Oracle
+from test_mipmaps_oracle import TOLERANCE, Oracle, Quadrature
 
 CLAMP = ("clamp", "clamp")
 FILTERS = ["pam-bilinear", "pam-box", "box", "lanczos3-covered"]
@@ -35,7 +35,7 @@ def test_masks_stay_between_0_and_1_and_are_the_closest_that_do():
     level = prefilter.mipmaps(mask, mesh.surface)[1]
     free = prefilter.mipmaps(mask, mesh.surface, bounds=None)[1]
     assert free.max() > 1.05
-    oracle = Oracle(mesh, mask, (8, 8), CLAMP, steps=200)
+    oracle = Oracle(Quadrature(mesh, mask, CLAMP, steps=200), (8, 8))
     gradient = oracle.gradient(level)
     texels = level.reshape(-1, 1)[oracle.used]
     low, high = texels <= 0, texels >= 1
@@ -52,7 +52,7 @@ def test_light_has_a_lower_bound_only():
     image[4:6, 9:11] = 5000.0
     levels = prefilter.mipmaps(image, mesh.surface, bounds=(0.0, None))
     for level in levels[1:3]:
-        oracle = Oracle(mesh, image, level.shape[:2], CLAMP, steps=200)
+        oracle = Oracle(Quadrature(mesh, image, CLAMP, steps=200), level.shape[:2])
         gradient = oracle.gradient(level) / 5000
         texels = level.reshape(-1, 3)[oracle.used]
         dark = texels <= 0

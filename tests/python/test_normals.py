@@ -6,7 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 import scenes
-from test_mipmaps_oracle import Oracle
+from test_mipmaps_oracle import Oracle, Quadrature
 
 CLAMP = ("clamp", "clamp")
 UP = np.array([0.0, 0.0, 1.0])
@@ -54,7 +54,7 @@ def test_fitted_levels_are_the_least_squares_of_vectors():
     mesh = scenes.random_soup(3, 12)
     normals = bumps(2, 16, 16, 0.4)
     found = decode(prefilter.normal_mipmaps(encode(normals), mesh.surface))[1]
-    oracle = Oracle(mesh, normals, (8, 8), CLAMP, steps=200)
+    oracle = Oracle(Quadrature(mesh, normals, CLAMP, steps=200), (8, 8))
     used = oracle.used
     fitted = np.linalg.solve(oracle.pulled[np.ix_(used, used)], oracle.pulled_right[used])
     cosines = (unit(fitted) * found.reshape(-1, 3)[used]).sum(1)
