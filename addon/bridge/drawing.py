@@ -2,6 +2,8 @@
 
 """What is drawn in editors with the graphics card: colors, textures, and a wipe with its labels."""
 
+from collections.abc import Sequence
+
 import blf
 import bpy
 import gpu
@@ -9,6 +11,9 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 
 from .images import FloatArray
+
+Color = tuple[float, float, float, float]
+Points = Sequence[tuple[float, float]]
 
 COLOR_FUNCTIONS = """
 float encoded(float light)
@@ -35,6 +40,7 @@ vec3 decoded(vec3 value)
 
 _LINE_WIDTH = 2  # In pixels.
 _LABEL_SIZE, _LABEL_GAP = 13, 10
+_RIM = (0.0, 0.0, 0.0, 0.6)
 _PLATE, _PLATE_MARGIN = (0.0, 0.0, 0.0, 0.85), 4
 
 
@@ -59,17 +65,29 @@ def draw_wipe(share: float, left: str, right: str) -> None:
     x = share * bpy.context.region.width
     # The header may lie over the region's upper edge.
     y = _LABEL_GAP * scale
-    blf.size(0, _LABEL_SIZE * scale)
     if left:
         half = _LINE_WIDTH * scale / 2
         _draw_box((x - half, 0.0), (x + half, bpy.context.region.height), (1.0, 1.0, 1.0, 1.0))
-        _draw_label(left, x - blf.dimensions(0, left)[0] - _LABEL_GAP * scale, y)
-    _draw_label(right, x + _LABEL_GAP * scale, y)
+        draw_label(left, x - label_size(left)[0] - _LABEL_GAP * scale, y)
+    draw_label(right, x + _LABEL_GAP * scale, y)
 
 
-def _draw_label(text: str, x: float, y: float) -> None:
-    """Draws white letters on a dark plate: they are read over any image."""
+def label_size(text: str) -> tuple[float, float]:
+    """Returns the width and height of the letters of a label, in pixels of the region."""
+    blf.size(0, _LABEL_SIZE * bpy.context.preferences.system.ui_scale)
     width, height = blf.dimensions(0, text)
+    return width, height
+
+
+def draw_label(text: str, x: float, y: float) -> None:
+    """Draws white letters on a dark plate: they are read over any image.
+
+    Args:
+        text: One line.
+        x: Where it starts, in pixels of the region.
+        y: Where its baseline is.
+    """
+    width, height = label_size(text)
     margin = _PLATE_MARGIN * bpy.context.preferences.system.ui_scale
     gpu.state.blend_set("ALPHA")
     _draw_box((x - margin, y - margin), (x + width + margin, y + height + margin), _PLATE)
@@ -79,9 +97,31 @@ def _draw_label(text: str, x: float, y: float) -> None:
     blf.draw(0, text)
 
 
-def _draw_box(
-    low: tuple[float, float], high: tuple[float, float], color: tuple[float, float, float, float]
+def draw_lines(
+    points: Sequence[tuple[float, float]], color: Color, *, closed: bool = False
 ) -> None:
+    """Draws a line through points of the region, with a dark rim: it is seen on any image.
+
+    Args:
+        points: In pixels.
+        color: sRGB values and alpha.
+        closed: Whether it ends where it starts.
+    """
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    along = [*points, points[0]] if closed else list(points)
+    line = batch_for_shader(shader, "LINE_STRIP", {"pos": [(x, y, 0.0) for x, y in along]})
+    scale = bpy.context.preferences.system.ui_scale
+    gpu.state.blend_set("ALPHA")
+    shader.bind()
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    for width, shade in ((_LINE_WIDTH + 2, _RIM), (_LINE_WIDTH, color)):
+        shader.uniform_float("lineWidth", width * scale)
+        shader.uniform_float("color", shade)
+        line.draw(shader)
+    gpu.state.blend_set("NONE")
+
+
+def _draw_box(low: tuple[float, float], high: tuple[float, float], color: Color) -> None:
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
     corners = [low, (high[0], low[1]), high, (low[0], high[1])]
     box = batch_for_shader(shader, "TRI_FAN", {"pos": corners})

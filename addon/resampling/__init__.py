@@ -7,7 +7,10 @@ from . import operators, panels, properties, view
 
 MANUAL = {
     "resize": ("resize", "resize_image"),
-    "resample": ("resample", "resample_image", "plane", "preview_plane", "end_plane"),
+    "resample": (
+        *("resample", "resample_image", "drag_corners"),
+        *("plane", "preview_plane", "end_plane"),
+    ),
     "shaders": ("sampling_table",),
 }
 """The pages about its operators and settings; see `manual.Manual`."""

@@ -46,8 +46,7 @@ def placement(settings: ResampleSettings, width: int, height: int) -> Placement:
     if settings.warp == "rectify":
         return _rectified(settings, width, height)
     if settings.warp == "corners":
-        unit = (width, height) if settings.size == "fit" else _size(settings, width, height)
-        forward = homography(_rectangle(width, height), _corners(settings, unit))
+        forward = homography(rectangle(width, height), corners(settings, width, height))
     else:
         forward = scaled_and_rotated(settings.scale_x, settings.scale_y, settings.rotation)
         forward = forward @ moved(-width / 2, -height / 2)
@@ -58,6 +57,24 @@ def placement(settings: ResampleSettings, width: int, height: int) -> Placement:
         center = (new_width / 2 + settings.offset_x, new_height / 2 + settings.offset_y)
         forward = moved(*center) @ forward
     return Placement(_inverse(forward), new_width, new_height)
+
+
+def frame(settings: ResampleSettings, width: int, height: int) -> tuple[int, int]:
+    """Returns the size of what corners are places of: of the image, or of the result."""
+    if settings.warp == "rectify" or settings.size == "fit":
+        return width, height
+    return _size(settings, width, height)
+
+
+def corners(settings: ResampleSettings, width: int, height: int) -> NDArray[np.float64]:
+    """Returns the four corners in pixels, for an image of this size: (4, 2)."""
+    found = np.array([getattr(settings, name) for name in CORNERS], np.float64)
+    return found if settings.use_pixels else found * frame(settings, width, height)
+
+
+def rectangle(width: float, height: float) -> NDArray[np.float64]:
+    """Returns the corners of a rectangle at (0, 0), in the order of `CORNERS`."""
+    return np.array([(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)])
 
 
 def moved(x: float, y: float) -> Matrix:
@@ -137,9 +154,9 @@ def squeeze(placed: Placement, width: int, height: int) -> float:
     return float(np.sum(pixels[within])) / _PLACES**2
 
 
-def check_convex(corners: ArrayLike) -> None:
+def check_convex(quadrilateral: ArrayLike) -> None:
     """Raises ValueError unless four points are around a convex quadrilateral."""
-    points = np.asarray(corners, np.float64)
+    points = np.asarray(quadrilateral, np.float64)
     sides = np.roll(points, -1, axis=0) - points
     onwards = np.roll(sides, -1, axis=0)
     turns = sides[:, 0] * onwards[:, 1] - sides[:, 1] * onwards[:, 0]
@@ -152,10 +169,10 @@ def check_convex(corners: ArrayLike) -> None:
         )
 
 
-def _from_unit_square(corners: ArrayLike) -> Matrix:
-    """Returns the transform from (0, 0), (1, 0), (1, 1), (0, 1) to corners (Heckbert, 1989)."""
-    check_convex(corners)
-    p0, p1, p2, p3 = np.asarray(corners, np.float64)
+def _from_unit_square(points: ArrayLike) -> Matrix:
+    """Returns the transform from (0, 0), (1, 0), (1, 1), (0, 1) to points (Heckbert, 1989)."""
+    check_convex(points)
+    p0, p1, p2, p3 = np.asarray(points, np.float64)
     across = np.stack([p1 - p2, p3 - p2], axis=1)
     g, h = np.linalg.solve(across, p0 - p1 + p2 - p3)
     columns = (p1 - p0 + g * p1, p3 - p0 + h * p3, p0)
@@ -168,34 +185,25 @@ def _inverse(transform: Matrix) -> Matrix:
 
 def _fitted(forward: Matrix, width: int, height: int) -> Placement:
     """Returns a result that is just as large as needed, with the image in its middle."""
-    corners = applied(forward, _rectangle(width, height))
-    low, high = corners.min(axis=0), corners.max(axis=0)
+    ends = applied(forward, rectangle(width, height))
+    low, high = ends.min(axis=0), ends.max(axis=0)
     sizes = [_whole(float(extent)) for extent in high - low]
     shift = (np.array(sizes) - (low + high)) / 2
     return Placement(_inverse(moved(*shift) @ forward), *sizes)
 
 
 def _rectified(settings: ResampleSettings, width: int, height: int) -> Placement:
-    corners = _corners(settings, (width, height))
-    check_convex(corners)
+    places = corners(settings, width, height)
+    check_convex(places)
     new_size = _size(settings, width, height)
     if settings.size == "fit":
-        sides = np.linalg.norm(np.roll(corners, -1, axis=0) - corners, axis=1)
+        sides = np.linalg.norm(np.roll(places, -1, axis=0) - places, axis=1)
         new_size = (_whole(max(sides[0], sides[2])), _whole(max(sides[1], sides[3])))
-    return Placement(homography(_rectangle(*new_size), corners), *new_size)
-
-
-def _corners(settings: ResampleSettings, unit: tuple[int, int]) -> NDArray[np.float64]:
-    corners = np.array([getattr(settings, name) for name in CORNERS], np.float64)
-    return corners if settings.use_pixels else corners * unit
+    return Placement(homography(rectangle(*new_size), places), *new_size)
 
 
 def _size(settings: ResampleSettings, width: int, height: int) -> tuple[int, int]:
     return (settings.width, settings.height) if settings.size == "pixels" else (width, height)
-
-
-def _rectangle(width: float, height: float) -> NDArray[np.float64]:
-    return np.array([(0.0, 0.0), (width, 0.0), (width, height), (0.0, height)])
 
 
 def _whole(extent: float) -> int:

@@ -139,6 +139,12 @@ def test_resample_image(paint):
     assert len(bpy.data.images) == 2
 
 
+def test_drag_corners(paint):
+    assert not bpy.ops.prefilter.drag_corners.poll()
+    with image_editor(paint), pytest.raises(RuntimeError, match="needs a window"):
+        bpy.ops.prefilter.drag_corners("INVOKE_DEFAULT")
+
+
 def test_preview_plane(paint):
     assert bpy.ops.prefilter.preview_plane(image="Paint", filter="box") == FINISHED
 

@@ -9,8 +9,10 @@ from ...core.menus import PREFILTER_MT_image
 from ...core.registration import classes, entry, registration
 from ...core.sidebar import ImagePanel, note
 from ..choices import ResampleSettings
+from ..operators.drag_corners import PREFILTER_OT_drag_corners
 from ..operators.resample_image import PREFILTER_OT_resample_image
 from ..properties import RESAMPLE
+from ..view import pins
 
 _BUTTON = Button(PREFILTER_OT_resample_image, "MOD_LATTICE", RESAMPLE.group, {ResampleSettings: ()})
 
@@ -24,16 +26,20 @@ class PREFILTER_PT_resample(ImagePanel, SettingsPanel, bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_notes(self, context: bpy.types.Context) -> None:
-        """Draws the size of the result."""
+        """Draws the size of the result, and what drags the corners."""
         settings = context.scene.prefilter_resample
         image = context.space_data.image
         if image is not None and all(image.size):
             note(self.layout, context, *_what_comes_out(settings.to_settings(), *image.size))
+        self.layout.operator(
+            PREFILTER_OT_drag_corners.bl_idname, icon="HANDLE_VECTOR", depress=pins.is_on(image)
+        )
 
 
 def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
     _BUTTON.draw(menu.layout, context)
+    menu.layout.operator(PREFILTER_OT_drag_corners.bl_idname, icon="HANDLE_VECTOR")
 
 
 def _what_comes_out(settings: ResampleSettings, width: int, height: int) -> tuple[str, str]:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Seeing sampling tables: a plane with the image on it, read trilinearly and by a table."""
+"""Seeing sampling tables on a plane with the image on it, and corners that are dragged."""
 
 from ...core.registration import registration
-from . import kept, overlay, state
+from . import kept, overlay, pins, state
 
-register, unregister = registration(state, kept, overlay)
+register, unregister = registration(state, kept, overlay, pins)

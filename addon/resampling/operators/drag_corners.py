@@ -1,0 +1,245 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""`prefilter.drag_corners`: the corners of Resample, dragged on the image."""
+
+from typing import TYPE_CHECKING, Any
+
+import bpy
+
+from ..choices import CORNERS
+from ..view import pins as drawn
+
+if TYPE_CHECKING:
+    from ..pins import Canvas
+
+_ARROWS = {
+    "LEFT_ARROW": (-1.0, 0.0),
+    "RIGHT_ARROW": (1.0, 0.0),
+    "DOWN_ARROW": (0.0, -1.0),
+    "UP_ARROW": (0.0, 1.0),
+}
+_FAR, _NEAR = 10.0, 0.1
+_KEYS = (
+    "Drag: Move Corner   Ctrl: Whole Pixels and Edges   Shift: Slowly   Arrows: By a Pixel   "
+    "Tab: Next Corner   Enter: Keep   Esc: Take Back"
+)
+
+
+class PREFILTER_OT_drag_corners(bpy.types.Operator):
+    """Drags the corners of Resample."""
+
+    bl_idname = "prefilter.drag_corners"
+    bl_label = "Drag Corners"
+    bl_description = (
+        "Drag the four corners on the image. Ctrl snaps to whole pixels and edges, Shift moves "
+        "slowly, arrow keys move by a pixel, Tab goes to the next corner. Enter or another press "
+        "keeps the corners, Esc takes them back"
+    )
+
+    # Not REGISTER: Adjust Last Operation stays with what came before.
+    bl_options: set[str] = set()
+
+    _before: dict[str, Any]
+    # Blender evaluates annotations: no name is known here that is only imported for type checkers.
+    _drag: Any = None
+    _start: tuple[float, ...] = ()
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether an Image editor shows an image."""
+        if context.area is None or context.area.type != "IMAGE_EDITOR":
+            cls.poll_message_set("Call it in an Image editor")
+            return False
+        image = context.space_data.image
+        if image is None or not all(image.size):
+            cls.poll_message_set("Open an image in this editor first")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Says that a mouse is needed."""
+        del context
+        self.report({"ERROR"}, "Drag Corners needs a window; set the corners as numbers instead")
+        return {"CANCELLED"}
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Begins, or ends what has begun."""
+        del event
+        from ..pins import begun
+
+        if bpy.app.background:
+            return self.execute(context)
+        if drawn.session is not None:
+            drawn.session.is_over = True
+            return {"FINISHED"}
+        group = context.scene.prefilter_resample
+        self._before = {name: _value(group, name) for name in ("warp", *CORNERS)}
+        drawn.begin(context.space_data.image)
+        changed = begun(group.to_settings())
+        if changed:
+            _set(context, changed, "Begin to Drag Corners")
+        context.workspace.status_text_set(_KEYS)
+        context.window_manager.modal_handler_add(self)
+        context.area.tag_redraw()
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Follows the mouse and the keys over the image, and leaves the rest to Blender."""
+        if self._is_over(context):
+            return self._end(context)
+        if event.type.startswith("TIMER"):
+            return {"PASS_THROUGH"}
+        if self._drag is not None:
+            self._follow(context, event)
+            return {"RUNNING_MODAL"}
+        if not _is_over_canvas(context, event):
+            return {"PASS_THROUGH"}
+        if event.value != "PRESS":
+            return {"PASS_THROUGH"} if event.type != "LEFTMOUSE" else {"RUNNING_MODAL"}
+        if event.type in {"RET", "NUMPAD_ENTER"}:
+            return self._end(context)
+        if event.type in {"ESC", "RIGHTMOUSE"}:
+            return self._take_back(context)
+        if event.type == "LEFTMOUSE":
+            self._grab(context, event)
+        elif event.type == "TAB":
+            self._go_on(context, -1 if event.shift else 1)
+        elif event.type in _ARROWS:
+            self._nudge(context, event)
+        else:
+            return {"PASS_THROUGH"}
+        return {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Ends it when Blender does, such as for another file."""
+        self._end(context)
+
+    def _is_over(self, context: bpy.types.Context) -> bool:
+        session = drawn.session
+        image = getattr(context.space_data, "image", None)
+        return (
+            session is None
+            or session.is_over
+            or not drawn.is_on(image)
+            or context.scene.prefilter_resample.warp == "affine"
+        )
+
+    def _end(self, context: bpy.types.Context) -> set[str]:
+        drawn.end()
+        if context.workspace is not None:
+            context.workspace.status_text_set(None)
+        _redraw()
+        return {"FINISHED"}
+
+    def _take_back(self, context: bpy.types.Context) -> set[str]:
+        group = context.scene.prefilter_resample
+        if any(_value(group, name) != value for name, value in self._before.items()):
+            _set(context, self._before, "Take Corners Back")
+        self._end(context)
+        return {"CANCELLED"}
+
+    def _grab(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        from ..pins import REACH, Drag, nearest
+
+        assert drawn.session is not None
+        canvas, places, _ = _seen(context)
+        mouse = _mouse(context, event)
+        index = nearest(places, canvas, mouse, REACH * context.preferences.system.ui_scale)
+        if index is None:
+            return
+        drawn.session.active = index
+        self._drag = Drag(places[index], mouse)
+        self._start = _value(context.scene.prefilter_resample, CORNERS[index])
+        context.area.tag_redraw()
+
+    def _follow(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        """Moves the corner that is held, lets go of it, or takes it back."""
+        assert drawn.session is not None
+        assert self._drag is not None
+        name = CORNERS[drawn.session.active]
+        group = context.scene.prefilter_resample
+        if event.type == "MOUSEMOVE":
+            canvas, _, edges = _seen(context)
+            mouse, slow, snaps = _mouse(context, event), event.shift, event.ctrl
+            self._put(context, self._drag.to(mouse, canvas, edges, is_slow=slow, snaps=snaps))
+        elif event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            setattr(group, name, self._start)
+            self._drag = None
+        elif event.type == "LEFTMOUSE" and event.value == "RELEASE":
+            self._drag = None
+            if _value(group, name) != self._start:
+                bpy.ops.ed.undo_push(message="Drag Corner")
+        _redraw()
+
+    def _go_on(self, context: bpy.types.Context, step: int) -> None:
+        assert drawn.session is not None
+        drawn.session.active = (drawn.session.active + step) % len(CORNERS)
+        context.area.tag_redraw()
+
+    def _nudge(self, context: bpy.types.Context, event: bpy.types.Event) -> None:
+        assert drawn.session is not None
+        _, places, _ = _seen(context)
+        far = _NEAR if event.shift else _FAR if event.ctrl else 1.0
+        step = tuple(far * one for one in _ARROWS[event.type])
+        self._put(context, places[drawn.session.active] + step)
+        bpy.ops.ed.undo_push(message="Nudge Corner")
+
+    def _put(self, context: bpy.types.Context, place: Any) -> None:
+        from ..pins import shares
+
+        assert drawn.session is not None
+        group = context.scene.prefilter_resample
+        size = tuple(context.space_data.image.size)
+        setattr(group, CORNERS[drawn.session.active], shares(place, group.to_settings(), size))
+        _redraw()
+
+
+def _seen(context: bpy.types.Context) -> tuple["Canvas", Any, tuple[int, int]]:
+    """Returns where the image is, where its corners are, and the size of what they are in."""
+    from ..placement import corners, frame
+
+    settings = context.scene.prefilter_resample.to_settings()
+    size = tuple(context.space_data.image.size)
+    canvas = drawn.canvas_of(_canvas_region(context), size)
+    return canvas, corners(settings, *size), frame(settings, *size)
+
+
+def _canvas_region(context: bpy.types.Context) -> bpy.types.Region:
+    return next(region for region in context.area.regions if region.type == "WINDOW")
+
+
+def _mouse(context: bpy.types.Context, event: bpy.types.Event) -> tuple[int, int]:
+    """Returns where the mouse is in the image's region, whichever the operator was called from."""
+    region = _canvas_region(context)
+    return event.mouse_x - region.x, event.mouse_y - region.y
+
+
+def _is_over_canvas(context: bpy.types.Context, event: bpy.types.Event) -> bool:
+    """Tells whether the mouse is over the image's region, and over none that lies on it."""
+
+    def holds(region: bpy.types.Region) -> bool:
+        x, y = event.mouse_x - region.x, event.mouse_y - region.y
+        return 0 <= x < region.width and 0 <= y < region.height
+
+    others = [region for region in context.area.regions if region.type != "WINDOW"]
+    return holds(_canvas_region(context)) and not any(
+        holds(region) for region in others if min(region.width, region.height) > 1
+    )
+
+
+def _value(group: Any, name: str) -> Any:
+    value = getattr(group, name)
+    return value if isinstance(value, str) else tuple(value)
+
+
+def _set(context: bpy.types.Context, values: dict[str, Any], message: str) -> None:
+    """Sets some settings, as a step to undo."""
+    for name, value in values.items():
+        setattr(context.scene.prefilter_resample, name, value)
+    bpy.ops.ed.undo_push(message=message)
+
+
+def _redraw() -> None:
+    from ...bridge import editors
+
+    editors.redraw()
