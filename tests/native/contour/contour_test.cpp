@@ -152,7 +152,7 @@ TEST(ContourGrid, MovesWithItsSamples) {
   constexpr int kBlocks = 3;
   constexpr int kSize = 32;
   std::mt19937 random(8);
-  for (int trial = 0; trial < 10; ++trial) {
+  for (int trial = 0; trial < 4; ++trial) {
     std::vector<float> blocks(kBlocks * kBlocks * kBlocks);
     for (float& block : blocks) block = static_cast<float>(random() % 5) / 4.0F;
     for (const Interpolant interpolant : kInterpolants) {
@@ -247,7 +247,7 @@ TEST(ContourTree, LeavesOfAnySizesGiveClosedManifolds) {
 }
 
 TEST(ContourOccupancies, NeverCrossesItself) {
-  for (unsigned seed = 0; seed < 30; ++seed) {
+  for (unsigned seed = 0; seed < 16; ++seed) {
     const CellTree tree = random_tree(seed, 2 + static_cast<int>(seed % 4));
     for (const Interpolant interpolant : kInterpolants) {
       const TriangleMesh mesh = contour_occupancies(tree, kUnitBox, options_of(interpolant));

@@ -38,7 +38,7 @@ void expect_near_is_covered(const Outline& outline, double width, unsigned seed)
   Outline around = outline;
   around.append(covered);
   int inside = 0;
-  for (const Point2& point : random_points(around, 400, 0.0, seed)) {
+  for (const Point2& point : random_points(around, 200, 0.0, seed)) {
     const double off = distance(way, point) - 0.5 * width;
     if (std::fabs(off) < 2e-3) continue;
     ASSERT_EQ(winding(after, point), off < 0.0 ? 1 : 0) << point.x << ", " << point.y;

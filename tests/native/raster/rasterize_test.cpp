@@ -116,7 +116,7 @@ std::vector<Shape> scene() {
 TEST(Rasterize, GivesTheSameWithAnyNumberOfThreads) {
   const std::vector<Shape> shapes = scene();
   for (const std::string_view filter : {"box", "mitchell", "radial2"}) {
-    RasterOptions options = options_of(160, 300, filter);
+    RasterOptions options = options_of(50, 300, filter);
     const std::vector<float> one = values_of(shapes, options);
     for (const float value : one) ASSERT_TRUE(std::isfinite(value));
     options.threads = 3;
