@@ -49,6 +49,15 @@ RESULT_SIZES = {
     "image": Choice("Image", "As large as the image"),
     "pixels": Choice("Pixels", "A width and a height"),
 }
+PROPORTIONS = {
+    "perspective": Choice(
+        "Perspective",
+        "As a camera with square pixels saw it that looked through the middle of the image. For "
+        "photographs that were not cropped",
+    ),
+    "sides": Choice("Sides", "As the longest sides between the corners"),
+    "given": Choice("Given", "A number"),
+}
 TABLE_FILTERS = filters_for(
     "sampling", {name: choice.description for name, choice in FILTERS.items()}
 )
@@ -209,6 +218,24 @@ class ResampleSettings:
     size: str = one_of("fit", "Size", "Size of the result", RESULT_SIZES, metavar="SIZE")
     width: int = number(1024, "Width", "The width of the result in pixels", **_SIDE)
     height: int = number(1024, "Height", "The height of the result in pixels", **_SIDE)
+    proportions: str = one_of(
+        "perspective",
+        "Proportions",
+        "How wide what is rectified is by its height, where the size is fitted",
+        PROPORTIONS,
+        metavar="MODE",
+    )
+    aspect: float = number(
+        4 / 3,
+        "Aspect Ratio",
+        "The width by the height of what is rectified, such as 4/3",
+        low=0.0,
+        high=1e6,
+        is_above=True,
+        display={"soft_min": 0.1, "soft_max": 10.0, "precision": 4, "step": 1},
+        metavar="RATIO",
+        flag_description="the width by the height of what is rectified; sets --proportions given",
+    )
     filter: str = one_of(
         "lanczos2",
         "Filter",

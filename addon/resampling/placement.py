@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .choices import CORNERS, LONGEST_SIDE, ResampleSettings
+from .perspective import proportions
 
 Matrix = NDArray[np.float64]
 
@@ -70,6 +71,21 @@ def corners(settings: ResampleSettings, width: int, height: int) -> NDArray[np.f
     """Returns the four corners in pixels, for an image of this size: (4, 2)."""
     found = np.array([getattr(settings, name) for name in CORNERS], np.float64)
     return found if settings.use_pixels else found * frame(settings, width, height)
+
+
+def knows_proportions(settings: ResampleSettings, width: int, height: int) -> bool:
+    """Returns whether the settings say how wide what is straightened is by its height.
+
+    They do not where the perspective has to, and does not: a usual lens is assumed then.
+
+    Raises:
+        ValueError: The corners are not around a convex quadrilateral.
+    """
+    if (settings.warp, settings.size, settings.proportions) != ("rectify", "fit", "perspective"):
+        return True
+    places = corners(settings, width, height)
+    check_convex(places)
+    return proportions(places, width, height).is_certain
 
 
 def rectangle(width: float, height: float) -> NDArray[np.float64]:
@@ -197,9 +213,23 @@ def _rectified(settings: ResampleSettings, width: int, height: int) -> Placement
     check_convex(places)
     new_size = _size(settings, width, height)
     if settings.size == "fit":
-        sides = np.linalg.norm(np.roll(places, -1, axis=0) - places, axis=1)
-        new_size = (_whole(max(sides[0], sides[2])), _whole(max(sides[1], sides[3])))
+        new_size = _fitted_size(settings, places, width, height)
     return Placement(homography(rectangle(*new_size), places), *new_size)
+
+
+def _fitted_size(
+    settings: ResampleSettings, places: NDArray[np.float64], width: int, height: int
+) -> tuple[int, int]:
+    """Returns the size of what is straightened: no side has fewer pixels than in the image."""
+    sides = np.linalg.norm(np.roll(places, -1, axis=0) - places, axis=1)
+    across, up = float(max(sides[0], sides[2])), float(max(sides[1], sides[3]))
+    if settings.proportions == "sides":
+        return _whole(across), _whole(up)
+    aspect = settings.aspect
+    if settings.proportions == "perspective":
+        aspect = proportions(places, width, height).aspect
+    up = max(up, across / aspect)
+    return _whole(aspect * up), _whole(up)
 
 
 def _size(settings: ResampleSettings, width: int, height: int) -> tuple[int, int]:

@@ -67,6 +67,10 @@ class ResampleProperties:
             column = layout.column(align=True)
             column.prop(self, "width")
             column.prop(self, "height")
+        elif self.size == "fit" and self.warp == "rectify":
+            layout.prop(self, "proportions")
+            if self.proportions == "given":
+                layout.prop(self, "aspect")
         layout.prop(self, "method")
         if self.method == "table":
             layout.prop(self, "table")

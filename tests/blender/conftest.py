@@ -34,6 +34,7 @@ SAME_IN_ANY_BLENDER = {
     "mipmaps/test_seams.py",
     "mipmaps/view/test_canvas.py",
     "mipmaps/view/test_errors.py",
+    "resampling/test_perspective.py",
     "resampling/test_pins.py",
     "resampling/test_placement.py",
     "resampling/test_resample_commands.py",

@@ -25,7 +25,7 @@ _TRANSFORM = {
     "--offset-x": "offset_x",
     "--offset-y": "offset_y",
 }
-_WITHOUT_DEFAULT = ("rotation", "scale_x", "scale_y", "offset_x", "offset_y", *_SIZES)
+_WITHOUT_DEFAULT = ("rotation", "scale_x", "scale_y", "offset_x", "offset_y", "aspect", *_SIZES)
 _NOTES = f"""\
 Corners are eight numbers, x and y of the lower left, lower right, upper right and upper left one:
 shares of the width and height of OUTPUT, or of INPUT for --rectify and if the size is fitted; with
@@ -96,6 +96,7 @@ def _settings(options: argparse.Namespace) -> ResampleSettings:
         )
     if "max_probes" in found and found.get("filter") != "gaussian":
         options.usage_error("--max-probes: not allowed without --filter gaussian")
+    _complete_proportions(options, found)
     if moves:
         found["warp"] = "affine"
     if options.scale is not None:
@@ -109,3 +110,14 @@ def _settings(options: argparse.Namespace) -> ResampleSettings:
     except ValueError as error:
         options.usage_error(str(error))
     return settings
+
+
+def _complete_proportions(options: argparse.Namespace, found: dict[str, Any]) -> None:
+    """Lets --aspect say how the proportions are given."""
+    for name in ("aspect", "proportions"):
+        if name in found and options.rectify is None:
+            options.usage_error(f"--{name}: not allowed without --rectify")
+    if "aspect" in found and found.setdefault("proportions", "given") != "given":
+        options.usage_error(f"--aspect: not allowed with --proportions {found['proportions']}")
+    if found.get("proportions") == "given" and "aspect" not in found:
+        options.usage_error("--proportions given: give --aspect too")

@@ -2,6 +2,8 @@
 
 """Resampling: a panel in the Image editor's sidebar, and an entry in Image > Prefilter."""
 
+from collections.abc import Iterator
+
 import bpy
 
 from ...core.buttons import Button, SettingsPanel
@@ -30,7 +32,8 @@ class PREFILTER_PT_resample(ImagePanel, SettingsPanel, bpy.types.Panel):
         settings = context.scene.prefilter_resample
         image = context.space_data.image
         if image is not None and all(image.size):
-            note(self.layout, context, *_what_comes_out(settings.to_settings(), *image.size))
+            for text, icon in _what_comes_out(settings.to_settings(), *image.size):
+                note(self.layout, context, text, icon)
         self.layout.operator(
             PREFILTER_OT_drag_corners.bl_idname, icon="HANDLE_VECTOR", depress=pins.is_on(image)
         )
@@ -42,15 +45,20 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(PREFILTER_OT_drag_corners.bl_idname, icon="HANDLE_VECTOR")
 
 
-def _what_comes_out(settings: ResampleSettings, width: int, height: int) -> tuple[str, str]:
-    """Returns the size of the result, or what is wrong, and an icon."""
-    from ..placement import placement
+def _what_comes_out(
+    settings: ResampleSettings, width: int, height: int
+) -> Iterator[tuple[str, str]]:
+    """Yields the size of the result, or what is wrong, each with an icon."""
+    from ..placement import knows_proportions, placement
 
     try:
         placed = placement(settings, width, height)
     except ValueError as error:
-        return str(error), "ERROR"
-    return f"{width} x {height} to {placed.width} x {placed.height}", "INFO"
+        yield str(error), "ERROR"
+        return
+    yield f"{width} x {height} to {placed.width} x {placed.height}", "INFO"
+    if not knows_proportions(settings, width, height):
+        yield "Proportions are a guess: these corners fit every lens. Give the ratio", "QUESTION"
 
 
 register, unregister = registration(

@@ -135,11 +135,12 @@ def test_rectified_places_fill_the_result(place, applied):
         "upper_left": (0.25, 0.75),
     }
     places = np.array(list(corners.values())) * (60, 40)
-    found = place(warp="rectify", **corners)
+    found = place(warp="rectify", proportions="sides", **corners)
     # The longest of the sides that face each other.
     assert (found.width, found.height) == (math.ceil(math.hypot(30, 10)), 40)
     for size, width, height in (("fit", 32, 40), ("image", 60, 40), ("pixels", 9, 5)):
-        found = place(warp="rectify", size=size, width=9, height=5, **corners)
+        options = {"size": size, "width": 9, "height": 5, "proportions": "sides"}
+        found = place(warp="rectify", **options, **corners)
         ends = SQUARE * (width, height)
         np.testing.assert_allclose(applied(found.transform, ends), places, atol=1e-9)
 

@@ -55,6 +55,10 @@ def test_help():
             {"warp": "corners", "size": "pixels", "width": 9, "height": 7},
         ),
         (("--rectify", *CORNERS, "--size", "image"), {"warp": "rectify", "size": "image"}),
+        (
+            ("--rectify", *CORNERS, "--aspect", 2.5),
+            {"warp": "rectify", "proportions": "given", "aspect": 2.5},
+        ),
     ],
 )
 def test_where_the_image_goes(sky, tmp_path, transform, arguments, options):
@@ -164,6 +168,12 @@ def test_wrong_arguments(sky, tmp_path):
         ((*places, "--scale", 5), ("--rectify: not allowed with --scale",)),
         (("--corners", 1, 2, 3), ("--corners", "8 arguments")),
         (("--corners", *CORNERS[:7], "nan"), ("Upper Left", "found 0 nan")),
+        (("--aspect", 2), ("--aspect: not allowed without --rectify",)),
+        (
+            (*places, "--aspect", 2, "--proportions", "sides"),
+            ("--aspect: not allowed with --proportions sides",),
+        ),
+        ((*places, "--proportions", "given"), ("--proportions given: give --aspect",)),
         (("--pixels",), ("--pixels: give --corners or --rectify",)),
         (("--width", 5), ("both --width and --height",)),
         (("--size", "pixels"), ("both --width and --height",)),
