@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 
@@ -25,9 +25,15 @@ class Cloud:
     normals: Array
     distance: Callable[[Array], Array]
 
+    @property
+    def both(self) -> tuple[Array, Array]:
+        return self.points, self.normals
 
-def sphere(count: int, radius: float = 1.0, center: Array | None = None, seed: int = 0) -> Cloud:
-    middle = np.zeros(3) if center is None else center
+
+def sphere(
+    count: int, radius: float = 1.0, center: ArrayLike = (0.0, 0.0, 0.0), seed: int = 0
+) -> Cloud:
+    middle = np.asarray(center)
     normals = _directions(count, seed)
     return Cloud(
         middle + radius * normals,

@@ -6,6 +6,7 @@ import numpy as np
 import prefilter
 import pytest
 import solids
+from clouds import sphere, torus
 
 KITTEN = solids.DATA.parent / "points" / "kitten.xyz"
 RANDOM = np.random.default_rng(0)
@@ -13,20 +14,6 @@ RANDOM = np.random.default_rng(0)
 
 def unit(vectors):
     return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-
-
-def sphere(count, radius=1.0, middle=(0.0, 0.0, 0.0)):
-    normals = unit(RANDOM.normal(size=(count, 3)))
-    return radius * normals + middle, normals
-
-
-def torus(count, large=1.0, small=0.3):
-    a, b = RANDOM.uniform(0, 2 * np.pi, (2, count))
-    kept = RANDOM.uniform(0, large + small, count) < large + small * np.cos(b)  # Even by area.
-    a, b = a[kept], b[kept]
-    normals = np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], axis=1)
-    middles = large * np.stack([np.cos(a), np.sin(a), 0 * a], axis=1)
-    return middles + small * normals, normals
 
 
 def box(count, sides=(1.0, 1.0, 1.0)):
@@ -61,7 +48,7 @@ def slow_normals(points, neighbours):
 
 @pytest.mark.parametrize("neighbours", [12, 16, 50])
 def test_they_are_eigenvectors_of_the_covariance(neighbours):
-    points, _ = torus(700)
+    points, _ = torus(700).both
     found = prefilter.estimate_normals(points, neighbours=neighbours)
     wanted = slow_normals(points, neighbours)
     np.testing.assert_allclose(np.abs(np.sum(found * wanted, axis=1)), 1, atol=1e-9)
@@ -71,11 +58,11 @@ def test_they_are_eigenvectors_of_the_covariance(neighbours):
 @pytest.mark.parametrize(
     ("cloud", "most"),
     [
-        (sphere(20_000), 4),
-        (torus(20_000), 8),
-        (sphere(20_000, radius=3e-9, middle=(5e-7, 0, 1e-7)), 4),
-        (sphere(20_000, radius=1e140), 4),
-        (join(sphere(8_000), sphere(8_000, 0.5, (3, 0, 0))), 6),
+        (sphere(20_000).both, 4),
+        (torus(20_000).both, 8),
+        (sphere(20_000, radius=3e-9, center=(5e-7, 0, 1e-7)).both, 4),
+        (sphere(20_000, radius=1e140).both, 4),
+        (join(sphere(8_000).both, sphere(8_000, 0.5, (3, 0, 0)).both), 6),
     ],
     ids=["sphere", "torus", "small sphere", "large sphere", "two spheres"],
 )
@@ -102,7 +89,7 @@ def test_faces_apart_from_each_other():
 
 
 def test_noise():
-    points, normals = torus(20_000)
+    points, normals = torus(20_000).both
     noisy = points + RANDOM.normal(scale=0.01, size=points.shape)
     errors = degrees(prefilter.estimate_normals(noisy, neighbours=32), normals)
     assert errors.max() < 60
@@ -110,7 +97,7 @@ def test_noise():
 
 
 def test_uneven_density():
-    points, normals = sphere(60_000)
+    points, normals = sphere(60_000).both
     kept = RANDOM.random(len(points)) < np.where(points[:, 0] > 0, 1, 1 / 30)
     errors = degrees(prefilter.estimate_normals(points[kept]), normals[kept])
     assert errors.max() < 25
@@ -140,7 +127,7 @@ def test_lines_of_a_scan():
 
 
 def test_viewpoints():
-    points, normals = sphere(3000)
+    points, normals = sphere(3000).both
     inside = prefilter.estimate_normals(points, viewpoint=(0.1, 0.2, 0.0))
     assert degrees(inside, -normals).max() < 10
     outside = prefilter.estimate_normals(points, viewpoint=2 * points)
@@ -149,7 +136,7 @@ def test_viewpoints():
 
 
 def test_threads_and_order_change_nothing():
-    points, _ = torus(20_000)
+    points, _ = torus(20_000).both
     points += RANDOM.normal(scale=0.02, size=points.shape)
     one = prefilter.estimate_normals(points, threads=1)
     np.testing.assert_array_equal(one, prefilter.estimate_normals(points, threads=5))
@@ -158,14 +145,14 @@ def test_threads_and_order_change_nothing():
 
 
 def test_outliers_do_not_turn_the_surface():
-    points, normals = sphere(20_000)
+    points, normals = sphere(20_000).both
     outliers = RANDOM.uniform(-1.2, 1.2, (400, 3))
     found = prefilter.estimate_normals(np.concatenate([points, outliers]))
     assert np.mean(degrees(found[: len(points)], normals) < 90) > 0.999
 
 
 def test_copies_have_the_normal_of_one():
-    points, _ = sphere(2000)
+    points, _ = sphere(2000).both
     copies = np.concatenate([points, np.repeat(points[:40], 50, axis=0)])
     found = prefilter.estimate_normals(copies)
     np.testing.assert_array_equal(found[: len(points)], prefilter.estimate_normals(points))
@@ -180,7 +167,7 @@ def test_points_on_a_line_have_normals_across_it():
 
 
 def test_what_is_not_finite_has_no_normal():
-    points, normals = sphere(2000)
+    points, normals = sphere(2000).both
     bad = points.copy()
     bad[[3, 50, 700]] = [(np.nan, 0, 0), (0, np.inf, 0), (0, 0, -1e200)]
     found = prefilter.estimate_normals(bad)
@@ -212,7 +199,7 @@ def test_three_points_have_that_of_their_plane():
 
 
 def test_floats_do():
-    points, normals = sphere(2000)
+    points, normals = sphere(2000).both
     assert degrees(prefilter.estimate_normals(points.astype(np.float32)), normals).max() < 10
 
 

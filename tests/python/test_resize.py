@@ -8,6 +8,7 @@ import numpy as np
 import prefilter
 import pytest
 from kernels import FILTERS, folded, tolerance_of, weights_of_texels
+from scenes import random_image
 
 optimize = pytest.importorskip("scipy.optimize")
 special = pytest.importorskip("scipy.special")
@@ -17,7 +18,7 @@ SIZES = [(12, 9, 5, 4), (8, 8, 4, 2), (6, 5, 1, 3), (7, 4, 17, 9), (5, 16, 9, 3)
 
 
 def image_of(width, height, channels=1, seed=0):
-    return np.random.default_rng(seed).random((height, width, channels)).astype(np.float32)
+    return random_image(seed, height, width, channels)
 
 
 def axis_weights(filter, size, target, wrap):

@@ -10,6 +10,7 @@ import numpy as np
 import prefilter
 import pytest
 from sampling_table_files import random_table
+from scenes import random_image
 
 WRAP_MODES = ("clamp", "repeat", "border")
 LANCZOS2 = prefilter.SamplingTable.standard("lanczos2", 8)
@@ -29,13 +30,9 @@ def table(request, tmp_path):
     return random_table(tmp_path / "table.json", **request.param)
 
 
-def random_image(width, height):
-    return np.random.default_rng(0).random((height, width, 4), np.float32)
-
-
 def random_levels(width, height):
     """As textures have them: rounded down where sides are no powers of two."""
-    return prefilter.mipmaps(random_image(width, height), filter="lanczos2", bounds=None)
+    return prefilter.mipmaps(random_image(0, height, width, 4), filter="lanczos2", bounds=None)
 
 
 def random_queries(levels, count=500, seed=1):
@@ -175,7 +172,7 @@ def test_tables_under_two_names_in_one_shader(gpu):
 @pytest.mark.parametrize(("width", "height"), [(19, 26), (37, 100), (1, 7), (64, 32)])
 def test_texels_that_the_program_reads_itself(gpu, width, height):
     """All levels below each other in one image: those of any image can be had so."""
-    levels = prefilter.sampling_levels(random_image(width, height), "lanczos2")
+    levels = prefilter.sampling_levels(random_image(0, height, width, 4), "lanczos2")
     atlas = np.zeros((sum(len(level) for level in levels), width, 4), np.float32)
     top = 0
     for level in levels:
