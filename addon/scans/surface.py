@@ -131,6 +131,7 @@ def contour(surface: Surface, place: Place, look: Look, settings: ScanSettings) 
         active={COLOR: look.active_color},
         rendered={COLOR: look.render_color},
         sharp_angle=np.pi if settings.use_smooth_shading else None,
+        edges=prefilter.mesh_edges(local, turned, threads=settings.threads),
     )
 
 

@@ -204,6 +204,7 @@ def contoured(
         solid.active,
         solid.rendered,
         settings.smooth_angle if settings.use_smooth_shading else None,
+        prefilter.mesh_edges(local, turned, threads=settings.threads),
     )
     return Result(place, grid, tree.volume, len(triangles), contour)
 

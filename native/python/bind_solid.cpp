@@ -14,6 +14,7 @@
 #include "prefilter/base/names.h"
 #include "prefilter/solid/as_solid.h"
 #include "prefilter/solid/close_holes.h"
+#include "prefilter/solid/mesh_edges.h"
 
 namespace py = pybind11;
 
@@ -75,6 +76,24 @@ py::tuple bound_as_solid(const py::array& positions, const py::array& triangles,
                            report.filled_parts, report.lost_parts));
 }
 
+// The vertices of edges, and the edge of each corner.
+std::pair<Array<std::int32_t>, Array<std::int32_t>> bound_mesh_edges(const py::array& positions,
+                                                                     const py::array& triangles,
+                                                                     const py::object& callback,
+                                                                     int threads) {
+  const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(positions, triangles);
+  MeshEdges edges;
+  {
+    const py::gil_scoped_release unlocked;
+    edges = find_mesh_edges(mesh, progress, threads);
+  }
+  const auto count = static_cast<py::ssize_t>(edges.vertices.size());
+  const auto corners = static_cast<py::ssize_t>(edges.of_corners.size());
+  return {to_array<std::int32_t>(std::move(edges.vertices), {count, py::ssize_t{2}}),
+          to_array<std::int32_t>(std::move(edges.of_corners), {corners / 3, py::ssize_t{3}})};
+}
+
 }  // namespace
 
 void bind_solid(py::module_& m) {
@@ -87,6 +106,8 @@ void bind_solid(py::module_& m) {
         py::arg("progress"));
   m.def("close_holes", &bound_close_holes, py::arg("positions"), py::arg("triangles"),
         py::arg("method"), py::arg("progress"), py::arg("threads"));
+  m.def("mesh_edges", &bound_mesh_edges, py::arg("positions"), py::arg("triangles"),
+        py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -22,8 +22,8 @@ struct EdgeUse {
 /// The uses of all edges of a mesh with valid indices. Edges from a vertex to itself are left out.
 class EdgeTable {
  public:
-  template <typename Index>
-  EdgeTable(const MeshView<Index>& mesh, const Progress& progress, int threads)
+  template <typename Mesh>
+  EdgeTable(const Mesh& mesh, const Progress& progress, int threads)
       : uses_(
             mesh.positions.size(), mesh.triangles.size(),
             [&](std::size_t begin, std::size_t end, const auto& put) {

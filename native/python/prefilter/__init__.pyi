@@ -21,6 +21,8 @@ from .images.texture_use import fill_transparent as fill_transparent
 from .images.texture_use import fill_unused as fill_unused
 from .images.texture_use import texel_weights as texel_weights
 from .meshes.charts import uv_charts as uv_charts
+from .meshes.edges import MeshEdges as MeshEdges
+from .meshes.edges import mesh_edges as mesh_edges
 from .meshes.holes import ClosedMesh as ClosedMesh
 from .meshes.holes import close_holes as close_holes
 from .meshes.measures import MeshMeasures as MeshMeasures

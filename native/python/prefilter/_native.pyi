@@ -277,6 +277,12 @@ def measure_mesh(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[tuple[list[float], list[float]], float, float]: ...
+def mesh_edges(
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]: ...
 def nearest_points(
     points: npt.NDArray[np.float64],
     positions: npt.NDArray[np.floating],

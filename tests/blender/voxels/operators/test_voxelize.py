@@ -538,3 +538,34 @@ def test_undo():
     assert len(bpy.data.objects["Cube"].data.vertices) > 8
     bpy.ops.ed.undo()
     assert len(bpy.data.objects["Cube"].data.vertices) == 8
+
+
+def test_blender_finds_no_other_edges():
+    """The library's are the mesh's own: nothing to repair, and as many as Blender counts."""
+    ball = bodies.sphere()
+    bpy.ops.prefilter.voxelize(depth=5)
+    mesh = ball.data
+    count = len(mesh.edges)
+    assert count == 3 * len(mesh.polygons) // 2
+    assert not mesh.validate(verbose=True)
+    mesh.update(calc_edges=True)
+    assert len(mesh.edges) == count
+
+
+@pytest.mark.parametrize("is_deformed", [False, True])
+def test_custom_normals_are_carried(is_deformed):
+    """A ball of facets that is shaded as a ball; with a group the normals turn with the mesh."""
+    ball = bodies.sphere("Ball", subdivisions=3)
+    directions = np.empty((len(ball.data.vertices), 3), np.float32)
+    ball.data.vertices.foreach_get("co", directions.ravel())
+    ball.data.normals_split_custom_set_from_vertices(directions.tolist())
+    if is_deformed:
+        ball.vertex_groups.new(name="Bone").add(range(len(directions)), 1.0, "REPLACE")
+    bpy.ops.prefilter.voxelize(depth=5)
+    mesh = ball.data
+    assert mesh.has_custom_normals
+    assert len(ball.vertex_groups) == is_deformed
+    normals = np.empty((len(mesh.loops), 3), np.float32)
+    mesh.corner_normals.foreach_get("vector", normals.ravel())
+    corners = np.array([mesh.vertices[loop.vertex_index].co.normalized() for loop in mesh.loops])
+    assert np.einsum("ij,ij->i", normals, corners).min() > 0.99
