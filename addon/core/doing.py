@@ -89,8 +89,15 @@ class Doing:
         last = context.active_operator
         return last is not None and last.bl_idname == cls.bl_rna.identifier
 
+    def follow_scene(self, context: bpy.types.Context) -> None:
+        """Sets the settings that a key, a search or a drop leaves as the scene has them."""
+
     def complete_settings(self) -> None:
         """Sets the settings that the caller has left, where they are not as declared."""
+
+    def handed_on(self) -> dict[str, Any]:
+        """Returns what another operator gets that does the same."""
+        return {name: getattr(self, name) for name in self._setting_names()}
 
     def tell(self, outcome: Outcome) -> str:
         """Reports what is good to know beside the summary, and returns that."""

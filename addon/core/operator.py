@@ -99,6 +99,7 @@ class BackgroundOperator(Doing):
         self._parts = PartedWork(self.reading(context))
         in_steps = type(self).reading is not Doing.reading
         try:
+            self.follow_scene(context)
             self.complete_settings()
             # Blender brings back what it has undone for the redo: nothing read then may be used
             # in a later step.
@@ -217,7 +218,7 @@ class BackgroundOperator(Doing):
 
     def _start_again(self, *, use_apply: bool) -> set[str]:
         """Starts another operator with the settings of this one in the background."""
-        settings = {name: getattr(self, name) for name in self._setting_names()}
+        settings = self.handed_on()
         start = getattr(bpy.ops.prefilter, self._key().partition(".")[2])
         try:
             start("INVOKE_DEFAULT", use_apply=use_apply, **settings)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Surfaces of scans: points with normals to closed meshes."""
+"""Scans: files of points to objects, and points with normals to closed meshes."""
 
 from ..core.registration import registration
-from . import operator, panel, properties
+from . import menus, operators, panel, properties
 
-MANUAL = {"scans": ("reconstruct",)}
+MANUAL = {"scans": ("reconstruct", "import_points", "drop_points")}
 """The pages about its operators and settings; see `manual.Manual`."""
 
-register, unregister = registration(properties, operator, panel)
+register, unregister = registration(properties, operators, panel, menus)

@@ -121,3 +121,23 @@ class ScanSettings:
         preference="memory_limit",
     )
     threads: int = threads()
+
+
+@dataclass(frozen=True)
+class ImportSettings:
+    """What is read of files of points."""
+
+    most_points: int = number(
+        20_000_000,
+        "Most Points",
+        "A file with more points than this is thinned evenly while it is read: every second one, "
+        "or third, and so on, is kept. 0 keeps all",
+        low=0,
+        high=2**31 - 1,
+        display={"step": 1_000_000},
+    )
+    use_reconstruct: bool = switch(
+        False,
+        "Reconstruct Surface",
+        "Make a surface of the points at once, with the settings of the panel Reconstruct Surface",
+    )

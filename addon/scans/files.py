@@ -2,7 +2,7 @@
 
 """The surface of points in files, without objects of them: to a file of it, or of a scene."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import bpy
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..bridge.files import scenes
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_meshes import Contour, new_mesh
+from ..bridge.new_points import far_offset, layer_name
 from ..bridge.place import Place
 from ..core.jobs import Progress
 from ..core.outcome import Outcome
@@ -28,8 +29,6 @@ _COLOR = "Col"
 """What Blender's imports call the colors of points."""
 _CHANNELS = ("red", "green", "blue")
 _ALPHA = "alpha"
-_FAR = 1e3
-"""From so many times its extent away, a surface is kept relative to an origin near it."""
 
 
 class Streaming:
@@ -84,7 +83,7 @@ class FilesReconstruction:
             MemoryError: The points or the surface do not fit into memory.
         """
         surface = reconstructed(self._sources, self._settings, progress)
-        self._origin = _origin_of(surface.positions)
+        self._origin = far_offset(surface.positions)
         surface.positions[:] -= self._origin
         place = Place(self._sources[0].stem, self._origin, np.eye(3))
         self._contour = contour(surface, place, _look(surface), self._settings)
@@ -129,30 +128,30 @@ def _outcome(
 
 def _look(surface: Surface) -> Look:
     """Returns what the vertices carry, as Blender's imports of files name it."""
-    values = dict(surface.attributes)
+    layers = attribute_layers(surface.attributes, len(surface.positions))
+    shown = next((layer.name for layer in layers if layer.kind == COLOR), "")
+    return Look(layers, shown, shown)
+
+
+def attribute_layers(
+    attributes: Mapping[str, NDArray[np.uint8 | np.float32]], count: int
+) -> list[NewLayer]:
+    """Returns what points or vertices carry, as Blender's imports of files name it."""
+    values = dict(attributes)
     layers = []
     if all(channel in values for channel in _CHANNELS):
         channels = [values.pop(channel) for channel in _CHANNELS]
         is_byte = all(channel.dtype == np.uint8 for channel in channels)
         alpha = values.pop(_ALPHA, None)
         scale = np.float32(255.0 if is_byte else 1.0)
-        opaque = np.ones(len(surface.positions), np.float32)
         rgb = np.stack(channels, axis=1) / scale
         linear = prefilter.to_linear(rgb[None])[0] if is_byte else rgb
+        opaque = np.ones(count, np.float32)
         rgba = np.column_stack([linear, opaque if alpha is None else alpha / scale])
         kind = "BYTE_COLOR" if is_byte else "FLOAT_COLOR"
         layers.append(NewLayer(COLOR, _COLOR, kind, "POINT", rgba.astype(np.float32)))
-    shown = _COLOR if layers else ""
     layers += [
-        NewLayer(ATTRIBUTE, name, "FLOAT", "POINT", numbers[:, None].astype(np.float32))
+        NewLayer(ATTRIBUTE, layer_name(name), "FLOAT", "POINT", numbers[:, None].astype(np.float32))
         for name, numbers in values.items()
     ]
-    return Look(layers, shown, shown)
-
-
-def _origin_of(positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Returns the middle of a surface that is far from the origin; else the origin."""
-    low, high = positions.min(axis=0), positions.max(axis=0)
-    middle = (low + high) / 2
-    is_far = float(np.abs(middle).max()) > _FAR * float((high - low).max())
-    return np.asarray(np.round(middle) if is_far else np.zeros(3))
+    return layers

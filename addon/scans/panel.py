@@ -9,7 +9,7 @@ from ..core.menus import PREFILTER_MT_object
 from ..core.registration import classes, entry, registration
 from ..core.sidebar import SidebarPanel
 from .choices import ScanSettings
-from .operator import PREFILTER_OT_reconstruct
+from .operators.reconstruct import PREFILTER_OT_reconstruct
 from .properties import RECONSTRUCT
 
 

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of reconstructing as properties, of the operator and of the scene."""
+"""The settings of operators on scans as properties, of these and of the scene."""
+
+from pathlib import Path
+from typing import Any
 
 import bpy
+from bpy.props import CollectionProperty, StringProperty
 
 from ..core import preset_menu, presets
 from ..core.properties import following, properties, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import subpanel
-from .choices import ScanSettings
+from .choices import ImportSettings, ScanSettings
 
 RECONSTRUCT = presets.Kind("reconstruct", "prefilter_reconstruct", [(ScanSettings, ())])
 
@@ -42,6 +46,38 @@ class ScanProperties:
         _, body = subpanel(layout, "scan_performance", "Performance")
         if body:
             body.prop(self, "memory_limit", text="Memory (MiB)")
+
+
+class FilesProperties:
+    """Which files an operator reads: one, or several of a folder, as Blender drops them."""
+
+    filepath: StringProperty(subtype="FILE_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    files: CollectionProperty(
+        type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"}
+    )
+
+    def named_files(self) -> dict[str, Any]:
+        """Returns the files as another operator takes them."""
+        files = [{"name": one.name} for one in self.files]
+        return {"filepath": self.filepath, "directory": self.directory, "files": files}
+
+    def paths(self) -> list[Path]:
+        """Returns the files."""
+        if self.directory and self.files:
+            folder = Path(bpy.path.abspath(self.directory))
+            return [folder / one.name for one in self.files if one.name]
+        return [Path(bpy.path.abspath(self.filepath))] if self.filepath else []
+
+
+class ImportProperties(FilesProperties):
+    """The properties of `prefilter.import_points`."""
+
+    __annotations__ = properties(ImportSettings)
+
+    def to_settings(self) -> ImportSettings:
+        """Returns the settings."""
+        return values(self, ImportSettings)
 
 
 class PREFILTER_PG_reconstruct(ScanProperties, bpy.types.PropertyGroup):

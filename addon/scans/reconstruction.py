@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..bridge import new_meshes
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
+from ..bridge.new_points import OFFSET
 from ..bridge.place import Place, still_there
 from ..bridge.points import Carried, Points, read_points
 from ..core.jobs import Progress, go_on
@@ -151,6 +152,8 @@ class Reconstruction:
         made = new_meshes.new_object_beside(
             beside, new_meshes.new_mesh(name, self._contour), ".surface"
         )
+        if OFFSET in beside:
+            made[OFFSET] = list(beside[OFFSET])
         bpy.context.view_layer.objects.active = made
         for obj in objects:
             obj.select_set(False)

@@ -116,6 +116,10 @@ def _draw_header(header: bpy.types.Header, context: bpy.types.Context) -> None:
         header.layout.operator(update, text="Update", icon="FILE_REFRESH").image = image.name
 
 
+def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    _SVG.draw(menu.layout, context, "SVG as Image (.svg)", "NONE").filepath = ""
+
+
 def _draw_svg(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     # Empty, so that the file browser opens.
     _SVG.draw(layout, context, "Rasterize SVG...").filepath = ""
@@ -135,5 +139,6 @@ register, unregister = registration(
     entry(PREFILTER_MT_object, _draw_object_menu),
     entry(PREFILTER_MT_image, _draw_image_menu),
     entry(bpy.types.IMAGE_MT_uvs, _draw_uv_menu),
+    entry(bpy.types.TOPBAR_MT_file_import, _draw_import),
     entry(bpy.types.IMAGE_HT_header, _draw_header),
 )

@@ -38,6 +38,7 @@ struct AllPoints {
   std::vector<float> weights;
   std::vector<Vector3> viewpoints;
   std::vector<AttributeValues> attributes;
+  std::size_t stride = 1;  // of how many points in the source one is here
 };
 
 // Names in files may hold any bytes.
@@ -52,15 +53,21 @@ std::uint8_t to_byte(float value) {
   return value >= 0.0F ? static_cast<std::uint8_t>(std::lround(std::min(value, 255.0F))) : 0;
 }
 
-void check_room(const PointSource& source) {
+// How many points there are once all but every stride-th are left out.
+std::size_t thinned_count(std::size_t count, std::size_t stride) {
+  return (count + stride - 1) / stride;
+}
+
+void check_room(const PointSource& source, std::size_t stride) {
   if (!source.count()) return;
   std::size_t bytes = sizeof(Vector3) + sizeof(float);
   if (source.has_normals()) bytes += sizeof(std::array<float, 3>);
   for (const PointAttribute& each : source.attributes()) {
     bytes += each.is_byte ? sizeof(std::uint8_t) : sizeof(float);
   }
-  check_memory("a cloud of " + std::to_string(*source.count()) + " points",
-               static_cast<double>(bytes) * static_cast<double>(*source.count()));
+  const std::size_t count = thinned_count(*source.count(), stride);
+  check_memory("a cloud of " + std::to_string(count) + " points",
+               static_cast<double>(bytes) * static_cast<double>(count));
 }
 
 template <typename T>
@@ -68,31 +75,76 @@ void append(const std::vector<T>& more, std::vector<T>* all) {
   all->insert(all->end(), more.begin(), more.end());
 }
 
-AllPoints read_all(PointSource* source, const Progress& progress) {
-  check_room(*source);
+// Keeps every stride-th of the groups of `width` values, from the group `first` on.
+template <typename T>
+void thin(std::size_t first, std::size_t stride, std::size_t width, std::vector<T>* values) {
+  std::size_t kept = 0;
+  for (std::size_t i = first * width; i + width <= values->size() && width > 0;
+       i += stride * width) {
+    for (std::size_t k = 0; k < width; ++k) (*values)[kept++] = (*values)[i + k];
+  }
+  values->resize(kept);
+}
+
+void thin_batch(std::size_t first, std::size_t stride, std::size_t width, PointBatch* batch) {
+  thin(first, stride, 1, &batch->positions);
+  thin(first, stride, 1, &batch->normals);
+  thin(first, stride, 1, &batch->weights);
+  thin(first, stride, 1, &batch->viewpoints);
+  thin(first, stride, width, &batch->attributes);
+}
+
+void halve(AllPoints* all) {
+  thin(0, 2, 1, &all->positions);
+  thin(0, 2, 1, &all->normals);
+  thin(0, 2, 1, &all->weights);
+  thin(0, 2, 1, &all->viewpoints);
+  for (AttributeValues& each : all->attributes) {
+    thin(0, 2, 1, &each.floats);
+    thin(0, 2, 1, &each.bytes);
+  }
+}
+
+void append_attributes(const PointBatch& batch, const std::vector<PointAttribute>& attributes,
+                       AllPoints* all) {
+  for (std::size_t a = 0; a < attributes.size(); ++a) {
+    for (std::size_t i = a; i < batch.attributes.size(); i += attributes.size()) {
+      if (attributes[a].is_byte) {
+        all->attributes[a].bytes.push_back(to_byte(batch.attributes[i]));
+      } else {
+        all->attributes[a].floats.push_back(batch.attributes[i]);
+      }
+    }
+  }
+}
+
+// Reads the points 0, stride, 2 * stride and so on. The stride is the smallest that leaves at most
+// `most` of them, or a power of two where their number is not known.
+AllPoints read_all(PointSource* source, std::size_t most, const Progress& progress) {
   const std::vector<PointAttribute>& attributes = source->attributes();
   AllPoints all;
+  if (source->count()) all.stride = std::max<std::size_t>(thinned_count(*source->count(), most), 1);
+  check_room(*source, all.stride);
   all.attributes.resize(attributes.size());
-  if (source->count()) all.positions.reserve(*source->count());
+  if (source->count()) all.positions.reserve(thinned_count(*source->count(), all.stride));
   source->rewind();
   PointBatch batch;
+  std::size_t seen = 0;
   while (source->read(kPointsAtOnce, &batch)) {
+    const std::size_t first = (all.stride - seen % all.stride) % all.stride;
+    seen += batch.positions.size();
+    if (all.stride > 1) thin_batch(first, all.stride, attributes.size(), &batch);
     append(batch.positions, &all.positions);
     append(batch.normals, &all.normals);
     append(batch.weights, &all.weights);
     append(batch.viewpoints, &all.viewpoints);
-    for (std::size_t a = 0; a < attributes.size(); ++a) {
-      for (std::size_t i = a; i < batch.attributes.size(); i += attributes.size()) {
-        if (attributes[a].is_byte) {
-          all.attributes[a].bytes.push_back(to_byte(batch.attributes[i]));
-        } else {
-          all.attributes[a].floats.push_back(batch.attributes[i]);
-        }
-      }
+    append_attributes(batch, attributes, &all);
+    while (all.positions.size() > most) {
+      halve(&all);
+      all.stride *= 2;
     }
     if (source->count()) {
-      progress.report(static_cast<double>(all.positions.size()) /
-                      static_cast<double>(*source->count()));
+      progress.report(static_cast<double>(seen) / static_cast<double>(*source->count()));
     } else {
       progress.report(0.0);
     }
@@ -101,12 +153,12 @@ AllPoints read_all(PointSource* source, const Progress& progress) {
   return all;
 }
 
-py::tuple bound_read_points(PointSource* source, const py::object& callback) {
+py::tuple bound_read_points(PointSource* source, std::size_t most, const py::object& callback) {
   const Progress progress = to_progress(callback);
   AllPoints all;
   {
     const py::gil_scoped_release unlocked;
-    all = read_all(source, progress);
+    all = read_all(source, most, progress);
   }
   const auto count = static_cast<py::ssize_t>(all.positions.size());
   py::object normals = py::none();
@@ -126,7 +178,7 @@ py::tuple bound_read_points(PointSource* source, const py::object& callback) {
     }
   }
   return py::make_tuple(to_array<double>(std::move(all.positions), {count, 3}), normals, weights,
-                        viewpoints, attributes);
+                        viewpoints, attributes, all.stride);
 }
 
 py::object bound_read_range_grid(const std::string& path, const py::object& callback) {
@@ -214,7 +266,7 @@ void bind_scan(py::module_& m) {
   m.def("open_points", &open_points, py::arg("path"), py::call_guard<py::gil_scoped_release>());
   m.def("read_range_grid", &bound_read_range_grid, py::arg("path"), py::arg("progress"));
   m.def("read_faces", &bound_read_faces, py::arg("path"), py::arg("progress"));
-  m.def("read_points", &bound_read_points, py::arg("source"), py::arg("progress"));
+  m.def("read_points", &bound_read_points, py::arg("source"), py::arg("most"), py::arg("progress"));
   m.def("mesh_normals", &bound_mesh_normals, py::arg("points"), py::arg("triangles"),
         py::arg("progress"));
   m.def("grid_normals", &bound_grid_normals, py::arg("points"), py::arg("grid"),

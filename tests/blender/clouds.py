@@ -3,6 +3,7 @@
 """Points on solids whose surface is known, and objects that have them."""
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 import bodies
 import bpy
@@ -66,6 +67,24 @@ def scan(
         field = "color" if data_type.endswith("COLOR") else "value"
         _set(mesh.attributes.new(key, data_type, "POINT"), field, values)
     return bodies.body(name, mesh, **placed)
+
+
+def file(path: Path, positions: Array, *columns: Array) -> Path:
+    """Writes lines of x, y, z, and of more columns such as (n, 3) normals or bytes of colors."""
+    rows = [
+        " ".join(f"{value:.9g}" for value in row)
+        for row in np.concatenate([positions, *columns], axis=1)
+    ]
+    path.write_text("\n".join([*rows, ""]))
+    return path
+
+
+def points(obj: bpy.types.Object) -> Array:
+    """Returns the points of a mesh or a point cloud, in the space of the object."""
+    attribute = obj.data.attributes["position"]
+    found = np.empty((len(attribute.data), 3), np.float32)
+    attribute.data.foreach_get("vector", found.ravel())
+    return found
 
 
 def vertices(obj: bpy.types.Object) -> Array:

@@ -63,6 +63,7 @@ def label(name):
         "VIEW3D_MT_object",
         "VIEW3D_MT_object_context_menu",
         "IMAGE_MT_image",
+        "TOPBAR_MT_file_import",
     ],
 )
 def test_each_operator_once(menu):
@@ -88,7 +89,11 @@ def test_the_images_of_a_material(addon):
 
 
 def test_every_operator_is_found():
-    found = {*drawn("VIEW3D_MT_object"), *drawn("IMAGE_MT_image")}
+    found = {
+        *drawn("VIEW3D_MT_object"),
+        *drawn("IMAGE_MT_image"),
+        *drawn("TOPBAR_MT_file_import"),
+    }
     assert found == {f"prefilter.{name}" for name in dir(bpy.ops.prefilter) if not internal(name)}
 
 
@@ -106,6 +111,7 @@ def test_every_operator_is_found():
                 *("resize", "rasterize", "svg", "update"),
             ],
         ),
+        ("TOPBAR_MT_file_import", ["point cloud", "svg"]),
     ],
 )
 def test_words_that_users_search_for(menu, words):

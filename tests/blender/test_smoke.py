@@ -35,7 +35,10 @@ def paint() -> bpy.types.Image:
 def _all_is_saved() -> Iterator[None]:
     """Asserts that what the operator made is still there when the file is saved and opened."""
     yield
-    kinds = (bpy.data.images, bpy.data.objects, bpy.data.meshes, bpy.data.texts, bpy.data.volumes)
+    kinds = (
+        *(bpy.data.images, bpy.data.objects, bpy.data.meshes, bpy.data.texts, bpy.data.volumes),
+        bpy.data.pointclouds,
+    )
     unused = [block.name for kind in kinds for block in kind if block.users == 0]
     assert not [name for name in unused if name not in {"Render Result", "Viewer Node"}]
 
@@ -200,6 +203,19 @@ def test_boolean():
     bodies.cube("Base")
     assert bpy.ops.prefilter.boolean(depth=5) == FINISHED
     assert bodies.is_closed(bpy.context.object)
+
+
+def test_import_points(tmp_path):
+    path = clouds.file(tmp_path / "Torus.xyz", *clouds.torus(1_000))
+    assert bpy.ops.prefilter.import_points(filepath=str(path)) == FINISHED
+    assert "normal" in bpy.data.objects["Torus"].data.attributes
+
+
+def test_drop_points(tmp_path):
+    clouds.file(tmp_path / "Torus.xyz", *clouds.torus(1_000))
+    named = {"directory": str(tmp_path), "files": [{"name": "Torus.xyz"}]}
+    assert bpy.ops.prefilter.drop_points(**named) == FINISHED
+    assert "Torus" in bpy.data.objects
 
 
 def test_reconstruct():

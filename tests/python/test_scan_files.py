@@ -388,13 +388,48 @@ def test_points_come_from_python_in_chunks_of_any_size():
     assert source.viewpoint == (1.0, 2.0, 3.0)
     chunks = [np.concatenate(each) for each in zip(*Reader(1, 0, 100_000, 7).chunks(), strict=True)]
     for _ in range(2):
-        positions, normals, weights, viewpoints, attributes = _native.read_points(source, None)
+        positions, normals, weights, viewpoints, attributes, _ = _native.read_points(
+            source, 2**62, None
+        )
         np.testing.assert_array_equal(positions, chunks[0])
         np.testing.assert_array_equal(normals, chunks[1])
         np.testing.assert_array_equal(weights, chunks[2])
         np.testing.assert_array_equal(viewpoints, chunks[3])
         np.testing.assert_array_equal(attributes["red"], chunks[4][:, 0].astype(np.uint8))
         np.testing.assert_array_equal(attributes["intensity"], chunks[4][:, 1])
+
+
+@pytest.mark.parametrize("most", [1, 7, 70_000, 100_007, 100_008])
+def test_a_file_is_thinned_while_it_is_read(most):
+    """The stride is the smallest that will do where the number of points is known."""
+
+    class Counted(Reader):
+        count = 100_008
+
+    source = _native.PointSource(Counted(1, 0, 100_000, 7))
+    everything = _native.read_points(source, 2**62, None)
+    *found, stride = _native.read_points(source, most, None)
+    assert stride == -(-100_008 // most)
+    for kept, of in zip(found[:4], everything[:4], strict=True):
+        np.testing.assert_array_equal(kept, of[::stride])
+    for name, values in found[4].items():
+        np.testing.assert_array_equal(values, everything[4][name][::stride])
+
+
+def test_text_is_thinned_while_it_is_read(tmp_path):
+    """Lines are not counted before, so that the stride is a power of two."""
+    path = tmp_path / "line.xyz"
+    path.write_text("".join(f"{i} 0 {-i}\n" for i in range(200_000)))
+    found = prefilter.read_points(path, most=30_000)
+    assert found.stride == 8
+    np.testing.assert_array_equal(found.positions[:, 0], np.arange(0, 200_000, 8))
+    assert prefilter.read_points(path).stride == 1
+
+
+@pytest.mark.parametrize("most", [0, -1, 1.5, True])
+def test_how_many_are_kept_at_most(tmp_path, most):
+    with pytest.raises(ValueError, match=r"most: .* a whole number above 0 is needed"):
+        prefilter.read_points(tmp_path / "none.xyz", most=most)
 
 
 def test_what_goes_wrong_in_python_is_passed_on():
@@ -404,7 +439,7 @@ def test_what_goes_wrong_in_python_is_passed_on():
             raise RuntimeError("torn")
 
     with pytest.raises(RuntimeError, match="torn"):
-        _native.read_points(_native.PointSource(Torn(5)), None)
+        _native.read_points(_native.PointSource(Torn(5)), 2**62, None)
 
     class Short(Reader):
         def chunks(self):
@@ -412,4 +447,4 @@ def test_what_goes_wrong_in_python_is_passed_on():
                 yield positions, normals, weights[1:], *rest
 
     with pytest.raises(ValueError, match="arrays of a chunk have different lengths"):
-        _native.read_points(_native.PointSource(Short(5)), None)
+        _native.read_points(_native.PointSource(Short(5)), 2**62, None)

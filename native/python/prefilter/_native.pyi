@@ -250,13 +250,14 @@ def read_range_grid(
 ) -> npt.NDArray[np.int64] | None: ...
 def read_faces(path: bytes, progress: ProgressCallback | None) -> npt.NDArray[np.int64]: ...
 def read_points(
-    source: PointSource, progress: ProgressCallback | None
+    source: PointSource, most: int, progress: ProgressCallback | None
 ) -> tuple[
     npt.NDArray[np.float64],
     npt.NDArray[np.float32] | None,
     npt.NDArray[np.float32] | None,
     npt.NDArray[np.float64] | None,
     dict[str, npt.NDArray[np.uint8 | np.float32]],
+    int,
 ]: ...
 def corner_points(
     positions: npt.NDArray[np.floating],

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import ProgressCallback, as_progress
+from .._border.arguments import ProgressCallback, as_int, as_progress
 from .._border.input import as_path
 from .e57 import E57Reader
 from .las import LasReader
@@ -24,6 +24,8 @@ _READERS: dict[str, Callable[[str], PointReader]] = {
 }
 POINT_EXTENSIONS = (*_native.POINT_EXTENSIONS, *_READERS)
 """What the names of files of points end in."""
+
+_UNLIMITED = 2**62
 
 AttributeArray: TypeAlias = npt.NDArray[np.uint8 | np.float32]
 
@@ -41,6 +43,7 @@ class ScanPoints:
         viewpoint: Where the scanner stood, (3,), in the coordinates of the points; or for each
             point, (n, 3), where these were seen from several places; None where the file does not
             say.
+        stride: Of how many points of the file, in their order, one is here.
     """
 
     positions: npt.NDArray[np.float64]
@@ -48,6 +51,7 @@ class ScanPoints:
     weights: npt.NDArray[np.float32] | None = None
     attributes: dict[str, AttributeArray] = field(default_factory=dict)
     viewpoint: npt.NDArray[np.float64] | None = None
+    stride: int = 1
 
     @property
     def colors(self) -> AttributeArray | None:
@@ -59,9 +63,12 @@ class ScanPoints:
 
 
 def read_points(
-    path: str | os.PathLike[str], *, progress: ProgressCallback | None = None
+    path: str | os.PathLike[str],
+    *,
+    most: int | None = None,
+    progress: ProgressCallback | None = None,
 ) -> ScanPoints:
-    """Reads all points of a file; its ending says of which format it is.
+    """Reads the points of a file; its ending says of which format it is.
 
     .ply, .pcd: nx, ny, nz (or normal_x and so on) are normals, confidence is the weight; all other
     numbers are attributes. VIEWPOINT of a .pcd file is the viewpoint, except for the origin in a
@@ -74,22 +81,29 @@ def read_points(
 
     Args:
         path: Of the file.
+        most: At most so many points are kept: each second one, or third, and so on, so that the
+            rest never has to fit into memory. None keeps all.
         progress: Called with the fraction done; returning False stops the work.
 
     Raises:
-        ValueError: The extension is another, a package is missing, or the file is damaged; the
-            message names the line or the point.
+        ValueError: The extension is another, `most` is not above 0, a package is missing, or the
+            file is damaged; the message names the line or the point.
         OSError: The file cannot be read.
         MemoryError: The points would not fit into memory.
         Cancelled: `progress` returned False.
     """
+    limit = _UNLIMITED
+    if most is not None:
+        limit = as_int("most", most, "a whole number above 0 is needed")
+        if limit <= 0:
+            raise ValueError(f"most: {most}; a whole number above 0 is needed")
     source = open_points(path)
-    positions, normals, weights, viewpoint, attributes = _native.read_points(
-        source, as_progress(progress)
+    positions, normals, weights, viewpoint, attributes, stride = _native.read_points(
+        source, limit, as_progress(progress)
     )
     if viewpoint is None and source.viewpoint is not None:
         viewpoint = np.array(source.viewpoint)
-    return ScanPoints(positions, normals, weights, attributes, viewpoint)
+    return ScanPoints(positions, normals, weights, attributes, viewpoint, stride)
 
 
 def open_points(path: str | os.PathLike[str]) -> _native.PointSource:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..core.operator import WorkOperator
-from ..core.presets import PresetsOperator
-from .properties import RECONSTRUCT, ScanProperties
+from ...core.operator import WorkOperator
+from ...core.presets import PresetsOperator
+from ..properties import RECONSTRUCT, ScanProperties
 
 if TYPE_CHECKING:
-    from .reconstruction import Load, Reconstruction
+    from ..reconstruction import Load, Reconstruction
 
 
 class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bpy.types.Operator):
@@ -46,7 +46,7 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
 
     def read_work(self, context: bpy.types.Context) -> "Reconstruction":
         """Copies the selected points."""
-        from .reconstruction import Reconstruction
+        from ..reconstruction import Reconstruction
 
         return Reconstruction.read(
             _chosen(context),
@@ -71,9 +71,6 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
 
 
 def _chosen(context: bpy.types.Context) -> list[bpy.types.Object]:
-    from ..bridge.points import may_be_points
+    from ...bridge.points import may_be_points
 
     return [obj for obj in context.selected_objects if may_be_points(obj)]
-
-
-register, unregister = bpy.utils.register_classes_factory((PREFILTER_OT_reconstruct,))

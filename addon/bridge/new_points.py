@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Points to Blender: objects that show them, as a point cloud or a mesh without faces."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from .layers import COLOR, NewLayer, write_layer
+from .points import NORMAL
+
+OFFSET = "scan_offset"
+"""The property of an object that says by how much its points were moved to be near the origin."""
+_FAR = 1e3
+"""Points so many times their extent away from an origin have no digits left for detail."""
+_RADIUS = "radius"
+_BUILT_IN = frozenset({"position", "id", NORMAL, _RADIUS})
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """Points for a new object.
+
+    Attributes:
+        name: What the object is called.
+        positions: (n, 3) float64, finite.
+        normals: (n, 3); None where there are none.
+        layers: Its attributes, of the domain POINT.
+    """
+
+    name: str
+    positions: NDArray[np.float64]
+    normals: NDArray[np.floating] | None
+    layers: Sequence[NewLayer]
+
+
+def far_offset(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns the rounded middle of points that are far from the origin; else zero."""
+    low, high = positions.min(axis=0), positions.max(axis=0)
+    middle = (low + high) / 2
+    is_far = float(np.abs(middle).max()) > _FAR * float((high - low).max())
+    return np.asarray(np.round(middle) if is_far else np.zeros(3))
+
+
+def scene_offset(positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Returns `far_offset`, or the offset of another object of the scene that suits points, too."""
+    offset = far_offset(positions)
+    if offset.any():
+        for obj in bpy.context.scene.objects:
+            other = obj.get(OFFSET)
+            if other is not None and not far_offset(positions - np.array(other)).any():
+                return np.array(other, np.float64)
+    return offset
+
+
+def new_points(cloud: Cloud, offset: NDArray[np.float64]) -> bpy.types.Object:
+    """Makes an object of points in the active collection.
+
+    Args:
+        cloud: The points.
+        offset: What is subtracted from their positions; the object keeps it as a property.
+    """
+    local = (cloud.positions - offset).astype(np.float32)
+    if "resize" in bpy.types.PointCloud.bl_rna.functions:
+        data = bpy.data.pointclouds.new(cloud.name)
+        data.resize(len(local))
+        radius = data.attributes.new(_RADIUS, "FLOAT", "POINT").data
+        radius.foreach_set("value", np.full(len(local), spacing(local) / 2, np.float32))
+    else:
+        # Before Blender 5.0, Python cannot make point clouds.
+        data = bpy.data.meshes.new(cloud.name)
+        data.vertices.add(len(local))
+    data.attributes["position"].data.foreach_set("vector", local.ravel())
+    if cloud.normals is not None:
+        normals = np.ascontiguousarray(cloud.normals, np.float32)
+        made = data.attributes.new(NORMAL, "FLOAT_VECTOR", "POINT")
+        made.data.foreach_set("vector", normals.ravel())
+    for layer in cloud.layers:
+        write_layer(data, layer)
+    data.update_tag()
+    colors = [layer.name for layer in cloud.layers if layer.kind == COLOR]
+    if colors and isinstance(data, bpy.types.Mesh):
+        data.color_attributes.active_color_name = colors[0]
+        data.color_attributes.render_color_index = data.color_attributes.find(colors[0])
+    obj = bpy.data.objects.new(cloud.name, data)
+    if offset.any():
+        obj[OFFSET] = offset.tolist()
+    bpy.context.collection.objects.link(obj)
+    return obj
+
+
+def layer_name(name: str) -> str:
+    """Returns what an attribute of a file can be called that Blender may know otherwise."""
+    name = name.lstrip(".") or "value"
+    return f"{name}_value" if name in _BUILT_IN else name
+
+
+def spacing(positions: NDArray[np.float32]) -> float:
+    """Returns about how far points of a surface are apart: of half the box around most of them."""
+    low, high = np.quantile(positions[:: len(positions) // 100_000 + 1], (0.02, 0.98), axis=0)
+    a, b, c = (float(side) for side in high - low)
+    return float(np.sqrt((a * b + b * c + c * a) / len(positions)))

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Files of points as objects, in two steps: read the files, make the objects."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+import numpy as np
+import prefilter
+
+from ..bridge.layers import ATTRIBUTE, NewLayer
+from ..bridge.new_points import Cloud, new_points, scene_offset
+from ..core.jobs import Progress, share
+from ..core.options import check
+from ..core.outcome import Outcome
+from ..core.wording import amount, counted
+from .choices import ImportSettings
+from .files import attribute_layers
+
+_CONFIDENCE = "confidence"
+
+
+class PointsImport:
+    """Files of points, each as an object; all of them relative to one offset."""
+
+    def __init__(self, sources: Sequence[Path], settings: ImportSettings) -> None:
+        """Takes what to read, and how; raises ValueError where that is not allowed."""
+        check(settings)
+        self._sources = sources
+        self._settings = settings
+        self._clouds: list[Cloud] = []
+        self._warnings: list[str] = []
+        self._notes: list[str] = []
+
+    def compute(self, progress: Progress) -> None:
+        """Reads the files.
+
+        Raises:
+            ValueError: A file is damaged, is of another kind, or has no points.
+            OSError: A file cannot be read.
+            MemoryError: The points do not fit into memory.
+            prefilter.Cancelled: `progress` has said so.
+        """
+        count = len(self._sources)
+        for k, path in enumerate(self._sources):
+            self._clouds.append(self._read(path, share(progress, k / count, (k + 1) / count)))
+
+    def write(self) -> Outcome:
+        """Makes the objects, which are then the selected ones, the first of them active."""
+        everywhere = np.concatenate(
+            [
+                np.stack([one.positions.min(axis=0), one.positions.max(axis=0)])
+                for one in self._clouds
+            ]
+        )
+        offset = scene_offset(everywhere)
+        for obj in bpy.context.selected_objects:
+            obj.select_set(False)
+        made = [new_points(cloud, offset) for cloud in self._clouds]
+        for obj in made:
+            obj.select_set(True)
+        bpy.context.view_layer.objects.active = made[0]
+        if offset.any():
+            shown = ", ".join(f"{value:.0f}" for value in offset)
+            self._warnings.append(
+                f"far from the origin: moved by the negative of ({shown}), which is kept as the "
+                "custom property 'scan_offset'"
+            )
+        points = sum(len(cloud.positions) for cloud in self._clouds)
+        from_files = f"'{self._sources[0].name}'" if len(made) == 1 else counted(made, "file")
+        return Outcome(
+            f"Imported {amount(points, 'point')} from {from_files}",
+            objects=[obj.name for obj in made],
+            warnings=self._warnings,
+            notes=self._notes,
+        )
+
+    def discard(self) -> None:
+        """Lets go of what was read."""
+        self._clouds.clear()
+
+    def _read(self, path: Path, progress: Progress) -> Cloud:
+        found = self._points(path, progress)
+        is_finite = np.asarray(np.isfinite(found.positions).all(axis=1))
+        unfit = int(np.count_nonzero(~is_finite))
+        if unfit == len(is_finite):
+            raise ValueError(f"'{path.name}': no points")
+        if unfit:
+            self._notes.append(
+                f"'{path.name}': left out, because they have no finite position: "
+                f"{amount(unfit, 'point')}"
+            )
+        layers = attribute_layers(found.attributes, len(is_finite))
+        if found.weights is not None:
+            weights = np.asarray(found.weights, np.float32)[:, None]
+            layers.append(NewLayer(ATTRIBUTE, _CONFIDENCE, "FLOAT", "POINT", weights))
+        return Cloud(
+            path.stem,
+            found.positions[is_finite],
+            None if found.normals is None else found.normals[is_finite],
+            [replace(one, values=one.values[is_finite]) for one in layers],
+        )
+
+    def _points(self, path: Path, progress: Progress) -> "prefilter.ScanPoints":
+        """Returns the points of a file, with the normals that a grid or faces in it tell."""
+        most = self._settings.most_points
+        try:
+            found = prefilter.read_points(
+                path, most=most or None, progress=share(progress, 0.0, 0.7)
+            )
+            told = None
+            if found.normals is None and found.stride == 1:
+                told = prefilter.file_normals(path, found, progress=share(progress, 0.7, 1.0))
+        except MemoryError as error:
+            raise MemoryError(
+                f"'{path.name}': {error}; a lower value of Most Points keeps fewer"
+            ) from error
+        if found.stride > 1:
+            self._warnings.append(
+                f"'{path.name}': one of {found.stride} points was kept, as Most Points is {most}"
+            )
+        return found if told is None else replace(found, normals=told[0], weights=told[1])

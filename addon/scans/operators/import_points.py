@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""`prefilter.import_points`: files of points as objects."""
+
+from typing import TYPE_CHECKING, Any
+
+import bpy
+from bpy.props import StringProperty
+
+from ...core.operator import WorkOperator
+from ...core.properties import properties
+from ..choices import ScanSettings
+from ..properties import RECONSTRUCT, ImportProperties
+
+if TYPE_CHECKING:
+    from ..importing import PointsImport
+
+
+class PREFILTER_OT_import_points(ImportProperties, WorkOperator, bpy.types.Operator):
+    """Lets a user choose files of points, and makes an object of each."""
+
+    bl_idname = "prefilter.import_points"
+    bl_label = "Import Point Cloud"
+    bl_description = (
+        "Import the points of scans with their normals, colors and other values, each file as an "
+        "object. From LAS, LAZ, E57, PCD, PLY, and text such as XYZ and PTS"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+    doing = "Importing"
+
+    filter_glob: StringProperty(
+        default="*.las;*.laz;*.e57;*.pcd;*.ply;*.xyz;*.xyzn;*.pts;*.asc;*.txt", options={"HIDDEN"}
+    )
+    _is_browsing = False
+
+    if TYPE_CHECKING:
+        work: PointsImport | None
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether objects can be added."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Switch to Object Mode first")
+            return False
+        return True
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Opens the file browser, unless files are named."""
+        if self.paths() or bpy.app.background:
+            return super().invoke(context, event)
+        context.window_manager.fileselect_add(self)
+        self._is_browsing = True
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Works and waits; for the file browser, which cannot wait, another one works."""
+        if self._is_browsing:
+            self._is_browsing = False
+            return self._start_again(use_apply=False)
+        return super().execute(context)
+
+    def read_work(self, context: bpy.types.Context) -> "PointsImport":
+        """Looks which files to read."""
+        del context
+        from ..importing import PointsImport
+
+        paths = self.paths()
+        if not paths:
+            raise ValueError("filepath: no file is given")
+        return PointsImport(paths, self.to_settings())
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Makes the objects, and a surface of them if that is wanted."""
+        found = super().finish(context, result)
+        if self.use_reconstruct:
+            group = getattr(context.scene, RECONSTRUCT.group)
+            wanted = {name: getattr(group, name) for name in properties(ScanSettings)}
+            bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", **wanted)
+        return found
+
+    def handed_on(self) -> dict[str, Any]:
+        """Returns the settings, and which files there are."""
+        return super().handed_on() | self.named_files()

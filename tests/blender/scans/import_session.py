@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Runs in a Blender with a window: imports a file of points that the file browser names.
+
+It is then thinned in Adjust Last Operation, undone, and imported with a surface of it.
+
+Usage: blender --factory-startup --enable-event-simulate --python import_session.py -- RESULT.json
+"""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import clouds
+import window as windows
+from window import Stage, begun, held, idle, play, until, without_objects
+
+RESULT = Path(sys.argv[sys.argv.index("--") + 1])
+windows.SECONDS_PER_STEP = 0.05
+
+
+found: dict[str, object] = {}
+
+
+def session() -> Iterator[None]:
+    """Yields whenever Blender should draw and handle events before going on."""
+    stage = begun()
+    without_objects()
+    clouds.file(RESULT.with_name("Torus.xyz"), *clouds.torus(3_000))
+    bpy.context.scene.prefilter_reconstruct.depth = 5
+    yield from stage.menus("TOPBAR_MT_file_import")
+    bpy.ops.ed.undo_push(message="before")
+    yield from imported(stage)
+    found["imported"] = objects()
+    bpy.ops.ed.undo()
+    yield
+    found["undone"] = objects()
+    yield from imported(stage, use_reconstruct=True)
+    yield from until(idle)
+    found["surface"] = objects()
+    found["adjusted"] = bpy.context.window_manager.operators[-1].bl_idname
+    yield from dropped(stage)
+    with held():
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.import_points(
+                "INVOKE_DEFAULT", filepath=str(RESULT.with_name("Torus.xyz"))
+            )
+        found["works"] = not idle()
+        stage.escape()
+        yield from until(idle)
+    found["cancelled"] = objects()
+    RESULT.write_text(json.dumps(found))
+
+
+def imported(stage: Stage, **options: object) -> Iterator[None]:
+    """Imports the file by the browser, a window of its own."""
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.import_points("INVOKE_DEFAULT", **options)
+    yield from until(lambda: browser() is not None)
+    yield
+    window = browser()
+    assert window is not None
+    area = window.screen.areas[0]
+    area.spaces.active.params.directory = bytes(RESULT.parent)
+    area.spaces.active.params.filename = "Torus.xyz"
+    yield
+    with bpy.context.temp_override(window=window, area=area):
+        bpy.ops.file.execute()
+    yield from until(lambda: browser() is None)
+    yield from until(idle)
+    yield
+
+
+def dropped(stage: Stage) -> Iterator[None]:
+    """Does what Blender does when files are dropped, and chooses from the menu by its letters."""
+    handler = bpy.types.PREFILTER_FH_points
+    name = handler.bl_import_operator.partition(".")[2]
+    for letter in "IR":
+        without_objects()
+        with bpy.context.temp_override(**stage.override):
+            found[f"takes_{letter}"] = handler.poll_drop(bpy.context)
+            getattr(bpy.ops.prefilter, name)(
+                "INVOKE_DEFAULT", directory=str(RESULT.parent), files=[{"name": "Torus.xyz"}]
+            )
+        yield
+        yield
+        stage.window.event_simulate(type=letter, value="PRESS", unicode=letter.lower())
+        yield
+        yield from until(idle)
+        yield
+        yield from until(idle)
+        found[f"dropped_{letter}"] = objects()
+
+
+def browser() -> bpy.types.Window | None:
+    """Returns the window of the file browser."""
+    windows = bpy.context.window_manager.windows
+    return next((one for one in windows if one.screen.areas[0].type == "FILE_BROWSER"), None)
+
+
+def objects() -> dict[str, bool]:
+    """Returns the objects, and whether they are hidden."""
+    return {obj.name: obj.hide_get() for obj in bpy.data.objects}
+
+
+play(session())

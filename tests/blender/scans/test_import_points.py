@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""`prefilter.import_points`: files of points as objects."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import bodies
+import bpy
+import clouds
+import numpy as np
+import pytest
+
+COUNT = 2_000
+SCANS = Path(__file__).resolve().parents[4] / "shared" / "data" / "points"
+HAS_CLOUDS = "resize" in bpy.types.PointCloud.bl_rna.functions
+
+
+@pytest.fixture
+def torus(tmp_path):
+    """Returns a file of a torus with normals and colors, and these."""
+    positions, normals = clouds.torus(COUNT)
+    colors = np.round(255 * (positions + 1.5) / 3)
+    path = clouds.file(tmp_path / "Torus.xyz", positions, normals, colors)
+    return SimpleNamespace(path=path, positions=positions, normals=normals, colors=colors)
+
+
+def read(*paths, **options):
+    """Imports files, and returns the object that is active then."""
+    if len(paths) == 1:
+        options["filepath"] = str(paths[0])
+    else:
+        options["directory"] = str(paths[0].parent)
+        options["files"] = [{"name": path.name} for path in paths]
+    assert bpy.ops.prefilter.import_points(**options) == {"FINISHED"}
+    return bpy.context.object
+
+
+def attribute(obj, name, field, width):
+    found = obj.data.attributes[name]
+    values = np.empty((len(found.data), width), np.float32)
+    found.data.foreach_get(field, values.ravel())
+    return values
+
+
+def test_points_normals_and_colors(torus, capfd):
+    obj = read(torus.path)
+    assert obj.type == ("POINTCLOUD" if HAS_CLOUDS else "MESH")
+    assert (obj.name, bpy.context.selected_objects) == ("Torus", [obj])
+    np.testing.assert_allclose(clouds.points(obj), torus.positions, atol=1e-6)
+    np.testing.assert_allclose(attribute(obj, "normal", "vector", 3), torus.normals, atol=1e-6)
+    found = attribute(obj, "Col", "color_srgb", 4)
+    np.testing.assert_allclose(255 * found[:, :3], torus.colors, atol=0.6)
+    assert (found[:, 3] == 1).all()
+    assert "Imported 2000 points from 'Torus.xyz'" in capfd.readouterr().out
+
+
+def test_undo_takes_the_object_back(torus):
+    bpy.ops.ed.undo_push(message="before")
+    read(torus.path)
+    bpy.ops.ed.undo_push(message="after")
+    bpy.ops.ed.undo()
+    assert not bpy.data.objects
+
+
+def test_a_surface_at_once(torus):
+    bpy.context.scene.prefilter_reconstruct.depth = 5
+    obj = read(torus.path, use_reconstruct=True)
+    assert obj.name == "Torus.surface"
+    assert bodies.is_closed(obj)
+    assert {"normal", "Col"} & set(obj.data.attributes.keys()) == {"Col"}
+    assert bpy.data.objects["Torus"].hide_get()
+
+
+def test_imported_points_are_what_reconstruct_takes(torus):
+    read(torus.path)
+    assert bpy.ops.prefilter.reconstruct(depth=5) == {"FINISHED"}
+    assert bodies.is_closed(bpy.context.object)
+
+
+def test_several_files(torus, tmp_path):
+    other = clouds.file(tmp_path / "Other.pts", torus.positions + 3)
+    read(torus.path, other)
+    assert sorted(obj.name for obj in bpy.context.selected_objects) == ["Other", "Torus"]
+    assert bpy.context.object.name == "Torus"
+
+
+PLACE = np.array([4.5e6, -312_000.25, 120.0])
+
+
+def test_far_from_the_origin(torus, tmp_path, capfd):
+    """Large coordinates keep their digits, and files keep their places relative to each other."""
+    far = [
+        clouds.file(tmp_path / f"{name}.xyz", torus.positions.round(2) + PLACE + shift)
+        for name, shift in (("First", 0), ("Second", (0, 0, 5)))
+    ]
+    one, two = (read(path) for path in far)
+    offset = np.array(one["scan_offset"])
+    assert list(offset) == list(two["scan_offset"])
+    assert np.abs(offset - PLACE).max() < 2
+    assert tuple(one.location) == (0, 0, 0)
+    found = clouds.points(one) + (offset - PLACE)
+    np.testing.assert_allclose(found, torus.positions, atol=0.02)
+    shift = clouds.points(two) - clouds.points(one)
+    np.testing.assert_allclose(shift, [[0, 0, 5]] * COUNT, atol=0.02)
+    out = capfd.readouterr().out
+    assert "far from the origin" in out
+    assert "scan_offset" in out
+
+
+def test_the_surface_keeps_the_offset(torus, tmp_path):
+    path = clouds.file(tmp_path / "Far.xyz", torus.positions + PLACE, torus.normals)
+    offset = list(read(path)["scan_offset"])
+    bpy.ops.prefilter.reconstruct(depth=5)
+    assert list(bpy.context.object["scan_offset"]) == offset
+
+
+def test_near_the_origin_nothing_moves(torus):
+    assert "scan_offset" not in read(torus.path)
+
+
+def test_thinned(torus, capfd):
+    obj = read(torus.path, most_points=COUNT // 3)
+    assert len(clouds.points(obj)) == COUNT // 4
+    np.testing.assert_allclose(clouds.points(obj), torus.positions[::4], atol=1e-6)
+    assert "one of 4 points was kept, as Most Points is 666" in capfd.readouterr().out
+
+
+def test_what_is_not_finite_is_left_out(torus, tmp_path, capfd):
+    torus.positions[3] = np.nan
+    obj = read(clouds.file(tmp_path / "Holes.xyz", torus.positions))
+    assert len(clouds.points(obj)) == COUNT - 1
+    assert "no finite position: 1 point" in capfd.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "message"),
+    [
+        ("none.xyz", None, "none.xyz"),
+        ("empty.xyz", "", "empty.xyz"),
+        ("nan.xyz", "nan nan nan\n", "'nan.xyz': no points"),
+        ("words.xyz", "1 2 3\nnot a point\n", "words.xyz"),
+        ("scan.stl", "solid", "unsupported extension '.stl'"),
+    ],
+)
+def test_what_cannot_be_read(tmp_path, name, text, message):
+    if text is not None:
+        (tmp_path / name).write_text(text)
+    with pytest.raises(RuntimeError, match=message):
+        bpy.ops.prefilter.import_points(filepath=str(tmp_path / name))
+    assert not bpy.data.objects
+
+
+def test_no_file_is_given():
+    with pytest.raises(RuntimeError, match="no file is given"):
+        bpy.ops.prefilter.import_points()
+
+
+def test_poll(torus):
+    bodies.cube()
+    bpy.ops.object.mode_set(mode="EDIT")
+    with pytest.raises(RuntimeError, match="Switch to Object Mode first"):
+        bpy.ops.prefilter.import_points(filepath=str(torus.path))
+
+
+@pytest.mark.parametrize("name", ["kitten.xyz", "bunnyData.pts", "pcl_capture0001.pcd"])
+def test_real_scans(name):
+    path = SCANS / name
+    if not path.exists():
+        pytest.skip(f"there is no {path}")
+    obj = read(path)
+    found = clouds.points(obj)
+    assert len(found) > 5_000
+    assert np.isfinite(found).all()
