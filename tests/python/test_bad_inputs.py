@@ -433,6 +433,7 @@ def test_every_function_is_there():
         "ClosedMesh",
         "CornerPoints",
         "FilteredLevels",
+        "MeshEdges",
         "MipmapFilter",
         "MeshMeasures",
         "NearestPoints",

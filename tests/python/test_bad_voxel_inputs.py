@@ -50,6 +50,10 @@ FUNCTIONS = {
             "uvs": [np.zeros((12, 3, 2), np.float32)],
         },
     ),
+    "mesh_edges": (
+        prefilter.mesh_edges,
+        {"positions": BOX.positions, "triangles": BOX.triangles},
+    ),
     "close_holes": (
         prefilter.close_holes,
         {"positions": BOX.positions, "triangles": BOX.triangles},
@@ -131,7 +135,14 @@ CORNER_ROWS = [
 ]
 EMPTY_ROWS = [
     (name, {"triangles": BOX.triangles[:0]}, ["triangles: none", "at least one"])
-    for name in ("voxelize", "nearest_points", "measure_mesh", "close_holes", "as_solid")
+    for name in (
+        "voxelize",
+        "nearest_points",
+        "measure_mesh",
+        "mesh_edges",
+        "close_holes",
+        "as_solid",
+    )
 ]
 CHART_ROWS = [
     ("uv_charts", {"uvs": [np.zeros((11, 3, 2))]}, ["uvs[0]: shape (11, 3, 2)", "(12, 3, 2)"]),

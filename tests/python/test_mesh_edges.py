@@ -25,10 +25,3 @@ def test_a_tetrahedron():
     edges = prefilter.mesh_edges(np.eye(4, 3), triangles, threads=3)
     assert edges.vertices.tolist() == [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]
     assert edges.corners.tolist() == [[0, 3, 1], [1, 5, 2], [2, 4, 0], [4, 5, 3]]
-
-
-def test_bad_input():
-    with pytest.raises(ValueError, match="triangle"):
-        prefilter.mesh_edges(np.eye(3), np.zeros((0, 3), int))
-    with pytest.raises(ValueError, match="3"):
-        prefilter.mesh_edges(np.eye(3), [(0, 1, 3)])
