@@ -9,6 +9,7 @@ from .new_images import new_packed, suffixed
 
 _PICTURE_KEY = "prefilter_picture_of"
 _COPY_KEY = "prefilter_copy_of"
+_SUFFIX_KEY = "prefilter_copy_suffix"
 
 
 def write_picture(
@@ -32,6 +33,8 @@ def write_picture(
     except RuntimeError as error:
         raise OSError(f"image '{source.name}': cannot make '{name}': {error}") from error
     image[key] = source.full_name
+    if like_source:
+        image[_SUFFIX_KEY] = suffix
     earlier = bpy.data.images.get(name)
     if earlier is not None and earlier != image and earlier.get(key) == source.full_name:
         earlier.user_remap(image)
@@ -59,6 +62,13 @@ def source_of(image: bpy.types.Image | None) -> bpy.types.Image | None:
 def pictured(image: bpy.types.Image | None) -> bpy.types.Image | None:
     """Returns the image that a picture is about, if that is still there; None for a copy."""
     return _tagged(image, _PICTURE_KEY)
+
+
+def copied(image: bpy.types.Image | None, suffix: str) -> bpy.types.Image | None:
+    """Returns the image that a copy with this suffix was made of, if that is still there."""
+    if image is None or image.get(_SUFFIX_KEY) != suffix:
+        return None
+    return _tagged(image, _COPY_KEY)
 
 
 def _tagged(image: bpy.types.Image | None, key: str) -> bpy.types.Image | None:

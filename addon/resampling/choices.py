@@ -44,6 +44,8 @@ WARPS = {
         "of the result",
     ),
 }
+SUFFIXES = {"affine": "transformed", "corners": "pinned", "rectify": "rectified"}
+"""What is added to the name of a result, by its warp."""
 RESULT_SIZES = {
     "fit": Choice("Fit", "Just large enough for the whole result"),
     "image": Choice("Image", "As large as the image"),

@@ -9,7 +9,7 @@ import bpy
 from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
-from .choices import CORNERS, ResampleSettings, ResizeSettings, TableSettings
+from .choices import CORNERS, SUFFIXES, ResampleSettings, ResizeSettings, TableSettings
 
 RESIZE = presets.Kind("resize", "prefilter_resize", [(ResizeSettings, ())])
 RESAMPLE = presets.Kind("resample", "prefilter_resample", [(ResampleSettings, ())])
@@ -51,6 +51,15 @@ class ResampleProperties:
     def to_settings(self) -> ResampleSettings:
         """Returns the settings."""
         return values(self, ResampleSettings)
+
+    def source_of(self, image: bpy.types.Image) -> bpy.types.Image:
+        """Returns what an image was made of by this warp; the image itself if it was not.
+
+        Corners are places in the source: to work on its result would be to straighten that again.
+        """
+        from ..bridge.derived import copied
+
+        return copied(image, SUFFIXES[self.warp]) or image
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""

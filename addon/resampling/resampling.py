@@ -9,12 +9,11 @@ import prefilter
 from ..bridge import images
 from ..bridge.images import FloatArray, Picture
 from ..core.jobs import Progress
-from .choices import METHODS, TABLE_FILTERS, ResampleSettings
+from .choices import METHODS, SUFFIXES, TABLE_FILTERS, ResampleSettings
 from .new_picture import NewPicture
 from .placement import placement, squeeze
 from .sampling_tables import load
 
-_SUFFIXES = {"affine": "transformed", "corners": "pinned", "rectify": "rectified"}
 _RADII = {one.name: one.radius for one in prefilter.PIXEL_FILTERS}
 _PER_PIXEL, _PER_WEIGHT = 8.0, 0.2  # What an exact filter costs, in texels read.
 _PER_TEXEL = 8.0  # What a texel costs that mipmaps are made of.
@@ -52,7 +51,7 @@ class Resampling(NewPicture):
     @property
     def suffix(self) -> str:
         """What has become of the image."""
-        return _SUFFIXES[self._settings.warp]
+        return SUFFIXES[self._settings.warp]
 
     @property
     def summary(self) -> str:

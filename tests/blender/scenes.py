@@ -2,7 +2,8 @@
 
 """Small scenes made in code."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 
 import bpy
 import numpy as np
@@ -197,6 +198,19 @@ def fcurves(obj: bpy.types.Object) -> list[bpy.types.FCurve]:
         return list(action.fcurves)
     strip = action.layers[0].strips[0]
     return list(strip.channelbag(obj.animation_data.action_slot).fcurves)
+
+
+@contextmanager
+def image_editor(image: bpy.types.Image) -> Iterator[bpy.types.SpaceImageEditor]:
+    """Makes an editor that shows an image the context, without a window to be seen."""
+    window = bpy.context.window_manager.windows[0]
+    area = window.screen.areas[0]
+    area.type = "IMAGE_EDITOR"
+    space = area.spaces.active
+    space.image = image
+    region = next(one for one in area.regions if one.type == "WINDOW")
+    with bpy.context.temp_override(window=window, area=area, region=region):
+        yield space
 
 
 def screen(path: str) -> NDArray[np.uint8]:

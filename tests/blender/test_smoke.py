@@ -7,7 +7,6 @@ after it.
 """
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 
 import bodies
 import bpy
@@ -41,19 +40,6 @@ def _all_is_saved() -> Iterator[None]:
     )
     unused = [block.name for kind in kinds for block in kind if block.users == 0]
     assert not [name for name in unused if name not in {"Render Result", "Viewer Node"}]
-
-
-@contextmanager
-def image_editor(image: bpy.types.Image) -> Iterator[bpy.types.SpaceImageEditor]:
-    """Makes an editor that shows an image the context, without a window to be seen."""
-    window = bpy.context.window_manager.windows[0]
-    area = window.screen.areas[0]
-    area.type = "IMAGE_EDITOR"
-    space = area.spaces.active
-    space.image = image
-    region = next(one for one in area.regions if one.type == "WINDOW")
-    with bpy.context.temp_override(window=window, area=area, region=region):
-        yield space
 
 
 def test_every_operator_is_here():
@@ -110,7 +96,7 @@ def test_preview_levels(paint):
 
 def test_end_preview(paint):
     bpy.ops.prefilter.preview_levels(image="Paint")
-    with image_editor(paint):
+    with scenes.image_editor(paint):
         assert bpy.ops.prefilter.end_preview() == FINISHED
         assert not bpy.ops.prefilter.end_preview.poll()
 
@@ -122,7 +108,7 @@ def test_show_weights(paint):
 
 def test_show_source(paint):
     bpy.ops.prefilter.show_weights(image="Paint")
-    with image_editor(bpy.data.images["Paint.weights"]) as editor:
+    with scenes.image_editor(bpy.data.images["Paint.weights"]) as editor:
         assert bpy.ops.prefilter.show_source() == FINISHED
         assert editor.image == paint
 
@@ -144,7 +130,7 @@ def test_resample_image(paint):
 
 def test_drag_corners(paint):
     assert not bpy.ops.prefilter.drag_corners.poll()
-    with image_editor(paint), pytest.raises(RuntimeError, match="needs a window"):
+    with scenes.image_editor(paint), pytest.raises(RuntimeError, match="needs a window"):
         bpy.ops.prefilter.drag_corners("INVOKE_DEFAULT")
 
 
@@ -154,7 +140,7 @@ def test_preview_plane(paint):
 
 def test_end_plane(paint):
     bpy.ops.prefilter.preview_plane(image="Paint", filter="box")
-    with image_editor(paint):
+    with scenes.image_editor(paint):
         assert bpy.ops.prefilter.end_plane() == FINISHED
         assert not bpy.ops.prefilter.end_plane.poll()
 

@@ -74,7 +74,9 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
             return {"FINISHED"}
         group = context.scene.prefilter_resample
         self._before = {name: _value(group, name) for name in ("warp", *CORNERS)}
-        drawn.begin(context.space_data.image)
+        image = group.source_of(context.space_data.image)
+        context.space_data.image = image
+        drawn.begin(image)
         changed = begun(group.to_settings())
         if changed:
             _set(context, changed, "Begin to Drag Corners")

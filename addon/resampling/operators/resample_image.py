@@ -30,6 +30,11 @@ class PREFILTER_OT_resample_image(
     presets = RESAMPLE
     doing = "Resampling"
 
+    def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
+        """Returns the image that is named; else the source of the one that is shown."""
+        image = super().chosen_image(context)
+        return image if self.image else self.source_of(image)
+
     def work_on(self, picture: "Picture") -> "Resampling":
         """Returns what is to do to an image."""
         from ..resampling import Resampling

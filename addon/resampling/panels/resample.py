@@ -32,6 +32,10 @@ class PREFILTER_PT_resample(ImagePanel, SettingsPanel, bpy.types.Panel):
         settings = context.scene.prefilter_resample
         image = context.space_data.image
         if image is not None and all(image.size):
+            source = settings.source_of(image)
+            if source != image:
+                note(self.layout, context, f"Made anew from '{source.name}'", "FILE_REFRESH")
+            image = source
             for text, icon in _what_comes_out(settings.to_settings(), *image.size):
                 note(self.layout, context, text, icon)
         self.layout.operator(

@@ -42,6 +42,7 @@ def session() -> Iterator[None]:
     yield from keys(stage)
     yield from taken_back(stage)
     yield from kept(stage)
+    yield from anew(stage)
     RESULT.write_text(json.dumps(found))
 
 
@@ -113,15 +114,36 @@ def kept(stage: Stage) -> Iterator[None]:
     found["ends by a second press"] = True
 
 
+def anew(stage: Stage) -> Iterator[None]:
+    """Straightens the picture, and drags corners of the result: they are those of the source."""
+    settings().warp = "rectify"
+    yield from started(stage)
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.resample_image("INVOKE_DEFAULT", warp="rectify", **corners())
+    yield from until(lambda: stage.area.spaces.active.image.name == "Facade.rectified")
+    yield from moved(stage.window, *on_screen(stage, (100, 90)))
+    yield from until(idle)
+    found["ends where the result is shown"] = True
+    yield from stage.redrawn()
+    yield from started(stage)
+    found["dragged on"] = stage.area.spaces.active.image.name
+    yield from pressed(stage, "RET", on_screen(stage, (100, 100)))
+    yield from until(idle)
+
+
 def settings() -> bpy.types.PropertyGroup:
     """Returns the settings of the panel."""
     return bpy.context.scene.prefilter_resample
 
 
+def corners() -> dict[str, tuple[float, ...]]:
+    """Returns the corners as the settings have them."""
+    return {name: tuple(getattr(settings(), name)) for name in NAMES}
+
+
 def pixels() -> list[list[float]]:
     """Returns the corners in pixels."""
-    corners = np.array([getattr(settings(), name) for name in NAMES])
-    return (corners * SIZE).tolist()
+    return (np.array(list(corners().values())) * SIZE).tolist()
 
 
 def started(stage: Stage) -> Iterator[None]:

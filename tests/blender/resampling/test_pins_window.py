@@ -56,3 +56,8 @@ def test_enter_keeps(found):
 
 def test_another_press_ends_it(found):
     assert found["ends by a second press"]
+
+
+def test_corners_are_those_of_the_source(found):
+    assert found["ends where the result is shown"]
+    assert found["dragged on"] == "Facade"

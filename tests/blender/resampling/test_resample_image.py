@@ -147,6 +147,32 @@ def test_pinned_and_rectified_is_where_it_was():
     np.testing.assert_allclose(found[4:-4, 4:-4], pixels[4:-4, 4:-4], atol=0.01)
 
 
+def test_another_press_straightens_the_source_anew():
+    with scenes.image_editor(scenes.image("Facade", scenes.noise(24, 40))) as editor:
+        resample(warp="rectify", filter="tent", **CORNERS)
+        assert editor.image.name == "Facade.rectified"
+        first = scenes.pixels("Facade.rectified")
+        resample(warp="rectify", filter="tent", **CORNERS)
+        assert editor.image.name == "Facade.rectified"
+        np.testing.assert_array_equal(scenes.pixels("Facade.rectified"), first)
+        resample(warp="rectify", filter="box", **CORNERS)
+        assert np.any(scenes.pixels("Facade.rectified") != first)
+        assert [image.name for image in bpy.data.images] == ["Facade", "Facade.rectified"]
+        # Another warp goes on from there, and so does what is named.
+        resample(warp="affine", rotation=0.5)
+        assert editor.image.name == "Facade.rectified.transformed"
+        resample(warp="rectify", image="Facade.rectified", **CORNERS)
+        assert "Facade.rectified.rectified" in bpy.data.images
+
+
+def test_a_result_without_its_source_is_an_image():
+    with scenes.image_editor(scenes.image("Facade", scenes.noise(24, 40))) as editor:
+        resample(warp="rectify", **CORNERS)
+        bpy.data.images.remove(bpy.data.images["Facade"])
+        resample(warp="rectify", **CORNERS)
+        assert editor.image.name == "Facade.rectified.rectified"
+
+
 def test_own_table(addon, tmp_path):
     table = prefilter.SamplingTable.build("tent", texels=3, subdomains=(2, 2, 1))
     table.save(tmp_path / "own.json")
