@@ -35,16 +35,16 @@ def _collector_paused() -> Iterator[None]:
 
 
 with _collector_paused():
-    from . import preferences
     from .commands import Commands
     from .core import menus, preset_menu, remembered, running, sidebar
     from .core.registration import registration
     from .manual import Manual
+    from .preferences import OfSubjects
 
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 
 register, unregister = registration(
-    *(preferences, preset_menu, running, remembered, menus, sidebar),
+    *(OfSubjects(_packages), preset_menu, running, remembered, menus, sidebar),
     *_packages,
     *(Commands(SUBJECTS), Manual(_packages)),
 )

@@ -2,20 +2,21 @@
 
 """The preferences of the add-on: what its operators and commands do where a user says nothing."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from types import ModuleType
 
 import bpy
 
 from . import manual
-from .core.options import number, one_of
+from .core.options import number
 from .core.preferences import PACKAGE
 from .core.properties import properties
-from .mipmaps.choices import FILE_FORMATS, ModelSettings
 
 
 @dataclass(frozen=True)
 class Preferences:
-    """What holds where a user sets nothing."""
+    """What holds for several subjects where a user sets nothing."""
 
     threads: int = number(
         0,
@@ -32,12 +33,6 @@ class Preferences:
         low=0,
         display={"soft_max": 65536},
     )
-    file_format: str = one_of(
-        ModelSettings.file_format,
-        "File Format",
-        "Default format of the files that bakes write",
-        FILE_FORMATS,
-    )
 
 
 class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
@@ -46,33 +41,35 @@ class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
     bl_idname = PACKAGE
     __annotations__ = properties(Preferences)
 
-    @property
-    def followed_threads(self) -> int:
-        """How many threads to use; 0 for all."""
-        return self.threads
-
-    @property
-    def followed_memory_limit(self) -> int:
-        """How many MiB to use; 0 for no limit."""
-        return self.memory_limit
-
-    @property
-    def followed_file_format(self) -> str:
-        """A key of `FILE_FORMATS`."""
-        return self.file_format
-
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the preferences."""
         del context
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(self, "threads")
-        layout.prop(self, "memory_limit")
-        layout.prop(self, "file_format")
+        for name in type(self).__annotations__:
+            layout.prop(self, name)
         row = layout.row()
         row.alignment = "RIGHT"
         row.operator("wm.url_open", text="Manual", icon="HELP").url = manual.page()
 
 
-register, unregister = bpy.utils.register_classes_factory((PREFILTER_AP_preferences,))
+class OfSubjects:
+    """The preferences, with those that subjects have of their own.
+
+    A subject may have `PREFERENCES`: a dataclass of options.
+    """
+
+    def __init__(self, subjects: Sequence[ModuleType]) -> None:
+        """Takes the packages of the subjects."""
+        for one in subjects:
+            if (found := getattr(one, "PREFERENCES", None)) is not None:
+                PREFILTER_AP_preferences.__annotations__ |= properties(found)
+
+    def register(self) -> None:
+        """Makes them known to Blender."""
+        bpy.utils.register_class(PREFILTER_AP_preferences)
+
+    def unregister(self) -> None:
+        """Takes them back."""
+        bpy.utils.unregister_class(PREFILTER_AP_preferences)

@@ -29,4 +29,4 @@ def preference(name: str, default: Any) -> Any:
         default: That of the option.
     """
     found = bpy.context.preferences.addons.get(PACKAGE)
-    return default if found is None else getattr(found.preferences, f"followed_{name}", default)
+    return default if found is None else getattr(found.preferences, name, default)

@@ -4,6 +4,8 @@
 
 import math
 import textwrap
+from collections.abc import Iterator
+from typing import Any
 
 import bpy
 
@@ -61,10 +63,12 @@ class PREFILTER_PT_nothing(_Tab, bpy.types.Panel):
             note(self.layout, context, text, "DOT")
 
 
-def _panels() -> list[type[SidebarPanel]]:
-    """Returns the panels of the tab that are registered."""
-    panels = bpy.types.Panel.__subclasses__()
-    return [one for one in panels if issubclass(one, SidebarPanel) and one.is_registered]
+def _panels(base: type[Any] = SidebarPanel) -> Iterator[type[SidebarPanel]]:
+    """Yields the panels of the tab that are registered; few classes, as every redraw asks."""
+    for one in base.__subclasses__():
+        if getattr(one, "is_registered", False):
+            yield one
+        yield from _panels(one)
 
 
 class ImagePanel:

@@ -3,7 +3,7 @@
 """Mipmaps that know the mesh: bakes, and levels in view."""
 
 from ..core.registration import registration
-from . import menus, operators, panels, properties, view
+from . import choices, menus, operators, panels, properties, view
 
 MANUAL = {
     "bake": ("bake", "bake_mipmaps", "bake_model", "model", "remove_levels"),
@@ -13,5 +13,7 @@ MANUAL = {
     ),
 }
 """The pages about its operators and settings; see `manual.Manual`."""
+PREFERENCES = choices.Preferences
+"""What it adds to the preferences; see `preferences.OfSubjects`."""
 
 register, unregister = registration(properties, view, operators, panels, menus)

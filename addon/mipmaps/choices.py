@@ -437,6 +437,18 @@ class ModelSettings:
     )
 
 
+@dataclass(frozen=True)
+class Preferences:
+    """What holds where a user sets nothing."""
+
+    file_format: str = one_of(
+        ModelSettings.file_format,
+        "File Format",
+        "Default format of the files that bakes write",
+        FILE_FORMATS,
+    )
+
+
 REMOVED = {
     "preview": Choice("Preview", "The levels that the editors draw"),
     "images": Choice("Images", "The level images; their users then use the image itself"),

@@ -47,6 +47,7 @@ CROPPED = {
     "error_plot": _panel("error"),
     "texel_use": _panel("texel_use"),
     "texture_cache": _panel("texture_cache", "cache", since=(5, 2)),
+    "nothing": _panel("nothing", "nothing"),
     "voxelize": _panel("voxelize_sidebar"),
     "voxelize_unfolded": _panel("voxelize_sidebar", unfolded=True),
     "boolean": _panel("boolean_sidebar"),

@@ -170,7 +170,8 @@ def show_panel(shown: Photograph) -> Iterator[float]:
         area.spaces.active.image = bpy.data.images[demo_scene.IMAGE]
     if shown.unfolded:
         unfold(panel)
-    rearrange(shown.opened, only=shown.panels)
+    # Where nothing is active, the panel is about the others, which are not drawn.
+    rearrange(shown.opened, only=shown.panels if bpy.context.object else ())
     if panel.bl_space_type == "PROPERTIES":
         yield 0.5
         area.spaces.active.context = panel.bl_context.upper()
@@ -214,6 +215,10 @@ def place_of(area: bpy.types.Area) -> list[int]:
     # The tabs are as wide as a line of text is high, and a bit.
     tabs = round(24 * SCALE)
     return [region.x, region.y, region.width - tabs, region.height]
+
+
+def make_nothing() -> None:
+    """No object."""
 
 
 def make_mesh() -> None:

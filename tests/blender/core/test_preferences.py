@@ -2,6 +2,7 @@
 
 """What the preferences of the add-on say holds until a user says otherwise."""
 
+from dataclasses import asdict
 from pathlib import Path
 from urllib.parse import urlparse
 from urllib.request import url2pathname
@@ -50,10 +51,9 @@ def saved_scan(tmp_path):
 
 
 def test_factory_settings_are_the_defaults(addon, preferences):
-    defaults = addon("preferences").Preferences()
-    for name in ("threads", "memory_limit", "file_format"):
-        assert getattr(preferences, name) == getattr(defaults, name)
-    assert preferences.followed_memory_limit == 0
+    for where in ("preferences", "mipmaps.choices"):
+        for name, default in asdict(addon(where).Preferences()).items():
+            assert getattr(preferences, name) == default
     assert bpy.context.scene.prefilter_reconstruct.memory_limit == 0
     assert bpy.context.scene.prefilter_model.file_format == "ktx2"
 

@@ -81,3 +81,33 @@ def test_nothing_stands_in_where_a_panel_is():
     activate(bodies.cube())
     assert "PREFILTER_PT_voxelize_sidebar" in shown()
     assert "PREFILTER_PT_nothing" not in shown()
+
+
+def test_only_panels_of_the_tab_are_asked(addon):
+    """Each redraw asks, so it is a small part of all panels that there are."""
+    sidebar = addon("core.sidebar")
+    everywhere = bpy.types.Panel.__subclasses__()
+    expected = {
+        one for one in everywhere if issubclass(one, sidebar.SidebarPanel) and one.is_registered
+    }
+    found = list(sidebar._panels())
+    assert {one.bl_label for one in found} >= {"Voxelize", "Rasterize", "Reconstruct Surface"}
+    assert set(found) == expected
+    assert len(found) == len(expected)
+
+
+def test_panels_count_while_they_are_registered(addon):
+    sidebar = addon("core.sidebar")
+
+    class Passing(sidebar.SidebarPanel, bpy.types.Panel):
+        bl_idname = "PREFILTER_PT_passing"
+
+        def draw(self, context):
+            del context
+
+    before = list(sidebar._panels())
+    assert Passing not in before
+    bpy.utils.register_class(Passing)
+    assert Passing in sidebar._panels()
+    bpy.utils.unregister_class(Passing)
+    assert list(sidebar._panels()) == before
