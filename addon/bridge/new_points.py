@@ -9,6 +9,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .color_materials import show_attribute
 from .layers import COLOR, NewLayer, write_layer
 from .points import NORMAL
 
@@ -16,6 +17,7 @@ OFFSET = "scan_offset"
 """The property of an object that says by how much its points were moved to be near the origin."""
 _FAR = 1e3
 """Points so many times their extent away from an origin have no digits left for detail."""
+_MARK = "prefilter_draws_points"
 _RADIUS = "radius"
 _BUILT_IN = frozenset({"position", "id", NORMAL, _RADIUS})
 
@@ -35,6 +37,11 @@ class Cloud:
     positions: NDArray[np.float64]
     normals: NDArray[np.floating] | None
     layers: Sequence[NewLayer]
+
+    @property
+    def color(self) -> str:
+        """The name of the first color attribute; empty for none."""
+        return next((layer.name for layer in self.layers if layer.kind == COLOR), "")
 
 
 def far_offset(positions: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -81,11 +88,12 @@ def new_points(cloud: Cloud, offset: NDArray[np.float64]) -> bpy.types.Object:
     for layer in cloud.layers:
         write_layer(data, layer)
     data.update_tag()
-    colors = [layer.name for layer in cloud.layers if layer.kind == COLOR]
-    if colors and isinstance(data, bpy.types.Mesh):
-        data.color_attributes.active_color_name = colors[0]
-        data.color_attributes.render_color_index = data.color_attributes.find(colors[0])
+    show_attribute(data, cloud.color)
     obj = bpy.data.objects.new(cloud.name, data)
+    if cloud.color and isinstance(data, bpy.types.Mesh):
+        data.color_attributes.active_color_name = cloud.color
+        data.color_attributes.render_color_index = data.color_attributes.find(cloud.color)
+        _draw_points(obj, spacing(local) / 2)
     if offset.any():
         obj[OFFSET] = offset.tolist()
     bpy.context.collection.objects.link(obj)
@@ -103,3 +111,37 @@ def spacing(positions: NDArray[np.float32]) -> float:
     low, high = np.quantile(positions[:: len(positions) // 100_000 + 1], (0.02, 0.98), axis=0)
     a, b, c = (float(side) for side in high - low)
     return float(np.sqrt((a * b + b * c + c * a) / len(positions)))
+
+
+def _draw_points(obj: bpy.types.Object, radius: float) -> None:
+    """Has a mesh without faces drawn and rendered as balls in the colors of its material."""
+    group = _drawing_nodes()
+    modifier = obj.modifiers.new(group.name, "NODES")
+    modifier.node_group = group
+    values = {"Radius": radius, "Material": obj.data.materials[0]}
+    for socket in group.interface.items_tree:
+        if socket.in_out == "INPUT" and socket.name in values:
+            modifier[socket.identifier] = values[socket.name]
+
+
+def _drawing_nodes() -> bpy.types.NodeTree:
+    """Returns the nodes that make a point cloud of vertices; made if missing."""
+    for found in bpy.data.node_groups:
+        if found.library is None and found.get(_MARK):
+            return found
+    group = bpy.data.node_groups.new("Points as Balls", "GeometryNodeTree")
+    group[_MARK] = True
+    sockets = {"Geometry": "Geometry", "Radius": "Float", "Material": "Material"}
+    for name, kind in sockets.items():
+        group.interface.new_socket(name, in_out="INPUT", socket_type=f"NodeSocket{kind}")
+    group.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    kinds = ("NodeGroupInput", "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial")
+    start, balls, painted, end = (group.nodes.new(kind) for kind in (*kinds, "NodeGroupOutput"))
+    for i, node in enumerate((start, balls, painted, end)):
+        node.location = (200 * i, 0)
+    group.links.new(start.outputs["Geometry"], balls.inputs["Mesh"])
+    group.links.new(start.outputs["Radius"], balls.inputs["Radius"])
+    group.links.new(balls.outputs["Points"], painted.inputs["Geometry"])
+    group.links.new(start.outputs["Material"], painted.inputs["Material"])
+    group.links.new(painted.outputs["Geometry"], end.inputs["Geometry"])
+    return group

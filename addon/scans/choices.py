@@ -141,3 +141,9 @@ class ImportSettings:
         "Reconstruct Surface",
         "Make a surface of the points at once, with the settings of the panel Reconstruct Surface",
     )
+    use_show_colors: bool = switch(
+        True,
+        "Show Colors",
+        "Have 3D views in Solid mode show Material Preview if the points have colors: Solid mode "
+        "has none for points",
+    )

@@ -11,6 +11,7 @@ import prefilter
 from mathutils import Matrix
 from numpy.typing import NDArray
 
+from ..bridge.color_materials import show_attribute
 from ..bridge.files import scenes
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_meshes import Contour, new_mesh
@@ -99,7 +100,9 @@ class FilesReconstruction:
         assert self._contour is not None
         bpy.ops.wm.read_homefile(use_empty=True)
         name = self._sources[0].stem
-        made = bpy.data.objects.new(name, new_mesh(name, self._contour))
+        mesh = new_mesh(name, self._contour)
+        show_attribute(mesh, self._contour.active[COLOR])
+        made = bpy.data.objects.new(name, mesh)
         made.matrix_world = Matrix.Translation(self._origin)
         bpy.context.scene.collection.objects.link(made)
         bpy.context.view_layer.update()

@@ -34,6 +34,11 @@ class PointsImport:
         self._warnings: list[str] = []
         self._notes: list[str] = []
 
+    @property
+    def has_colors(self) -> bool:
+        """Whether there are colors to be seen."""
+        return any(cloud.color for cloud in self._clouds)
+
     def compute(self, progress: Progress) -> None:
         """Reads the files.
 

@@ -12,6 +12,7 @@ import prefilter
 from numpy.typing import NDArray
 
 from ..bridge import new_meshes
+from ..bridge.color_materials import show_attribute
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_points import OFFSET
 from ..bridge.place import Place, still_there
@@ -85,6 +86,11 @@ class Reconstruction:
         self._surface: Surface | None = None
         self._contour: new_meshes.Contour | None = None
 
+    @property
+    def has_colors(self) -> bool:
+        """Whether there are colors to be seen."""
+        return self._contour is not None and bool(self._contour.active[COLOR])
+
     @classmethod
     def read(
         cls,
@@ -149,9 +155,9 @@ class Reconstruction:
         beside = still_there(self._place.name)
         objects = [still_there(name) for name in self._names]
         name = f"{beside.name}.surface"
-        made = new_meshes.new_object_beside(
-            beside, new_meshes.new_mesh(name, self._contour), ".surface"
-        )
+        mesh = new_meshes.new_mesh(name, self._contour)
+        show_attribute(mesh, self._contour.active[COLOR])
+        made = new_meshes.new_object_beside(beside, mesh, ".surface")
         if OFFSET in beside:
             made[OFFSET] = list(beside[OFFSET])
         bpy.context.view_layer.objects.active = made

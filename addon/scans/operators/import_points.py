@@ -71,7 +71,12 @@ class PREFILTER_OT_import_points(ImportProperties, WorkOperator, bpy.types.Opera
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Makes the objects, and a surface of them if that is wanted."""
+        from ...bridge.color_materials import show_in_views
+
         found = super().finish(context, result)
+        assert self.work is not None
+        if self.use_show_colors and self.work.has_colors and not self.use_reconstruct:
+            show_in_views(context, are_points=True)
         if self.use_reconstruct:
             group = getattr(context.scene, RECONSTRUCT.group)
             wanted = {name: getattr(group, name) for name in properties(ScanSettings)}

@@ -55,6 +55,16 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
             context.evaluated_depsgraph_get(),
         )
 
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Makes the object, and has 3D views show its colors."""
+        from ...bridge.color_materials import show_in_views
+
+        found = super().finish(context, result)
+        assert self.work is not None
+        if self.work.has_colors and show_in_views(context, are_points=False):
+            self.report({"INFO"}, "3D views in Solid mode show color attributes now")
+        return found
+
     def load(self) -> "Load":
         """Returns how much there was to do."""
         assert self.work is not None

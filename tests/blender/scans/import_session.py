@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
@@ -37,6 +38,7 @@ def session() -> Iterator[None]:
     bpy.ops.ed.undo_push(message="before")
     yield from imported(stage)
     found["imported"] = objects()
+    found["plain"] = shading(stage)
     bpy.ops.ed.undo()
     yield
     found["undone"] = objects()
@@ -54,6 +56,7 @@ def session() -> Iterator[None]:
         stage.escape()
         yield from until(idle)
     found["cancelled"] = objects()
+    yield from colored(stage)
     RESULT.write_text(json.dumps(found))
 
 
@@ -95,6 +98,34 @@ def dropped(stage: Stage) -> Iterator[None]:
         yield
         yield from until(idle)
         found[f"dropped_{letter}"] = objects()
+
+
+def colored(stage: Stage) -> Iterator[None]:
+    """Imports points with colors; makes a surface of them in Solid mode."""
+    without_objects()
+    positions, normals = clouds.torus(3_000)
+    colors = np.round(255 * (positions + 1.5) / 3)
+    path = clouds.file(RESULT.with_name("Colored.xyz"), positions, normals, colors)
+    for wanted in (False, True):
+        with bpy.context.temp_override(**stage.override):
+            bpy.ops.prefilter.import_points(
+                "INVOKE_DEFAULT", filepath=str(path), use_show_colors=wanted
+            )
+        yield from until(idle)
+        yield
+        found[f"colored_{wanted}"] = shading(stage)
+    stage.area.spaces.active.shading.type = "SOLID"
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=5)
+    yield from until(idle)
+    yield
+    found["surface_colored"] = shading(stage)
+
+
+def shading(stage: Stage) -> list[str]:
+    """Returns how the editor shows objects."""
+    found = stage.area.spaces.active.shading
+    return [found.type, found.color_type]
 
 
 def browser() -> bpy.types.Window | None:

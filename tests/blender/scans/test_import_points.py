@@ -55,6 +55,73 @@ def test_points_normals_and_colors(torus, capfd):
     assert "Imported 2000 points from 'Torus.xyz'" in capfd.readouterr().out
 
 
+def color_of(material):
+    """Returns the attribute that the surface of a material is colored by."""
+    nodes = material.node_tree.nodes
+    surface = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+    (link,) = surface.inputs["Base Color"].links
+    return link.from_node.attribute_name
+
+
+def test_a_material_shows_the_colors(torus):
+    """Points and surfaces of several files have one."""
+    first, second = read(torus.path), read(torus.path)
+    bpy.ops.prefilter.reconstruct(depth=5)
+    (material,) = bpy.data.materials
+    assert color_of(material) == "Col"
+    for obj in (first, second, bpy.context.object):
+        assert list(obj.data.materials) == [material]
+    mesh = bpy.context.object.data
+    assert mesh.color_attributes.active_color_name == "Col"
+
+
+def test_points_without_colors_have_no_material(torus, tmp_path):
+    obj = read(clouds.file(tmp_path / "Plain.xyz", torus.positions))
+    assert not bpy.data.materials
+    assert not obj.modifiers
+
+
+def test_points_are_rendered_in_their_colors(torus, tmp_path):
+    """By Cycles: red rises from left to right, green from front to back."""
+    read(torus.path)
+    picture = rendered(tmp_path)
+
+    def seen(x, y):
+        around = picture[y - 4 : y + 5, x - 4 : x + 5].reshape(-1, 4)
+        return around[around[:, 3] > 0.5, :3].mean(axis=0)
+
+    left, right, front, back = seen(11, 32), seen(52, 32), seen(32, 11), seen(32, 52)
+    assert right[0] > left[0] + 0.3
+    assert back[1] > front[1] + 0.3
+
+
+def rendered(tmp_path):
+    """Renders the square of side 3 around the origin from above, in white light."""
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.cycles.samples = 8
+    scene.cycles.use_denoising = False
+    scene.render.film_transparent = True
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.image_settings.color_mode = "RGBA"
+    scene.view_settings.view_transform = "Standard"
+    scene.render.filepath = str(tmp_path / "seen.png")
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    camera.data.type, camera.data.ortho_scale = "ORTHO", 3.0
+    camera.location.z = 5
+    sun = bpy.data.objects.new("Sun", bpy.data.lights.new("Sun", "SUN"))
+    sun.data.energy = 3
+    for obj in (camera, sun):
+        scene.collection.objects.link(obj)
+    scene.camera = camera
+    bpy.ops.render.render(write_still=True)
+    image = bpy.data.images.load(scene.render.filepath)
+    pixels = np.empty(64 * 64 * 4, np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels.reshape(64, 64, 4)
+
+
 def test_undo_takes_the_object_back(torus):
     bpy.ops.ed.undo_push(message="before")
     read(torus.path)

@@ -27,3 +27,10 @@ def test_dropped(found):
 def test_esc(found):
     assert found["works"]
     assert found["cancelled"] == found["dropped_R"]
+
+
+def test_colors_are_seen(found):
+    """Views change only for points that have colors, and if that is wanted."""
+    assert found["plain"] == found["colored_False"] == ["SOLID", "MATERIAL"]
+    assert found["colored_True"] == ["MATERIAL", "MATERIAL"]
+    assert found["surface_colored"] == ["SOLID", "VERTEX"]
