@@ -17,7 +17,7 @@ from bpy.props import StringProperty
 
 from .options import Option, declared
 from .preferences import preferred
-from .properties import set_unset
+from .properties import properties, set_unset
 from .wording import listed
 
 if TYPE_CHECKING:
@@ -153,6 +153,16 @@ class PresetsOperator:
         description="Preset for the settings that are not given",
         options={"HIDDEN", "SKIP_SAVE"},
     )
+
+    def follow_scene(self, context: bpy.types.Context) -> None:
+        """Sets the settings as the scene has them, if the caller names none and no preset."""
+        named = self.properties.is_property_set
+        if self.preset or any(named(name) for name, _, _ in self.presets.options()):
+            return
+        group = getattr(context.scene, self.presets.group)
+        for settings, _ in self.presets.settings:
+            names = [name for name in properties(settings) if hasattr(group, name)]
+            set_unset(self, {name: getattr(group, name) for name in names})
 
     def complete_settings(self) -> None:
         """Sets what the caller has left."""

@@ -2,12 +2,12 @@
 
 """The operators on shapes, one a file."""
 
-import bpy
-
+from ...core.registration import classes, registration
 from .rasterize import PREFILTER_OT_rasterize
-from .rasterize_svg import PREFILTER_OT_rasterize_svg
+from .rasterize_svg import PREFILTER_FH_svg, PREFILTER_OT_rasterize_svg
 from .update_drawn import PREFILTER_OT_update_drawn
 
-register, unregister = bpy.utils.register_classes_factory(
-    (PREFILTER_OT_rasterize, PREFILTER_OT_rasterize_svg, PREFILTER_OT_update_drawn)
+register, unregister = registration(
+    classes(PREFILTER_OT_rasterize, PREFILTER_OT_rasterize_svg, PREFILTER_OT_update_drawn),
+    classes(PREFILTER_FH_svg),
 )

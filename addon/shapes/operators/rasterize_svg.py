@@ -27,7 +27,7 @@ class PREFILTER_OT_rasterize_svg(
     presets = RASTERIZE
     source_drawn = "svg"
 
-    filter_glob: StringProperty(default="*.svg", options={"HIDDEN"})
+    filter_glob: StringProperty(default="*.svg;*.svgz", options={"HIDDEN"})
     _is_browsing = False
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -52,3 +52,17 @@ class PREFILTER_OT_rasterize_svg(
 
         settings = self.to_settings()
         return Rasterization.read(Request("svg", filepath=settings.filepath), settings, context)
+
+
+class PREFILTER_FH_svg(bpy.types.FileHandler):
+    """SVG files that are dropped onto the Image editor."""
+
+    bl_idname = "PREFILTER_FH_svg"
+    bl_label = "SVG as Image"
+    bl_import_operator = PREFILTER_OT_rasterize_svg.bl_idname
+    bl_file_extensions = ".svg;.svgz"
+
+    @classmethod
+    def poll_drop(cls, context: bpy.types.Context) -> bool:
+        """Tells whether files are dropped where the image is then shown."""
+        return context.area is not None and context.area.type == "IMAGE_EDITOR"

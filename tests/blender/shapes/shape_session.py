@@ -90,8 +90,24 @@ def svg(stage: Stage) -> Iterator[None]:
     yield
     found["svg"] = sizes()
     found["shown"] = area.spaces.active.image.name
+    yield from dropped(stage, path)
     yield from stage.open_tab()
     yield from stage.menus("PREFILTER_MT_image", "IMAGE_MT_uvs")
+
+
+def dropped(stage: Stage, path: Path) -> Iterator[None]:
+    """Does what Blender does when a file is dropped: it names the file, and no settings."""
+    handler = bpy.types.PREFILTER_FH_svg
+    settings = bpy.context.scene.prefilter_rasterize
+    settings.width, settings.height = 48, 40
+    with bpy.context.temp_override(**stage.override):
+        found["takes_drop"] = handler.poll_drop(bpy.context)
+        getattr(bpy.ops.prefilter, handler.bl_import_operator.partition(".")[2])(
+            "INVOKE_DEFAULT", filepath=str(path)
+        )
+    yield from until(idle)
+    yield
+    found["dropped"] = list(stage.area.spaces.active.image.size)
 
 
 def sizes() -> dict[str, tuple[int, int]]:

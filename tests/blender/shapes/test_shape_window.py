@@ -20,3 +20,9 @@ def test_panels_and_modal_operators(found):
     assert found["cancelled"] == {}
     assert found["svg"] == {"drawing": [32, 32]}
     assert found["shown"] == "drawing"
+
+
+def test_a_dropped_file(found):
+    """It gets the settings of the panel."""
+    assert found["takes_drop"]
+    assert found["dropped"] == [48, 40]
