@@ -11,6 +11,7 @@ import numpy as np
 from gpu_extras.batch import batch_for_shader
 
 from .images import FloatArray
+from .wipe import is_active
 
 Color = tuple[float, float, float, float]
 Points = Sequence[tuple[float, float]]
@@ -40,6 +41,7 @@ vec3 decoded(vec3 value)
 
 _LINE_WIDTH = 2  # In pixels.
 _LABEL_SIZE, _LABEL_GAP = 13, 10
+_LINE, _ACTIVE = (1.0, 1.0, 1.0, 1.0), (1.0, 0.63, 0.16, 1.0)
 _RIM = (0.0, 0.0, 0.0, 0.6)
 _PLATE, _PLATE_MARGIN = (0.0, 0.0, 0.0, 0.85), 4
 
@@ -66,10 +68,23 @@ def draw_wipe(share: float, left: str, right: str) -> None:
     # The header may lie over the region's upper edge.
     y = _LABEL_GAP * scale
     if left:
-        half = _LINE_WIDTH * scale / 2
-        _draw_box((x - half, 0.0), (x + half, bpy.context.region.height), (1.0, 1.0, 1.0, 1.0))
+        _draw_wipe_line(x)
         draw_label(left, x - label_size(left)[0] - _LABEL_GAP * scale, y)
     draw_label(right, x + _LABEL_GAP * scale, y)
+
+
+def _draw_wipe_line(x: float) -> None:
+    """Draws a line from the bottom to the top of the region, with arrows in its middle."""
+    region = bpy.context.region
+    color = _ACTIVE if is_active(region) else _LINE
+    half = _LINE_WIDTH * bpy.context.preferences.system.ui_scale / 2
+    top, y = region.height, region.height / 2
+    _draw_polygon([(x - half, 0.0), (x + half, 0.0), (x + half, top), (x - half, top)], color)
+    for paint, rim in ((_PLATE, 1.5 * half), (color, 0.0)):
+        tall = 7 * half + 1.6 * rim
+        for side in (-1, 1):
+            tip, base = x + side * (12 * half + 2 * rim), x + side * (4 * half - rim)
+            _draw_polygon([(tip, y), (base, y + tall), (base, y - tall)], paint)
 
 
 def label_size(text: str) -> tuple[float, float]:
@@ -90,7 +105,8 @@ def draw_label(text: str, x: float, y: float) -> None:
     width, height = label_size(text)
     margin = _PLATE_MARGIN * bpy.context.preferences.system.ui_scale
     gpu.state.blend_set("ALPHA")
-    _draw_box((x - margin, y - margin), (x + width + margin, y + height + margin), _PLATE)
+    left, right, low, high = x - margin, x + width + margin, y - margin, y + height + margin
+    _draw_polygon([(left, low), (right, low), (right, high), (left, high)], _PLATE)
     gpu.state.blend_set("NONE")
     blf.color(0, 1.0, 1.0, 1.0, 1.0)
     blf.position(0, x, y, 0)
@@ -121,10 +137,10 @@ def draw_lines(
     gpu.state.blend_set("NONE")
 
 
-def _draw_box(low: tuple[float, float], high: tuple[float, float], color: Color) -> None:
+def _draw_polygon(points: Points, color: Color) -> None:
+    """Draws a convex polygon."""
     shader = gpu.shader.from_builtin("UNIFORM_COLOR")
-    corners = [low, (high[0], low[1]), high, (low[0], high[1])]
-    box = batch_for_shader(shader, "TRI_FAN", {"pos": corners})
+    polygon = batch_for_shader(shader, "TRI_FAN", {"pos": list(points)})
     shader.bind()
     shader.uniform_float("color", color)
-    box.draw(shader)
+    polygon.draw(shader)

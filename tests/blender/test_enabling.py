@@ -14,7 +14,7 @@ from conftest import PACKAGE
 AT_ENABLING = re.compile(
     r"""
     | core(\..*)? | commands | preferences
-    | bridge(\.(files|editors|previews|views|image_operator))?
+    | bridge(\.(files|editors|previews|views|wipe|image_operator))?
     | \w+ (\.(choices|properties|menus|panels?|operators?|remembered|importance|view|model)(\..*)?)?
     """,
     re.VERBOSE,

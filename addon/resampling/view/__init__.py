@@ -3,6 +3,6 @@
 """Seeing sampling tables on a plane with the image on it, and corners that are dragged."""
 
 from ...core.registration import registration
-from . import kept, overlay, pins, state
+from . import kept, overlay, pins, state, wipe
 
-register, unregister = registration(state, kept, overlay, pins)
+register, unregister = registration(state, kept, overlay, pins, wipe)

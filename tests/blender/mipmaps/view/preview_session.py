@@ -140,6 +140,8 @@ def captions(stage: Stage) -> Iterator[None]:
     white = scenes.image("White", np.ones((8, 8, 4), np.float32))
     scenes.textured_quad(white, "white")
     stage.area.spaces.active.image = white
+    # What panels know of a scene may be a moment old.
+    yield from until(lambda: _may_preview(stage))
     with bpy.context.temp_override(**stage.override):
         bpy.ops.image.view_all(fit_view=True)
         bpy.ops.prefilter.preview_levels("EXEC_DEFAULT", compare="tent")
@@ -147,6 +149,11 @@ def captions(stage: Stage) -> Iterator[None]:
     state().use_wipe = True
     yield from shoot(stage, "white")
     state().use_wipe = False
+
+
+def _may_preview(stage: Stage) -> bool:
+    with bpy.context.temp_override(**stage.override):
+        return bool(bpy.ops.prefilter.preview_levels.poll())
 
 
 def in_uv_editor(stage: Stage, image: bpy.types.Image) -> Iterator[None]:

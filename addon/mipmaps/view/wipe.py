@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The line between the levels of two filters, dragged in the Image editor."""
+
+import bpy
+
+from ...bridge.wipe import WipeGizmo, WipeGroup
+from . import preview
+
+
+class PREFILTER_GT_level_wipe(WipeGizmo, bpy.types.Gizmo):
+    """The line."""
+
+    bl_idname = "PREFILTER_GT_level_wipe"
+    view = preview.VIEW
+
+
+class PREFILTER_GGT_level_wipe(WipeGroup, bpy.types.GizmoGroup):
+    """Shows it where two filters are compared."""
+
+    bl_idname = "PREFILTER_GGT_level_wipe"
+    gizmo = PREFILTER_GT_level_wipe
+    view = preview.VIEW
+
+    @classmethod
+    def is_there(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the editor draws the line."""
+        state, shown = cls.view.state(context), cls.view.here(context)
+        if shown is None or not super().is_there(context):
+            return False
+        compares = state.compare in shown.levels and state.compare != next(iter(shown.levels))
+        return state.use_wipe and compares
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (PREFILTER_GT_level_wipe, PREFILTER_GGT_level_wipe)
+)

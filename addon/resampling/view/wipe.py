@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The line between the two halves of a preview plane, dragged in the Image editor."""
+
+import bpy
+
+from ...bridge.wipe import WipeGizmo, WipeGroup
+from . import kept
+
+
+class PREFILTER_GT_plane_wipe(WipeGizmo, bpy.types.Gizmo):
+    """The line."""
+
+    bl_idname = "PREFILTER_GT_plane_wipe"
+    view = kept.VIEW
+
+
+class PREFILTER_GGT_plane_wipe(WipeGroup, bpy.types.GizmoGroup):
+    """Shows it where a plane is drawn."""
+
+    bl_idname = "PREFILTER_GGT_plane_wipe"
+    gizmo = PREFILTER_GT_plane_wipe
+    view = kept.VIEW
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (PREFILTER_GT_plane_wipe, PREFILTER_GGT_plane_wipe)
+)
