@@ -51,16 +51,18 @@ class Button:
 
 
 class SettingsPanel(PresetsPanel):
-    """A mixin for panels: a main button, what its settings come to, and these."""
+    """A mixin for panels: a main button, what its settings come to, and these, closed at first."""
 
     button: Button
+    makes: str
+    """What the button says: what it makes."""
     layout: bpy.types.UILayout
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        self.button.draw_main(self.layout, context)
+        self.button.draw_main(self.layout, context, self.makes)
         self.draw_notes(context)
-        getattr(context.scene, self.button.group).draw_in(self.layout)
+        getattr(context.scene, self.button.group).draw_closed(self.layout)
 
     def draw_notes(self, context: bpy.types.Context) -> None:
         """Draws what the settings come to; nothing where that is not said."""

@@ -127,4 +127,37 @@ def subpanel(
     return header, body
 
 
+class PartedSettings:
+    """A mixin for settings: the usual ones, and parts that are closed at first."""
+
+    def draw_in(self, layout: bpy.types.UILayout, *source: str) -> None:
+        """Draws the settings, the usual ones at once.
+
+        Args:
+            layout: The layout of a panel.
+            source: What the settings are for, where they depend on that.
+        """
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        self.draw_usual(layout, *source)
+        self.draw_parts(layout, *source)
+
+    def draw_closed(self, layout: bpy.types.UILayout, *source: str) -> None:
+        """Draws the same below a main button: the usual ones are a part as well."""
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        name = type(self).__name__.removeprefix("PREFILTER_PG_")
+        _, body = subpanel(layout, f"{name}_usual", "Settings")
+        if body:
+            self.draw_usual(body, *source)
+        self.draw_parts(layout, *source)
+
+    def draw_usual(self, *arguments: Any, **named: Any) -> None:
+        """Draws the usual ones, into the layout that it gets."""
+        raise NotImplementedError
+
+    def draw_parts(self, *arguments: Any, **named: Any) -> None:
+        """Draws the parts likewise; nothing where there are none."""
+
+
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_nothing,))

@@ -129,6 +129,7 @@ OBJECTS = {
     ),
 }
 MODEL_OBJECTS = {
+    "auto": Choice("Automatic", "The selected meshes, or all visible ones where none is selected"),
     "scene": Choice("Scene", "All visible meshes of the scene"),
     "selected": Choice("Selected", "The selected meshes"),
 }
@@ -404,7 +405,7 @@ class ModelSettings:
     """Which images of a model to bake, and where to put them; the rest is as in `Settings`."""
 
     objects: str = one_of(
-        "scene",
+        "auto",
         "Objects",
         "Objects whose images are baked, and whose surfaces decide how much each texel counts",
         MODEL_OBJECTS,

@@ -11,7 +11,7 @@ import bpy
 from ..core import preset_menu, presets
 from ..core.properties import following, properties, shared, single_property, values
 from ..core.registration import classes, registration, state
-from ..core.sidebar import subpanel
+from ..core.sidebar import PartedSettings, subpanel
 from .choices import (
     FITTED_FILTERS,
     NOT_OF_MODELS,
@@ -51,7 +51,7 @@ def _follow_format(self: "BakeProperties", context: bpy.types.Context) -> None:
             setattr(self, name, f"{os.path.splitext(path)[0]}.{self.file_format}")
 
 
-class BakeProperties:
+class BakeProperties(PartedSettings):
     """The properties of a bake; a mixin for an operator and a property group."""
 
     __annotations__ = (
@@ -84,10 +84,8 @@ class BakeProperties:
             else "",
         )
 
-    def draw_in(self, layout: bpy.types.UILayout) -> None:
-        """Draws the properties."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+        """Draws the usual properties."""
         _draw_result(self, layout)
         if self.result == "file":
             self._draw_file(layout)
@@ -101,6 +99,9 @@ class BakeProperties:
             layout.prop_search(self, "roughness", bpy.data, "images")
             if self.roughness:
                 layout.prop(self, "roughness_channel")
+
+    def draw_parts(self, layout: bpy.types.UILayout) -> None:
+        """Draws the parts."""
         _, body = subpanel(layout, "surface", "Surface")
         if body:
             body.prop(self, "objects")
@@ -135,7 +136,7 @@ class BakeProperties:
         _draw_compression(self, layout)
 
 
-class ModelProperties:
+class ModelProperties(PartedSettings):
     """The properties of a bake of a model; a mixin for an operator and a property group."""
 
     __annotations__ = (
@@ -149,10 +150,8 @@ class ModelProperties:
         settings = values(self, Settings, NOT_OF_MODELS)
         return values(self, ModelSettings), replace(settings, use_images=self.result == "images")
 
-    def draw_in(self, layout: bpy.types.UILayout) -> None:
-        """Draws the properties."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+        """Draws the usual properties."""
         layout.prop(self, "objects")
         layout.prop_search(self, "material", bpy.data, "materials")
         _draw_result(self, layout)
@@ -161,6 +160,9 @@ class ModelProperties:
             layout.prop(self, "file_format")
             _draw_compression(self, layout)
         layout.prop(self, "filter")
+
+    def draw_parts(self, layout: bpy.types.UILayout) -> None:
+        """Draws the parts."""
         _, body = subpanel(layout, "model_surface", "Surface")
         if body:
             _draw_surface(self, body)

@@ -9,13 +9,14 @@ import bpy
 from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
+from ..core.sidebar import PartedSettings, subpanel
 from .choices import CORNERS, SUFFIXES, ResampleSettings, ResizeSettings, TableSettings
 
 RESIZE = presets.Kind("resize", "prefilter_resize", [(ResizeSettings, ())])
 RESAMPLE = presets.Kind("resample", "prefilter_resample", [(ResampleSettings, ())])
 
 
-class ResizeProperties:
+class ResizeProperties(PartedSettings):
     """The properties of `prefilter.resize_image`."""
 
     __annotations__ = properties(ResizeSettings)
@@ -24,10 +25,8 @@ class ResizeProperties:
         """Returns the settings."""
         return values(self, ResizeSettings)
 
-    def draw_in(self, layout: bpy.types.UILayout) -> None:
+    def draw_usual(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
         layout.prop(self, "size")
         if self.size == "percent":
             layout.prop(self, "percent")
@@ -43,7 +42,7 @@ class ResizeProperties:
         layout.prop(self, "wrap")
 
 
-class ResampleProperties:
+class ResampleProperties(PartedSettings):
     """The properties of `prefilter.resample_image`."""
 
     __annotations__ = properties(ResampleSettings)
@@ -61,10 +60,8 @@ class ResampleProperties:
 
         return copied(image, SUFFIXES[self.warp]) or image
 
-    def draw_in(self, layout: bpy.types.UILayout) -> None:
+    def draw_usual(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
         layout.prop(self, "warp")
         if self.warp == "affine":
             self._draw_transform(layout)
@@ -101,7 +98,7 @@ class ResampleProperties:
         column.prop(self, "offset_y", text="Y")
 
 
-class TableProperties:
+class TableProperties(PartedSettings):
     """The properties of `prefilter.sampling_table`."""
 
     __annotations__ = properties(TableSettings)
@@ -110,10 +107,8 @@ class TableProperties:
         """Returns the settings."""
         return values(self, TableSettings)
 
-    def draw_in(self, layout: bpy.types.UILayout) -> None:
+    def draw_usual(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
         layout.prop(self, "table")
         column = layout.column()
         column.active = not self.table
@@ -128,8 +123,14 @@ class TableProperties:
         layout.prop(self, "language")
         layout.prop(self, "filepath")
 
-    def draw_narrow(self, layout: bpy.types.UILayout) -> None:
-        """Draws the settings where labels do not fit beside the values."""
+    def draw_closed(self, layout: bpy.types.UILayout, *source: str) -> None:
+        """Draws the settings below a button, where labels do not fit beside the values."""
+        del source
+        _, body = subpanel(layout, "table_usual", "Settings")
+        if body:
+            self._draw_narrow(body)
+
+    def _draw_narrow(self, layout: bpy.types.UILayout) -> None:
         _draw_below_label(self, layout, "table")
         column = layout.column()
         column.active = not self.table

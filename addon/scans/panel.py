@@ -35,6 +35,7 @@ class PREFILTER_PT_reconstruct(_SidebarPanel, SettingsPanel, bpy.types.Panel):
     bl_label = "Reconstruct Surface"
     presets = RECONSTRUCT
     button = _RECONSTRUCT
+    makes = "Make Surface"
 
 
 def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

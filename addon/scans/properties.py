@@ -11,13 +11,13 @@ from bpy.props import CollectionProperty, StringProperty
 from ..core import preset_menu, presets
 from ..core.properties import following, properties, values
 from ..core.registration import classes, registration, state
-from ..core.sidebar import subpanel
+from ..core.sidebar import PartedSettings, subpanel
 from .choices import ImportSettings, ScanSettings
 
 RECONSTRUCT = presets.Kind("reconstruct", "prefilter_reconstruct", [(ScanSettings, ())])
 
 
-class ScanProperties:
+class ScanProperties(PartedSettings):
     """The properties of `prefilter.reconstruct`."""
 
     __annotations__ = properties(ScanSettings)
@@ -26,14 +26,15 @@ class ScanProperties:
         """Returns the settings."""
         return values(self, ScanSettings)
 
-    def draw_in(self, layout: bpy.types.UILayout) -> None:
-        """Draws the settings."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+        """Draws the usual settings."""
         layout.prop(self, "resolution")
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
         layout.prop(self, "trim", text="Trim (Cells)")
         layout.prop(self, "points")
+
+    def draw_parts(self, layout: bpy.types.UILayout) -> None:
+        """Draws the parts."""
         _, body = subpanel(layout, "scan_surface", "Surface")
         if body:
             body.prop(self, "wavelet")

@@ -8,7 +8,7 @@ from ..core.buttons import Button
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
 from ..core.presets import PresetsPanel
 from ..core.registration import classes, entry, registration
-from ..core.sidebar import ImagePanel, SidebarPanel, main_button
+from ..core.sidebar import ImagePanel, SidebarPanel, button, main_button
 from .choices import RasterizeSettings
 from .operators.rasterize import PREFILTER_OT_rasterize
 from .operators.rasterize_svg import PREFILTER_OT_rasterize_svg
@@ -40,8 +40,8 @@ class PREFILTER_PT_rasterize(_CurvesPanel, PresetsPanel, bpy.types.Panel):
         """Draws the panel."""
         place = main_button(self.layout, context, PREFILTER_OT_rasterize)
         if place:
-            _RASTERIZE.draw(place, context).source = "curves"
-        context.scene.prefilter_rasterize.draw_in(self.layout, "curves")
+            _RASTERIZE.draw(place, context, "Make Image").source = "curves"
+        context.scene.prefilter_rasterize.draw_closed(self.layout, "curves")
 
 
 class PREFILTER_PT_drawn(ImagePanel, bpy.types.Panel):
@@ -68,7 +68,7 @@ class PREFILTER_PT_drawn(ImagePanel, bpy.types.Panel):
             operator.image = image.name
         if drawn.source == "svg":
             layout.prop(drawn, "filepath", text="")
-        drawn.draw_in(layout, drawn.source)
+        drawn.draw_closed(layout, drawn.source)
 
 
 class PREFILTER_PT_shapes(ImagePanel, PresetsPanel, bpy.types.Panel):
@@ -76,18 +76,17 @@ class PREFILTER_PT_shapes(ImagePanel, PresetsPanel, bpy.types.Panel):
 
     bl_label = "Rasterize"
     presets = RASTERIZE
-    bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
-        column = self.layout.column(align=True)
-        place = main_button(column, context, PREFILTER_OT_rasterize_svg)
+        place = main_button(self.layout, context, PREFILTER_OT_rasterize_svg)
         if place:
-            _draw_svg(place, context)
-        place = main_button(column, context, PREFILTER_OT_rasterize)
+            # Without a name, so that the file browser opens.
+            _SVG.draw(place, context, "Make Image of SVG...").filepath = ""
+        place = button(self.layout, context, PREFILTER_OT_rasterize)
         if place:
             _draw_uv_mask(place, context)
-        context.scene.prefilter_rasterize.draw_in(self.layout, "svg")
+        context.scene.prefilter_rasterize.draw_closed(self.layout, "svg")
 
 
 def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

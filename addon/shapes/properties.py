@@ -8,7 +8,7 @@ from bpy.props import BoolProperty, CollectionProperty, PointerProperty
 from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
-from ..core.sidebar import subpanel
+from ..core.sidebar import PartedSettings, subpanel
 from .choices import RasterizeSettings
 
 RASTERIZE = presets.Kind(
@@ -16,7 +16,7 @@ RASTERIZE = presets.Kind(
 )
 
 
-class RasterizeProperties:
+class RasterizeProperties(PartedSettings):
     """The properties of `prefilter.rasterize`; a mixin."""
 
     __annotations__ = properties(RasterizeSettings)
@@ -25,10 +25,8 @@ class RasterizeProperties:
         """Returns the settings."""
         return values(self, RasterizeSettings)
 
-    def draw_in(self, layout: bpy.types.UILayout, source: str) -> None:
+    def draw_usual(self, layout: bpy.types.UILayout, source: str) -> None:
         """Draws the settings that count for a source: a key of `choices.SOURCES` but "auto"."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
         if source != "uv" and not self._is_camera(source):
             layout.prop(self, "resolution")
         if self._has_density(source):
@@ -42,6 +40,9 @@ class RasterizeProperties:
             layout.prop(self, "view")
         elif source == "uv":
             layout.prop(self, "tile")
+
+    def draw_parts(self, layout: bpy.types.UILayout, source: str) -> None:
+        """Draws the parts that count for a source."""
         if source != "uv":
             _, body = subpanel(layout, "shape_color", "Color")
             if body:

@@ -43,6 +43,7 @@ class PREFILTER_PT_voxelize(_RemeshPanel, SettingsPanel, bpy.types.Panel):
     bl_label = "Prefilter Voxelize"
     presets = VOXELIZE
     button = _VOXELIZE
+    makes = "Make Solid"
 
 
 class PREFILTER_PT_boolean(_RemeshPanel, SettingsPanel, bpy.types.Panel):
@@ -51,6 +52,7 @@ class PREFILTER_PT_boolean(_RemeshPanel, SettingsPanel, bpy.types.Panel):
     bl_label = "Prefilter Boolean"
     presets = BOOLEAN
     button = _BOOLEAN
+    makes = "Make Boolean"
 
 
 class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Panel):
@@ -59,14 +61,18 @@ class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Pane
     bl_label = "Voxelize"
     presets = VOXELIZE
     button = _VOXELIZE
+    makes = "Make Solid"
 
 
 class PREFILTER_PT_boolean_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Panel):
     """Button and settings of booleans."""
 
     bl_label = "Voxel Boolean"
+    bl_parent_id = "PREFILTER_PT_voxelize_sidebar"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
     presets = BOOLEAN
     button = _BOOLEAN
+    makes = "Make Boolean"
 
 
 def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

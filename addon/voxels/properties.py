@@ -7,26 +7,27 @@ import bpy
 from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
-from ..core.sidebar import note, subpanel
+from ..core.sidebar import PartedSettings, note, subpanel
 from .choices import BooleanSettings, VoxelizeSettings
 
 VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, ())])
 BOOLEAN = presets.Kind("boolean", "prefilter_boolean", [(BooleanSettings, ["operation"])])
 
 
-class VoxelProperties:
+class VoxelProperties(PartedSettings):
     """How the settings are drawn that both have in common; a mixin for their properties."""
 
-    def draw_in(self, layout: bpy.types.UILayout) -> None:
-        """Draws the settings."""
-        layout.use_property_split = True
-        layout.use_property_decorate = False
+    def draw_usual(self, layout: bpy.types.UILayout) -> None:
+        """Draws the usual settings."""
         self._draw_first(layout)
         layout.prop(self, "resolution")
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
         if self._makes_mesh():
             layout.prop(self, "adaptivity")
         self._draw_last(layout)
+
+    def draw_parts(self, layout: bpy.types.UILayout) -> None:
+        """Draws the parts."""
         name = type(self).__name__.rpartition("_")[2]
         _, body = subpanel(layout, f"{name}_repair", "Thin Parts and Holes")
         if body:

@@ -165,8 +165,8 @@ def begun(kind: str = "", *, opened: str = "") -> Stage:
         opened: A panel that is to be open, as one that is closed is not drawn.
     """
     assert addon_utils.enable(PACKAGE, default_set=True) is not None
-    if opened:
-        panel = getattr(bpy.types, opened)
+    panel = getattr(bpy.types, opened, None)
+    if panel is not None and "DEFAULT_CLOSED" in panel.bl_options:
         bpy.utils.unregister_class(panel)
         panel.bl_options = set()
         bpy.utils.register_class(panel)

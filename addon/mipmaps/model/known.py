@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import bpy
 
+from ...bridge.meshes import may_show_image
 from ...core.remembered import Remembered
-from .plan import Item, Plan, plan
+from .plan import Plan, plan
 
 
 @dataclass(frozen=True)
@@ -44,18 +45,30 @@ def images(context: bpy.types.Context, choice: str, material: str = "") -> list[
     found = _plans.get(context)
     if found is None:
         return None
+    chosen = chosen_objects(context.view_layer, choice)
+    wanted = None if chosen is None else {obj.name for obj in chosen}
     names = {item.full_name: item.image for item in found.items}
     return [
         Known(item.image, item.content, names.get(item.normal_map, ""))
         for item in found.items
-        if (choice == "scene" or _is_selected(context, item))
+        if (wanted is None or not wanted.isdisjoint(item.objects))
         and (not material or material in item.materials)
     ]
 
 
-def _is_selected(context: bpy.types.Context, item: Item) -> bool:
-    objects = map(context.view_layer.objects.get, item.objects)
-    return any(obj is not None and obj.select_get() for obj in objects)
+def chosen_objects(view_layer: bpy.types.ViewLayer, choice: str) -> list[bpy.types.Object] | None:
+    """Returns the selected objects if these are to be baked; None for all visible ones.
+
+    Args:
+        view_layer: Has the objects.
+        choice: A key of `choices.MODEL_OBJECTS`.
+    """
+    if choice == "scene":
+        return None
+    chosen = [obj for obj in view_layer.objects if obj.select_get()]
+    if choice == "auto" and not any(map(may_show_image, chosen)):
+        return None
+    return chosen
 
 
 def why_none(context: bpy.types.Context, choice: str, material: str = "") -> str:
@@ -63,4 +76,5 @@ def why_none(context: bpy.types.Context, choice: str, material: str = "") -> str
     if images(context, choice, material) != []:
         return ""
     shown = f"an image of '{material}'" if material else "an image"
-    return f"No {'selected' if choice == 'selected' else 'visible'} mesh shows {shown}"
+    is_all = chosen_objects(context.view_layer, choice) is None
+    return f"No {'visible' if is_all else 'selected'} mesh shows {shown}"

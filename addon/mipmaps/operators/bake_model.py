@@ -25,7 +25,7 @@ class PREFILTER_OT_bake_model(
     bl_idname = "prefilter.bake_model"
     bl_label = "Bake All Images"
     bl_description = (
-        "Make the mipmap levels of every image of the scene, of the selected meshes or of a "
+        "Make the mipmap levels of every image of the selected meshes, of the scene or of a "
         "material, weighted by the surface that shows it. The nodes tell what an image "
         "holds: color, normals, roughness and other data, cut-outs"
     )
@@ -94,6 +94,7 @@ class PREFILTER_OT_bake_model(
         from ...bridge.files import engines
         from .. import file_names
         from ..model.bake import ModelBake
+        from ..model.known import chosen_objects
         from ..model.plan import image_of, plan
         from ..model.results import Results
 
@@ -106,9 +107,7 @@ class PREFILTER_OT_bake_model(
                 f"Folder: '{self.folder}' is beside the .blend file; save that first, or choose "
                 f"another folder"
             )
-        chosen = None
-        if own.objects == "selected":
-            chosen = [obj for obj in context.view_layer.objects if obj.select_get()]
+        chosen = chosen_objects(context.view_layer, own.objects)
         planned = plan(
             context.view_layer, context.evaluated_depsgraph_get(), chosen, material=own.material
         )

@@ -2,10 +2,13 @@
 
 """The Prefilter tab in the sidebar of the Image and UV editors."""
 
+from typing import Any
+
 import bpy
 
 from ...core.presets import PresetsPanel
-from ...core.sidebar import ImagePanel
+from ...core.sidebar import ImagePanel, note
+from ..choices import FILE_FORMATS
 from ..menus import BAKE_BUTTON
 from ..operators.remove_levels import PREFILTER_OT_remove_levels
 from ..operators.source import shown_image
@@ -24,15 +27,21 @@ class PREFILTER_PT_bake(ImagePanel, PresetsPanel, bpy.types.Panel):
         from .. import removal, users
 
         layout, settings = self.layout, context.scene.prefilter_bake
-        BAKE_BUTTON.draw_main(layout, context)
+        BAKE_BUTTON.draw_main(layout, context, "Make Mipmaps")
         image = shown_image(context)
         if image is not None:
             text = users.what_is_read(context, image, settings.objects, [settings.filter])
-            layout.label(text=text, icon="INFO")
-        row = layout.row()
-        row.enabled = removal.has_levels(level_images.source_of_level(image) or image)
-        row.operator(PREFILTER_OT_remove_levels.bl_idname, icon="TRASH")
-        settings.draw_in(layout)
+            note(layout, context, f"{text}, {_where(settings)}", "INFO")
+        settings.draw_closed(layout)
+        if removal.has_levels(level_images.source_of_level(image) or image):
+            layout.operator(PREFILTER_OT_remove_levels.bl_idname, icon="TRASH")
+
+
+def _where(settings: Any) -> str:
+    """Returns where the levels go."""
+    if settings.result != "file":
+        return "as images" if settings.result == "images" else "as a preview"
+    return f"to {settings.filepath or FILE_FORMATS[settings.file_format].label}"
 
 
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_bake,))

@@ -2,11 +2,14 @@
 
 """The bake of all images, in the Prefilter tab of the 3D view's sidebar."""
 
+from typing import Any
+
 import bpy
 
 from ...core.presets import PresetsPanel
-from ...core.sidebar import SidebarPanel, subpanel
-from ..choices import CONTENTS
+from ...core.sidebar import SidebarPanel, note, subpanel
+from ...core.wording import amount
+from ..choices import CONTENTS, FILE_FORMATS
 from ..menus import MODEL_BUTTON
 from ..properties import MODEL
 
@@ -22,10 +25,9 @@ _MOST_IMAGES = 12
 class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
     """The button, the settings, and what there is to bake."""
 
-    bl_label = "Mipmaps of All Images"
+    bl_label = "Mipmaps"
     wanted = "a mesh"
     presets = MODEL
-    bl_options = frozenset({"DEFAULT_CLOSED"})
 
     @staticmethod
     def fits(obj: bpy.types.Object) -> bool:
@@ -39,12 +41,13 @@ class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
         from ..model import known
 
         layout, settings = self.layout, context.scene.prefilter_model
-        MODEL_BUTTON.draw_main(layout, context)
+        MODEL_BUTTON.draw_main(layout, context, "Make Mipmaps")
+        found = known.images(context, settings.objects, settings.material) or []
+        note(layout, context, _what_is_made(context, settings, len(found)), "INFO")
         is_beside = settings.result == "file" and settings.folder.startswith("//")
         if is_beside and not bpy.data.is_saved:
-            layout.label(text="Save the .blend file first", icon="ERROR")
-        settings.draw_in(layout)
-        found = known.images(context, settings.objects, settings.material) or []
+            note(layout, context, "Save the .blend file first", "ERROR")
+        settings.draw_closed(layout)
         header, body = subpanel(layout, "model_images", "Images")
         header.label(text=str(len(found)))
         if not body:
@@ -56,6 +59,21 @@ class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
             row.label(text="Roughness" if one.partner else CONTENTS[one.content].label)
         if len(found) > _MOST_IMAGES:
             column.label(text=f"and {len(found) - _MOST_IMAGES} more", icon="BLANK1")
+
+
+def _what_is_made(context: bpy.types.Context, settings: Any, count: int) -> str:
+    """Returns whose images are baked, and where their levels go."""
+    from ..model import known
+
+    is_all = known.chosen_objects(context.view_layer, settings.objects) is None
+    whose = "the scene" if is_all else "the selection"
+    if settings.material:
+        whose = f"'{settings.material}' in {whose}"
+    if settings.result == "file":
+        where = f"to {settings.folder}, {FILE_FORMATS[settings.file_format].label}"
+    else:
+        where = "as images"
+    return f"{amount(count, 'image')} of {whose} {where}"
 
 
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_model,))

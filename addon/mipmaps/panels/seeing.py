@@ -24,6 +24,8 @@ class PREFILTER_PT_preview(ImagePanel, bpy.types.Panel):
     """The level slider and the wipe."""
 
     bl_label = "Preview"
+    bl_parent_id = "PREFILTER_PT_bake"
+    bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context: bpy.types.Context) -> None:
         """Draws the switch."""
@@ -74,6 +76,7 @@ class PREFILTER_PT_error(ImagePanel, bpy.types.Panel):
     """The error plot."""
 
     bl_label = "Error Plot"
+    bl_parent_id = "PREFILTER_PT_bake"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:
@@ -94,6 +97,7 @@ class PREFILTER_PT_texel_use(ImagePanel, bpy.types.Panel):
     """The weights of texels, and what to do about unused ones."""
 
     bl_label = "Texel Use"
+    bl_parent_id = "PREFILTER_PT_bake"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -5,4 +5,4 @@
 from ...core.registration import registration
 from . import plane, resample, resize, sampling_table
 
-register, unregister = registration(resize, resample, plane, sampling_table)
+register, unregister = registration(resample, resize, plane, sampling_table)

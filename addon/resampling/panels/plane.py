@@ -15,6 +15,7 @@ class PREFILTER_PT_plane(ImagePanel, bpy.types.Panel):
     """The buttons, and how the plane is drawn."""
 
     bl_label = "Preview Plane"
+    bl_parent_id = "PREFILTER_PT_resample"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_header(self, context: bpy.types.Context) -> None:

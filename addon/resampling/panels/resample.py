@@ -25,7 +25,7 @@ class PREFILTER_PT_resample(ImagePanel, SettingsPanel, bpy.types.Panel):
     bl_label = "Resample"
     presets = RESAMPLE
     button = _BUTTON
-    bl_options = {"DEFAULT_CLOSED"}
+    makes = "Make Image"
 
     def draw_notes(self, context: bpy.types.Context) -> None:
         """Draws the size of the result, and what drags the corners."""

@@ -21,6 +21,8 @@ class PREFILTER_PT_resize(ImagePanel, SettingsPanel, bpy.types.Panel):
     bl_label = "Resize"
     presets = RESIZE
     button = _BUTTON
+    makes = "Make Resized Image"
+    bl_parent_id = "PREFILTER_PT_resample"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw_notes(self, context: bpy.types.Context) -> None:

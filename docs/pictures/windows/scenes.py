@@ -106,7 +106,10 @@ def rearrange(opened: Sequence[str], only: Sequence[str] = (), first: str = "") 
     kept = [one for name in only for one in drawn.family(getattr(bpy.types, name))] or ours
     for panel in reversed(ours):
         bpy.utils.unregister_class(panel)
-    for panel in ours:
+    for panel in sorted(ours, key=lambda one: hasattr(one, "bl_parent_id")):
+        is_alone = panel.__name__ in only and hasattr(panel, "bl_parent_id")
+        if is_alone and panel.bl_parent_id.startswith("PREFILTER_"):
+            del panel.bl_parent_id
         closed = set() if panel.__name__ in opened else {"DEFAULT_CLOSED"}
         panel.bl_options = set(getattr(panel, "bl_options", ())) - {"DEFAULT_CLOSED"} | closed
         if panel.__name__ == first:

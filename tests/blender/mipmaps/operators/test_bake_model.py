@@ -26,10 +26,21 @@ def files(folder):
 
 
 def test_the_scene_into_a_folder_beside_the_file(saved, capfd):
-    assert bake() == {"FINISHED"}
+    assert bake(objects="scene") == {"FINISHED"}
     assert files(saved) == ["mipmaps/Left.ktx2", "mipmaps/Right.ktx2", "scene.blend"]
     assert "Baked 2 images into 2 files in" in capfd.readouterr().out
     assert sorted(image.name for image in bpy.data.images) == ["Left", "Right"]
+
+
+def test_the_selection_if_there_is_one(saved):
+    assert bake() == {"FINISHED"}
+    assert files(saved) == ["mipmaps/Left.ktx2", "scene.blend"]
+    bpy.data.objects["Left"].select_set(False)
+    camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    bpy.context.scene.collection.objects.link(camera)
+    camera.select_set(True)
+    assert bake() == {"FINISHED"}
+    assert files(saved) == ["mipmaps/Left.ktx2", "mipmaps/Right.ktx2", "scene.blend"]
 
 
 def test_what_is_selected(saved):
@@ -39,7 +50,7 @@ def test_what_is_selected(saved):
 
 
 def test_level_images_without_files(saved):
-    assert bake(result="images") == {"FINISHED"}
+    assert bake(result="images", objects="scene") == {"FINISHED"}
     assert files(saved) == ["scene.blend"]
     assert {f"{name}.mip{i:02d}" for name in ("Left", "Right") for i in (1, 2, 3)} < {
         image.name for image in bpy.data.images
@@ -63,7 +74,7 @@ def test_what_fails_stops_nothing_else(saved, capfd):
     image.unpack(method="REMOVE")
     image.source, image.filepath = "FILE", "//gone.png"
     image.reload()
-    assert bake() == {"FINISHED"}
+    assert bake(objects="scene") == {"FINISHED"}
     assert files(saved) == ["mipmaps/Right.ktx2", "scene.blend"]
     said = capfd.readouterr().out
     assert "Warning: image 'Left' is not baked: found no pixels" in said
@@ -110,5 +121,6 @@ def test_what_the_panel_lists(addon):
     assert (
         known.why_none(bpy.context, "scene", "Gone") == "No visible mesh shows an image of 'Gone'"
     )
+    assert known.images(bpy.context, "auto") == found
     assert known.images(bpy.context, "selected") == []
     assert known.why_none(bpy.context, "selected") == "No selected mesh shows an image"
