@@ -6,9 +6,10 @@ import os
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import addon_utils
@@ -101,6 +102,46 @@ def cancelled(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
             yield from clicked(window, x, y)
             return
     raise AssertionError("there is no button Cancel in the sidebar")
+
+
+def browser() -> bpy.types.Window | None:
+    """Returns the window of the file browser, if it is open."""
+    windows = bpy.context.window_manager.windows
+    return next((one for one in windows if one.screen.areas[0].type == "FILE_BROWSER"), None)
+
+
+def chosen_in_browser(folder: Path, name: str = "") -> Iterator[None]:
+    """Chooses a file, or the folder, in the file browser that opens, and waits for the work."""
+    window = yield from _opened_browser()
+    params = window.screen.areas[0].spaces.active.params
+    params.directory = bytes(folder)
+    if name:
+        params.filename = name
+    yield
+    yield from _closed(window, bpy.ops.file.execute)
+    yield from until(idle)
+    yield
+
+
+def left_browser() -> Iterator[None]:
+    """Cancels the file browser that opens."""
+    window = yield from _opened_browser()
+    yield from _closed(window, bpy.ops.file.cancel)
+
+
+def _opened_browser() -> Generator[None, None, bpy.types.Window]:
+    yield from until(lambda: browser() is not None)
+    yield
+    window = browser()
+    assert window is not None
+    return window
+
+
+def _closed(window: bpy.types.Window, close: Callable[[], object]) -> Iterator[None]:
+    with bpy.context.temp_override(window=window, area=window.screen.areas[0]):
+        close()
+    yield from until(lambda: browser() is None)
+    yield
 
 
 def region(area: bpy.types.Area, kind: str) -> bpy.types.Region:

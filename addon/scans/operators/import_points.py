@@ -7,16 +7,17 @@ from typing import TYPE_CHECKING, Any
 import bpy
 from bpy.props import StringProperty
 
+from ...core.browsing import BrowsingOperator
 from ...core.operator import WorkOperator
-from ...core.properties import properties
-from ..choices import ScanSettings
 from ..properties import RECONSTRUCT, ImportProperties
 
 if TYPE_CHECKING:
     from ..importing import PointsImport
 
 
-class PREFILTER_OT_import_points(ImportProperties, WorkOperator, bpy.types.Operator):
+class PREFILTER_OT_import_points(
+    ImportProperties, BrowsingOperator, WorkOperator, bpy.types.Operator
+):
     """Lets a user choose files of points, and makes an object of each."""
 
     bl_idname = "prefilter.import_points"
@@ -31,7 +32,6 @@ class PREFILTER_OT_import_points(ImportProperties, WorkOperator, bpy.types.Opera
     filter_glob: StringProperty(
         default="*.las;*.laz;*.e57;*.pcd;*.ply;*.xyz;*.xyzn;*.pts;*.asc;*.txt", options={"HIDDEN"}
     )
-    _is_browsing = False
 
     if TYPE_CHECKING:
         work: PointsImport | None
@@ -44,20 +44,9 @@ class PREFILTER_OT_import_points(ImportProperties, WorkOperator, bpy.types.Opera
             return False
         return True
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Opens the file browser, unless files are named."""
-        if self.paths() or bpy.app.background:
-            return super().invoke(context, event)
-        context.window_manager.fileselect_add(self)
-        self._is_browsing = True
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Works and waits; for the file browser, which cannot wait, another one works."""
-        if self._is_browsing:
-            self._is_browsing = False
-            return self._start_again(use_apply=False)
-        return super().execute(context)
+    def is_named(self) -> bool:
+        """Tells whether files are named."""
+        return bool(self.paths())
 
     def read_work(self, context: bpy.types.Context) -> "PointsImport":
         """Looks which files to read."""
@@ -78,9 +67,7 @@ class PREFILTER_OT_import_points(ImportProperties, WorkOperator, bpy.types.Opera
         if self.use_show_colors and self.work.has_colors and not self.use_reconstruct:
             show_in_views(context, are_points=True)
         if self.use_reconstruct:
-            group = getattr(context.scene, RECONSTRUCT.group)
-            wanted = {name: getattr(group, name) for name in properties(ScanSettings)}
-            bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", **wanted)
+            bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", **RECONSTRUCT.of_scene(context))
         return found
 
     def handed_on(self) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 from bpy.props import StringProperty
 
+from ...core.browsing import BrowsingOperator
 from ...core.presets import PresetsOperator
 from ..properties import RASTERIZE, RasterizeProperties
 from .shape_operator import ShapeOperator
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class PREFILTER_OT_rasterize_svg(
-    RasterizeProperties, PresetsOperator, ShapeOperator, bpy.types.Operator
+    RasterizeProperties, PresetsOperator, BrowsingOperator, ShapeOperator, bpy.types.Operator
 ):
     """Lets a user choose an SVG file, and rasterizes it."""
 
@@ -28,22 +29,10 @@ class PREFILTER_OT_rasterize_svg(
     source_drawn = "svg"
 
     filter_glob: StringProperty(default="*.svg;*.svgz", options={"HIDDEN"})
-    _is_browsing = False
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Opens the file browser, unless a file is named."""
-        if self.filepath or bpy.app.background:
-            return super().invoke(context, event)
-        context.window_manager.fileselect_add(self)
-        self._is_browsing = True
-        return {"RUNNING_MODAL"}
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        """Works and waits; for the file browser, which cannot wait, another one works."""
-        if self._is_browsing:
-            self._is_browsing = False
-            return self._start_again(use_apply=False)
-        return super().execute(context)
+    def is_named(self) -> bool:
+        """Tells whether a file is named."""
+        return bool(self.filepath)
 
     def read_work(self, context: bpy.types.Context) -> "Rasterization":
         """Looks for the file."""

@@ -19,7 +19,17 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import clouds
 import window as windows
-from window import Stage, begun, held, idle, play, until, without_objects
+from window import (
+    Stage,
+    begun,
+    chosen_in_browser,
+    held,
+    idle,
+    left_browser,
+    play,
+    until,
+    without_objects,
+)
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 windows.SECONDS_PER_STEP = 0.05
@@ -36,6 +46,10 @@ def session() -> Iterator[None]:
     bpy.context.scene.prefilter_reconstruct.depth = 5
     yield from stage.menus("TOPBAR_MT_file_import")
     bpy.ops.ed.undo_push(message="before")
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.import_points("INVOKE_DEFAULT")
+    yield from left_browser()
+    found["not_imported"] = objects()
     yield from imported(stage)
     found["imported"] = objects()
     found["plain"] = shading(stage)
@@ -64,19 +78,7 @@ def imported(stage: Stage, **options: object) -> Iterator[None]:
     """Imports the file by the browser, a window of its own."""
     with bpy.context.temp_override(**stage.override):
         bpy.ops.prefilter.import_points("INVOKE_DEFAULT", **options)
-    yield from until(lambda: browser() is not None)
-    yield
-    window = browser()
-    assert window is not None
-    area = window.screen.areas[0]
-    area.spaces.active.params.directory = bytes(RESULT.parent)
-    area.spaces.active.params.filename = "Torus.xyz"
-    yield
-    with bpy.context.temp_override(window=window, area=area):
-        bpy.ops.file.execute()
-    yield from until(lambda: browser() is None)
-    yield from until(idle)
-    yield
+    yield from chosen_in_browser(RESULT.parent, "Torus.xyz")
 
 
 def dropped(stage: Stage) -> Iterator[None]:
@@ -126,12 +128,6 @@ def shading(stage: Stage) -> list[str]:
     """Returns how the editor shows objects."""
     found = stage.area.spaces.active.shading
     return [found.type, found.color_type]
-
-
-def browser() -> bpy.types.Window | None:
-    """Returns the window of the file browser."""
-    windows = bpy.context.window_manager.windows
-    return next((one for one in windows if one.screen.areas[0].type == "FILE_BROWSER"), None)
 
 
 def objects() -> dict[str, bool]:

@@ -8,6 +8,7 @@ SESSION = Path(__file__).with_name("import_session.py")
 
 
 def test_a_file_of_the_browser(found):
+    assert found["not_imported"] == {}
     assert found["imported"] == {"Torus": False}
     assert found["undone"] == {}
 
