@@ -62,6 +62,12 @@ class Kind(NamedTuple):
                 if option.label and name not in without and not (is_text or is_machine):
                     yield name, default, option
 
+    def of_scene(self, context: bpy.types.Context) -> dict[str, Any]:
+        """Returns all settings that the scene has, also those that no preset sets."""
+        group = getattr(context.scene, self.group)
+        names = [name for settings, _ in self.settings for name in properties(settings)]
+        return {name: getattr(group, name) for name in names if hasattr(group, name)}
+
     def files(self) -> dict[str, Path]:
         """Returns the files of all presets by their names; one of the user goes first."""
         found: dict[str, Path] = {}
@@ -159,10 +165,7 @@ class PresetsOperator:
         named = self.properties.is_property_set
         if self.preset or any(named(name) for name, _, _ in self.presets.options()):
             return
-        group = getattr(context.scene, self.presets.group)
-        for settings, _ in self.presets.settings:
-            names = [name for name in properties(settings) if hasattr(group, name)]
-            set_unset(self, {name: getattr(group, name) for name in names})
+        set_unset(self, self.presets.of_scene(context))
 
     def complete_settings(self) -> None:
         """Sets what the caller has left."""

@@ -6,7 +6,10 @@ from ..core.registration import registration
 from . import choices, menus, operators, panels, properties, view
 
 MANUAL = {
-    "bake": ("bake", "bake_mipmaps", "bake_model", "model", "remove_levels"),
+    "bake": (
+        *("bake", "bake_mipmaps", "bake_model", "model", "remove_levels"),
+        *("export_mipmaps", "export_model"),
+    ),
     "view": (
         *("view", "preview_levels", "end_preview", "plot_error"),
         *("show_weights", "show_source", "fill_unused"),

@@ -10,6 +10,7 @@ from ..core.registration import entry, registration
 from .choices import NOT_OF_MODELS, ModelSettings, ResultSettings, Settings
 from .operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from .operators.bake_model import PREFILTER_OT_bake_model
+from .operators.export import PREFILTER_OT_export_mipmaps, PREFILTER_OT_export_model
 from .operators.fill_unused import PREFILTER_OT_fill_unused
 from .operators.plot_error import PREFILTER_OT_plot_error
 from .operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
@@ -59,8 +60,18 @@ def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> Non
     operator.objects, operator.material = "scene", material.name
 
 
+def _draw_export(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    del context
+    for operator, text in (
+        (PREFILTER_OT_export_mipmaps, "Mipmaps (.ktx2/.dds/.exr/.tx/.tif/.png)"),
+        (PREFILTER_OT_export_model, "Mipmaps of All Images"),
+    ):
+        menu.layout.operator(operator.bl_idname, text=text)
+
+
 register, unregister = registration(
     entry(PREFILTER_MT_image, _draw_image_menu),
     entry(PREFILTER_MT_object, _draw_object_menu),
     entry(bpy.types.MATERIAL_MT_context_menu, _draw_material_menu),
+    entry(bpy.types.TOPBAR_MT_file_export, _draw_export),
 )

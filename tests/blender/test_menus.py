@@ -64,6 +64,7 @@ def label(name):
         "VIEW3D_MT_object_context_menu",
         "IMAGE_MT_image",
         "TOPBAR_MT_file_import",
+        "TOPBAR_MT_file_export",
     ],
 )
 def test_each_operator_once(menu):
@@ -93,6 +94,7 @@ def test_every_operator_is_found():
         *drawn("VIEW3D_MT_object"),
         *drawn("IMAGE_MT_image"),
         *drawn("TOPBAR_MT_file_import"),
+        *drawn("TOPBAR_MT_file_export"),
     }
     assert found == {f"prefilter.{name}" for name in dir(bpy.ops.prefilter) if not internal(name)}
 
@@ -112,6 +114,7 @@ def test_every_operator_is_found():
             ],
         ),
         ("TOPBAR_MT_file_import", ["point cloud", "svg"]),
+        ("TOPBAR_MT_file_export", ["export mipmaps", "export all"]),
     ],
 )
 def test_words_that_users_search_for(menu, words):

@@ -66,6 +66,18 @@ def test_bake_model(paint, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["Paint.dds"]
 
 
+def test_export_mipmaps(paint, tmp_path):
+    path = str(tmp_path / "paint.dds")
+    assert bpy.ops.prefilter.export_mipmaps(image="Paint", filepath=path) == FINISHED
+    assert [path.name for path in tmp_path.iterdir()] == ["paint.dds"]
+
+
+def test_export_model(paint, tmp_path):
+    options = {"directory": str(tmp_path), "file_format": "exr"}
+    assert bpy.ops.prefilter.export_model(**options) == FINISHED
+    assert [path.name for path in tmp_path.iterdir()] == ["Paint.exr"]
+
+
 def test_bake_texture_cache(paint, tmp_path):
     if not HAS_CACHE:
         assert not bpy.ops.prefilter.bake_texture_cache.poll()

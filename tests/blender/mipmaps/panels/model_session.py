@@ -15,7 +15,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import begun, idle, play, refused, until, without_objects
+from window import begun, chosen_in_browser, idle, play, refused, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 FOLDER = RESULT.parent / "levels"
@@ -56,6 +56,13 @@ def session() -> Iterator[None]:
     with bpy.context.temp_override(**override):
         bpy.ops.ed.undo()
     yield
+    yield from stage.menus("TOPBAR_MT_file_export")
+    exported = RESULT.parent / "exported"
+    exported.mkdir()
+    for operator, name in (("export_model", ""), ("export_mipmaps", "one.dds")):
+        with bpy.context.temp_override(**override):
+            getattr(bpy.ops.prefilter, operator)("INVOKE_DEFAULT")
+        yield from chosen_in_browser(exported, name)
     RESULT.write_text(
         json.dumps(
             {
@@ -65,6 +72,7 @@ def session() -> Iterator[None]:
                 "after_cancel": after_cancel,
                 "after_bake": after_bake,
                 "after_undo": images(),
+                "exported": sorted(path.name for path in exported.iterdir()),
             }
         )
     )

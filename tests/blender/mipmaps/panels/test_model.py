@@ -17,3 +17,8 @@ def test_modal_bake_of_all_images(found):
     levels = [f"{name}.mip{i:02d}" for name in NAMES for i in range(1, 10)]
     assert found["after_bake"]["images"] == sorted([*NAMES, *levels])
     assert found["after_undo"] == NAMES
+
+
+def test_export(found):
+    """Of all images as KTX 2, and of one, whose ending says DDS, into a folder that is chosen."""
+    assert found["exported"] == [*(f"{name}.ktx2" for name in NAMES), "one.dds"]
