@@ -82,8 +82,9 @@ class ModelBake:
         begin = self._done / self._count
         self._done += len(job.images)
         end = self._done / self._count
+        targets: list[Path] = []
         try:
-            made = yield from self._reading(job, depsgraph)
+            made = yield from self._reading(job, depsgraph, targets)
         except reading.NoSurfaceError as error:
             known = self.results.failed if error.problems else self.results.left_out
             known += without_names(job.images, str(error))
@@ -98,6 +99,10 @@ class ModelBake:
         def compute(progress: Progress) -> None:
             go_on(progress, begin)
             try:
+                for (
+                    target
+                ) in targets:  # A bake that was cancelled may just have removed its folder.
+                    _make_folder(target, self._made_folders)
                 bake.compute(share(progress, begin, end))
             except FAILURES as error:
                 self.results.fail(job.images, error)
@@ -144,9 +149,12 @@ class ModelBake:
                 self._made_folders.pop().rmdir()
 
     def _reading(
-        self, job: Job, depsgraph: bpy.types.Depsgraph
+        self, job: Job, depsgraph: bpy.types.Depsgraph, targets: list[Path]
     ) -> Generator[float, None, AnyBake | None]:
-        """Reads the images of a job; returns None where it is now several other ones."""
+        """Reads the images of a job; returns None where it is now several other ones.
+
+        `targets` gets the file whose folder was made.
+        """
         pair = pair_of(job)
         if not pair.fits:
             self._jobs[:0] = parted(job, pair)
@@ -164,6 +172,7 @@ class ModelBake:
             )
         elif made.target is not None:
             _make_folder(made.target, self._made_folders)
+            targets.append(made.target)
         shown = {name: bpy.data.objects.get(name) for name in job.item.objects}
         request = reading.Request(
             pair.normal_map or pair.image,
@@ -197,5 +206,5 @@ def _make_folder(file: Path, made: list[Path]) -> None:
         missing.append(folder)
         folder = folder.parent
     for path in reversed(missing):
-        path.mkdir()
+        path.mkdir(exist_ok=True)
         made.append(path)

@@ -160,3 +160,21 @@ def test_a_normal_map_and_a_roughness_of_another_size_are_parted(addon):
     alone = preparing.pair_of(plan.Job(rough, normal_map="Bumps"))
     assert (alone.normal_map.name, alone.rough.name) == ("Bumps", "Rough")
     assert preparing.pair_of(plan.Job(bumps)).rough is None
+
+
+def test_a_folder_that_another_bake_removed_is_made_again(addon, tmp_path):
+    """As one that is cancelled does when it stops, which may be after the next one was read."""
+    image = scenes.image("Paint", scenes.noise(8, 8))
+    quad = scenes.textured_quad(image, "Paint")
+    bpy.context.view_layer.update()
+    planned = addon("mipmaps.model.plan").plan(bpy.context.view_layer, scenes.depsgraph(), [quad])
+    settings = addon("mipmaps.choices").Settings(use_images=False)
+    target = tmp_path / "new" / "folders" / "Paint.exr"
+    model = addon("mipmaps.model.bake").ModelBake(planned, settings, {image.name_full: str(target)})
+    compute = addon("core.doing").read_at_once(model.reading(scenes.depsgraph()))
+    target.parent.rmdir()
+    compute(lambda fraction: True)
+    assert len(model.write()) == 1
+    assert target.exists()
+    model.discard()
+    assert target.exists()
