@@ -36,7 +36,7 @@ def _collector_paused() -> Iterator[None]:
 
 with _collector_paused():
     from .commands import Commands
-    from .core import menus, preset_menu, remembered, running, sidebar
+    from .core import menus, preset_menu, remembered, running, sidebar, translations
     from .core.registration import registration
     from .manual import Manual
     from .preferences import OfSubjects
@@ -44,6 +44,7 @@ with _collector_paused():
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 
 register, unregister = registration(
+    translations,
     *(OfSubjects(_packages), preset_menu, running, remembered, menus, sidebar),
     *_packages,
     *(Commands(SUBJECTS), Manual(_packages)),

@@ -12,6 +12,7 @@ from . import manual
 from .core.options import number
 from .core.preferences import PACKAGE
 from .core.properties import properties
+from .core.translations import CONTEXT
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,8 @@ class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
             layout.prop(self, name)
         row = layout.row()
         row.alignment = "RIGHT"
-        row.operator("wm.url_open", text="Manual", icon="HELP").url = manual.page()
+        link = row.operator("wm.url_open", text="Manual", text_ctxt=CONTEXT, icon="HELP")
+        link.url = manual.page()
 
 
 class OfSubjects:

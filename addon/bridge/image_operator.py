@@ -6,6 +6,7 @@ import bpy
 from bpy.props import StringProperty
 
 from ..core.operator import WorkOperator
+from ..core.translations import CONTEXT, tr
 from . import editors
 
 
@@ -14,6 +15,7 @@ class ImageOperator:
 
     image: StringProperty(
         name="Image",
+        translation_context=CONTEXT,
         description="The image to work on; the image of the editor if empty",
         options={"SKIP_SAVE"},
     )
@@ -28,10 +30,10 @@ class ImageOperator:
         """Tells whether there is an image."""
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
             if cls.shown_image(context) is None:
-                cls.poll_message_set("Open an image in this editor first")
+                cls.poll_message_set(tr("Open an image in this editor first"))
                 return False
         elif not bpy.data.images:
-            cls.poll_message_set("There is no image in this file")
+            cls.poll_message_set(tr("There is no image in this file"))
             return False
         return True
 

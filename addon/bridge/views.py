@@ -7,6 +7,7 @@ from typing import Any, Generic, TypeVar
 
 import bpy
 
+from ..core.translations import tr
 from . import editors
 from .previews import Preview, Previews
 
@@ -60,7 +61,7 @@ class EndsView:
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether something is kept of the editor's image."""
         if cls.view.here(context) is None:
-            cls.poll_message_set(cls.nothing)
+            cls.poll_message_set(tr(cls.nothing))
             return False
         return True
 

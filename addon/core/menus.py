@@ -7,11 +7,14 @@ A search (F3) finds what is in a menu of the editor's header, once for each time
 
 import bpy
 
+from .translations import CONTEXT
+
 
 class PREFILTER_MT_object(bpy.types.Menu):
     """What works on objects."""
 
     bl_label = "Prefilter"
+    bl_translation_context = CONTEXT
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws nothing; subjects append to it."""
@@ -21,6 +24,7 @@ class PREFILTER_MT_image(bpy.types.Menu):
     """What works on images."""
 
     bl_label = "Prefilter"
+    bl_translation_context = CONTEXT
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws nothing; subjects append to it."""

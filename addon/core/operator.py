@@ -18,6 +18,7 @@ from .jobs import Progress, Work
 from .outcome import FAILURES
 from .parts import PartedWork
 from .running import TICK_SECONDS, Run
+from .translations import CONTEXT, report, tr
 
 _PATIENCE_SECONDS = 0.1
 """How long an operator waits for a thread that was cancelled. Steps of other libraries, such as
@@ -37,6 +38,7 @@ class BackgroundOperator(Doing):
 
     use_apply: BoolProperty(
         name="Apply",
+        translation_context=CONTEXT,
         description="Run again with these settings in the background. Press Esc to cancel",
         default=False,
         options={"HIDDEN", "SKIP_SAVE"},
@@ -62,7 +64,8 @@ class BackgroundOperator(Doing):
         self.draw_settings(context, column)
         if applied is not None:
             percent = round(100 * applied.fraction)
-            layout.progress(factor=applied.fraction, text=f"{percent} %   Esc: Cancel")
+            text = f"{percent} %   {tr('Esc: Cancel')}"
+            layout.progress(factor=applied.fraction, text=text)
         elif self._problem:
             redo.draw_problem(layout, self._problem)
         else:
@@ -162,13 +165,13 @@ class BackgroundOperator(Doing):
         if parts.job is None:
             parts.read_on(TICK_SECONDS)
         if parts.job is None:
-            self._show(context, "Reading", parts.fraction_read)
+            self._show(context, tr("Reading"), parts.fraction_read)
             return {"RUNNING_MODAL"}
         if not parts.job.is_done:
             if time.monotonic() - self._cancelled_at > _PATIENCE_SECONDS:
                 parts.job.abandon(self.releaser())
                 return self._end_cancelled(context)
-            self._show(context, self.doing, parts.job.progress)
+            self._show(context, tr(self.doing), parts.job.progress)
             return {"PASS_THROUGH"}
         result = parts.result()
         parts.steps = self.following(context)
@@ -252,7 +255,7 @@ class BackgroundOperator(Doing):
 
     def _end_cancelled(self, context: bpy.types.Context) -> set[str]:
         self._leave(context)
-        self.report({"INFO"}, f"{self.doing} canceled")
+        self.report({"INFO"}, report("{} canceled").format(report(self.doing)))
         return {"CANCELLED"}
 
     def _fail(self, error: object) -> set[str]:

@@ -13,6 +13,7 @@ from bpy.props import StringProperty
 from .presets import SUFFIX, Kind, shown_name
 from .properties import reset
 from .registration import Step, classes, registration
+from .translations import report
 
 _HERE = str(Path(__file__).resolve().parents[1])
 
@@ -136,7 +137,7 @@ class PREFILTER_OT_export_preset(_PresetFile, bpy.types.Operator):
         path = path.with_suffix(SUFFIX)
         text = self.kind.written(getattr(context.scene, self.kind.group))
         _write(path, text.encode())
-        return f"Wrote {path.name}"
+        return report("Wrote {}").format(path.name)
 
 
 class PREFILTER_OT_import_preset(_PresetFile, bpy.types.Operator):
@@ -154,9 +155,10 @@ class PREFILTER_OT_import_preset(_PresetFile, bpy.types.Operator):
         folder = bpy.utils.user_resource("SCRIPTS", path=f"presets/{self.kind.folder}", create=True)
         target = Path(folder) / path.name
         if target.exists():
-            raise ValueError(f"there is a preset '{shown_name(target)}' already; remove it first")
+            text = report("there is a preset '{}' already; remove it first")
+            raise ValueError(text.format(shown_name(target)))
         _write(target, path.read_bytes())
-        return f"Added the preset '{shown_name(target)}'"
+        return report("Added the preset '{}'").format(shown_name(target))
 
 
 def _write(target: Path, data: bytes) -> None:

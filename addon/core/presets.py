@@ -18,6 +18,7 @@ from bpy.props import StringProperty
 from .options import Option, declared
 from .preferences import preferred
 from .properties import properties, set_unset
+from .translations import CONTEXT
 from .wording import listed
 
 if TYPE_CHECKING:
@@ -156,6 +157,7 @@ class PresetsOperator:
 
     preset: StringProperty(
         name="Preset",
+        translation_context=CONTEXT,
         description="Preset for the settings that are not given",
         options={"HIDDEN", "SKIP_SAVE"},
     )

@@ -19,6 +19,7 @@ from bpy.props import (
 from .choices import flag_items, items, number_of
 from .options import Option, declared, option
 from .preferences import preference
+from .translations import CONTEXT
 
 _ABOVE = 1e-3
 """How far above a limit that it must not have a property begins."""
@@ -166,6 +167,7 @@ def _property(default: Any, declaration: Option, **more: Any) -> Any:
     common = {
         "name": declaration.label,
         "description": declaration.description,
+        "translation_context": CONTEXT,
         **declaration.display,
         **more,
     }

@@ -2,7 +2,6 @@
 
 """Adjust Last Operation: how long a redo is expected to take, and what its panel says."""
 
-import textwrap
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -10,6 +9,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import bpy
+
+from .sidebar import wrapped
+from .translations import tr
 
 QUICK_SECONDS = 1.0
 """Work up to this long is redone at once when a user changes a setting; longer work waits for
@@ -75,13 +77,13 @@ class Deadline:
 
 def draw_problem(layout: bpy.types.UILayout, problem: str) -> None:
     """Draws why settings cannot be applied."""
-    for i, line in enumerate(textwrap.wrap(problem, _LINE_LENGTH)):
+    for i, line in enumerate(wrapped(problem, _LINE_LENGTH)):
         layout.label(text=line, icon="BLANK1" if i else "ERROR")
 
 
 def apply_text(seconds: float) -> str:
     """Returns what the button says: how many seconds it takes; 0 if there is nothing to apply."""
-    return f"Apply (about {_spoken(seconds)})" if seconds else "Applied"
+    return tr("Apply (about {})").format(_spoken(seconds)) if seconds else tr("Applied")
 
 
 @contextmanager

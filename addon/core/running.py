@@ -7,6 +7,8 @@ import time
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, StringProperty
 
+from .translations import CONTEXT, tr
+
 TICK_SECONDS = 0.05
 """How often a running operator looks at its thread."""
 ASKING_SECONDS = 10.0
@@ -35,7 +37,9 @@ class PREFILTER_PG_run(bpy.types.PropertyGroup):
     """
 
     use_cancel: BoolProperty(
-        name="Cancel", description="Stop and discard the result. Esc does the same"
+        name="Cancel",
+        translation_context=CONTEXT,
+        description="Stop and discard the result. Esc does the same",
     )
 
 
@@ -57,9 +61,9 @@ class PREFILTER_OT_confirm_cancel(bpy.types.Operator):
         return context.window_manager.invoke_confirm(
             self,
             event,
-            title="Cancel?",
-            message=f"{run.text}. It has worked for {run.seconds:.0f} s",
-            confirm_text="Stop and Discard",
+            title=tr("Cancel?"),
+            message=tr("{}. It has worked for {} s").format(run.text, round(run.seconds)),
+            confirm_text=tr("Stop and Discard"),
             icon="QUESTION",
         )
 

@@ -10,11 +10,14 @@ from typing import Any
 import bpy
 
 from . import running
+from .translations import CONTEXT, tr
 
 _LETTER_WIDTH = 6.5
 _AROUND_TEXT = 76
 """What margins, tabs and an icon take of a sidebar's width; both at a scale of 1."""
 _FEWEST_LETTERS = 12
+_FIRST_WIDE = "\u2e80"
+"""From here on letters are about twice as wide: those of Chinese and Japanese."""
 
 
 class _Tab:
@@ -46,6 +49,7 @@ class PREFILTER_PT_nothing(_Tab, bpy.types.Panel):
     """Stands in for the panels where none is for what is active, and says what they are for."""
 
     bl_label = "Prefilter"
+    bl_translation_context = CONTEXT
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -59,7 +63,7 @@ class PREFILTER_PT_nothing(_Tab, bpy.types.Panel):
             return
         note(self.layout, context, "Make one of these the active object", "INFO")
         for panel in _panels():
-            text = f"{panel.bl_label}: {panel.wanted}"
+            text = f"{tr(panel.bl_label)}: {tr(panel.wanted)}"
             note(self.layout, context, text, "DOT")
 
 
@@ -103,10 +107,22 @@ def note(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon
     """Draws a text of any length, in as many lines as the region needs."""
     scale = context.preferences.system.ui_scale  # 0 without a window.
     room = context.region.width / scale - _AROUND_TEXT if scale else math.inf
-    letters = min(len(text), max(_FEWEST_LETTERS, room / _LETTER_WIDTH))
+    letters = max(_FEWEST_LETTERS, room / _LETTER_WIDTH)
     column = layout.column(align=True)
-    for i, line in enumerate(textwrap.wrap(text, int(letters))):
+    for i, line in enumerate(wrapped(tr(text), letters)):
         column.label(text=line, icon="BLANK1" if i else icon)
+
+
+def wrapped(text: str, letters: float) -> list[str]:
+    """Returns the lines of a text.
+
+    Args:
+        text: The text.
+        letters: How many Latin letters fit in a line.
+    """
+    wide = sum(one >= _FIRST_WIDE for one in text)
+    fitting = letters * len(text) / (len(text) + wide) if text else letters
+    return textwrap.wrap(text, int(min(len(text), fitting)) or 1)
 
 
 def subpanel(
@@ -123,7 +139,7 @@ def subpanel(
         The header, for more to draw in it, and the body; None while that is closed.
     """
     header, body = layout.panel(f"PREFILTER_{name}", default_closed=True)
-    header.label(text=title)
+    header.label(text=title, text_ctxt=CONTEXT)
     return header, body
 
 

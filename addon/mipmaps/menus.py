@@ -7,6 +7,7 @@ import bpy
 from ..core.buttons import Button
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
 from ..core.registration import entry, registration
+from ..core.translations import marked
 from .choices import NOT_OF_MODELS, ModelSettings, ResultSettings, Settings
 from .operators.bake_mipmaps import PREFILTER_OT_bake_mipmaps
 from .operators.bake_model import PREFILTER_OT_bake_model
@@ -63,8 +64,8 @@ def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> Non
 def _draw_export(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     del context
     for operator, text in (
-        (PREFILTER_OT_export_mipmaps, "Mipmaps (.ktx2/.dds/.exr/.tx/.tif/.png)"),
-        (PREFILTER_OT_export_model, "Mipmaps of All Images"),
+        (PREFILTER_OT_export_mipmaps, marked("Mipmaps (.ktx2/.dds/.exr/.tx/.tif/.png)")),
+        (PREFILTER_OT_export_model, marked("Mipmaps of All Images")),
     ):
         menu.layout.operator(operator.bl_idname, text=text)
 

@@ -8,7 +8,8 @@ import bpy
 
 from ..bridge import users
 from ..core.remembered import Remembered
-from ..core.wording import counted, listed
+from ..core.translations import tr
+from ..core.wording import listed
 from .choices import TEXTURE_SPACE_FILTERS
 
 
@@ -52,8 +53,9 @@ def why_none(context: bpy.types.Context, image: bpy.types.Image, choice: str) ->
     """Returns why no object can be read for an image; empty where one can, or may."""
     if _names(context, image, choice) != []:
         return ""
-    kind = "selected" if choice == "selected" else "visible"
-    return f"No {kind} object uses '{image.name}'"
+    if choice == "selected":
+        return tr("No selected object uses '{}'").format(image.name)
+    return tr("No visible object uses '{}'").format(image.name)
 
 
 def what_is_read(
@@ -68,12 +70,14 @@ def what_is_read(
         filters: Keys of `choices.FILTERS`.
     """
     if image.source == "TILED":
-        parts = [counted(image.tiles, "tile")]
+        text = tr("1 tile") if len(image.tiles) == 1 else tr("{} tiles")
+        parts = [text.format(len(image.tiles))]
     else:
         parts = ["{} x {}".format(*image.size)]
     names = _names(context, image, choice)
     if names is not None and not TEXTURE_SPACE_FILTERS.issuperset(filters):
-        parts.insert(0, counted(names, "object"))
+        text = tr("1 object") if len(names) == 1 else tr("{} objects")
+        parts.insert(0, text.format(len(names)))
     return ", ".join(parts)
 
 

@@ -10,6 +10,7 @@ from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import PartedSettings, subpanel
+from ..core.translations import CONTEXT
 from .choices import CORNERS, SUFFIXES, ResampleSettings, ResizeSettings, TableSettings
 
 RESIZE = presets.Kind("resize", "prefilter_resize", [(ResizeSettings, ())])
@@ -146,7 +147,7 @@ class TableProperties(PartedSettings):
 
 def _draw_below_label(settings: Any, layout: bpy.types.UILayout, name: str) -> None:
     column = layout.column(align=True)
-    column.label(text=settings.bl_rna.properties[name].name)
+    column.label(text=settings.bl_rna.properties[name].name, text_ctxt=CONTEXT)
     column.prop(settings, name, text="")
 
 

@@ -23,10 +23,11 @@ from ..bridge.tile_surfaces import TileSurfaces
 from ..core.alpha import associated, at_most_opaque, unassociated
 from ..core.jobs import Progress, at_once, go_on, share
 from ..core.outcome import Outcome
+from ..core.translations import marked
 from ..core.wording import counted, listed
 from . import states
 
-NEEDED = "Blender 5.2 LTS or later with Cycles is needed, for its texture cache"
+NEEDED = marked("Blender 5.2 LTS or later with Cycles is needed, for its texture cache")
 
 # Images of up to so many texels are baked at the same time, each in a thread of its own: within one
 # threads would wait for each other more than they work.

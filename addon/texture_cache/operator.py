@@ -9,6 +9,7 @@ from bpy.props import BoolProperty
 
 from ..core.operator import WorkOperator
 from ..core.preferences import preference
+from ..core.translations import CONTEXT, tr
 
 if TYPE_CHECKING:
     from .bake import CacheBake
@@ -31,6 +32,7 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
     use_unpack: BoolProperty(
         name="Unpack Images",
+        translation_context=CONTEXT,
         description="Write packed images to the folder textures beside the .blend file first, and "
         "use these files: Cycles caches only files",
         default=False,
@@ -39,6 +41,7 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
 
     use_others: BoolProperty(
         name="Without Packed Images",
+        translation_context=CONTEXT,
         description="Bake the images that are files, and do not ask about packed ones",
         default=False,
         options={"HIDDEN", "SKIP_SAVE"},
@@ -53,10 +56,10 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
         from .bake import NEEDED
 
         if not tx.is_available():
-            cls.poll_message_set(NEEDED)
+            cls.poll_message_set(tr(NEEDED))
             return False
         if context.scene is None or not bpy.data.images:
-            cls.poll_message_set("There is no image in this file")
+            cls.poll_message_set(tr("There is no image in this file"))
             return False
         return True
 
@@ -95,7 +98,7 @@ def _ask(context: bpy.types.Context, packed: int, total: int) -> None:
             rest = menu.layout.operator(name, text="Bake the Other Images", icon=ICON)
             rest.use_others = True
 
-    title = f"{packed} of {total} images are packed, and Cycles caches only files"
+    title = tr("{} of {} images are packed, and Cycles caches only files").format(packed, total)
     context.window_manager.popup_menu(draw, title=title, icon="QUESTION")
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..core.sidebar import SidebarPanel, main_button, note, subpanel
+from ..core.translations import CONTEXT, tr
 from .operator import ICON, PREFILTER_OT_bake_texture_cache
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class _CachePanel:
             name = PREFILTER_OT_bake_texture_cache.bl_idname
             place.operator(name, text="Make Texture Cache", icon=ICON)
         if found:
-            note(layout, context, f"Images: {states.summary(found)}", "INFO")
+            note(layout, context, f"{tr('Images')}: {states.summary(found)}", "INFO")
         if place and any(one.state == "packed" for one in found):
             operator = layout.operator(
                 PREFILTER_OT_bake_texture_cache.bl_idname, text="Unpack and Bake", icon="PACKAGE"
@@ -55,9 +56,9 @@ def _draw_images(
     column = layout.column()
     others = [one for one in found if one.state != "baked"]
     for one in others[:_MOST_IMAGES]:
-        column.label(text=f"{one.name}: {states.WORDS[one.state]}", icon=_ICONS[one.state])
+        column.label(text=f"{one.name}: {tr(states.WORDS[one.state])}", icon=_ICONS[one.state])
     if len(others) > _MOST_IMAGES:
-        column.label(text=f"and {len(others) - _MOST_IMAGES} more", icon="BLANK1")
+        column.label(text=tr("and {} more").format(len(others) - _MOST_IMAGES), icon="BLANK1")
     text = "Overwrites the cache files. Bake again when images change"
     note(column, context, text, "INFO")
     if any(one.state in {"baked", "stale"} for one in found):
@@ -69,6 +70,7 @@ class PREFILTER_PT_texture_cache(_CachePanel, bpy.types.Panel):
     """The bake into the texture cache, beside Blender's settings of it."""
 
     bl_label = "Prefilter"
+    bl_translation_context = CONTEXT
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "render"

@@ -11,13 +11,14 @@ import bpy
 from ..bridge import images, rendered
 from ..bridge.files import tx
 from ..core.remembered import Remembered
+from ..core.translations import marked, tr
 
 WORDS = {
-    "baked": "baked",
-    "stale": "stale",
-    "missing": "not baked",
-    "packed": "packed",
-    "unfit": "without a file",
+    "baked": marked("baked"),
+    "stale": marked("stale"),
+    "missing": marked("not baked"),
+    "packed": marked("packed"),
+    "unfit": marked("without a file"),
 }
 """What is said of an image in each state."""
 
@@ -62,7 +63,7 @@ def states_now(context: bpy.types.Context) -> list[ImageState]:
 def summary(found: list[ImageState]) -> str:
     """Returns how many images are in which state, such as "2 baked, 1 stale"."""
     counts = Counter(one.state for one in found)
-    return ", ".join(f"{counts[key]} {word}" for key, word in WORDS.items() if counts[key])
+    return ", ".join(f"{counts[key]} {tr(word)}" for key, word in WORDS.items() if counts[key])
 
 
 def look_again() -> None:

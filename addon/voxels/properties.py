@@ -8,6 +8,7 @@ from ..core import preset_menu, presets
 from ..core.properties import properties, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import PartedSettings, note, subpanel
+from ..core.translations import tr
 from .choices import BooleanSettings, VoxelizeSettings
 
 VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, ())])
@@ -92,7 +93,7 @@ class VoxelizeProperties(VoxelProperties):
         if volumes.is_available():
             layout.prop(self, "filepath")
         else:
-            note(layout, bpy.context, volumes.NEEDED, "ERROR")
+            note(layout, bpy.context, tr(volumes.NEEDED), "ERROR")
 
 
 class BooleanProperties(VoxelProperties):

@@ -9,6 +9,7 @@ import blf
 import pytest
 from conftest import PACKAGE
 
+translations = importlib.import_module(f"{PACKAGE}.core.translations")
 POINTS = 11
 """The size of Blender's letters at a scale of 1."""
 LABEL_ROOM, CHOICE_ROOM = 90, 112
@@ -35,18 +36,30 @@ def width(text):
     return blf.dimensions(0, text)[0]
 
 
+def spoken(text):
+    """Returns a text in all languages."""
+    tables = map(translations.table, translations.LANGUAGES)
+    return {text, *(table.get(text) or text for table in tables)}
+
+
 def test_labels_beside_values_fit(options):
     # Switches have theirs where others have their values, and colors take a whole row.
     beside = {
-        one.label
+        label
         for _, default, one in options
+        for label in spoken(one.label)
         if not isinstance(default, bool) and one.subtype != "COLOR"
     }
     assert not {label for label in beside if width(label) > LABEL_ROOM}
 
 
 def test_what_menus_show_fits(options):
-    labels = {choice.label for _, _, one in options for choice in one.choices.values()}
+    labels = {
+        label
+        for _, _, one in options
+        for choice in one.choices.values()
+        for label in spoken(choice.label)
+    }
     assert not {label for label in labels if width(label) > CHOICE_ROOM}
 
 

@@ -207,7 +207,7 @@ def begun(kind: str = "", *, opened: str = "") -> Stage:
     """
     assert addon_utils.enable(PACKAGE, default_set=True) is not None
     panel = getattr(bpy.types, opened, None)
-    if panel is not None and "DEFAULT_CLOSED" in panel.bl_options:
+    if panel is not None and "DEFAULT_CLOSED" in getattr(panel, "bl_options", ()):
         bpy.utils.unregister_class(panel)
         panel.bl_options = set()
         bpy.utils.register_class(panel)

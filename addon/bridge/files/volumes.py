@@ -10,9 +10,10 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.translations import marked
 from .. import own_modules
 
-NEEDED = "This Blender has no Python module for OpenVDB (openvdb or pyopenvdb)"
+NEEDED = marked("This Blender has no Python module for OpenVDB (openvdb or pyopenvdb)")
 _NAMES = ("openvdb", "pyopenvdb")
 _GRID_NAME = "density"
 

@@ -8,7 +8,16 @@ import bpy
 
 from ...bridge.meshes import may_show_image
 from ...core.remembered import Remembered
+from ...core.translations import marked, tr
 from .plan import Plan, plan
+
+_NONE = {
+    (True, False): marked("No visible mesh shows an image"),
+    (True, True): marked("No visible mesh shows an image of '{}'"),
+    (False, False): marked("No selected mesh shows an image"),
+    (False, True): marked("No selected mesh shows an image of '{}'"),
+}
+"""What is said where there is nothing to bake: of all visible objects or not, of a material."""
 
 
 @dataclass(frozen=True)
@@ -75,6 +84,5 @@ def why_none(context: bpy.types.Context, choice: str, material: str = "") -> str
     """Returns why there is nothing to bake, as `images` says; empty if there is, or may be."""
     if images(context, choice, material) != []:
         return ""
-    shown = f"an image of '{material}'" if material else "an image"
     is_all = chosen_objects(context.view_layer, choice) is None
-    return f"No {'visible' if is_all else 'selected'} mesh shows {shown}"
+    return tr(_NONE[is_all, bool(material)]).format(material)

@@ -12,6 +12,7 @@ from ...core.doing import Compute, read_at_once
 from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
 from ...core.properties import set_unset
+from ...core.translations import tr
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
 from ..properties import BAKE, BakeProperties
 from ..view.preview import VIEW, PreviewWork
@@ -76,7 +77,7 @@ class PREFILTER_OT_bake_mipmaps(
         from .. import reading, users
 
         image, settings = self.chosen_image(context), self.to_settings()
-        self.doing = f"Baking '{image.name}'"
+        self.doing = tr("Baking {}").format(f"'{image.name}'")
         if self.result == "preview":
             compare = context.window_manager.prefilter_view.compare
             self.work = yield from reading_preview(context, image.name, settings, compare)

@@ -11,6 +11,7 @@ import bpy
 from ...core.doing import Compute, read_at_once
 from ...core.operator import BackgroundOperator
 from ...core.presets import PresetsOperator
+from ...core.translations import tr
 from ..properties import MODEL, ModelProperties
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ class PREFILTER_OT_bake_model(
 
         if cls.may_be_redone(context):
             return True
-        reason = "" if bpy.data.images else "There is no image in this file"
+        reason = "" if bpy.data.images else tr("There is no image in this file")
         # Scripts may have changed the scene just now, which panels hear of later.
         if context.area is not None:
             settings = context.scene.prefilter_model
@@ -72,7 +73,7 @@ class PREFILTER_OT_bake_model(
         assert self._model is not None
         if not self._model.next_name:
             return None
-        self.doing = f"Baking {self._model.next_name}"
+        self.doing = tr("Baking {}").format(self._model.next_name)
         return self._model.reading(context.evaluated_depsgraph_get())
 
     def finish(self, context: bpy.types.Context, result: None) -> str:

@@ -13,6 +13,7 @@ from bpy.props import BoolProperty
 from ...bridge import editors
 from ...core.doing import Compute
 from ...core.jobs import Progress
+from ...core.translations import CONTEXT
 from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
 
     use_in_place: BoolProperty(
         name="Use Copy Everywhere",
+        translation_context=CONTEXT,
         description="Make materials and all other users of the image use the copy instead",
         default=False,
     )

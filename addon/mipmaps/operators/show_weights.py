@@ -11,6 +11,7 @@ import prefilter
 from ...bridge import editors
 from ...core.doing import Compute
 from ...core.jobs import Progress
+from ...core.translations import tr
 from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
@@ -58,7 +59,7 @@ class PREFILTER_OT_show_source(bpy.types.Operator):
         from ...bridge import derived
 
         if derived.source_of(getattr(context.space_data, "image", None)) is None:
-            cls.poll_message_set("The editor shows no picture that was made from an image")
+            cls.poll_message_set(tr("The editor shows no picture that was made from an image"))
             return False
         return True
 

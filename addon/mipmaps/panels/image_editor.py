@@ -8,6 +8,7 @@ import bpy
 
 from ...core.presets import PresetsPanel
 from ...core.sidebar import ImagePanel, note
+from ...core.translations import tr
 from ..choices import FILE_FORMATS
 from ..menus import BAKE_BUTTON
 from ..operators.remove_levels import PREFILTER_OT_remove_levels
@@ -40,8 +41,8 @@ class PREFILTER_PT_bake(ImagePanel, PresetsPanel, bpy.types.Panel):
 def _where(settings: Any) -> str:
     """Returns where the levels go."""
     if settings.result != "file":
-        return "as images" if settings.result == "images" else "as a preview"
-    return f"to {settings.filepath or FILE_FORMATS[settings.file_format].label}"
+        return tr("as images") if settings.result == "images" else tr("as a preview")
+    return tr("to {}").format(settings.filepath or FILE_FORMATS[settings.file_format].label)
 
 
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_bake,))

@@ -8,7 +8,7 @@ import bpy
 
 from ...core.presets import PresetsPanel
 from ...core.sidebar import SidebarPanel, note, subpanel
-from ...core.wording import amount
+from ...core.translations import CONTEXT, marked, tr
 from ..choices import CONTENTS, FILE_FORMATS
 from ..menus import MODEL_BUTTON
 from ..properties import MODEL
@@ -55,10 +55,11 @@ class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
         column = body.column(align=True)
         for one in found[:_MOST_IMAGES]:
             row = column.row()
-            row.label(text=one.image, icon=_ICONS[one.content])
-            row.label(text="Roughness" if one.partner else CONTENTS[one.content].label)
+            row.label(text=one.image, icon=_ICONS[one.content], translate=False)
+            label = marked("Roughness") if one.partner else CONTENTS[one.content].label
+            row.label(text=label, text_ctxt=CONTEXT)
         if len(found) > _MOST_IMAGES:
-            column.label(text=f"and {len(found) - _MOST_IMAGES} more", icon="BLANK1")
+            column.label(text=tr("and {} more").format(len(found) - _MOST_IMAGES), icon="BLANK1")
 
 
 def _what_is_made(context: bpy.types.Context, settings: Any, count: int) -> str:
@@ -66,14 +67,17 @@ def _what_is_made(context: bpy.types.Context, settings: Any, count: int) -> str:
     from ..model import known
 
     is_all = known.chosen_objects(context.view_layer, settings.objects) is None
-    whose = "the scene" if is_all else "the selection"
+    whose = tr("the scene") if is_all else tr("the selection")
     if settings.material:
-        whose = f"'{settings.material}' in {whose}"
+        whose = tr("'{material}' in {whose}").format(material=settings.material, whose=whose)
     if settings.result == "file":
-        where = f"to {settings.folder}, {FILE_FORMATS[settings.file_format].label}"
+        where = (
+            tr("to {}").format(settings.folder) + f", {FILE_FORMATS[settings.file_format].label}"
+        )
     else:
-        where = "as images"
-    return f"{amount(count, 'image')} of {whose} {where}"
+        where = tr("as images")
+    images = (tr("1 image") if count == 1 else tr("{} images")).format(count)
+    return tr("{images} of {whose} {where}").format(images=images, whose=whose, where=where)
 
 
 register, unregister = bpy.utils.register_classes_factory((PREFILTER_PT_model,))

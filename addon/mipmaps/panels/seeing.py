@@ -9,6 +9,7 @@ import bpy.utils.previews
 import numpy as np
 
 from ...core.sidebar import ImagePanel, button
+from ...core.translations import CONTEXT, tr
 from ..operators.fill_unused import PREFILTER_OT_fill_unused
 from ..operators.plot_error import PREFILTER_OT_plot_error
 from ..operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
@@ -16,6 +17,7 @@ from ..operators.show_weights import PREFILTER_OT_show_source, PREFILTER_OT_show
 from ..view import preview
 
 _SWATCH_SIDE = 16
+_UNUSED = "unused"
 _swatches: list[tuple[str, str]] = []
 _icons: Any = None
 
@@ -53,13 +55,13 @@ class PREFILTER_PT_preview(ImagePanel, bpy.types.Panel):
             column = layout.column()
             column.active = settings.use_preview
             column.prop(settings, "mip_value", slider=True)
-            row = column.row(heading="Wipe")
+            row = column.row(heading="Wipe", heading_ctxt=CONTEXT)
             row.prop(settings, "use_wipe", text="")
             part = row.row()
             part.active = settings.use_wipe
             part.prop(settings, "wipe", text="", slider=True)
             if settings.mip_value > shown.last_level:
-                column.label(text=f"The last level is {shown.last_level}", icon="INFO")
+                column.label(text=tr("The last level is {}").format(shown.last_level), icon="INFO")
             if image.use_view_as_render:
                 column.label(text="Drawn without View as Render", icon="INFO")
             settings_now = context.scene.prefilter_bake.to_settings()
@@ -113,7 +115,7 @@ class PREFILTER_PT_texel_use(ImagePanel, bpy.types.Panel):
         _draw_back(layout, context)
         legend = layout.column(align=True)
         for key, text in _swatches:
-            legend.label(text=text, icon_value=_icons[key].icon_id)
+            legend.label(text=_said(text), icon_value=_icons[key].icon_id)
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
@@ -139,10 +141,9 @@ def _load_swatches() -> None:
     global _icons
     _icons = bpy.utils.previews.new()
     for octave in range(weights.OCTAVES, -weights.OCTAVES - 1, -2):
-        factor = f"{2**octave}x" if octave >= 0 else f"1/{2**-octave} of"
-        text = f"{factor} average" if octave else "Average use"
-        _add_swatch(text, weights.colors(2.0**octave))
-    _add_swatch("Unused (hatched)", weights.unused_color())
+        factor = f"{2**octave}x" if octave >= 0 else f"1/{2**-octave}"
+        _add_swatch(factor if octave else "", weights.colors(2.0**octave))
+    _add_swatch(_UNUSED, weights.unused_color())
 
 
 def _free_swatches() -> None:
@@ -158,6 +159,16 @@ def _add_swatch(text: str, color: np.ndarray | tuple[float, float, float]) -> No
     icon.icon_size = (_SWATCH_SIDE, _SWATCH_SIDE)
     icon.icon_pixels_float = np.tile([*color, 1.0], _SWATCH_SIDE**2).tolist()
     _swatches.append((key, text))
+
+
+def _said(swatch: str) -> str:
+    """Returns what the legend says of a swatch."""
+    if swatch == _UNUSED:
+        return tr("Unused (hatched)")
+    if not swatch:
+        return tr("Average use")
+    text = tr("{} average") if swatch.endswith("x") else tr("{} of average")
+    return text.format(swatch)
 
 
 def _draw_back(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

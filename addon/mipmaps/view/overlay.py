@@ -15,6 +15,7 @@ import gpu
 from gpu_extras.batch import batch_for_shader
 from mathutils import Matrix
 
+from ...core.translations import tr
 from ..choices import FILTERS
 from . import preview
 from .preview import Preview
@@ -230,8 +231,11 @@ def _draw_labels() -> None:
         return
     shown, (left, right), wipe = found
     mip_value = min(bpy.context.window_manager.prefilter_view.mip_value, shown.last_level)
-    left_label = FILTERS[left].label if left != right else ""
-    draw_wipe(wipe, left_label, f"{FILTERS[right].label}, mip value {mip_value:g}")
+    left_label = tr(FILTERS[left].label) if left != right else ""
+    text = tr("{filter}, mip value {value}")
+    draw_wipe(
+        wipe, left_label, text.format(filter=tr(FILTERS[right].label), value=f"{mip_value:g}")
+    )
 
 
 def register() -> None:

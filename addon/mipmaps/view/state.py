@@ -8,6 +8,7 @@ from bpy.props import BoolProperty, FloatProperty
 from ...bridge import editors
 from ...core.properties import single_property
 from ...core.registration import registration, state
+from ...core.translations import CONTEXT
 from ..choices import PlotSettings, PreviewSettings
 
 
@@ -16,12 +17,14 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
 
     use_preview: BoolProperty(
         name="Show Level",
+        translation_context=CONTEXT,
         description="Draw a level in place of the image",
         default=True,
         update=editors.redraw_on_change,
     )
     mip_value: FloatProperty(
         name="Mip Value",
+        translation_context=CONTEXT,
         description="Level that is drawn: 0 is the image, 1 has half its width and height. Values "
         "in between mix two levels, as on a GPU",
         default=1.0,
@@ -34,12 +37,14 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
     )
     use_wipe: BoolProperty(
         name="Wipe",
+        translation_context=CONTEXT,
         description="Draw the levels of another filter in the left part of the editor",
         default=False,
         update=editors.redraw_on_change,
     )
     wipe: FloatProperty(
         name="Position",
+        translation_context=CONTEXT,
         description="Position of the wipe, from the left to the right edge of the editor",
         subtype="FACTOR",
         default=0.5,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
+from ...core.translations import marked, report, tr
 from ..choices import CORNERS
 from ..view import pins as drawn
 
@@ -19,7 +20,7 @@ _ARROWS = {
     "UP_ARROW": (0.0, 1.0),
 }
 _FAR, _NEAR = 10.0, 0.1
-_KEYS = (
+_KEYS = marked(
     "Drag: Move Corner   Ctrl: Whole Pixels and Edges   Shift: Slowly   Arrows: By a Pixel   "
     "Tab: Next Corner   Enter: Keep   Esc: Take Back"
 )
@@ -48,18 +49,19 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether an Image editor shows an image."""
         if context.area is None or context.area.type != "IMAGE_EDITOR":
-            cls.poll_message_set("Call it in an Image editor")
+            cls.poll_message_set(tr("Call it in an Image editor"))
             return False
         image = context.space_data.image
         if image is None or not all(image.size):
-            cls.poll_message_set("Open an image in this editor first")
+            cls.poll_message_set(tr("Open an image in this editor first"))
             return False
         return True
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Says that a mouse is needed."""
         del context
-        self.report({"ERROR"}, "Drag Corners needs a window; set the corners as numbers instead")
+        text = report("Drag Corners needs a window; set the corners as numbers instead")
+        self.report({"ERROR"}, text)
         return {"CANCELLED"}
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -79,8 +81,8 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
         drawn.begin(image)
         changed = begun(group.to_settings())
         if changed:
-            _set(context, changed, "Begin to Drag Corners")
-        context.workspace.status_text_set(_KEYS)
+            _set(context, changed, marked("Begin to Drag Corners"))
+        context.workspace.status_text_set(tr(_KEYS))
         context.window_manager.modal_handler_add(self)
         context.area.tag_redraw()
         return {"RUNNING_MODAL"}
@@ -136,7 +138,7 @@ class PREFILTER_OT_drag_corners(bpy.types.Operator):
     def _take_back(self, context: bpy.types.Context) -> set[str]:
         group = context.scene.prefilter_resample
         if any(_value(group, name) != value for name, value in self._before.items()):
-            _set(context, self._before, "Take Corners Back")
+            _set(context, self._before, marked("Take Corners Back"))
         self._end(context)
         return {"CANCELLED"}
 

@@ -8,6 +8,7 @@ import bpy
 from bpy.props import BoolProperty
 
 from ...bridge.image_operator import ImageOperator, MakesImage
+from ...core.translations import CONTEXT
 
 if TYPE_CHECKING:
     from ...bridge.images import Picture
@@ -22,6 +23,7 @@ class NewImageOperator(ImageOperator, MakesImage):
 
     use_in_place: BoolProperty(
         name="Use Copy Everywhere",
+        translation_context=CONTEXT,
         description="Make materials and all other users of the image use the copy instead",
         default=False,
     )

@@ -10,6 +10,7 @@ from ...core.buttons import Button, SettingsPanel
 from ...core.menus import PREFILTER_MT_image
 from ...core.registration import classes, entry, registration
 from ...core.sidebar import ImagePanel, note
+from ...core.translations import tr
 from ..choices import ResampleSettings
 from ..operators.drag_corners import PREFILTER_OT_drag_corners
 from ..operators.resample_image import PREFILTER_OT_resample_image
@@ -34,7 +35,8 @@ class PREFILTER_PT_resample(ImagePanel, SettingsPanel, bpy.types.Panel):
         if image is not None and all(image.size):
             source = settings.source_of(image)
             if source != image:
-                note(self.layout, context, f"Made anew from '{source.name}'", "FILE_REFRESH")
+                text = tr("Made anew from '{}'").format(source.name)
+                note(self.layout, context, text, "FILE_REFRESH")
             image = source
             for text, icon in _what_comes_out(settings.to_settings(), *image.size):
                 note(self.layout, context, text, icon)
@@ -60,9 +62,11 @@ def _what_comes_out(
     except ValueError as error:
         yield str(error), "ERROR"
         return
-    yield f"{width} x {height} to {placed.width} x {placed.height}", "INFO"
+    text = tr("{} x {} to {} x {}").format(width, height, placed.width, placed.height)
+    yield text, "INFO"
     if not knows_proportions(settings, width, height):
-        yield "Proportions are a guess: these corners fit every lens. Give the ratio", "QUESTION"
+        text = tr("Proportions are a guess: these corners fit every lens. Give the ratio")
+        yield text, "QUESTION"
 
 
 register, unregister = registration(

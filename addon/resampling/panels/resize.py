@@ -8,6 +8,7 @@ from ...core.buttons import Button, SettingsPanel
 from ...core.menus import PREFILTER_MT_image
 from ...core.registration import classes, entry, registration
 from ...core.sidebar import ImagePanel
+from ...core.translations import tr
 from ..choices import ResizeSettings
 from ..operators.resize_image import PREFILTER_OT_resize_image
 from ..properties import RESIZE
@@ -31,7 +32,7 @@ class PREFILTER_PT_resize(ImagePanel, SettingsPanel, bpy.types.Panel):
         image = context.space_data.image
         if image is not None and all(image.size):
             width, height = settings.to_settings().new_size(*image.size)
-            text = f"{image.size[0]} x {image.size[1]} to {width} x {height}"
+            text = tr("{} x {} to {} x {}").format(*image.size, width, height)
             self.layout.label(text=text, icon="INFO")
 
 

@@ -10,6 +10,7 @@ import gpu
 import prefilter
 from gpu_extras.batch import batch_for_shader
 
+from ...core.translations import tr
 from ..choices import METHODS, TABLE_FILTERS
 from . import kept
 from .atlas import READ_TEXELS
@@ -172,8 +173,8 @@ def _draw() -> None:
     draw_plane(shown, matrix, size, texels=int(settings.texels), wipe=settings.wipe)
     draw_wipe(
         settings.wipe,
-        METHODS["trilinear"].label,
-        f"{TABLE_FILTERS[shown.filter].label}, {METHODS[settings.texels].label}",
+        tr(METHODS["trilinear"].label),
+        f"{tr(TABLE_FILTERS[shown.filter].label)}, {tr(METHODS[settings.texels].label)}",
     )
 
 

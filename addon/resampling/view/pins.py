@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ...core.options import option
+from ...core.translations import tr
 from ..choices import CORNERS, ResampleSettings
 from . import warped
 
@@ -212,8 +213,7 @@ def _draw_pins(
 
 
 def _label(name: str) -> str:
-    label: str = option(ResampleSettings, name)[1].label
-    return label
+    return tr(option(ResampleSettings, name)[1].label)
 
 
 def register() -> None:

@@ -11,6 +11,7 @@ from ...bridge import editors
 from ...core.choices import items
 from ...core.properties import single_property
 from ...core.registration import registration, state
+from ...core.translations import CONTEXT
 from ..choices import METHODS, PlaneSettings
 
 
@@ -19,6 +20,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
 
     use_plane: BoolProperty(
         name="Show Plane",
+        translation_context=CONTEXT,
         description="Draw the plane over the image",
         default=True,
         update=editors.redraw_on_change,
@@ -26,6 +28,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
     filter: single_property(PlaneSettings, "filter")
     texels: EnumProperty(
         name="Table",
+        translation_context=CONTEXT,
         description="Number of texels of the mipmap per pixel, to the right of the line",
         items=items({key: METHODS[key] for key in ("8", "6", "4")}),
         default="8",
@@ -33,6 +36,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
     )
     tilt: FloatProperty(
         name="Tilt",
+        translation_context=CONTEXT,
         description="Angle of the plane away from the viewer",
         subtype="ANGLE",
         default=math.radians(75),
@@ -42,6 +46,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
     )
     rotation: FloatProperty(
         name="Rotation",
+        translation_context=CONTEXT,
         description="Angle of the image in the plane",
         subtype="ANGLE",
         default=0.0,
@@ -49,6 +54,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
     )
     tiles: FloatProperty(
         name="Tiles",
+        translation_context=CONTEXT,
         description="Number of repetitions of the image over the height of the editor, "
         "without the tilt",
         default=2.0,
@@ -60,6 +66,7 @@ class PREFILTER_PG_plane(bpy.types.PropertyGroup):
     )
     wipe: FloatProperty(
         name="Position",
+        translation_context=CONTEXT,
         description="Position of the line between the two halves, from left to right",
         subtype="FACTOR",
         default=0.5,

@@ -4,12 +4,13 @@
 
 import bpy
 
+from ...core.translations import marked, tr
 from ..properties import FilesProperties
 from .import_points import PREFILTER_OT_import_points
 
 _CHOICES = (
-    ("Import Points", "IMPORT", False),
-    ("Reconstruct Surface", "POINTCLOUD_DATA", True),
+    (marked("Import Points"), "IMPORT", False),
+    (marked("Reconstruct Surface"), "POINTCLOUD_DATA", True),
 )
 
 
@@ -44,7 +45,7 @@ class PREFILTER_OT_drop_points(FilesProperties, bpy.types.Operator):
                 for one in wanted["files"]:
                     made.files.add().name = one["name"]
 
-        context.window_manager.popup_menu(draw, title=self.bl_label)
+        context.window_manager.popup_menu(draw, title=tr(self.bl_label))
         return {"FINISHED"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -9,6 +9,7 @@ from bpy.props import StringProperty
 
 from ...core.browsing import BrowsingOperator
 from ...core.operator import WorkOperator
+from ...core.translations import tr
 from ..properties import RECONSTRUCT, ImportProperties
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ class PREFILTER_OT_import_points(
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether objects can be added."""
         if context.mode != "OBJECT":
-            cls.poll_message_set("Switch to Object Mode first")
+            cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
         return True
 

@@ -8,6 +8,7 @@ import bpy
 
 from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
+from ...core.translations import report, tr
 from ..properties import RECONSTRUCT, ScanProperties
 
 if TYPE_CHECKING:
@@ -35,12 +36,12 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether points are selected."""
         if context.mode != "OBJECT":
-            cls.poll_message_set("Switch to Object Mode first")
+            cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
         if cls.may_be_redone(context):
             return True
         if not _chosen(context):
-            cls.poll_message_set("Select objects with vertices and no faces, or point clouds")
+            cls.poll_message_set(tr("Select objects with vertices and no faces, or point clouds"))
             return False
         return True
 
@@ -62,7 +63,7 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
         found = super().finish(context, result)
         assert self.work is not None
         if self.work.has_colors and show_in_views(context, are_points=False):
-            self.report({"INFO"}, "3D views in Solid mode show color attributes now")
+            self.report({"INFO"}, report("3D views in Solid mode show color attributes now"))
         return found
 
     def load(self) -> "Load":

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...core.presets import PresetsOperator
+from ...core.translations import marked, tr
 from ..properties import RASTERIZE, RasterizeProperties
 from .shape_operator import ShapeOperator
 
@@ -14,9 +15,9 @@ if TYPE_CHECKING:
     from ..rasterization import Rasterization
 
 _NEEDED = {
-    "auto": "Select curves or texts, or make a mesh with a UV map the active object",
-    "curves": "Select curves or texts",
-    "uv": "Make a mesh with a UV map the active object",
+    "auto": marked("Select curves or texts, or make a mesh with a UV map the active object"),
+    "curves": marked("Select curves or texts"),
+    "uv": marked("Make a mesh with a UV map the active object"),
 }
 
 
@@ -40,7 +41,7 @@ class PREFILTER_OT_rasterize(
         if cls.may_be_redone(context):
             return True
         if not found_source(context, "auto"):
-            cls.poll_message_set(_NEEDED["auto"])
+            cls.poll_message_set(tr(_NEEDED["auto"]))
             return False
         return True
 
@@ -55,7 +56,7 @@ class PREFILTER_OT_rasterize(
         else:
             source = found_source(context, settings.source)
             if not source:
-                raise ValueError(_NEEDED[settings.source])
+                raise ValueError(tr(_NEEDED[settings.source]))
             objects = [context.active_object] if source == "uv" else chosen_curves(context)
             request = Request(source, objects)
         self.source_drawn = request.source

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...bridge.image_operator import ImageOperator
+from ...core.translations import tr
 from .shape_operator import ShapeOperator
 
 if TYPE_CHECKING:
@@ -31,10 +32,10 @@ class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator
 
         if context.area is not None and context.area.type == "IMAGE_EDITOR":
             if not is_drawn(cls.shown_image(context)):
-                cls.poll_message_set("The image of this editor was not made by Rasterize")
+                cls.poll_message_set(tr("The image of this editor was not made by Rasterize"))
                 return False
         elif not any(is_drawn(image) for image in bpy.data.images):
-            cls.poll_message_set("No image in this file was made by Rasterize")
+            cls.poll_message_set(tr("No image in this file was made by Rasterize"))
             return False
         return True
 

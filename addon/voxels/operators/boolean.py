@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.translations import tr
 from ..properties import BOOLEAN, BooleanProperties
 from .voxel_operator import VoxelOperator, chosen_solids
 
@@ -39,13 +40,15 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
         active = context.active_object
         chosen = chosen_solids(context)
         if active not in chosen:
-            cls.poll_message_set("Select an object that has a surface, and make it the active one")
+            cls.poll_message_set(
+                tr("Select an object that has a surface, and make it the active one")
+            )
             return False
         if len(chosen) < 2:
-            cls.poll_message_set("Select one more object that has a surface")
+            cls.poll_message_set(tr("Select one more object that has a surface"))
             return False
         if not is_editable(active):
-            cls.poll_message_set("The active object is linked: make it local first")
+            cls.poll_message_set(tr("The active object is linked: make it local first"))
             return False
         return True
 

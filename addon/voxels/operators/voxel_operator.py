@@ -8,6 +8,7 @@ import bpy
 
 from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
+from ...core.translations import tr
 
 if TYPE_CHECKING:
     from ..boolean import Boolean
@@ -39,7 +40,7 @@ class VoxelOperator(PresetsOperator, WorkOperator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether the operator may run now, whatever is selected."""
         if context.mode != "OBJECT":
-            cls.poll_message_set("Switch to Object Mode first")
+            cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
         return True
 

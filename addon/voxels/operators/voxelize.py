@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.translations import tr
 from ..properties import VOXELIZE, VoxelizeProperties
 from .voxel_operator import VoxelOperator, chosen_solids
 
@@ -35,7 +36,7 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
         if cls.may_be_redone(context):
             return True
         if not chosen_solids(context):
-            cls.poll_message_set("Select an object that has a surface")
+            cls.poll_message_set(tr("Select an object that has a surface"))
             return False
         return True
 

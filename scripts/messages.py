@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Brings the tables of translations up to date with what Blender shows of the add-on.
+
+A text that is new gets an entry that is still empty, and one that is no longer shown loses its own.
+
+usage: scripts/run blender --background --python-exit-code 1 --python scripts/messages.py
+"""
+
+import ast
+import importlib
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+
+PACKAGE = "bl_ext.user_default.prefilter"
+ADDON = Path(__file__).resolve().parents[1] / "addon"
+LABEL, TIP, TEXT = "label", "tip", "text"
+_BASES = (
+    *(bpy.types.Operator, bpy.types.Panel, bpy.types.Menu, bpy.types.PropertyGroup),
+    *(bpy.types.AddonPreferences, bpy.types.FileHandler, bpy.types.UIList),
+)
+_LABELED = (bpy.types.Operator, bpy.types.Panel, bpy.types.Menu, bpy.types.FileHandler)
+_WITHOUT_PROPERTIES = (bpy.types.Panel, bpy.types.Menu, bpy.types.FileHandler)
+_TRANSLATED = {"tr", "report", "marked"}
+_DRAWING = {"draw": 2, "draw_main": 2, "note": 2, "subpanel": 2}
+"""Functions that draw a text, and which argument it is."""
+_SAYING = {"poll_message_set", "report"}
+"""Methods that show a text as it is."""
+_DRAWN = {"text", "heading", "placeholder", "message"}
+_SAID = {"doing", "makes", "wanted", "nothing"}
+
+
+def shown() -> dict[str, list[str]]:
+    """Returns what Blender shows, by the text: what kind of text it is, and where."""
+    found: dict[str, list[str]] = {}
+    for kind, text, where in (*registered(), *presets(), *written()):
+        if any(letter.isalpha() for letter in text):
+            found.setdefault(text, []).append(f"{kind} of {where}")
+    return found
+
+
+def registered() -> Iterator[tuple[str, str, str]]:
+    """Yields the kind, the text and the place of what classes and properties say."""
+    for one in classes():
+        if issubclass(one, _LABELED):
+            yield LABEL, one.bl_label, one.__name__
+        if issubclass(one, _WITHOUT_PROPERTIES):
+            continue
+        rna = _rna(one)
+        if issubclass(one, bpy.types.Operator):
+            yield TIP, rna.description, one.__name__
+        for item in _own_properties(one, rna):
+            place = f"{one.__name__}.{item.identifier}"
+            yield LABEL, item.name, place
+            yield TIP, item.description, place
+            for choice in getattr(item, "enum_items_static", ()):
+                yield LABEL, choice.name, f"{place}.{choice.identifier}"
+                yield TIP, choice.description, f"{place}.{choice.identifier}"
+
+
+def classes() -> Iterator[type]:
+    """Yields the registered classes of the add-on."""
+    todo, seen = list(_BASES), set()
+    while todo:
+        one = todo.pop()
+        if one in seen:
+            continue
+        seen.add(one)
+        todo += one.__subclasses__()
+        if one.__module__.startswith(PACKAGE) and getattr(one, "is_registered", False):
+            yield one
+
+
+def presets() -> Iterator[tuple[str, str, str]]:
+    """Yields what the menus of presets show of those that come with the add-on."""
+    for path in (ADDON / "presets").rglob("*.py"):
+        yield (
+            LABEL,
+            bpy.path.display_name(path.name, title_case=False),
+            str(path.relative_to(ADDON)),
+        )
+
+
+def written() -> Iterator[tuple[str, str, str]]:
+    """Yields what the code of the add-on draws and says."""
+    for node, place in nodes():
+        for text in _texts(node):
+            yield TEXT, text, place
+
+
+def untranslated() -> Iterator[str]:
+    """Yields the places where code puts a sentence together, or says one, without `tr`."""
+    for node, place in nodes():
+        if not isinstance(node, ast.Call):
+            continue
+        said = [one for one in _drawn(node) if isinstance(one, ast.JoinedStr)]
+        if getattr(node.func, "attr", "") in _SAYING:
+            said += [one for one in node.args if isinstance(one, (ast.Constant, ast.JoinedStr))]
+        if any(letter.isalpha() for one in said for text in _parts(one) for letter in text):
+            yield place
+
+
+def nodes() -> Iterator[tuple[ast.AST, str]]:
+    """Yields what the code of the add-on consists of, and where it stands."""
+    for path in sorted(ADDON.rglob("*.py")):
+        place = path.relative_to(ADDON)
+        if place.parts[0] == "presets":
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            yield node, f"{place.as_posix()}:{getattr(node, 'lineno', 0)}"
+
+
+def _texts(node: ast.AST) -> Iterator[str]:
+    if isinstance(node, ast.Call):
+        if _name(node) in _TRANSLATED and not isinstance(node.func, ast.Attribute):
+            yield from _constants(node.args[0])
+        for one in _drawn(node):
+            yield from _constants(one)
+    elif isinstance(node, ast.Assign) and _target(node) == "text":
+        yield from _constants(node.value)
+    elif isinstance(node, ast.ClassDef):
+        for line in node.body:
+            if isinstance(line, ast.Assign) and _target(line) in _SAID:
+                yield from _constants(line.value)
+
+
+def _drawn(call: ast.Call) -> Iterator[ast.expr]:
+    """Yields the arguments of a call that Blender draws."""
+    name = _name(call)
+    if name in _DRAWING and len(call.args) > _DRAWING[name]:
+        yield call.args[_DRAWING[name]]
+    if isinstance(call.func, ast.Attribute) and name not in {"argument", "add_argument"}:
+        yield from (one.value for one in call.keywords if one.arg in _DRAWN)
+
+
+def _target(assignment: ast.Assign) -> str:
+    return str(getattr(assignment.targets[0], "id", ""))
+
+
+def _name(call: ast.Call) -> str:
+    return str(getattr(call.func, "id", getattr(call.func, "attr", "")))
+
+
+def _constants(node: ast.AST) -> Iterator[str]:
+    """Yields the texts that an expression may be."""
+    if isinstance(node, ast.Constant) and isinstance(node.value, str):
+        yield node.value
+    elif isinstance(node, ast.IfExp):
+        yield from _constants(node.body)
+        yield from _constants(node.orelse)
+
+
+def _parts(node: ast.AST) -> Iterator[str]:
+    """Yields the texts in an expression."""
+    for one in node.values if isinstance(node, ast.JoinedStr) else [node]:
+        if isinstance(one, ast.Constant) and isinstance(one.value, str):
+            yield one.value
+
+
+def _own_properties(one: type, rna: bpy.types.Struct) -> Iterator[bpy.types.Property]:
+    """Yields the properties of a class that Blender shows."""
+    inherited = {"name", *bpy.types.AddonPreferences.bl_rna.properties.keys()}
+    for item in rna.properties:
+        # What is for the code alone has no name, and so its identifier as one.
+        if item.name != item.identifier and item.identifier not in inherited:
+            yield item
+
+
+def _rna(one: type) -> bpy.types.Struct:
+    if issubclass(one, bpy.types.Operator):
+        module, _, name = one.bl_idname.partition(".")
+        return getattr(getattr(bpy.ops, module), name).get_rna_type()
+    return one.bl_rna
+
+
+def main() -> None:
+    """Writes the tables."""
+    translations = importlib.import_module(f"{PACKAGE}.core.translations")
+    texts = shown()
+    for language in translations.LANGUAGES:
+        path = ADDON / "translations" / f"{language}.json"
+        before = json.loads(path.read_text(encoding="utf-8"))
+        after = {text: before.get(text, "") for text in sorted(texts)}
+        told = json.dumps(after, ensure_ascii=False, indent=0)
+        path.write_text(f"{told}\n", encoding="utf-8")
+        empty = [text for text, translated in after.items() if not translated]
+        print(f"{path}: {len(empty)} to translate, {len(before.keys() - texts)} removed")
+        sys.stdout.writelines(f"  {text!r} ({texts[text][0]})\n" for text in empty)
+
+
+if __name__ == "__main__":
+    main()

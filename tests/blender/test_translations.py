@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Every text that users see is in the tables of all languages, and these hold no others."""
+
+import functools
+import importlib
+import string
+import sys
+from pathlib import Path
+
+import blf
+import bpy
+import pytest
+from conftest import PACKAGE
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "scripts"))
+
+import messages  # noqa: E402
+
+translations = importlib.import_module(f"{PACKAGE}.core.translations")
+for_languages = pytest.mark.parametrize("language", translations.LANGUAGES)
+POINTS = 11
+"""The size of Blender's letters at a scale of 1."""
+BUTTON_ROOM = 190
+"""Pixels for the text of a button with an icon, in a sidebar that is 266 wide."""
+
+
+shown = functools.cache(messages.shown)
+
+
+@for_languages
+def test_tables_hold_what_is_shown(language):
+    # scripts/messages.py adds and removes entries; a translation is then to be written.
+    table = translations.table(language)
+    assert len(shown()) > 700
+    missing = {text: places[0] for text, places in shown().items() if not table.get(text)}
+    assert not missing, f"not translated into {language}: {missing}"
+    unused = [text for text in table if text not in shown()]
+    assert not unused, f"in {language}, and shown nowhere: {unused}"
+
+
+@for_languages
+def test_tables_are_sorted(language):
+    assert list(translations.table(language)) == sorted(translations.table(language))
+
+
+@for_languages
+def test_what_is_filled_in_is_the_same(language):
+    wrong = {
+        text: translated
+        for text, translated in translations.table(language).items()
+        if placeholders(text) != placeholders(translated)
+    }
+    assert not wrong
+
+
+def placeholders(text):
+    return sorted(name for _, name, _, _ in string.Formatter().parse(text) if name is not None)
+
+
+def test_sentences_are_translated_before_they_are_filled_in():
+    assert not list(messages.untranslated())
+
+
+@for_languages
+def test_buttons_and_titles_fit(language):
+    table = translations.table(language)
+    labels = {
+        one.bl_label
+        for one in messages.classes()
+        if issubclass(one, (bpy.types.Operator, bpy.types.Panel))
+    }
+    blf.size(0, POINTS)
+    wide = {label: blf.dimensions(0, table[label])[0] for label in labels if table.get(label)}
+    assert len(wide) > 30
+    assert not {label: table[label] for label, one in wide.items() if one > BUTTON_ROOM}
+
+
+def test_long_texts_wrap_where_letters_are_wide(addon):
+    wrapped = addon("core.sidebar").wrapped
+    assert wrapped("four words of English", 10) == ["four words", "of English"]
+    assert [len(line) for line in wrapped("\u8868" * 12, 10)] == [5, 5, 2]
+
+
+@pytest.fixture
+def german():
+    view = bpy.context.preferences.view
+    try:
+        view.language = "de_DE"
+    except TypeError:
+        pytest.skip("this Blender has no languages")
+    view.use_translate_interface = view.use_translate_tooltips = view.use_translate_reports = True
+    yield
+    view.language = "DEFAULT"
+
+
+def test_texts_are_shown_in_the_language_of_the_user(addon, german):
+    said = addon("core.translations")
+    assert said.tr("Wipe") == "Wischer"
+    assert said.report("{} canceled").format(said.report("Voxelizing")).endswith("abgebrochen")
+    with pytest.raises(RuntimeError, match="In dieser Datei ist kein Bild"):
+        bpy.ops.prefilter.resize_image()
+
+
+def test_texts_are_english_once_the_add_on_is_disabled(addon, german):
+    said = addon("core.translations")
+    said.unregister()
+    try:
+        assert said.tr("Wipe") == "Wipe"
+    finally:
+        said.register()
