@@ -36,12 +36,15 @@ def material_of(attribute: str) -> bpy.types.Material:
     return made
 
 
-def show_in_views(context: bpy.types.Context, *, are_points: bool) -> bool:
+def show_in_views(
+    context: bpy.types.Context, *, are_points: bool = False, kind: str = "VERTEX"
+) -> bool:
     """Has 3D views of the window show colors that are Solid and show those of materials.
 
     Args:
         context: Has the window; without one there are no views.
         are_points: Points have no colors in Solid: Material Preview shows them.
+        kind: What Solid is to show: "VERTEX" for color attributes, or "TEXTURE".
 
     Returns:
         Whether a view has changed.
@@ -56,7 +59,7 @@ def show_in_views(context: bpy.types.Context, *, are_points: bool) -> bool:
         if shading.type == "SOLID" and are_points:
             shading.type = "MATERIAL"
         elif shading.type == "SOLID" and shading.color_type == "MATERIAL":
-            shading.color_type = "VERTEX"
+            shading.color_type = kind
         else:
             continue
         changed = True

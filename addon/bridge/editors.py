@@ -11,6 +11,29 @@ def show(context: bpy.types.Context, image: bpy.types.Image) -> None:
         context.space_data.image = image
 
 
+def show_anywhere(context: bpy.types.Context, image: bpy.types.Image) -> bool:
+    """Shows an image in the editor that the operator was called from, or else in the largest Image
+    editor of the window that is not pinned.
+
+    Returns:
+        Whether an editor shows it now that the operator was not called from.
+    """
+    if context.area is not None and context.area.type == "IMAGE_EDITOR":
+        context.space_data.image = image
+        return False
+    window = None if bpy.app.background else context.window
+    areas = window.screen.areas if window is not None else ()
+    free = [
+        area
+        for area in areas
+        if area.type == "IMAGE_EDITOR" and not area.spaces.active.use_image_pin
+    ]
+    if not free:
+        return False
+    max(free, key=lambda area: area.width * area.height).spaces.active.image = image
+    return True
+
+
 def redraw() -> None:
     """Has every Image editor drawn again."""
     for window in bpy.context.window_manager.windows:

@@ -60,5 +60,6 @@ class MakesImage(WorkOperator):
         del result
         assert self.work is not None
         outcome = self.work.write()
-        editors.show(context, bpy.data.images[outcome.images[0]])
-        return self.tell(outcome)
+        image = bpy.data.images[outcome.images[0]]
+        is_elsewhere = editors.show_anywhere(context, image)
+        return self.tell(outcome) + (", shown in the Image editor" if is_elsewhere else "")

@@ -94,12 +94,11 @@ def base_color(material: bpy.types.Material | None) -> tuple[float, float, float
     """
     if material is None:
         return WHITE
-    shader = _shown_shader(material)
+    shader = shown_shader(material)
     if shader is None:
         red, green, blue, alpha = material.diffuse_color
         return red, green, blue, alpha
-    name = "Color" if shader.type in _ONE_COLOR else "Base Color"
-    socket = shader.inputs[name]
+    socket = shader.inputs[color_input(shader)]
     link = nodes.link_into(socket)
     while link is not None and link.from_node.type == "REROUTE":
         link = nodes.link_into(link.from_node.inputs[0])
@@ -111,7 +110,7 @@ def base_color(material: bpy.types.Material | None) -> tuple[float, float, float
     return red, green, blue, alpha
 
 
-def _shown_shader(material: bpy.types.Material) -> bpy.types.Node | None:
+def shown_shader(material: bpy.types.Material) -> bpy.types.Node | None:
     """Returns the shader with a base color that the output of a material shows directly."""
     tree = nodes.tree_of(material)
     if tree is None:
@@ -123,8 +122,12 @@ def _shown_shader(material: bpy.types.Material) -> bpy.types.Node | None:
     if link is None:
         return None
     shader = link.from_node
-    name = "Color" if shader.type in _ONE_COLOR else "Base Color"
-    return shader if name in shader.inputs else None
+    return shader if color_input(shader) in shader.inputs else None
+
+
+def color_input(shader: bpy.types.Node) -> str:
+    """Returns the name of the input of a shader that is the color of its surface."""
+    return "Color" if shader.type in _ONE_COLOR else "Base Color"
 
 
 def _image_nodes(

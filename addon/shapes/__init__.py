@@ -5,7 +5,7 @@
 from ..core.registration import registration
 from . import operators, panels, properties
 
-MANUAL = {"shapes": ("rasterize", "rasterize_svg", "drawn", "update_drawn")}
+MANUAL = {"shapes": ("rasterize", "rasterize_svg", "drawn", "update_drawn", "use_as_decal")}
 """The pages about its operators and settings; see `manual.Manual`."""
 
 register, unregister = registration(properties, operators, panels)

@@ -33,6 +33,9 @@ FILTERS = filters_for(
     },
 )
 RESOLUTIONS = {
+    "side": Choice(
+        "Longer Side", "As wide or as high as this, and the other side as the shapes have it"
+    ),
     "size": Choice("Size", "An image of this size, into which the shapes are fitted"),
     "density": Choice("Pixels per Unit", "Fit the image to the shapes, plus the margin"),
 }
@@ -75,6 +78,37 @@ ALPHAS = {
 }
 
 
+DECALS = {
+    "plane": Choice(
+        "Plane", "A new plane where the shapes are, with a material that shows the image"
+    ),
+    "material": Choice(
+        "Material", "Over the base color of the active object's material, by its UV map"
+    ),
+}
+
+
+@dataclass(frozen=True)
+class DecalSettings:
+    """What `prefilter.use_as_decal` does."""
+
+    target: str = one_of("plane", "Put on", "Where the image goes", DECALS, flag="")
+    use_hide: bool = switch(
+        True,
+        "Hide Source",
+        "Hide the curves and texts that the image shows, in the place of which the plane is",
+        flag="",
+    )
+    offset: float = number(
+        0.0,
+        "Offset",
+        "How far in front of the shapes the plane is",
+        subtype="DISTANCE",
+        display={"step": 1, "precision": 3},
+        flag="",
+    )
+
+
 @dataclass(frozen=True)
 class RasterizeSettings:
     """What `prefilter.rasterize` does."""
@@ -91,7 +125,16 @@ class RasterizeSettings:
         metavar="FILTER",
     )
     resolution: str = one_of(
-        "size", "Resolution", "How to specify the size of the image", RESOLUTIONS, flag=""
+        "side", "Resolution", "How to specify the size of the image", RESOLUTIONS, flag=""
+    )
+    side: int = number(
+        1024,
+        "Longer Side",
+        "Width or height of the image, whichever is greater; the other follows from the shapes",
+        low=1,
+        high=LARGEST_SIDE,
+        subtype="PIXEL",
+        metavar="N",
     )
     width: int = number(
         1024, "Width", "Width of the image", low=1, high=LARGEST_SIDE, subtype="PIXEL", metavar="N"

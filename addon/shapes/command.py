@@ -25,13 +25,14 @@ _SOURCES = (_SVG, *scenes.SOURCES)
 _CURVES = "visible curve or text"
 _MESHES = "visible mesh with a UV map"
 _NOTES = """\
-From files other than .svg, all visible curves and texts are used, or with --uv one mesh. Shapes are
-fitted into the size, inside the margin; with --density, their size decides. PNG files have 8 bits
+From files other than .svg, all visible curves and texts are used, or with --uv one mesh. The image
+is as long as --side says, and as high or wide as the shapes are; with --width and --height they are
+fitted into that, inside the margin; with --density, their size decides. PNG files have 8 bits
 with --pixel-type byte, otherwise 16, and straight alpha; OpenEXR files are scene-linear, with
 premultiplied alpha.
 
 examples:
-  prefilter rasterize logo.svg logo.png --width 512 --height 512
+  prefilter rasterize logo.svg logo.png --side 512
   prefilter rasterize sign.blend sign.exr --object Text --density 400 --filter mitchell
   prefilter rasterize figure.glb mask.png --uv --object Body --width 2048 --height 2048"""
 
@@ -91,12 +92,14 @@ def _settings(options: argparse.Namespace) -> RasterizeSettings:
     """Returns the settings that were given, with what follows from them."""
     found = given(options, RasterizeSettings)
     more = {}
-    if "width" in found or "height" in found:
-        if "density" in found:
-            options.usage_error("--density: not allowed with --width and --height")
-        more["resolution"] = "size"
-    if "density" in found:
-        more["resolution"] = "density"
+    ways = {"width": "size", "height": "size", "density": "density", "side": "side"}
+    chosen = {way: name for name, way in ways.items() if name in found}
+    if len(chosen) > 1:
+        options.usage_error("--side, --density, and --width with --height: only one of these")
+    if chosen:
+        (more["resolution"],) = chosen
+    if options.uv and "side" in found:
+        more["width"] = more["height"] = found["side"]
     if "background_color" in found:
         more["background"] = "color"
     return presets.settings_given(options, RASTERIZE, RasterizeSettings, **more)

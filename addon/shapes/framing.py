@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from mathutils import Matrix
+from mathutils import Matrix, Quaternion
 from numpy.typing import NDArray
 
 from ..core.memory import usable_memory
@@ -41,6 +41,27 @@ class View:
         if self.projection is not None:
             found = found @ self.projection.T
         return found[..., [0, 1, 3]]
+
+    def place(self, frame: "Frame", point: FloatArray, rotation: Quaternion) -> "Place | None":
+        """Returns where an image is; None if that is behind the camera.
+
+        Args:
+            frame: Where the plane of the view is in the image.
+            point: (3,) the origin of an object.
+            rotation: Its rotation in the world.
+        """
+        seen = self.matrix @ [*point, 1.0]
+        in_image = np.array([[0.0, 0.0, 1.0], [frame.width, frame.height, 1.0]])
+        corners = in_image @ np.linalg.inv(frame.to_pixels).T
+        if self.projection is not None:
+            depth = self.projection @ seen
+            if depth[3] <= 0.0:
+                return None
+            clip = np.insert(corners, 2, depth[2] / depth[3], axis=1)
+            corners = clip @ np.linalg.inv(self.projection).T
+            corners /= corners[:, 3:]
+        of_view = Matrix(self.matrix.tolist()).to_quaternion().inverted()
+        return Place(rotation.inverted() @ of_view, corners[:, :2] - seen[:2])
 
     def nearness(self, point: FloatArray) -> float:
         """Returns a number that is greater for points that are nearer to the viewer."""
@@ -80,6 +101,20 @@ def find_view(
     placed = shown.matrix_world.normalized()
     projection = shown.calc_matrix_camera(depsgraph, x=settings.width, y=settings.height)
     return View(np.array(placed.inverted(), np.float64), np.array(projection, np.float64))
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where an image is: on a plane through the origin of an object, as the image was seen.
+
+    Attributes:
+        rotation: The quaternion from the plane, whose axes are those of the image and toward the
+            viewer, to the object's rotation.
+        box: (2, 2): the low and the high corner of the image, on the plane, from that origin.
+    """
+
+    rotation: Quaternion
+    box: FloatArray
 
 
 @dataclass(frozen=True)
@@ -124,6 +159,15 @@ def fitted_frame(box: FloatArray, settings: RasterizeSettings) -> Frame:
                 f"Pixels per Unit: {scale:g} would make an image of {sides[0]:.0f} x "
                 f"{sides[1]:.0f} pixels; the limit is {LARGEST_SIDE}"
             )
+        width, height = (max(1, int(side)) for side in sides)
+    elif settings.resolution == "side":
+        inside = settings.side - 2.0 * settings.margin
+        if inside <= 0.0:
+            raise ValueError(
+                f"Margin: {settings.margin:g} leaves no room in {settings.side} pixels"
+            )
+        scale = inside / float(np.max(size))
+        sides = np.ceil(size * scale + 2.0 * settings.margin - 1e-6)
         width, height = (max(1, int(side)) for side in sides)
     else:
         width, height = settings.width, settings.height

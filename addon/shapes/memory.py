@@ -9,6 +9,7 @@ import bpy
 
 from ..core.options import declared
 from .choices import RasterizeSettings
+from .framing import Place
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,11 @@ class Request:
 
 
 def remember(
-    image: bpy.types.Image, source: str, names: Sequence[str], settings: RasterizeSettings
+    image: bpy.types.Image,
+    source: str,
+    names: Sequence[str],
+    settings: RasterizeSettings,
+    place: Place | None,
 ) -> None:
     """Keeps with an image what it was made of and how; names of objects that are gone are left out.
 
@@ -45,12 +50,42 @@ def remember(
         obj = bpy.data.objects.get(name)
         if obj is not None:
             kept.objects.add().obj = obj
+    kept.has_place = place is not None
+    if place is not None:
+        kept.rotation = place.rotation
+        kept.box = place.box.ravel().tolist()
     kept.is_drawn = True
 
 
 def is_drawn(image: bpy.types.Image | None) -> bool:
     """Tells whether an image remembers how it was made."""
     return image is not None and image.prefilter_drawn.is_drawn
+
+
+def sources_of(image: bpy.types.Image) -> list[bpy.types.Object]:
+    """Returns the objects that an image was made of and that are still there, the first first.
+
+    An object that was deleted stays in the file for as long as the image knows it.
+    """
+    found = [entry.obj for entry in image.prefilter_drawn.objects]
+    return [obj for obj in found if obj is not None and obj.users_collection]
+
+
+def made_last() -> bpy.types.Image | None:
+    """Returns the image that was made last."""
+    drawn = [image for image in bpy.data.images if is_drawn(image)]
+    return max(drawn, key=lambda image: image.session_uid, default=None)
+
+
+def made_of(obj: bpy.types.Object) -> bpy.types.Image | None:
+    """Returns the image that was made last of an object, and of others that were selected too."""
+    found = [image for image in bpy.data.images if is_drawn(image) and _shows_first(image, obj)]
+    return max(found, key=lambda image: image.session_uid, default=None)
+
+
+def _shows_first(image: bpy.types.Image, obj: bpy.types.Object) -> bool:
+    objects = image.prefilter_drawn.objects
+    return len(objects) > 0 and objects[0].obj == obj
 
 
 def recall(image: bpy.types.Image) -> tuple[Request, RasterizeSettings, list[str]]:
@@ -61,12 +96,10 @@ def recall(image: bpy.types.Image) -> tuple[Request, RasterizeSettings, list[str
     """
     kept = image.prefilter_drawn
     settings = kept.to_settings()
-    found = [entry.obj for entry in kept.objects]
-    # An object that was deleted stays in the file for as long as the image knows it.
-    objects = [obj for obj in found if obj is not None and obj.users_collection]
+    objects = sources_of(image)
     if kept.source != "svg" and not objects:
         raise ValueError(f"image '{image.name}': the objects that it shows are gone")
-    gone = len(found) - len(objects)
+    gone = len(kept.objects) - len(objects)
     warnings = []
     if gone:
         what = "1 object that the image showed is" if gone == 1 else f"{gone} objects are"

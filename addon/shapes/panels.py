@@ -8,11 +8,13 @@ from ..core.buttons import Button
 from ..core.menus import PREFILTER_MT_image, PREFILTER_MT_object
 from ..core.presets import PresetsPanel
 from ..core.registration import classes, entry, registration
-from ..core.sidebar import ImagePanel, SidebarPanel, button, main_button
+from ..core.sidebar import ImagePanel, SidebarPanel, button, main_button, note
+from ..core.translations import tr
 from .choices import RasterizeSettings
 from .operators.rasterize import PREFILTER_OT_rasterize
 from .operators.rasterize_svg import PREFILTER_OT_rasterize_svg
 from .operators.update_drawn import PREFILTER_OT_update_drawn
+from .operators.use_as_decal import PREFILTER_OT_use_as_decal
 from .properties import RASTERIZE
 
 _RASTERIZE = Button(PREFILTER_OT_rasterize, "IMAGE_DATA", RASTERIZE.group, {RasterizeSettings: ()})
@@ -38,9 +40,17 @@ class PREFILTER_PT_rasterize(_CurvesPanel, PresetsPanel, bpy.types.Panel):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
+        from .memory import made_of
+
         place = main_button(self.layout, context, PREFILTER_OT_rasterize)
         if place:
             _RASTERIZE.draw(place, context, "Make Image").source = "curves"
+        image = made_of(context.active_object)
+        if image is not None:
+            width, height = image.size
+            size = tr("{} x {} pixels").format(width, height)
+            note(self.layout, context, f"'{image.name}': {size}", "CHECKMARK")
+            _draw_decal(self.layout, image)
         context.scene.prefilter_rasterize.draw_closed(self.layout, "curves")
 
 
@@ -66,6 +76,7 @@ class PREFILTER_PT_drawn(ImagePanel, bpy.types.Panel):
             update = PREFILTER_OT_update_drawn.bl_idname
             operator = place.operator(update, text="Update", icon="FILE_REFRESH")
             operator.image = image.name
+        _draw_decal(layout, image, context.active_object)
         if drawn.source == "svg":
             layout.prop(drawn, "filepath", text="")
         drawn.draw_closed(layout, drawn.source)
@@ -89,9 +100,30 @@ class PREFILTER_PT_shapes(ImagePanel, PresetsPanel, bpy.types.Panel):
         context.scene.prefilter_rasterize.draw_closed(self.layout, "svg")
 
 
+def _draw_decal(
+    layout: bpy.types.UILayout, image: bpy.types.Image, active: bpy.types.Object | None = None
+) -> None:
+    """Draws the button that puts an image on a plane, or on an active mesh."""
+    from ..bridge.uv_layouts import has_uv_map
+
+    row = layout.row(align=True)
+    name, is_mask = PREFILTER_OT_use_as_decal.bl_idname, image.prefilter_drawn.source == "uv"
+    if not is_mask:
+        operator = row.operator(name, icon="MESH_PLANE")
+        operator.image, operator.target = image.name, "plane"
+    if has_uv_map(active):
+        operator = row.operator(name, text="On Material", icon="MATERIAL")
+        operator.image, operator.target = image.name, "material"
+
+
+def _draw_decal_entry(layout: bpy.types.UILayout) -> None:
+    layout.operator(PREFILTER_OT_use_as_decal.bl_idname, icon="MESH_PLANE").target = "plane"
+
+
 def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
     _RASTERIZE.draw(menu.layout, context).source = "auto"
+    _draw_decal_entry(menu.layout)
 
 
 def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
@@ -99,6 +131,7 @@ def _draw_image_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     _draw_uv_mask(menu.layout, context)
     _draw_svg(menu.layout, context)
     menu.layout.operator(PREFILTER_OT_update_drawn.bl_idname, icon="FILE_REFRESH")
+    _draw_decal_entry(menu.layout)
 
 
 def _draw_uv_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

@@ -3,7 +3,7 @@
 """The settings of rasterizing as properties: of operators, of the scene, and of images."""
 
 import bpy
-from bpy.props import BoolProperty, CollectionProperty, PointerProperty
+from bpy.props import BoolProperty, CollectionProperty, FloatVectorProperty, PointerProperty
 
 from ..core import preset_menu, presets
 from ..core.properties import properties, values
@@ -27,10 +27,10 @@ class RasterizeProperties(PartedSettings):
 
     def draw_usual(self, layout: bpy.types.UILayout, source: str) -> None:
         """Draws the settings that count for a source: a key of `choices.SOURCES` but "auto"."""
-        if source != "uv" and not self._is_camera(source):
+        if self._is_free(source):
             layout.prop(self, "resolution")
-        if self._has_density(source):
-            layout.prop(self, "density")
+        if self._is_free(source) and self.resolution != "size":
+            layout.prop(self, self.resolution)
         else:
             column = layout.column(align=True)
             column.prop(self, "width")
@@ -71,9 +71,9 @@ class RasterizeProperties(PartedSettings):
     def _is_camera(self, source: str) -> bool:
         return source == "curves" and self.view == "camera"
 
-    def _has_density(self, source: str) -> bool:
-        is_free = source != "uv" and not self._is_camera(source)
-        return is_free and self.resolution == "density"
+    def _is_free(self, source: str) -> bool:
+        """Tells whether the size may follow from the shapes."""
+        return source != "uv" and not self._is_camera(source)
 
 
 class PREFILTER_PG_rasterize(RasterizeProperties, bpy.types.PropertyGroup):
@@ -91,6 +91,9 @@ class PREFILTER_PG_drawn(RasterizeProperties, bpy.types.PropertyGroup):
 
     is_drawn: BoolProperty()
     objects: CollectionProperty(type=PREFILTER_PG_drawn_object)
+    has_place: BoolProperty()
+    rotation: FloatVectorProperty(size=4)
+    box: FloatVectorProperty(size=4)
 
     def _draw_name(self, layout: bpy.types.UILayout) -> None:
         """Draws nothing: the image has its name."""

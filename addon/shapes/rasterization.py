@@ -18,6 +18,8 @@ from ..core.options import check
 from ..core.outcome import Outcome
 from . import pixels
 from .choices import RasterizeSettings
+from .decal import refit
+from .framing import Place
 from .memory import Request, remember
 from .sources import Source, curves_source, svg_source, uv_source
 
@@ -43,12 +45,15 @@ class Load:
     def seconds(self, settings: RasterizeSettings) -> float:
         """Returns about how long it takes with other settings."""
         before, now = self.settings, settings
-        if now.resolution == before.resolution == "density":
-            count = self.pixels * (now.density / before.density) ** 2
-        elif now.resolution == "density":
-            count = float(self.pixels)
-        else:
+        count = float(self.pixels)
+        if now.resolution == "size":
             count = float(now.width * now.height)
+        elif now.resolution != before.resolution:
+            count = count if now.resolution == "density" else float(now.side**2)
+        elif now.resolution == "density":
+            count *= (now.density / before.density) ** 2
+        else:
+            count *= (now.side / before.side) ** 2
         return _ALWAYS + _PER_PIXEL * count
 
 
@@ -82,6 +87,7 @@ class Rasterization:
         self._drawing: drawn_images.Drawing | None = None
         self._staged: staging.StagedFile | None = None
         self._size = (0, 0)
+        self._place: Place | None = None
 
     @classmethod
     def read(
@@ -161,7 +167,7 @@ class Rasterization:
             self._drawing = pixels.drawing(made, settings)
         else:
             self._staged = pixels.stage(self._target, made, settings)
-        self._size = (drawn.width, drawn.height)
+        self._size, self._place = (drawn.width, drawn.height), drawn.place
         self.load = Load(drawn.width * drawn.height, settings)
         go_on(progress, 1.0)
 
@@ -187,7 +193,8 @@ class Rasterization:
         else:
             image = self._found_image()
             drawn_images.draw_into(image, self._drawing)
-        remember(image, self._kind, self._names, self._settings)
+        remember(image, self._kind, self._names, self._settings, self._place)
+        refit(image)
         done = "Rasterized" if self._image_uid is None else "Updated"
         return Outcome(
             f"{done} '{image.name}': {size}", images=[image.name], warnings=self.warnings

@@ -2,14 +2,16 @@
 
 """What is made an image of: curves and texts, a UV map, an SVG file."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import bpy
 import numpy as np
 import prefilter
+from mathutils import Quaternion
 from numpy.typing import NDArray
 
 from ..bridge.curves import Curves, read_curves
@@ -20,7 +22,7 @@ from ..core.colors import Color
 from ..core.jobs import Progress, go_on, share
 from ..core.wording import listed
 from .choices import RasterizeSettings
-from .framing import Frame, check_memory, find_view, fitted_frame, whole_frame
+from .framing import Frame, Place, check_memory, find_view, fitted_frame, whole_frame
 
 FloatArray = NDArray[np.float64]
 
@@ -39,6 +41,7 @@ class Drawn:
         shapes: Those of a coverage have one channel, others four.
         color: Of a coverage: the color of all shapes. None where each shape has its own.
         warnings: What is not in them.
+        place: Where the image is; None where that is not known.
     """
 
     width: int
@@ -46,6 +49,7 @@ class Drawn:
     shapes: list["prefilter.Shape"]
     color: Color | None
     warnings: Sequence[str] = ()
+    place: Place | None = None
 
 
 class Source(Protocol):
@@ -83,6 +87,8 @@ class _Layers:
     fill_rule: str
     frame: Frame | None
     """Where the plane is in the image; None to fit it."""
+    placed: Callable[[Frame], Place | None] = lambda _: None
+    """Returns where the image is."""
 
     def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
         """Returns the shapes in an image."""
@@ -107,7 +113,7 @@ class _Layers:
                 add_contour(shape, contour @ frame.to_pixels.T)
             shapes.append(shape)
         color = next(iter(colors), WHITE) if is_coverage else None
-        return Drawn(frame.width, frame.height, shapes, color)
+        return Drawn(frame.width, frame.height, shapes, color, place=self.placed(frame))
 
 
 @dataclass(frozen=True)
@@ -134,7 +140,10 @@ class _Svg:
             warnings[_MOST_WARNINGS:] = [f"and {more} more"]
         told = [f"'{self.path.name}': {'; '.join(warnings)}"] if warnings else []
         shapes = [shape.transformed(move) for shape in made]
-        return Drawn(frame.width, frame.height, shapes, None, told)
+        half = np.array([frame.width, frame.height]) / 2.0
+        half /= scale if settings.resolution == "density" else 2.0 * half.max()
+        place = Place(Quaternion(), np.stack([-half, half]))
+        return Drawn(frame.width, frame.height, shapes, None, told, place)
 
 
 def curves_source(
@@ -158,6 +167,7 @@ def curves_source(
         ValueError: Nothing is filled, or there is no such view.
     """
     view = find_view(settings, objects[0], scene, depsgraph)
+    placed = partial(view.place, **_stand(objects[0], depsgraph))
     found = read_curves(objects, depsgraph)
     warnings = _problems(found)
     found.sort(key=lambda curves: view.nearness(curves.center))
@@ -181,7 +191,7 @@ def curves_source(
     frame = None
     if view.projection is not None:
         frame = whole_frame(settings.width, settings.height, (-1.0, -1.0), (1.0, 1.0))
-    return _Layers(objects[0].name, layers, "evenodd", frame), warnings
+    return _Layers(objects[0].name, layers, "evenodd", frame, placed), warnings
 
 
 def uv_source(
@@ -220,6 +230,13 @@ def svg_source(path: str) -> tuple[Source, list[str]]:
     if not file.is_file():
         raise OSError(f"SVG File: there is no file '{path}'")
     return _Svg(file.stem, file), []
+
+
+def _stand(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, Any]:
+    """Returns the origin and the rotation of an object in the world."""
+    shown = obj.evaluated_get(depsgraph) if obj.visible_get() else obj
+    location, rotation, _ = shown.matrix_world.decompose()
+    return {"point": np.array(location, np.float64), "rotation": rotation}
 
 
 def _problems(found: Sequence[Curves]) -> list[str]:

@@ -177,6 +177,12 @@ def test_rasterize_svg(tmp_path):
     assert scenes.pixels(bpy.data.images[0].name)[..., 3].mean() == pytest.approx(0.5, abs=1e-3)
 
 
+def test_use_as_decal():
+    outlines.square()
+    bpy.ops.prefilter.rasterize(side=32)
+    assert bpy.ops.prefilter.use_as_decal() == FINISHED
+
+
 def test_update_drawn():
     square = outlines.square()
     bpy.ops.prefilter.rasterize(width=16, height=16, margin=4)

@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.presets import PresetsOperator
 from ...core.translations import marked, tr
-from ..properties import RASTERIZE, RasterizeProperties
-from .shape_operator import ShapeOperator
+from .shape_operator import RasterizesOperator
 
 if TYPE_CHECKING:
     from ..rasterization import Rasterization
@@ -21,9 +19,7 @@ _NEEDED = {
 }
 
 
-class PREFILTER_OT_rasterize(
-    RasterizeProperties, PresetsOperator, ShapeOperator, bpy.types.Operator
-):
+class PREFILTER_OT_rasterize(RasterizesOperator, bpy.types.Operator):
     """Rasterizes the selected curves and texts, or the UV map of the active mesh."""
 
     bl_idname = "prefilter.rasterize"
@@ -33,7 +29,6 @@ class PREFILTER_OT_rasterize(
         "of the area that the faces of the active mesh cover in its UV map"
     )
     bl_options = {"REGISTER", "UNDO"}
-    presets = RASTERIZE
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -8,24 +8,19 @@ import bpy
 from bpy.props import StringProperty
 
 from ...core.browsing import BrowsingOperator
-from ...core.presets import PresetsOperator
-from ..properties import RASTERIZE, RasterizeProperties
-from .shape_operator import ShapeOperator
+from .shape_operator import RasterizesOperator
 
 if TYPE_CHECKING:
     from ..rasterization import Rasterization
 
 
-class PREFILTER_OT_rasterize_svg(
-    RasterizeProperties, PresetsOperator, BrowsingOperator, ShapeOperator, bpy.types.Operator
-):
+class PREFILTER_OT_rasterize_svg(BrowsingOperator, RasterizesOperator, bpy.types.Operator):
     """Lets a user choose an SVG file, and rasterizes it."""
 
     bl_idname = "prefilter.rasterize_svg"
     bl_label = "Rasterize SVG"
     bl_description = "Make an exact image of an SVG file, at any size"
     bl_options = {"REGISTER", "UNDO"}
-    presets = RASTERIZE
     source_drawn = "svg"
 
     filter_glob: StringProperty(default="*.svg;*.svgz", options={"HIDDEN"})

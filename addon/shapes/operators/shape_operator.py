@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ...bridge.image_operator import MakesImage
+from ...core.presets import PresetsOperator
+from ..properties import RASTERIZE, RasterizeProperties
 
 if TYPE_CHECKING:
     from ..rasterization import Load, Rasterization
@@ -35,3 +37,16 @@ class ShapeOperator(MakesImage):
         """Draws the settings."""
         del context
         self.draw_in(layout, self.source_drawn)
+
+
+class RasterizesOperator(RasterizeProperties, PresetsOperator, ShapeOperator):
+    """A mixin: a new image of shapes, with settings and presets."""
+
+    presets = RASTERIZE
+
+    def complete_settings(self) -> None:
+        """Sets what the caller has left; who names a width means it."""
+        named = self.properties.is_property_set
+        if not named("resolution") and (named("width") or named("height")):
+            self.resolution = "size"
+        super().complete_settings()

@@ -37,6 +37,7 @@ def session() -> Iterator[None]:
     yield from stage.menus("PREFILTER_MT_object")
     yield from rasterized(stage)
     yield from cancelled(stage)
+    yield from decal(stage)
     yield from svg(stage)
     RESULT.write_text(json.dumps(found))
 
@@ -77,6 +78,37 @@ def cancelled(stage: Stage) -> Iterator[None]:
     found["cancelled"] = sizes()
 
 
+def decal(stage: Stage) -> Iterator[None]:
+    """Rasterizes beside an Image editor, puts the image on a plane, and undoes that."""
+    areas = [area for area in stage.window.screen.areas if area != stage.area]
+    editor = max(areas, key=lambda area: area.width * area.height)
+    kind, editor.type = editor.type, "IMAGE_EDITOR"
+    yield
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.rasterize("INVOKE_DEFAULT", True, side=128, resolution="side")
+    yield from until(idle)
+    yield
+    image = editor.spaces.active.image
+    found["shown beside"] = (image.name, image.size[0], image.size[1] < 80)
+    yield from stage.redrawn()
+    text = bpy.data.objects["Text"]
+    with bpy.context.temp_override(**stage.override):
+        bpy.ops.prefilter.use_as_decal("INVOKE_DEFAULT", True)
+    yield
+    shading = stage.area.spaces.active.shading
+    found["decal"] = (bpy.context.active_object.name, text.visible_get(), shading.color_type)
+    yield from stage.redo_panel()
+    yield from RedoPanel(stage.window, stage.area).step("offset")
+    found["offset"] = bpy.context.active_object.location.z > 0
+    bpy.ops.ed.undo()
+    yield
+    found["decal undone"] = [obj.name for obj in bpy.data.objects if obj.visible_get()]
+    bpy.ops.ed.undo()
+    yield
+    editor.type = kind
+    yield
+
+
 def svg(stage: Stage) -> Iterator[None]:
     """Rasterizes a file in the Image editor, and draws what is there of shapes."""
     area = stage.area
@@ -99,7 +131,7 @@ def dropped(stage: Stage, path: Path) -> Iterator[None]:
     """Does what Blender does when a file is dropped: it names the file, and no settings."""
     handler = bpy.types.PREFILTER_FH_svg
     settings = bpy.context.scene.prefilter_rasterize
-    settings.width, settings.height = 48, 40
+    settings.resolution, settings.width, settings.height = "size", 48, 40
     with bpy.context.temp_override(**stage.override):
         found["takes_drop"] = handler.poll_drop(bpy.context)
         getattr(bpy.ops.prefilter, handler.bl_import_operator.partition(".")[2])(

@@ -131,7 +131,7 @@ def test_failures_leave_nothing(blend, svg, tmp_path):
         (("rasterize", blend, tmp_path / "out.jpg"), ["OUTPUT: found", ".png, .exr"], 2),
         (("rasterize", "image.png", target), ["INPUT: found 'image.png'"], 2),
         (("rasterize", blend, target, "--width", 0), ["--width: found '0'", "1 to 65536"], 2),
-        (("rasterize", blend, target, "--density", 2, "--width", 8), ["--density: not"], 2),
+        (("rasterize", blend, target, "--density", 2, "--width", 8), ["--density, and --width"], 2),
         (("rasterize", svg, target, "--uv"), ["--object, --uv"], 2),
         (
             ("rasterize", blend, target, "--object", "Hidden"),

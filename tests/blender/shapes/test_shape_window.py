@@ -22,6 +22,13 @@ def test_panels_and_modal_operators(found):
     assert found["shown"] == "drawing"
 
 
+def test_an_image_beside_it_and_a_decal(found):
+    assert found["shown beside"] == ["Text", 128, True]
+    assert found["decal"] == ["Text.decal", False, "TEXTURE"]
+    assert found["offset"]
+    assert found["decal undone"] == ["Text"]
+
+
 def test_a_dropped_file(found):
     """It gets the settings of the panel."""
     assert found["takes_drop"]
