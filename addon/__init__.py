@@ -8,6 +8,7 @@ from contextlib import contextmanager
 from importlib import import_module
 
 SUBJECTS = (
+    "welcome",
     "mipmaps",
     "texture_cache",
     "resampling",

@@ -20,13 +20,15 @@ _FIRST_WIDE = "\u2e80"
 """From here on letters are about twice as wide: those of Chinese and Japanese."""
 
 
-class _Tab:
+class Tab:
+    """A mixin for panels: in the tab of the 3D view."""
+
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Prefilter"
 
 
-class SidebarPanel(_Tab):
+class SidebarPanel(Tab):
     """A mixin for panels of the tab in the 3D view."""
 
     bl_context = "objectmode"
@@ -45,7 +47,7 @@ class SidebarPanel(_Tab):
         return context.active_object is not None and cls.fits(context.active_object)
 
 
-class PREFILTER_PT_nothing(_Tab, bpy.types.Panel):
+class PREFILTER_PT_nothing(Tab, bpy.types.Panel):
     """Stands in for the panels where none is for what is active, and says what they are for."""
 
     bl_label = "Prefilter"

@@ -228,6 +228,25 @@ def test_reconstruct():
     assert bodies.is_closed(bpy.data.objects["Scan.surface"])
 
 
+def test_demonstrate():
+    assert bpy.ops.prefilter.demonstrate(kind="mipmaps") == FINISHED
+    assert "Stone Prefilter.mip04" in bpy.data.images
+    bpy.ops.prefilter.end_demonstration()
+
+
+def test_end_demonstration():
+    home = bpy.context.scene
+    bpy.ops.prefilter.demonstrate(kind="solid")
+    assert bpy.context.scene != home
+    assert bpy.ops.prefilter.end_demonstration() == FINISHED
+    assert list(bpy.data.scenes) == [home]
+
+
+def test_dismiss_welcome():
+    assert bpy.ops.prefilter.dismiss_welcome() == FINISHED
+    assert not bpy.types.PREFILTER_PT_welcome.poll(bpy.context)
+
+
 def test_add_preset():
     kind = bpy.types.PREFILTER_PT_voxelize_presets.kind
     assert bpy.ops.prefilter.add_preset(name="Smoke", panel=kind.panel) == FINISHED

@@ -144,6 +144,43 @@ def _closed(window: bpy.types.Window, close: Callable[[], object]) -> Iterator[N
     yield
 
 
+def place_of(
+    window: bpy.types.Window, area: bpy.types.Area, command: str, kind: str = "UI"
+) -> Generator[None, None, tuple[int, int]]:
+    """Moves the mouse down a region until it is over a button, and returns where that is.
+
+    Args:
+        window: The window.
+        area: The editor.
+        command: What the button's call in Python begins with, such as "prefilter.voxelize(".
+        kind: The region.
+    """
+    within = region(area, kind)
+    x = within.x + within.width // 2
+    for below_top in range(8, within.height, 10):
+        y = within.y + within.height - below_top
+        yield from moved(window, x, y)
+        if command_under(window, area, within).startswith(command):
+            return x, y - 4
+    raise AssertionError(f"there is no button {command}")
+
+
+def command_under(window: bpy.types.Window, area: bpy.types.Area, within: bpy.types.Region) -> str:
+    """Returns the call in Python of the button under the mouse; empty if there is none."""
+    manager = bpy.context.window_manager
+    manager.clipboard = ""
+    with bpy.context.temp_override(window=window, area=area, region=within):
+        if bpy.ops.ui.copy_python_command_button.poll():
+            bpy.ops.ui.copy_python_command_button()
+    return manager.clipboard.removeprefix("bpy.ops.")
+
+
+def pressed(stage: "Stage", command: str, kind: str = "UI") -> Iterator[None]:
+    """Clicks the button whose call in Python begins with something."""
+    x, y = yield from place_of(stage.window, stage.area, command, kind)
+    yield from clicked(stage.window, x, y)
+
+
 def region(area: bpy.types.Area, kind: str) -> bpy.types.Region:
     """Returns the region of a kind."""
     return next(found for found in area.regions if found.type == kind)

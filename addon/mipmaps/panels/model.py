@@ -43,9 +43,10 @@ class PREFILTER_PT_model(SidebarPanel, PresetsPanel, bpy.types.Panel):
         layout, settings = self.layout, context.scene.prefilter_model
         MODEL_BUTTON.draw_main(layout, context, "Make Mipmaps")
         found = known.images(context, settings.objects, settings.material) or []
-        note(layout, context, _what_is_made(context, settings, len(found)), "INFO")
+        reason = known.why_none(context, settings.objects, settings.material)
+        note(layout, context, reason or _what_is_made(context, settings, len(found)), "INFO")
         is_beside = settings.result == "file" and settings.folder.startswith("//")
-        if is_beside and not bpy.data.is_saved:
+        if found and is_beside and not bpy.data.is_saved:
             note(layout, context, "Save the .blend file first", "ERROR")
         settings.draw_closed(layout)
         header, body = subpanel(layout, "model_images", "Images")

@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Scenes of the demonstrations: made beside those of the user, removed with all that is in them."""
+
+from collections.abc import Callable, Sequence
+
+import bpy
+import numpy as np
+
+from ..bridge import level_images
+from ..bridge.layers import COLOR, NewLayer
+from ..bridge.new_points import Cloud, new_points
+from . import models, place
+from .choices import HOME, is_demonstration
+
+_LEVEL = 4
+_WIDTHS = {"mipmaps": 8.0, "solid": 6.4, "surface": 5.8}
+
+
+def begin(context: bpy.types.Context, kind: str) -> None:
+    """Makes the scene of a demonstration, and shows it.
+
+    Args:
+        context: The context.
+        kind: A key of `choices.DEMONSTRATIONS`.
+    """
+    if is_demonstration(context.scene):
+        end(context)
+    home = context.scene
+    scene = bpy.data.scenes.new("Prefilter Demonstration")
+    scene[HOME] = home.name
+    context.window.scene = scene
+    _BUILDERS[kind](context, scene)
+    place.frame(context, scene, _WIDTHS[kind], textured=kind == "mipmaps")
+
+
+def end(context: bpy.types.Context) -> None:
+    """Removes the scene of a demonstration with what is in it alone, and shows the one before."""
+    scene = context.scene
+    home = bpy.data.scenes.get(scene[HOME])
+    if home is None:
+        home = next(other for other in bpy.data.scenes if other != scene)
+    place.restore(context, scene)
+    objects = [obj for obj in scene.collection.all_objects if set(obj.users_scene) == {scene}]
+    context.window.scene = home
+    used = [*objects, *(obj.data for obj in objects if obj.data is not None)]
+    materials = {slot.material for obj in objects for slot in obj.material_slots} - {None}
+    images = {
+        node.image
+        for material in materials
+        for node in (material.node_tree.nodes if material.node_tree else ())
+        if node.type == "TEX_IMAGE" and node.image is not None
+    }
+    images |= {level_images.source_of_level(image) for image in images} - {None}
+    images |= {level for image in images for level in level_images.levels_of(image)}
+    bpy.data.scenes.remove(scene)
+    bpy.data.batch_remove(used[: len(objects)])
+    for ids in (used[len(objects) :], materials):
+        bpy.data.batch_remove([one for one in ids if one.users == 0])
+    bpy.data.batch_remove([one for one in images if one.users - one.use_fake_user == 0])
+
+
+def _mipmaps(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
+    """Shows a stone with its texture, and with a level of it by two filters."""
+    model, pixels = models.stone(), models.paint()
+    for i, (name, text, kind) in enumerate(
+        (
+            ("Stone", "Full texture", ""),
+            ("Stone Box", f"Box, level {_LEVEL}", "box"),
+            ("Stone Prefilter", f"Prefilter, level {_LEVEL}", "pam-bilinear"),
+        )
+    ):
+        image = bpy.data.images.new(name, *pixels.shape[1::-1])
+        image.pixels.foreach_set(pixels.ravel())
+        image.pack()
+        obj = _add(scene, _mesh(name, model), 2.6 * (i - 1))
+        node = _show(obj, image)
+        _label(scene, text, obj)
+        if kind:
+            context.view_layer.update()
+            bpy.ops.prefilter.bake_mipmaps(
+                image=image.name, filter=kind, result="images", objects="all"
+            )
+            node.image = level_images.levels_of(image)[_LEVEL - 1]
+    _select(context, [obj])
+
+
+def _solid(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
+    """Makes one of two broken meshes solid."""
+    mesh = _mesh("Broken", models.broken_stone())
+    for text, x in (("Broken", -1.6), ("Solid", 1.6)):
+        obj = _add(scene, mesh if x < 0.0 else mesh.copy(), x)
+        obj.name = text
+        _label(scene, text, obj)
+    _select(context, [obj])
+    bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=8)
+
+
+def _surface(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
+    """Makes a surface of one of two scans."""
+    positions, normals, colors = models.knot()
+    rgba = np.c_[colors, np.ones(len(colors))].astype(np.float32)
+    layers = [NewLayer(COLOR, "Color", "BYTE_COLOR", "POINT", rgba)]
+    for text, x in (("Points", -1.4), ("Surface", 1.4)):
+        obj = new_points(Cloud(text, positions, normals, layers), np.zeros(3))
+        obj.location.x = x
+        _label(scene, text, obj)
+    _select(context, [obj])
+    bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", depth=7, points="hide")
+
+
+_BUILDERS: dict[str, Callable[[bpy.types.Context, bpy.types.Scene], None]] = {
+    "mipmaps": _mipmaps,
+    "solid": _solid,
+    "surface": _surface,
+}
+
+
+def _mesh(name: str, model: models.Model) -> bpy.types.Mesh:
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(model.points.tolist(), [], model.quads.tolist())
+    if model.uvs is not None:
+        uvs = model.uvs.astype(np.float32).ravel()
+        mesh.uv_layers.new(name="UVMap").uv.foreach_set("vector", uvs)
+    mesh.shade_smooth()
+    return mesh
+
+
+def _add(scene: bpy.types.Scene, mesh: bpy.types.Mesh, x: float) -> bpy.types.Object:
+    obj = bpy.data.objects.new(mesh.name, mesh)
+    obj.location.x = x
+    scene.collection.objects.link(obj)
+    return obj
+
+
+def _label(scene: bpy.types.Scene, text: str, below: bpy.types.Object) -> None:
+    """Writes a line below an object."""
+    curve = bpy.data.curves.new(text, "FONT")
+    curve.body, curve.align_x, curve.size = text, "CENTER", 0.3
+    obj = bpy.data.objects.new(f"{text} (label)", curve)
+    obj.location = (below.location.x, 0.0, -1.65)
+    obj.rotation_euler.x = np.pi / 2
+    scene.collection.objects.link(obj)
+
+
+def _show(obj: bpy.types.Object, image: bpy.types.Image) -> bpy.types.ShaderNodeTexImage:
+    """Gives an object a material that shows an image, and returns its node."""
+    material = bpy.data.materials.new(obj.name)
+    if material.node_tree is None:
+        material.use_nodes = True
+    tree = material.node_tree
+    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image = image
+    node.location = (shader.location.x - 320, shader.location.y)
+    tree.links.new(node.outputs["Color"], shader.inputs["Base Color"])
+    tree.nodes.active = node
+    obj.data.materials.append(material)
+    return node
+
+
+def _select(context: bpy.types.Context, objects: Sequence[bpy.types.Object]) -> None:
+    context.view_layer.update()
+    for obj in context.view_layer.objects:
+        obj.select_set(obj in objects)
+    context.view_layer.objects.active = objects[0]

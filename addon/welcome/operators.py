@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""`prefilter.demonstrate`, what ends it, and `prefilter.dismiss_welcome`."""
+
+from typing import Any
+
+import bpy
+from bpy.props import EnumProperty
+
+from ..core.choices import items
+from ..core.preferences import PACKAGE
+from .choices import DEMONSTRATIONS, is_demonstration
+
+
+class PREFILTER_OT_demonstrate(bpy.types.Operator):
+    """Shows what the add-on does, in a scene of its own."""
+
+    bl_idname = "prefilter.demonstrate"
+    bl_label = "Demonstrate"
+    bl_description = "Show what Prefilter does, in a scene of its own"
+    bl_options = frozenset({"UNDO", "INTERNAL"})
+
+    kind: EnumProperty(
+        name="Demonstration", description="What to show", items=items(DEMONSTRATIONS)
+    )
+
+    @classmethod
+    def description(cls, context: bpy.types.Context, properties: Any) -> str:
+        """Returns the tooltip of a button."""
+        del context
+        shown = DEMONSTRATIONS[properties.kind].description
+        return f"{shown}. It runs in a scene of its own; yours stays as it is"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether another scene can be shown."""
+        if context.mode != "OBJECT":
+            cls.poll_message_set("Switch to Object Mode first")
+            return False
+        if context.window is None:
+            cls.poll_message_set("It needs a window")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Makes the scene."""
+        from . import demonstrations
+
+        try:
+            demonstrations.begin(context, self.kind)
+        except RuntimeError as error:
+            self.report({"ERROR"}, str(error))
+        return {"FINISHED"}
+
+
+class PREFILTER_OT_end_demonstration(bpy.types.Operator):
+    """Removes the scene of a demonstration."""
+
+    bl_idname = "prefilter.end_demonstration"
+    bl_label = "Back to My Scene"
+    bl_description = "Remove the scene of the demonstration with all that is in it, and show yours"
+    bl_options = frozenset({"UNDO", "INTERNAL"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether a demonstration is shown."""
+        if context.window is None or not is_demonstration(context.scene):
+            cls.poll_message_set("This is no scene of a demonstration")
+            return False
+        if len(bpy.data.scenes) == 1:
+            cls.poll_message_set("There is no other scene")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Removes it."""
+        from . import demonstrations
+
+        demonstrations.end(context)
+        return {"FINISHED"}
+
+
+class PREFILTER_OT_dismiss_welcome(bpy.types.Operator):
+    """Takes the welcome away, and has the preferences remember that."""
+
+    bl_idname = "prefilter.dismiss_welcome"
+    bl_label = "Dismiss"
+    bl_description = "Do not show the welcome again; the preferences of Prefilter bring it back"
+    bl_options = frozenset({"INTERNAL"})
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Sets the preference."""
+        found = context.preferences.addons.get(PACKAGE)
+        if found is None:
+            return {"CANCELLED"}
+        found.preferences.show_welcome = False
+        # Blender then saves them when it ends, if it saves any.
+        context.preferences.is_dirty = True
+        return {"FINISHED"}
+
+
+register, unregister = bpy.utils.register_classes_factory(
+    (PREFILTER_OT_demonstrate, PREFILTER_OT_end_demonstration, PREFILTER_OT_dismiss_welcome)
+)
