@@ -62,6 +62,10 @@ class PREFILTER_PT_nothing(Tab, bpy.types.Panel):
         """Draws what to select for each panel."""
         if context.mode != "OBJECT":
             note(self.layout, context, "Prefilter works in Object Mode", "INFO")
+            back = self.layout.operator(
+                "object.mode_set", text="Object Mode", icon="OBJECT_DATAMODE"
+            )
+            back.mode = "OBJECT"
             return
         note(self.layout, context, "Make one of these the active object", "INFO")
         for panel in _panels():

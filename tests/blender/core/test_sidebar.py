@@ -2,6 +2,8 @@
 
 """The tab is in the 3D view's sidebar whatever is active, and says what is missing."""
 
+from types import SimpleNamespace
+
 import bodies
 import bpy
 import pytest
@@ -12,6 +14,7 @@ class _Layout:
 
     def __init__(self) -> None:
         self.texts: list[str] = []
+        self.operators: list[tuple[str, SimpleNamespace]] = []
 
     def column(self, **_: object) -> "_Layout":
         return self
@@ -20,16 +23,23 @@ class _Layout:
         del icon
         self.texts.append(text)
 
+    def operator(self, name: str, **_: object) -> SimpleNamespace:
+        self.operators.append((name, SimpleNamespace()))
+        return self.operators[-1][1]
+
 
 def shown() -> list[str]:
-    """Returns the names of the panels of the tab that are drawn in the 3D view, but subpanels."""
+    """Returns the names of the panels of the tab that are drawn in the 3D view.
+
+    Subpanels are left out, and the welcome, which is always there.
+    """
     panels = [one for one in bpy.types.Panel.__subclasses__() if one.is_registered]
     return [
         panel.__name__
         for panel in panels
         if panel.bl_space_type == "VIEW_3D"
         and panel.__name__.startswith("PREFILTER_PT_")
-        and not panel.__name__.endswith("_presets")
+        and not panel.__name__.endswith(("_presets", "_welcome"))
         and (getattr(panel, "bl_context", "") != "objectmode" or bpy.context.mode == "OBJECT")
         and panel.poll(bpy.context)
     ]
@@ -37,6 +47,11 @@ def shown() -> list[str]:
 
 def said() -> str:
     """Returns what the panel says that stands in for the others."""
+    return " ".join(stand_in().texts)
+
+
+def stand_in() -> _Layout:
+    """Returns what it draws."""
     layout = _Layout()
     panel = bpy.types.PREFILTER_PT_nothing
 
@@ -46,7 +61,7 @@ def said() -> str:
     drawn = Drawn()
     drawn.layout = layout
     drawn.draw(bpy.context)
-    return " ".join(layout.texts)
+    return layout
 
 
 def activate(obj: bpy.types.Object | None) -> None:
@@ -75,6 +90,8 @@ def test_the_tab_is_there_in_other_modes(mode):
     bpy.ops.object.mode_set(mode=mode)
     assert shown() == ["PREFILTER_PT_nothing"]
     assert "Object Mode" in said()
+    ((name, made),) = stand_in().operators
+    assert (name, made.mode) == ("object.mode_set", "OBJECT")
 
 
 def test_nothing_stands_in_where_a_panel_is():
