@@ -63,6 +63,7 @@ def shown() -> dict[str, object]:
             node.image.name
             for obj in meshes
             for slot in obj.material_slots
+            if slot.material is not None
             for node in slot.material.node_tree.nodes
             if node.type == "TEX_IMAGE"
         ],
