@@ -10,6 +10,7 @@ import numpy as np
 from ..bridge import level_images
 from ..bridge.layers import COLOR, NewLayer
 from ..bridge.new_points import Cloud, new_points
+from ..core.translations import tr
 from . import models, place
 from .choices import HOME, is_demonstration
 
@@ -65,9 +66,9 @@ def _mipmaps(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
     model, pixels = models.stone(), models.paint()
     for i, (name, text, kind) in enumerate(
         (
-            ("Stone", "Full texture", ""),
-            ("Stone Box", f"Box, level {_LEVEL}", "box"),
-            ("Stone Prefilter", f"Prefilter, level {_LEVEL}", "pam-bilinear"),
+            ("Stone", tr("Full texture"), ""),
+            ("Stone Box", tr("Box, level {}").format(_LEVEL), "box"),
+            ("Stone Prefilter", tr("Prefilter, level {}").format(_LEVEL), "pam-bilinear"),
         )
     ):
         image = bpy.data.images.new(name, *pixels.shape[1::-1])
@@ -88,9 +89,9 @@ def _mipmaps(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
 def _solid(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
     """Makes one of two broken meshes solid."""
     mesh = _mesh("Broken", models.broken_stone())
-    for text, x in (("Broken", -1.6), ("Solid", 1.6)):
+    for name, text, x in (("Broken", tr("Broken"), -1.6), ("Solid", tr("Solid"), 1.6)):
         obj = _add(scene, mesh if x < 0.0 else mesh.copy(), x)
-        obj.name = text
+        obj.name = name
         _label(scene, text, obj)
     _select(context, [obj])
     bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=8)
@@ -101,8 +102,8 @@ def _surface(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
     positions, normals, colors = models.knot()
     rgba = np.c_[colors, np.ones(len(colors))].astype(np.float32)
     layers = [NewLayer(COLOR, "Color", "BYTE_COLOR", "POINT", rgba)]
-    for text, x in (("Points", -1.4), ("Surface", 1.4)):
-        obj = new_points(Cloud(text, positions, normals, layers), np.zeros(3))
+    for name, text, x in (("Points", tr("Points"), -1.4), ("Surface", tr("Surface"), 1.4)):
+        obj = new_points(Cloud(name, positions, normals, layers), np.zeros(3))
         obj.location.x = x
         _label(scene, text, obj)
     _select(context, [obj])

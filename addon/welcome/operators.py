@@ -9,6 +9,7 @@ from bpy.props import EnumProperty
 
 from ..core.choices import items
 from ..core.preferences import PACKAGE
+from ..core.translations import CONTEXT, tr
 from .choices import DEMONSTRATIONS, is_demonstration
 
 
@@ -21,15 +22,18 @@ class PREFILTER_OT_demonstrate(bpy.types.Operator):
     bl_options = frozenset({"UNDO", "INTERNAL"})
 
     kind: EnumProperty(
-        name="Demonstration", description="What to show", items=items(DEMONSTRATIONS)
+        name="Demonstration",
+        description="What to show",
+        items=items(DEMONSTRATIONS),
+        translation_context=CONTEXT,
     )
 
     @classmethod
     def description(cls, context: bpy.types.Context, properties: Any) -> str:
         """Returns the tooltip of a button."""
         del context
-        shown = DEMONSTRATIONS[properties.kind].description
-        return f"{shown}. It runs in a scene of its own; yours stays as it is"
+        shown = tr(DEMONSTRATIONS[properties.kind].description)
+        return f"{shown}. {tr('It runs in a scene of its own; yours stays as it is')}"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -6,6 +6,7 @@ import bpy
 
 from ..core.preferences import preference
 from ..core.sidebar import Tab
+from ..core.translations import marked
 from .choices import DEMONSTRATIONS, is_demonstration
 from .operators import (
     PREFILTER_OT_demonstrate,
@@ -14,9 +15,9 @@ from .operators import (
 )
 
 _LINES = (
-    "Each panel makes one thing",
-    "F9 changes it, Esc cancels it",
-    "Try it on a model of ours:",
+    marked("Each panel makes one thing"),
+    marked("F9 changes it, Esc cancels it"),
+    marked("Try it on a model of ours:"),
 )
 _ICONS = {"mipmaps": "TEXTURE", "solid": "MOD_REMESH", "surface": "POINTCLOUD_DATA"}
 
