@@ -39,10 +39,10 @@ class PREFILTER_OT_demonstrate(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether another scene can be shown."""
         if context.mode != "OBJECT":
-            cls.poll_message_set("Switch to Object Mode first")
+            cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
         if context.window is None:
-            cls.poll_message_set("It needs a window")
+            cls.poll_message_set(tr("It needs a window"))
             return False
         return True
 
@@ -69,10 +69,10 @@ class PREFILTER_OT_end_demonstration(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether a demonstration is shown."""
         if context.window is None or not is_demonstration(context.scene):
-            cls.poll_message_set("This is no scene of a demonstration")
+            cls.poll_message_set(tr("This is no scene of a demonstration"))
             return False
         if len(bpy.data.scenes) == 1:
-            cls.poll_message_set("There is no other scene")
+            cls.poll_message_set(tr("There is no other scene"))
             return False
         return True
 
