@@ -37,7 +37,8 @@ def _collector_paused() -> Iterator[None]:
 
 with _collector_paused():
     from .commands import Commands
-    from .core import menus, preset_menu, remembered, running, sidebar, translations
+    from .core import menus, preset_menu, remembered, running, shortcuts, sidebar, translations
+    from .core.keys import Keys
     from .core.registration import registration
     from .manual import Manual
     from .preferences import OfSubjects
@@ -46,7 +47,7 @@ with _collector_paused():
 
 register, unregister = registration(
     translations,
-    *(OfSubjects(_packages), preset_menu, running, remembered, menus, sidebar),
+    *(OfSubjects(_packages), preset_menu, running, remembered, menus, sidebar, shortcuts),
     *_packages,
-    *(Commands(SUBJECTS), Manual(_packages)),
+    *(Commands(SUBJECTS), Manual(_packages), Keys(_packages)),
 )

@@ -17,6 +17,7 @@ _OWN = {
     "bake": ("confirm_cancel",),
     "preferences": (
         *("add_preset", "apply_preset", "reset_settings", "import_preset", "export_preset"),
+        *("assign_shortcut", "remove_shortcut"),
     ),
 }
 """What belongs to no subject; see `Manual`."""

@@ -9,6 +9,7 @@ from types import ModuleType
 import bpy
 
 from . import manual
+from .core import shortcuts
 from .core.options import number
 from .core.preferences import PACKAGE
 from .core.properties import properties
@@ -44,12 +45,12 @@ class PREFILTER_AP_preferences(bpy.types.AddonPreferences):
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the preferences."""
-        del context
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
         for name in type(self).__annotations__:
             layout.prop(self, name)
+        shortcuts.draw_keys(layout, context)
         row = layout.row()
         row.alignment = "RIGHT"
         link = row.operator("wm.url_open", text="Manual", text_ctxt=CONTEXT, icon="HELP")

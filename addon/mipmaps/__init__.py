@@ -2,6 +2,7 @@
 
 """Mipmaps that know the mesh: bakes, and levels in view."""
 
+from ..core.keys import Key
 from ..core.registration import registration
 from . import choices, menus, operators, panels, properties, view
 
@@ -18,5 +19,11 @@ MANUAL = {
 """The pages about its operators and settings; see `manual.Manual`."""
 PREFERENCES = choices.Preferences
 """What it adds to the preferences; see `preferences.OfSubjects`."""
+KEYS = (
+    Key("bake_mipmaps", "M", "Image"),
+    Key("bake_model", "M", "Object Mode"),
+    Key("preview_levels", "P", "Image"),
+)
+"""What its operators have at first; see `keys.Keys`."""
 
 register, unregister = registration(properties, view, operators, panels, menus)

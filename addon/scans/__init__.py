@@ -2,10 +2,13 @@
 
 """Scans: files of points to objects, and points with normals to closed meshes."""
 
+from ..core.keys import Key
 from ..core.registration import registration
 from . import menus, operators, panel, properties
 
 MANUAL = {"scans": ("reconstruct", "import_points", "drop_points")}
 """The pages about its operators and settings; see `manual.Manual`."""
+KEYS = (Key("reconstruct", "R", "Object Mode"),)
+"""What its operators have at first; see `keys.Keys`."""
 
 register, unregister = registration(properties, operators, panel, menus)

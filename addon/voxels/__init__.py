@@ -2,10 +2,16 @@
 
 """Voxels of any mesh: closed surfaces, volumes, and set operations."""
 
+from ..core.keys import Key
 from ..core.registration import registration
 from . import operators, panel, properties
 
 MANUAL = {"voxels": ("voxelize", "boolean")}
 """The pages about its operators and settings; see `manual.Manual`."""
+KEYS = (
+    Key("voxelize", "V", "Object Mode"),
+    Key("boolean", "B", "Object Mode"),
+)
+"""What its operators have at first; see `keys.Keys`."""
 
 register, unregister = registration(properties, operators, panel)

@@ -291,3 +291,12 @@ def test_import_preset(panel, tmp_path):
 def test_confirm_cancel():
     """Of an operator at work, which is in windows only."""
     assert bpy.ops.prefilter.confirm_cancel(key="") == {"CANCELLED"}
+
+
+def test_assign_shortcut():
+    """Keys are in windows only."""
+    assert bpy.ops.prefilter.assign_shortcut(operator="prefilter.voxelize") == {"CANCELLED"}
+
+
+def test_remove_shortcut():
+    assert bpy.ops.prefilter.remove_shortcut(operator="prefilter.voxelize") == {"CANCELLED"}

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Runs in a Blender with a window: presses keys, those at first and one assigned to a button.
+
+Usage: blender --factory-startup --enable-event-simulate --python keys_session.py -- RESULT.json
+"""
+
+import json
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import ModuleType
+
+import bpy
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+
+import bodies
+from window import PACKAGE, Stage, begun, idle, moved, play, region, until, without_objects
+
+RESULT = Path(sys.argv[sys.argv.index("--") + 1])
+NEW = {"ctrl": True, "shift": True}
+
+found: dict[str, object] = {}
+
+
+def session() -> Iterator[None]:
+    """Yields whenever Blender should draw and handle events before going on."""
+    stage = begun()
+    without_objects()
+    bodies.cube()
+    yield
+    found["clashes"] = clashes()
+    yield from pressed_in_panels_place(stage)
+    yield from assigned(stage)
+    yield from shown_in_preferences(stage)
+    RESULT.write_text(json.dumps(found))
+
+
+def clashes() -> dict[str, list[str]]:
+    """Returns what Blender's own keymaps have at our keys, by keymap and key."""
+    ours = [(one.idname, one) for keymap in keymaps("addon") for one in keymap.keymap_items]
+    ours = [one for name, one in ours if name.startswith("prefilter.")]
+    found["keys"] = len(ours)
+    module = own_module("keys")
+    places = {*module._EVERYWHERE, *(name for names in module._RIVALS.values() for name in names)}
+    taken: dict[str, list[str]] = {}
+    for path in bpy.utils.preset_paths("keyconfig"):
+        for file in sorted(Path(path).glob("*.py")):
+            bpy.utils.keyconfig_set(str(file))
+            for keymap in keymaps("active"):
+                for item in keymap.keymap_items if keymap.name in places else ():
+                    if any(item.compare(one) for one in ours):
+                        taken.setdefault(f"{file.stem}: {keymap.name}", []).append(item.idname)
+    bpy.utils.keyconfig_set(str(Path(path) / "Blender.py"))
+    return taken
+
+
+def own_module(name: str) -> ModuleType:
+    """Returns a module of the add-on."""
+    return sys.modules[f"{PACKAGE}.core.{name}"]
+
+
+def keymaps(which: str) -> list[bpy.types.KeyMap]:
+    """Returns the keymaps of a configuration."""
+    return list(getattr(bpy.context.window_manager.keyconfigs, which).keymaps)
+
+
+def pressed(stage: Stage, key: str, **modifiers: bool) -> Iterator[None]:
+    """Presses a key over the editor."""
+    main = region(stage.area, "WINDOW")
+    x, y = main.x + 200, main.y + 200
+    yield from moved(stage.window, x, y)
+    for value in ("PRESS", "RELEASE"):
+        stage.window.event_simulate(type=key, value=value, x=x, y=y, **modifiers)
+        yield
+
+
+def pressed_in_panels_place(stage: Stage) -> Iterator[None]:
+    """Presses the key of Voxelize, which then has the settings of the panel; and undoes that."""
+    bpy.context.scene.prefilter_voxelize.depth = 4
+    bpy.ops.ed.undo_push(message="before")
+    yield from pressed(stage, "V", shift=True, alt=True)
+    yield from until(idle)
+    yield
+    last = bpy.context.window_manager.operators[-1]
+    found["pressed"] = [last.bl_idname, last.properties.depth]
+    bpy.ops.ed.undo()
+    yield
+
+
+def assigned(stage: Stage) -> Iterator[None]:
+    """Right-clicks buttons until it is that of Voxelize, and takes the last entries of its menu."""
+    yield from stage.open_tab()
+    yield
+    sidebar = region(stage.area, "UI")
+    seen: list[str] = []
+
+    def note(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+        del menu
+        button = getattr(context, "button_operator", None)
+        seen.append(button.bl_rna.identifier if button is not None else "")
+
+    bpy.types.UI_MT_button_context_menu.prepend(note)
+    x = sidebar.x + sidebar.width // 2 - 20
+    for below_top in range(10, sidebar.height, 8):
+        y = sidebar.y + sidebar.height - below_top
+        yield from right_clicked(stage, x, y)
+        if seen and seen[-1] == "PREFILTER_OT_voxelize":
+            break
+        stage.escape()
+        yield
+    # Change Shortcut, above Remove Shortcut.
+    yield from chosen_from_below(stage, 2)
+    yield from pressed(stage, "K", **NEW)
+    found["changed"] = keys()
+    bpy.context.scene.prefilter_voxelize.depth = 3
+    yield from pressed(stage, "K", **NEW)
+    yield from until(idle)
+    yield
+    last = bpy.context.window_manager.operators[-1]
+    found["pressed_again"] = [last.bl_idname, last.properties.depth]
+    bpy.ops.ed.undo()
+    yield
+    yield from right_clicked(stage, x, y)
+    yield from chosen_from_below(stage, 1)
+    found["removed"] = keys()
+    yield from right_clicked(stage, x, y)
+    yield from chosen_from_below(stage, 1)
+    stage.escape()
+    yield
+    found["left"] = keys()
+    yield from right_clicked(stage, x, y)
+    yield from chosen_from_below(stage, 1)
+    yield from pressed(stage, "A")
+    found["assigned"] = keys()
+    with bpy.context.temp_override(**stage.override):
+        _, item = own_module("keys").find(bpy.context, "prefilter.voxelize")
+        found["rivals"] = own_module("keys").rivals(bpy.context, item)
+
+
+def right_clicked(stage: Stage, x: int, y: int) -> Iterator[None]:
+    """Opens the context menu of a button."""
+    yield from moved(stage.window, x, y)
+    for value in ("PRESS", "RELEASE"):
+        stage.window.event_simulate(type="RIGHTMOUSE", value=value, x=x, y=y)
+        yield
+    yield
+
+
+def chosen_from_below(stage: Stage, number: int) -> Iterator[None]:
+    """Chooses an entry of a menu by its number from below."""
+    # The entry that was chosen last is active when the menu opens.
+    for key in ("END", *("UP_ARROW",) * (number - 1), "RET"):
+        stage.window.event_simulate(type=key, value="PRESS")
+        yield
+        stage.window.event_simulate(type=key, value="RELEASE")
+        yield
+
+
+def keys() -> list[str]:
+    """Returns the keys of Voxelize."""
+    return [
+        item.to_string()
+        for keymap in keymaps("user")
+        for item in keymap.keymap_items
+        if item.idname == "prefilter.voxelize"
+    ]
+
+
+def shown_in_preferences(stage: Stage) -> Iterator[None]:
+    """Draws the preferences of the add-on with its keys."""
+    preferences = sys.modules[f"{PACKAGE}.preferences"].PREFILTER_AP_preferences
+    draw, drawn = preferences.draw, []
+
+    def noted(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> None:
+        draw(self, context)
+        drawn.append(context.area.type)
+
+    preferences.draw = noted
+    stage.area.type = "PREFERENCES"
+    bpy.context.preferences.active_section = "ADDONS"
+    bpy.context.window_manager.addon_search = "Prefilter"
+    yield
+    bpy.ops.preferences.addon_expand(module=PACKAGE)
+    yield from stage.redrawn()
+    preferences.draw = draw
+    found["drawn"] = drawn[:1]
+
+
+play(session())

@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Keys at first, and keys that users assign to buttons, in a window that nobody sees."""
+
+import sys
+from pathlib import Path
+
+import bpy
+from conftest import PACKAGE
+
+SESSION = Path(__file__).with_name("keys_session.py")
+
+
+def test_keys_clash_with_none_of_blenders(found):
+    """In all keymaps that come with Blender."""
+    assert found["keys"] == 8
+    assert found["clashes"] == {}
+
+
+def test_a_key_has_the_settings_of_the_panel(found):
+    assert found["pressed"] == ["PREFILTER_OT_voxelize", 4]
+    assert found["pressed_again"] == ["PREFILTER_OT_voxelize", 3]
+
+
+def test_keys_of_buttons_are_changed_in_their_context_menus(found):
+    assert found["changed"] == ["Shift Ctrl K"]
+    assert found["removed"] == found["left"] == []
+    assert found["assigned"] == ["A"]
+    assert "elect All" in found["rivals"][0]
+
+
+def test_keys_are_in_the_preferences(found):
+    assert found["drawn"] == ["PREFERENCES"]
+
+
+def test_every_key_is_of_an_operator():
+    keys = [key for one in sys.modules[PACKAGE]._packages for key in getattr(one, "KEYS", ())]
+    assert len({(key.letter, key.keymap) for key in keys}) == len(keys)
+    assert {key.operator for key in keys} <= set(dir(bpy.ops.prefilter))
