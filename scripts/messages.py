@@ -25,7 +25,10 @@ _BASES = (
 )
 _LABELED = (bpy.types.Operator, bpy.types.Panel, bpy.types.Menu, bpy.types.FileHandler)
 _WITHOUT_PROPERTIES = (bpy.types.Panel, bpy.types.Menu, bpy.types.FileHandler)
-_TRANSLATED = {"tr", "report", "marked"}
+_TRANSLATED = {"tr", "report", "marked", "Sentence"}
+_COUNTED = ("1 {}", "{{}} {}s")
+_SCALED = ("{{}} million {}s", "{{}} billion {}s")
+"""What wording.py says of numbers of things."""
 _DRAWING = {"draw": 2, "draw_main": 2, "note": 2, "subpanel": 2}
 """Functions that draw a text, and which argument it is."""
 _SAYING = {"poll_message_set", "report"}
@@ -100,6 +103,8 @@ def untranslated() -> Iterator[str]:
         said = [one for one in _drawn(node) if isinstance(one, ast.JoinedStr)]
         if getattr(node.func, "attr", "") in _SAYING:
             said += [one for one in node.args if isinstance(one, (ast.Constant, ast.JoinedStr))]
+        if _name(node) == "Outcome":
+            said += [one for one in node.args if isinstance(one, ast.JoinedStr)]
         if any(letter.isalpha() for one in said for text in _parts(one) for letter in text):
             yield place
 
@@ -118,6 +123,10 @@ def _texts(node: ast.AST) -> Iterator[str]:
     if isinstance(node, ast.Call):
         if _name(node) in _TRANSLATED and not isinstance(node.func, ast.Attribute):
             yield from _constants(node.args[0])
+        if _name(node) in {"counted", "amount"} and len(node.args) > 1:
+            for noun in _constants(node.args[1]):
+                for text in _COUNTED + (_SCALED if _name(node) == "amount" else ()):
+                    yield text.format(noun)
         for one in _drawn(node):
             yield from _constants(one)
     elif isinstance(node, ast.Assign) and _target(node) == "text":

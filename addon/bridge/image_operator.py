@@ -7,6 +7,7 @@ from bpy.props import StringProperty
 
 from ..core.operator import WorkOperator
 from ..core.translations import CONTEXT, tr
+from ..core.wording import Sentence
 from . import editors
 
 
@@ -62,4 +63,5 @@ class MakesImage(WorkOperator):
         outcome = self.work.write()
         image = bpy.data.images[outcome.images[0]]
         is_elsewhere = editors.show_anywhere(context, image)
-        return self.tell(outcome) + (", shown in the Image editor" if is_elsewhere else "")
+        done = self.tell(outcome)
+        return Sentence("{}, shown in the Image editor", done) if is_elsewhere else done

@@ -9,6 +9,7 @@ import bpy
 
 from .jobs import Progress
 from .outcome import Outcome
+from .translations import report
 
 Compute = Callable[[Progress], Any]
 T = TypeVar("T")
@@ -103,13 +104,13 @@ class Doing:
         """Reports what is good to know beside the summary, and returns that."""
         self.warn(outcome.warnings)
         for note in outcome.notes:
-            self.report({"INFO"}, note)
+            self.report({"INFO"}, report(note))
         return outcome.summary
 
     def warn(self, warnings: Iterable[str]) -> None:
         """Reports what was left out, and the like."""
         for warning in warnings:
-            self.report({"WARNING"}, warning)
+            self.report({"WARNING"}, report(warning))
 
     @classmethod
     def _key(cls) -> str:

@@ -145,7 +145,7 @@ class BackgroundOperator(Doing):
         except prefilter.Cancelled:
             pass
         except FAILURES as error:
-            self.report({"WARNING"}, str(error))
+            self.report({"WARNING"}, report(str(error)))
         finally:
             self._let_go()
             self._leave(context)
@@ -238,7 +238,7 @@ class BackgroundOperator(Doing):
 
     def _finish(self, context: bpy.types.Context, result: Any) -> None:
         with self._parts.clock():
-            self.report({"INFO"}, self.finish(context, result))
+            self.report({"INFO"}, report(self.finish(context, result)))
         self._note_run(self._parts.seconds)
 
     @contextmanager
@@ -259,8 +259,8 @@ class BackgroundOperator(Doing):
         return {"CANCELLED"}
 
     def _fail(self, error: object) -> set[str]:
-        self._problem = str(error)
-        self.report({"ERROR"}, str(error))
+        self._problem = report(str(error))
+        self.report({"ERROR"}, self._problem)
         return {"CANCELLED"}
 
     @classmethod

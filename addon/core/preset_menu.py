@@ -14,6 +14,7 @@ from .presets import SUFFIX, Kind, shown_name
 from .properties import reset
 from .registration import Step, classes, registration
 from .translations import report
+from .wording import Sentence
 
 _HERE = str(Path(__file__).resolve().parents[1])
 
@@ -111,9 +112,10 @@ class _PresetFile(_OfKind):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Does it, and reports what fails."""
         try:
-            self.report({"INFO"}, self.transfer(context, Path(bpy.path.abspath(self.filepath))))
+            done = self.transfer(context, Path(bpy.path.abspath(self.filepath)))
+            self.report({"INFO"}, report(done))
         except (ValueError, OSError) as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, report(str(error)))
             return {"CANCELLED"}
         return {"FINISHED"}
 
@@ -137,7 +139,7 @@ class PREFILTER_OT_export_preset(_PresetFile, bpy.types.Operator):
         path = path.with_suffix(SUFFIX)
         text = self.kind.written(getattr(context.scene, self.kind.group))
         _write(path, text.encode())
-        return report("Wrote {}").format(path.name)
+        return Sentence("Wrote {}", path.name)
 
 
 class PREFILTER_OT_import_preset(_PresetFile, bpy.types.Operator):
@@ -155,10 +157,10 @@ class PREFILTER_OT_import_preset(_PresetFile, bpy.types.Operator):
         folder = bpy.utils.user_resource("SCRIPTS", path=f"presets/{self.kind.folder}", create=True)
         target = Path(folder) / path.name
         if target.exists():
-            text = report("there is a preset '{}' already; remove it first")
-            raise ValueError(text.format(shown_name(target)))
+            text = "there is a preset '{}' already; remove it first"
+            raise ValueError(Sentence(text, shown_name(target)))
         _write(target, path.read_bytes())
-        return report("Added the preset '{}'").format(shown_name(target))
+        return Sentence("Added the preset '{}'", shown_name(target))
 
 
 def _write(target: Path, data: bytes) -> None:

@@ -9,9 +9,12 @@ here.
 """
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import bpy
+
+from .wording import Sentence
 
 CONTEXT = "Prefilter"
 """The context of options, and of texts that Blender would take for others of its own."""
@@ -23,12 +26,22 @@ _CONTEXTS = ("*", "Operator", CONTEXT)
 
 def tr(text: str) -> str:
     """Returns a text of the interface as users read it; placeholders are filled in afterward."""
-    return bpy.app.translations.pgettext_iface(text, CONTEXT)
+    return _translated(text, bpy.app.translations.pgettext_iface)
 
 
 def report(text: str) -> str:
     """Returns a text of a report as users read it; placeholders are filled in afterward."""
-    return bpy.app.translations.pgettext_rpt(text, CONTEXT)
+    return _translated(text, bpy.app.translations.pgettext_rpt)
+
+
+def _translated(text: str, translate: Callable[[str, str], str]) -> str:
+    if not isinstance(text, Sentence):
+        return translate(text, CONTEXT)
+    values = [
+        _translated(one, translate) if isinstance(one, Sentence) else one for one in text.values
+    ]
+    translated = translate(text.template, CONTEXT)
+    return translated.format(*values) if values else translated
 
 
 def marked(text: str) -> str:

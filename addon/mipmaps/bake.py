@@ -20,7 +20,7 @@ from ..bridge.images import FloatArray, Picture
 from ..bridge.level_images import StagedLevels, level_name, stage_levels
 from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
-from ..core.wording import counted, listed
+from ..core.wording import Sentence, counted, joined, listed, together
 from . import frames, levels, lookups
 from .choices import CONTENTS, FILTERS, Settings
 from .contents import Roughness
@@ -247,23 +247,27 @@ def summary(source: Source, outputs: Outputs, names: Sequence[str]) -> str:
         outputs: What was to be made.
         names: The level images that were made.
     """
-    baked, settings = f"Baked '{source.image_name}'", source.settings
+    name, settings = source.image_name, source.settings
+    baked = Sentence("Baked '{}'", name)
     if not outputs.writes_image:
         assert outputs.roughness is not None
-        baked = f"Baked '{outputs.roughness.picture.name}', the roughness of '{source.image_name}',"
+        rough = outputs.roughness.picture.name
+        baked = Sentence("Baked '{}', the roughness of '{}',", rough, name)
     elif source.content not in {"color", "data"}:
-        baked += f" as {CONTENTS[source.content].label}"
-    parts = [f"{baked} with {FILTERS[settings.filter].label}"]
+        label = Sentence(CONTENTS[source.content].label)
+        baked = Sentence("Baked '{}' as {}", name, label)
+    parts = [Sentence("{} with {}", baked, Sentence(FILTERS[settings.filter].label))]
     if source.objects:
-        parts.append(f"over {counted(set(source.objects), 'object')}")
+        parts.append(Sentence("over {}", counted(set(source.objects), "object")))
         if settings.use_frames:
-            parts.append(f"at {counted(frames.chosen(settings), 'frame')}")
+            parts.append(Sentence("at {}", counted(frames.chosen(settings), "frame")))
     if source.footprint:
         parts.append(lookups.described(source.footprint))
-    results = [counted(names, "level image")] if names else []
+    results: list[str] = [counted(names, "level image")] if names else []
     results += map(textures.shown, outputs.targets)
-    parts.append(f"into {' and '.join(results)}" if results else "; it has no further level")
-    return " ".join(parts)
+    if not results:
+        return Sentence("{}; it has no further level", joined(" ", parts))
+    return joined(" ", [*parts, Sentence("into {}", together(results))])
 
 
 class Writable(Protocol):

@@ -5,10 +5,15 @@
 from dataclasses import replace
 
 from ..bridge.files import engines
+from ..core.wording import Sentence
 from .choices import FITTED_FILTERS, Settings
 
 _FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0, "anisotropic": 1.5}
-_WORDS = {0.0: "", 1.0: "for one lookup per pixel", 1.5: "for anisotropic lookups"}
+_WORDS = {
+    0.0: Sentence(""),
+    1.0: Sentence("for one lookup per pixel"),
+    1.5: Sentence("for anisotropic lookups"),
+}
 
 
 def resolved(settings: Settings) -> Settings:
@@ -32,6 +37,6 @@ def footprint(settings: Settings, filter: str, reader: str) -> float:
     return _FOOTPRINTS[resolved(settings).lookups]
 
 
-def described(footprint: float) -> str:
+def described(footprint: float) -> Sentence:
     """Returns what levels of such a footprint are for; empty for supersampled readers."""
     return _WORDS[footprint]

@@ -11,7 +11,7 @@ from ..bridge import level_images
 from ..bridge.files import tx
 from ..core import remembered
 from ..core.outcome import Outcome
-from ..core.wording import counted
+from ..core.wording import Sentence, counted, together
 from .view import preview
 
 
@@ -49,11 +49,11 @@ def remove(images: Iterable[bpy.types.Image], kinds: Collection[str]) -> Outcome
     if "cache" in kinds:
         files = [path for image in own for path in _removed_from_cache(image)]
         if files:
-            results.append(counted(files, "file of the texture cache"))
+            results.append(Sentence("{} of the texture cache", counted(files, "file")))
     if not results:
         who = f"image '{own[0].name}' has" if len(own) == 1 else "no image has"
         raise ValueError(f"{who} {'no ' if len(own) == 1 else ''}levels to remove")
-    return Outcome(f"Removed {' and '.join(results)}")
+    return Outcome(Sentence("Removed {}", together(results)))
 
 
 def _removed_from_cache(image: bpy.types.Image) -> list[str]:

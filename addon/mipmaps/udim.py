@@ -13,7 +13,7 @@ from ..bridge.images import Picture
 from ..bridge.tile_surfaces import TileSurfaces
 from ..core.jobs import Progress, parts
 from ..core.outcome import Outcome
-from ..core.wording import listed
+from ..core.wording import Sentence, listed
 from .bake import Bake, write_all
 from .choices import TEXTURE_SPACE_FILTERS, Settings
 
@@ -86,7 +86,8 @@ class TiledBake:
         for outcome in outcomes:
             self.warnings.extend(outcome.warnings)
         names = [name for outcome in outcomes for name in outcome.images]
-        summary = f"{outcomes[0].summary}, and likewise its other tiles, {len(outcomes)} in all"
+        text = "{}, and likewise its other tiles, {} in all"
+        summary = Sentence(text, outcomes[0].summary, len(outcomes))
         return replace(
             outcomes[0],
             summary=outcomes[0].summary if len(outcomes) == 1 else summary,

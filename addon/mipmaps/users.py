@@ -9,7 +9,7 @@ import bpy
 from ..bridge import users
 from ..core.remembered import Remembered
 from ..core.translations import tr
-from ..core.wording import listed
+from ..core.wording import counted, listed
 from .choices import TEXTURE_SPACE_FILTERS
 
 
@@ -70,14 +70,12 @@ def what_is_read(
         filters: Keys of `choices.FILTERS`.
     """
     if image.source == "TILED":
-        text = tr("1 tile") if len(image.tiles) == 1 else tr("{} tiles")
-        parts = [text.format(len(image.tiles))]
+        parts = [tr(counted(image.tiles, "tile"))]
     else:
         parts = ["{} x {}".format(*image.size)]
     names = _names(context, image, choice)
     if names is not None and not TEXTURE_SPACE_FILTERS.issuperset(filters):
-        text = tr("1 object") if len(names) == 1 else tr("{} objects")
-        parts.insert(0, text.format(len(names)))
+        parts.insert(0, tr(counted(names, "object")))
     return ", ".join(parts)
 
 

@@ -18,6 +18,7 @@ from ..bridge.images import FloatArray, Picture
 from ..core import alpha
 from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
+from ..core.wording import Sentence
 
 _DECODED, _FILTERED = 0.1, 0.9  # What the progress is once these steps are done.
 _BYTE, _SHORT = 255, 65535
@@ -97,12 +98,13 @@ class NewPicture:
         """
         if self._staged is not None:
             self._staged.commit()
-            return Outcome(f"{self.summary} into '{self._target}'", files=[str(self._target)])
+            done = Sentence("{} into '{}'", self.summary, self._target)
+            return Outcome(done, files=[str(self._target)])
         assert self._stored is not None
         image = derived.write_picture(self._picture, self.suffix, self._stored, like_source=True)
         if self._in_place:
             images.find(self._picture.name).user_remap(image)
-        return Outcome(f"{self.summary}: '{image.name}'", images=[image.name])
+        return Outcome(Sentence("{}: '{}'", self.summary, image.name), images=[image.name])
 
     def discard(self) -> None:
         """Removes the file that was staged, if it was not put into place."""

@@ -9,6 +9,8 @@ import prefilter
 from ..bridge import images
 from ..bridge.images import FloatArray, Picture
 from ..core.jobs import Progress
+from ..core.translations import marked
+from ..core.wording import Sentence, joined
 from .choices import METHODS, SUFFIXES, TABLE_FILTERS, ResampleSettings
 from .new_picture import NewPicture
 from .placement import placement, squeeze
@@ -17,7 +19,11 @@ from .sampling_tables import load
 _RADII = {one.name: one.radius for one in prefilter.PIXEL_FILTERS}
 _PER_PIXEL, _PER_WEIGHT = 8.0, 0.2  # What an exact filter costs, in texels read.
 _PER_TEXEL = 8.0  # What a texel costs that mipmaps are made of.
-_DONE = {"affine": "Scaled and rotated", "corners": "Pinned", "rectify": "Rectified"}
+_DONE = {
+    "affine": marked("Scaled and rotated '{}' to {} x {} pixels with {}"),
+    "corners": marked("Pinned '{}' to {} x {} pixels with {}"),
+    "rectify": marked("Rectified '{}' to {} x {} pixels with {}"),
+}
 
 
 class Resampling(NewPicture):
@@ -57,13 +63,12 @@ class Resampling(NewPicture):
     def summary(self) -> str:
         """What is done to the image, for the user."""
         settings = self._settings
-        means = METHODS[settings.method].label
+        means = [METHODS[settings.method].label]
         if settings.method != "table":
-            means = f"{TABLE_FILTERS[settings.filter].label}, {means}"
-        return (
-            f"{_DONE[settings.warp]} '{self._picture.name}' to {self._placement.width} x "
-            f"{self._placement.height} pixels with {means}"
-        )
+            means.insert(0, TABLE_FILTERS[settings.filter].label)
+        size = self._placement.width, self._placement.height
+        labels = joined(", ", [Sentence(one) for one in means])
+        return Sentence(_DONE[settings.warp], self._picture.name, *size, labels)
 
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
         """Returns the pixels of the new image."""

@@ -8,6 +8,7 @@ import prefilter
 
 from ..bridge.images import FloatArray, Picture
 from ..core.jobs import Progress
+from ..core.wording import Sentence
 from .choices import FILTERS, ResizeSettings
 from .new_picture import NewPicture
 
@@ -43,10 +44,10 @@ class Resizing(NewPicture):
     @property
     def summary(self) -> str:
         """What is done to the image, for the user."""
-        return (
-            f"Resized '{self._picture.name}' from {self.old_size[0]} x {self.old_size[1]} to "
-            f"{self.new_size[0]} x {self.new_size[1]} pixels with "
-            f"{FILTERS[self._settings.filter].label}"
+        return Sentence(
+            "Resized '{}' from {} x {} to {} x {} pixels with {}",
+            *(self._picture.name, *self.old_size, *self.new_size),
+            Sentence(FILTERS[self._settings.filter].label),
         )
 
     def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:

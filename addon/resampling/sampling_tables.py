@@ -13,7 +13,7 @@ import prefilter
 from ..bridge.files import staging
 from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
-from ..core.wording import listed
+from ..core.wording import Sentence, listed
 from .choices import LANGUAGES, METHODS, TABLE_FILTERS, TableSettings
 
 ENDINGS = tuple(f".{language}" for language in LANGUAGES)
@@ -95,10 +95,13 @@ class TableMaking:
         else:
             name = f"{table.filter}-{table.texels}.{self._settings.language}"
             self.text = _write_text(name, self._source)
-            where = f"'{self.text.name}'"
+            where = listed([self.text.name])
         return Outcome(
-            f"Wrote {where}: {TABLE_FILTERS[table.filter].label} from {table.texels} texels, with "
-            f"{table.error_ratio:.3g} times the error of trilinear interpolation",
+            Sentence(
+                "Wrote {}: {} from {} texels, with {} times the error of trilinear interpolation",
+                *(where, Sentence(TABLE_FILTERS[table.filter].label), table.texels),
+                f"{table.error_ratio:.3g}",
+            ),
             files=[str(target) for target in self._targets],
             notes=_proof(table),
         )

@@ -19,7 +19,7 @@ from ..bridge.new_points import far_offset, layer_name
 from ..bridge.place import Place
 from ..core.jobs import Progress
 from ..core.outcome import Outcome
-from ..core.wording import listed
+from ..core.wording import Sentence, listed
 from .choices import ScanSettings
 from .surface import Look, Surface, contour, labeled, oddities, options, reconstructed, told
 
@@ -121,7 +121,7 @@ def _outcome(
 ) -> Outcome:
     several = len(sources) > 1
     return Outcome(
-        f"Reconstructed '{target.name}' from {told(report)}",
+        Sentence("Reconstructed '{}' from {}", target.name, told(report)),
         objects=list(objects),
         files=[str(target)],
         warnings=oddities(report),

@@ -15,7 +15,7 @@ from ..bridge.new_points import Cloud, new_points, scene_offset
 from ..core.jobs import Progress, share
 from ..core.options import check
 from ..core.outcome import Outcome
-from ..core.wording import amount, counted
+from ..core.wording import Sentence, amount, counted
 from .choices import ImportSettings
 from .files import attribute_layers
 
@@ -76,7 +76,7 @@ class PointsImport:
         points = sum(len(cloud.positions) for cloud in self._clouds)
         from_files = f"'{self._sources[0].name}'" if len(made) == 1 else counted(made, "file")
         return Outcome(
-            f"Imported {amount(points, 'point')} from {from_files}",
+            Sentence("Imported {} from {}", amount(points, "point"), from_files),
             objects=[obj.name for obj in made],
             warnings=self._warnings,
             notes=self._notes,

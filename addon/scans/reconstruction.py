@@ -20,7 +20,7 @@ from ..bridge.points import Carried, Points, read_points
 from ..core.jobs import Progress, go_on
 from ..core.options import check
 from ..core.outcome import Outcome
-from ..core.wording import listed
+from ..core.wording import Sentence, listed
 from .choices import ScanSettings
 from .surface import Look, Surface, contour, oddities, reconstructed, told
 
@@ -169,7 +169,7 @@ class Reconstruction:
             elif self._settings.points == "delete":
                 bpy.data.objects.remove(obj)
         return Outcome(
-            f"Reconstructed '{made.name}' from {told(self._surface.report)}",
+            Sentence("Reconstructed '{}' from {}", made.name, told(self._surface.report)),
             objects=[made.name],
             warnings=self._warnings,
             notes=self._notes,

@@ -18,7 +18,7 @@ from ..bridge.place import Place
 from ..bridge.solids import MaterialKey
 from ..bridge.units import length
 from ..core.jobs import Progress
-from ..core.wording import amount
+from ..core.wording import Sentence, amount
 from .choices import ScanSettings
 
 _Attributes: TypeAlias = dict[str, NDArray[np.uint8 | np.float32]]
@@ -137,10 +137,8 @@ def contour(surface: Surface, place: Place, look: Look, settings: ScanSettings) 
 
 def told(report: "prefilter.ReconstructionReport") -> str:
     """Returns numbers about a surface, in words."""
-    return (
-        f"{amount(report.points, 'point')} in cells of {length(report.cell)}: "
-        f"{amount(report.triangles, 'triangle')}"
-    )
+    points, triangles = amount(report.points, "point"), amount(report.triangles, "triangle")
+    return Sentence("{} in cells of {}: {}", points, length(report.cell), triangles)
 
 
 def oddities(report: "prefilter.ReconstructionReport") -> list[str]:

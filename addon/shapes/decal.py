@@ -12,7 +12,7 @@ from ..bridge.new_meshes import new_object_beside
 from ..bridge.uv_layouts import has_uv_map
 from ..core.outcome import Outcome
 from ..core.translations import tr
-from ..core.wording import listed
+from ..core.wording import Sentence, listed
 from .choices import DecalSettings
 from .memory import sources_of
 
@@ -64,22 +64,20 @@ def _onto_plane(
         obj.hide_render = True
     left, low, right, high = drawn.box
     size = f"{units.length(right - left)} x {units.length(high - low)}"
-    instead = f"; hid {listed(obj.name for obj in hidden)}" if hidden else ""
-    return Outcome(
-        f"Made '{made.name}', a plane of {size} with image '{image.name}'{instead}",
-        objects=[made.name],
-        warnings=_warnings(image),
-    )
+    done = Sentence("Made '{}', a plane of {} with image '{}'", made.name, size, image.name)
+    if hidden:
+        done = Sentence("{}; hid {}", done, listed(obj.name for obj in hidden))
+    return Outcome(done, objects=[made.name], warnings=_warnings(image))
 
 
 def _into_material(image: bpy.types.Image, obj: bpy.types.Object | None) -> Outcome:
     if not has_uv_map(obj):
         raise ValueError(tr("Make a mesh with a UV map the active object"))
     material = image_materials.put_over(obj, image, is_mask=_is_mask(image))
-    return Outcome(
-        f"Put image '{image.name}' over the base color of material '{material.name}'",
-        warnings=_warnings(image),
+    done = Sentence(
+        "Put image '{}' over the base color of material '{}'", image.name, material.name
     )
+    return Outcome(done, warnings=_warnings(image))
 
 
 def _new_plane(

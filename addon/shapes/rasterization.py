@@ -16,6 +16,7 @@ from ..bridge.files import staging
 from ..core.jobs import Progress, go_on, share
 from ..core.options import check
 from ..core.outcome import Outcome
+from ..core.wording import Sentence
 from . import pixels
 from .choices import RasterizeSettings
 from .decal import refit
@@ -178,12 +179,14 @@ class Rasterization:
             ValueError: The image that was to be made again is gone.
             OSError: Blender cannot take the pixels, or the file cannot be put into place.
         """
-        size = f"{self._size[0]} x {self._size[1]} pixels"
         if self._staged is not None:
             self._staged.commit()
             target = str(self._staged.target)
             return Outcome(
-                f"Rasterized '{self._source.name}' to '{target}': {size}",
+                Sentence(
+                    "Rasterized '{}' to '{}': {} x {} pixels",
+                    *(self._source.name, target, *self._size),
+                ),
                 files=[target],
                 warnings=self.warnings,
             )
@@ -195,10 +198,10 @@ class Rasterization:
             drawn_images.draw_into(image, self._drawing)
         remember(image, self._kind, self._names, self._settings, self._place)
         refit(image)
-        done = "Rasterized" if self._image_uid is None else "Updated"
-        return Outcome(
-            f"{done} '{image.name}': {size}", images=[image.name], warnings=self.warnings
-        )
+        done = Sentence("Rasterized '{}': {} x {} pixels", image.name, *self._size)
+        if self._image_uid is not None:
+            done = Sentence("Updated '{}': {} x {} pixels", image.name, *self._size)
+        return Outcome(done, images=[image.name], warnings=self.warnings)
 
     def discard(self) -> None:
         """Removes what was staged."""

@@ -24,7 +24,7 @@ from ..core.alpha import associated, at_most_opaque, unassociated
 from ..core.jobs import Progress, at_once, go_on, share
 from ..core.outcome import Outcome
 from ..core.translations import marked
-from ..core.wording import counted, listed
+from ..core.wording import Sentence, counted, listed
 from . import states
 
 NEEDED = marked("Blender 5.2 LTS or later with Cycles is needed, for its texture cache")
@@ -255,13 +255,13 @@ class CacheBake:
     def _summary(self) -> str:
         names = {name for worn, _ in self._staged for name in worn.names}
         objects = {name for worn, _ in self._staged for name in worn.objects}
-        text = (
-            f"Baked PAM into the texture cache of {counted(names, 'image')} "
-            f"({counted(self._staged, 'file')}), over {counted(objects, 'object')}"
+        done = Sentence(
+            "Baked PAM into the texture cache of {} ({}), over {}",
+            *(counted(names, "image"), counted(self._staged, "file"), counted(objects, "object")),
         )
         if self._constant:
-            text += f"; {self._constant} of one color stay as they are"
-        return text
+            return Sentence("{}; {} of one color stay as they are", done, self._constant)
+        return done
 
 
 def _on_surfaces(

@@ -15,11 +15,18 @@ from ..bridge.place import Place, naming, still_there
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
 from ..core.outcome import Outcome
-from ..core.wording import listed
+from ..core.translations import marked
+from ..core.wording import Sentence, listed
 from .choices import BooleanSettings
 from .grid import Box, check_memory, choose_grid
 from .steps import VOXELIZED, Load, Operand, Result, Told, contoured, told, voxelized, wanted
 from .transfer import renumbered
+
+_DONE = {
+    "difference": marked("Difference with {}: {}"),
+    "union": marked("Union with {}: {}"),
+    "intersection": marked("Intersection with {}: {}"),
+}
 
 
 class Boolean:
@@ -136,13 +143,8 @@ class Boolean:
             elif self._settings.operands == "delete":
                 bpy.data.objects.remove(obj)
         names = listed(self._names)
-        what = {
-            "difference": f"Difference with {names}",
-            "union": f"Union with {names}",
-            "intersection": f"Intersection with {names}",
-        }[self._settings.operation]
         return Outcome(
-            f"{what}: {told(result)}",
+            Sentence(_DONE[self._settings.operation], names, told(result)),
             objects=[made.name],
             warnings=self._told.warnings,
             notes=self._told.notes,

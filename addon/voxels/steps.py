@@ -16,7 +16,7 @@ from ..bridge.new_meshes import Contour
 from ..bridge.place import Place
 from ..bridge.units import length, volume
 from ..core.jobs import Progress, go_on, share
-from ..core.wording import amount
+from ..core.wording import Sentence, amount
 from .choices import VoxelSettings
 from .grid import Box, Grid, cells_crossed, choose_grid
 from .solid_meshes import SolidMesh, solid_mesh
@@ -291,6 +291,9 @@ def _were(count: int) -> str:
 
 def told(result: Result) -> str:
     """Returns numbers about a result, in words."""
-    cells = f"'{result.place.name}' in {result.grid.cells}³ cells of {length(result.grid.spacing)}"
-    triangles = f"{amount(result.triangles, 'triangle')}, " if result.contour is not None else ""
-    return f"{cells}: {triangles}volume {volume(result.volume)}"
+    size = length(result.grid.spacing)
+    cells = Sentence("'{}' in {}³ cells of {}", result.place.name, result.grid.cells, size)
+    if result.contour is None:
+        return Sentence("{}: volume {}", cells, volume(result.volume))
+    triangles = amount(result.triangles, "triangle")
+    return Sentence("{}: {}, volume {}", cells, triangles, volume(result.volume))

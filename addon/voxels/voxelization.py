@@ -17,7 +17,7 @@ from ..bridge.place import Place, naming, still_there
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
 from ..core.outcome import Outcome
-from ..core.wording import amount, counted, listed
+from ..core.wording import Sentence, amount, counted, listed
 from .choices import VoxelizeSettings
 from .grid import check_dense_memory, check_memory, choose_grid
 from .steps import VOXELIZED, Load, Operand, Result, Told, contoured, told, voxelized, wanted
@@ -111,10 +111,12 @@ class Voxelization:
         lines = [told(result) for result in self._results]
         notes = self._told.notes
         if len(lines) == 1:
-            summary = f"Voxelized {lines[0]}"
+            summary = Sentence("Voxelized {}", lines[0])
         else:
             total = sum(result.triangles for result in self._results)
-            summary = f"Voxelized {counted(lines, 'object')}: {amount(total, 'triangle')}"
+            summary = Sentence(
+                "Voxelized {}: {}", counted(lines, "object"), amount(total, "triangle")
+            )
             notes = [*lines, *notes]
         return Outcome(summary, objects=made, warnings=self._told.warnings, notes=notes)
 

@@ -56,7 +56,8 @@ def test_what_is_filled_in_is_the_same(language):
 
 
 def placeholders(text):
-    return sorted(name for _, name, _, _ in string.Formatter().parse(text) if name is not None)
+    names = [name for _, name, _, _ in string.Formatter().parse(text) if name is not None]
+    return sorted(name or str(index) for index, name in enumerate(names))
 
 
 def test_sentences_are_translated_before_they_are_filled_in():
@@ -99,6 +100,11 @@ def test_texts_are_shown_in_the_language_of_the_user(addon, german):
     said = addon("core.translations")
     assert said.tr("Wipe") == "Wischer"
     assert said.report("{} canceled").format(said.report("Voxelizing")).endswith("abgebrochen")
+    sentence = addon("core.wording").Sentence
+    inner = sentence("{} files", 3)
+    assert said.report(sentence("Baked {} of {} images", inner, "Images")) == (
+        "3 Dateien von Images Bildern gebacken"  # Only what is a sentence is translated.
+    )
     with pytest.raises(RuntimeError, match="In dieser Datei ist kein Bild"):
         bpy.ops.prefilter.resize_image()
 

@@ -19,6 +19,7 @@ import numpy as np
 import prefilter
 
 from ...core import alpha
+from ...core.wording import Sentence
 from .. import images, openimageio
 from ..images import FloatArray, Picture
 from . import staging
@@ -68,7 +69,7 @@ def shown(target: Path) -> str:
     """Returns how to call a file, or the files of all levels."""
     if target.suffix.lower() != ".png":
         return f"'{target}'"
-    return f"'{numbered(target, 0)}' and so on"
+    return Sentence("'{}' and so on", numbered(target, 0))
 
 
 def is_stored(target: Path) -> bool:

@@ -323,8 +323,8 @@ def _partner(
     ((normal_map,),) = normal_maps
     channels = {one.channel for one in shaders}
     if len(channels) > 1 or "alpha" in channels:
-        names = ", ".join(sorted(channels))
-        return _Partner(None, problem=f"{who}: shaders take roughness from its channels {names}")
+        several = ", ".join(sorted(channels))
+        return _Partner(None, problem=f"{who}: shaders take roughness from its channels {several}")
     if normal_map == rough:
         return _Partner(None, problem=f"{who}: it is the normal map itself")
     if any(

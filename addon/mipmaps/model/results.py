@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...core.outcome import Outcome
-from ...core.wording import counted, listed
+from ...core.wording import Sentence, counted, listed, together
 from .plan import LeftOut
 
 
@@ -63,19 +63,21 @@ class Results:
 
     def summary(self, files: Sequence[str], names: Sequence[str]) -> str:
         """Returns how many images were baked into which files and level images, in a line."""
-        text = f"Baked {counted(self.baked, 'image')}"
+        done = Sentence("Baked {}", counted(self.baked, "image"))
         if self.failed:
-            text = f"Baked {len(self.baked)} of {len(self.baked) + len(self.failed)} images"
+            total = len(self.baked) + len(self.failed)
+            done = Sentence("Baked {} of {} images", len(self.baked), total)
         results = [counted(files, "file")] if files else []
         results += [counted(names, "level image")] if names else []
         if results:
-            text += f" into {' and '.join(results)}"
+            done = Sentence("{} into {}", done, together(results))
         folders = {str(Path(path).parent) for path in files}
         if len(folders) == 1:
-            text += f" in '{folders.pop()}'"
+            done = Sentence("{} in '{}'", done, folders.pop())
         if self.failed:
-            text += f"; not baked: {listed(one.image for one in self.failed)}"
-        return text
+            failed = listed(one.image for one in self.failed)
+            done = Sentence("{}; not baked: {}", done, failed)
+        return done
 
     def _problems(self) -> list[str]:
         return [f"image '{one.image}' is not baked: {one.reason}" for one in self.failed]

@@ -14,6 +14,7 @@ from ...bridge import editors
 from ...core.doing import Compute
 from ...core.jobs import Progress
 from ...core.translations import CONTEXT
+from ...core.wording import Sentence
 from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ class PREFILTER_OT_fill_unused(SurfaceOperator, bpy.types.Operator):
             images.find(picture.name).user_remap(filled)
         editors.show(context, filled)
         changed = float(np.any(result != picture.stored, axis=2).mean())
-        return f"Filled {changed:.1%} of the texels in '{filled.name}'"
+        return Sentence("Filled {} of the texels in '{}'", f"{changed:.1%}", filled.name)
 
 
 def _fill(source: "Source", progress: Progress) -> "FloatArray":

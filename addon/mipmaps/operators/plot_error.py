@@ -9,6 +9,7 @@ import bpy
 from ...bridge import editors
 from ...core.doing import Compute
 from ...core.properties import single_property
+from ...core.wording import Sentence
 from .. import choices
 from .source import SurfaceOperator, read_source
 
@@ -49,4 +50,6 @@ class PREFILTER_OT_plot_error(SurfaceOperator, bpy.types.Operator):
         plot = derived.write_picture(picture, "error", figure.draw(result))
         table = derived.write_text(picture, "error.csv", result.table())
         editors.show(context, plot)
-        return f"{result.summary()}; plotted in '{plot.name}', values in text '{table.name}'"
+        return Sentence(
+            "{}; plotted in '{}', values in text '{}'", result.summary(), plot.name, table.name
+        )

@@ -7,6 +7,7 @@ import bpy
 from ...bridge import editors
 from ...core.outcome import FAILURES
 from ...core.properties import single_property
+from ...core.translations import report
 from ..choices import RemoveSettings
 from .source import PictureOperator
 
@@ -50,8 +51,8 @@ class PREFILTER_OT_remove_levels(PictureOperator, bpy.types.Operator):
                 editors.show(context, chosen[0])
             outcome = removal.remove(chosen, self.kinds)
         except FAILURES as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, report(str(error)))
             return {"CANCELLED"}
         editors.redraw()
-        self.report({"INFO"}, outcome.summary)
+        self.report({"INFO"}, report(outcome.summary))
         return {"FINISHED"}

@@ -12,6 +12,7 @@ from ...bridge import editors
 from ...core.doing import Compute
 from ...core.jobs import Progress
 from ...core.translations import tr
+from ...core.wording import Sentence
 from .source import SurfaceOperator, read_source
 
 if TYPE_CHECKING:
@@ -42,7 +43,8 @@ class PREFILTER_OT_show_weights(SurfaceOperator, bpy.types.Operator):
 
         made = derived.write_picture(self._source.picture, "weights", result.picture)
         editors.show(context, made)
-        return f"{result.used_share:.1%} of the texels hold some of the surface; see '{made.name}'"
+        share = f"{result.used_share:.1%}"
+        return Sentence("{} of the texels hold some of the surface; see '{}'", share, made.name)
 
 
 class PREFILTER_OT_show_source(bpy.types.Operator):

@@ -9,6 +9,7 @@ import bpy
 from ...core.presets import PresetsPanel
 from ...core.sidebar import SidebarPanel, note, subpanel
 from ...core.translations import CONTEXT, marked, tr
+from ...core.wording import counted
 from ..choices import CONTENTS, FILE_FORMATS
 from ..menus import MODEL_BUTTON
 from ..properties import MODEL
@@ -72,12 +73,11 @@ def _what_is_made(context: bpy.types.Context, settings: Any, count: int) -> str:
     if settings.material:
         whose = tr("'{material}' in {whose}").format(material=settings.material, whose=whose)
     if settings.result == "file":
-        where = (
-            tr("to {}").format(settings.folder) + f", {FILE_FORMATS[settings.file_format].label}"
-        )
+        kind = FILE_FORMATS[settings.file_format].label
+        where = tr("to {}").format(f"{settings.folder}, {kind}")
     else:
         where = tr("as images")
-    images = (tr("1 image") if count == 1 else tr("{} images")).format(count)
+    images = tr(counted(range(count), "image"))
     return tr("{images} of {whose} {where}").format(images=images, whose=whose, where=where)
 
 

@@ -10,6 +10,7 @@ import prefilter
 from numpy.typing import NDArray
 
 from ...core.jobs import Progress, parts, share
+from ...core.wording import Sentence, joined
 from ..choices import FILTERS, PlotSettings
 from ..source import Source
 
@@ -58,11 +59,12 @@ class ErrorCurves:
 
     def summary(self) -> str:
         """Returns the errors over all mip values, in words."""
-        errors = (
-            f"{FILTERS[name].label} {error:.4g}"
+        errors = [
+            Sentence("{} {}", Sentence(FILTERS[name].label), f"{error:.4g}")
             for name, error in zip(self.filters, self.overall, strict=True)
-        )
-        return f"Error of '{self.image}' over all mip values: {', '.join(errors)}"
+        ]
+        told = joined(", ", errors)
+        return Sentence("Error of '{}' over all mip values: {}", self.image, told)
 
 
 def default_filters(reader: str) -> tuple[str, ...]:

@@ -11,6 +11,7 @@ from ...bridge.views import View
 from ...core.alpha import associated
 from ...core.jobs import Progress, parts
 from ...core.outcome import Outcome
+from ...core.wording import Sentence
 from ..choices import Settings
 
 if TYPE_CHECKING:
@@ -91,7 +92,8 @@ class PreviewWork:
         assert self._preview is not None
         keep(self._preview)
         return Outcome(
-            f"Computed levels 0 to {self._preview.last_level}", warnings=self._source.warnings
+            Sentence("Computed levels 0 to {}", self._preview.last_level),
+            warnings=self._source.warnings,
         )
 
     def discard(self) -> None:

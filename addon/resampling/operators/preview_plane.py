@@ -10,6 +10,7 @@ from ...core.doing import Compute
 from ...core.operator import BackgroundOperator
 from ...core.preferences import preference
 from ...core.properties import single_property
+from ...core.wording import Sentence
 from ..choices import PlaneSettings
 from ..view import kept
 
@@ -42,7 +43,7 @@ class PREFILTER_OT_preview_plane(ImageOperator, BackgroundOperator, bpy.types.Op
         """Has the editors draw the plane."""
         kept.keep(result)
         kept.VIEW.show(context, self._name)
-        return f"Computed {result.level_count} levels of '{self._name}'"
+        return Sentence("Computed {} levels of '{}'", result.level_count, self._name)
 
 
 class PREFILTER_OT_end_plane(EndsView, bpy.types.Operator):

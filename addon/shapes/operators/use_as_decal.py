@@ -51,13 +51,13 @@ class PREFILTER_OT_use_as_decal(ImageOperator, bpy.types.Operator):
             self.image = image.name
             outcome = use_as_decal(image, values(self, DecalSettings), context)
         except FAILURES as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, report(str(error)))
             return {"CANCELLED"}
         for warning in outcome.warnings:
-            self.report({"WARNING"}, warning)
+            self.report({"WARNING"}, report(warning))
         if show_in_views(context, kind="TEXTURE"):
             self.report({"INFO"}, report("3D views in Solid mode show textures now"))
-        self.report({"INFO"}, outcome.summary)
+        self.report({"INFO"}, report(outcome.summary))
         return {"FINISHED"}
 
     def draw(self, context: bpy.types.Context) -> None:

@@ -5,6 +5,14 @@
 import pytest
 
 
+def test_a_sentence_keeps_what_it_is_made_of(addon):
+    wording = addon("core.wording")
+    found = wording.Sentence("{} in {}", wording.counted("ab", "file"), "'here {}'")
+    assert found == "2 files in 'here {}'"
+    assert (found.template, found.values[0].template) == ("{} in {}", "{} files")
+    assert str(ValueError(found)).values == found.values
+
+
 @pytest.mark.parametrize(
     ("number", "expected"),
     [
