@@ -15,6 +15,7 @@ SUBJECTS = (
     "scans",
     "shapes",
     "voxels",
+    "comparison",
 )
 """The folders of the subjects, in the order in which they are registered."""
 

@@ -11,6 +11,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
+from . import kept_sources
 from .layers import COLOR, NORMALS, UV_MAP, VERTEX_GROUP, NewLayer, write_layer
 from .solids import SOLID_TYPES, MaterialKey
 
@@ -124,19 +125,31 @@ def _add_edges(mesh: bpy.types.Mesh, contour: Contour) -> None:
     mesh.update()
 
 
-def show_contour(obj: bpy.types.Object, contour: Contour) -> bpy.types.Object:
+def show_contour(
+    obj: bpy.types.Object, contour: Contour, *, keeps_source: bool = False
+) -> bpy.types.Object:
     """Has an object show a surface, and returns the object that does.
 
     A mesh object gets a mesh of its own, and loses its modifiers and instances, which the surface
     has in it. Any other object is hidden, and a new mesh object takes its place.
+
+    Args:
+        obj: The object.
+        contour: The surface.
+        keeps_source: Whether what the object was can be shown again.
     """
     if obj.type == "MESH":
-        _replace_mesh(obj, contour)
+        source = kept_sources.copied(obj) if keeps_source else None
+        _replace_mesh(obj, contour, source)
+        if source is not None:
+            kept_sources.keep(obj, [source])
         return obj
     made = new_object_beside(obj, new_mesh(obj.name, contour), ".voxels")
     _add_groups(made, contour)
     obj.hide_set(True)
     obj.hide_render = True
+    if keeps_source:
+        kept_sources.keep(made, [obj])
     return made
 
 
@@ -164,14 +177,19 @@ def is_solid(obj: bpy.types.Object) -> bool:
     return obj.type in SOLID_TYPES or (obj.type == "EMPTY" and obj.is_instancer)
 
 
-def _replace_mesh(obj: bpy.types.Object, contour: Contour) -> None:
+def _replace_mesh(obj: bpy.types.Object, contour: Contour, source: bpy.types.Object | None) -> None:
+    """Gives an object a mesh, by the name of its own unless others have that too."""
     old = obj.data
     mesh = new_mesh(old.name, contour)
     obj.modifiers.clear()
     obj.instance_type = "NONE"
     obj.data = mesh
     _add_groups(obj, contour)
-    if old.users == 0 and old.library is None:
+    if source is not None and old.users == 1 and old.library is None:
+        name = old.name
+        old.name = source.name
+        mesh.name = name
+    elif old.users == 0 and old.library is None:
         name = old.name
         bpy.data.meshes.remove(old)
         mesh.name = name

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ..bridge import new_meshes
 from ..bridge.color_materials import show_attribute
+from ..bridge.kept_sources import keep
 from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_points import OFFSET
 from ..bridge.place import Place, still_there
@@ -168,6 +169,8 @@ class Reconstruction:
                 obj.hide_render = True
             elif self._settings.points == "delete":
                 bpy.data.objects.remove(obj)
+        if self._settings.points != "delete":
+            keep(made, objects)
         return Outcome(
             Sentence("Reconstructed '{}' from {}", made.name, told(self._surface.report)),
             objects=[made.name],

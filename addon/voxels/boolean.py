@@ -11,6 +11,7 @@ import numpy as np
 import prefilter
 
 from ..bridge import new_meshes, solids
+from ..bridge.kept_sources import keep_more
 from ..bridge.place import Place, naming, still_there
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
@@ -36,6 +37,7 @@ class Boolean:
         """Keeps copies of what was read; use `Boolean.read`."""
         self._told = Told()
         self.loads: list[Load] = []
+        self.keeps_sources = False
         self._place = place
         self._read = read
         self._names = [solid.name for solid in read[1:]]
@@ -135,11 +137,12 @@ class Boolean:
         assert result.contour is not None
         active = still_there(result.place.name)
         others = [still_there(name) for name in self._names]
-        made = new_meshes.show_contour(active, result.contour)
+        made = new_meshes.show_contour(active, result.contour, keeps_source=self.keeps_sources)
         for obj in others:
             if self._settings.operands == "hide":
                 obj.hide_set(True)
                 obj.hide_render = True
+                keep_more(made, [obj])
             elif self._settings.operands == "delete":
                 bpy.data.objects.remove(obj)
         names = listed(self._names)

@@ -39,6 +39,7 @@ class Voxelization:
         """Keeps copies of what was read; use `Voxelization.read`."""
         self._told = Told()
         self.loads: list[Load] = []
+        self.keeps_sources = False
         self._read = read
         self._settings = settings
         self._targets = targets
@@ -165,7 +166,7 @@ class Voxelization:
 
     def _show(self, obj: bpy.types.Object, result: Result) -> bpy.types.Object:
         if result.contour is not None:
-            return new_meshes.show_contour(obj, result.contour)
+            return new_meshes.show_contour(obj, result.contour, keeps_source=self.keeps_sources)
         assert result.staged is not None
         volume = volumes.new_volume(obj.name, result.staged.target)
         made = new_meshes.new_object_beside(obj, volume, ".volume")

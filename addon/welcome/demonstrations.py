@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import bpy
 import numpy as np
 
-from ..bridge import level_images
+from ..bridge import kept_sources, level_images
 from ..bridge.layers import COLOR, NewLayer
 from ..bridge.new_points import Cloud, new_points
 from ..core.translations import tr
@@ -43,6 +43,7 @@ def end(context: bpy.types.Context) -> None:
         home = next(other for other in bpy.data.scenes if other != scene)
     place.restore(context, scene)
     objects = [obj for obj in scene.collection.all_objects if set(obj.users_scene) == {scene}]
+    objects += [obj for obj in kept_sources.copies_of(objects) if obj not in objects]
     context.window.scene = home
     used = [*objects, *(obj.data for obj in objects if obj.data is not None)]
     materials = {slot.material for obj in objects for slot in obj.material_slots} - {None}

@@ -29,7 +29,7 @@ SUBJECTS = {
 
 def of_the_tab():
     """Returns the panels of the tab that always are the same."""
-    others = ("PREFILTER_PT_nothing", "PREFILTER_PT_drawn", "PREFILTER_PT_welcome")
+    others = {f"PREFILTER_PT_{name}" for name in ("nothing", "drawn", "welcome", "before_after")}
     return [
         panel
         for panel in drawn.registered_panels()

@@ -222,6 +222,21 @@ def test_drop_points(tmp_path):
     assert "Torus" in bpy.data.objects
 
 
+def test_switch_source():
+    assert not bpy.ops.prefilter.switch_source.poll()
+    cube = bodies.cube()
+    bpy.ops.prefilter.voxelize(depth=4)
+    assert bpy.ops.prefilter.switch_source() == FINISHED
+    assert not cube.visible_get()
+
+
+def test_forget_source():
+    bodies.cube()
+    bpy.ops.prefilter.voxelize(depth=4)
+    assert bpy.ops.prefilter.forget_source() == FINISHED
+    assert not bpy.ops.prefilter.forget_source.poll()
+
+
 def test_reconstruct():
     clouds.scan(*clouds.torus(5_000))
     assert bpy.ops.prefilter.reconstruct(depth=5) == FINISHED

@@ -22,6 +22,12 @@ class VoxelOperator(PresetsOperator, WorkOperator):
     if TYPE_CHECKING:
         work: Voxelization | Boolean | None
 
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Writes the result, beside which what it was made of can be shown."""
+        assert self.work is not None
+        self.work.keeps_sources = True
+        return super().finish(context, result)
+
     def load(self) -> "list[Load]":
         """Returns how much there was to do."""
         assert self.work is not None

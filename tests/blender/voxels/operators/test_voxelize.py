@@ -29,7 +29,7 @@ def test_sphere_keeps_its_place_and_volume():
     assert_close_to(ball, before)
     assert ball.name == "Sphere"
     assert ball.data.name == "Sphere"
-    assert len(bpy.data.meshes) == 1
+    assert {mesh.name for mesh in bpy.data.meshes} == {"Sphere", "Sphere.source"}
     np.testing.assert_allclose(bodies.world_box(ball), [(2, -3, 0), (4, -1, 2)], atol=0.05)
 
 

@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Results and what they were made of, one in the place of the other."""
+
+from ..core.registration import registration
+from . import operators, panel, properties
+
+MANUAL = {"voxels": ("switch_source", "forget_source", "made_of", "source_object")}
+"""The pages about its operators and settings; see `manual.Manual`."""
+
+register, unregister = registration(properties, operators, panel)
