@@ -38,7 +38,16 @@ def _collector_paused() -> Iterator[None]:
 
 with _collector_paused():
     from .commands import Commands
-    from .core import menus, preset_menu, remembered, running, shortcuts, sidebar, translations
+    from .core import (
+        menus,
+        preset_menu,
+        queue_panel,
+        remembered,
+        running,
+        shortcuts,
+        sidebar,
+        translations,
+    )
     from .core.keys import Keys
     from .core.registration import registration
     from .manual import Manual
@@ -48,7 +57,8 @@ with _collector_paused():
 
 register, unregister = registration(
     translations,
-    *(OfSubjects(_packages), preset_menu, running, remembered, menus, sidebar, shortcuts),
+    *(OfSubjects(_packages), preset_menu, running, remembered, menus, sidebar, queue_panel),
+    shortcuts,
     *_packages,
     *(Commands(SUBJECTS), Manual(_packages), Keys(_packages)),
 )

@@ -14,7 +14,7 @@ import bpy
 
 FOLDER = Path(__file__).with_name("manual")
 _OWN = {
-    "bake": ("confirm_cancel",),
+    "queue": ("confirm_cancel", "clear_queue", "switches"),
     "preferences": (
         *("add_preset", "apply_preset", "reset_settings", "import_preset", "export_preset"),
         *("assign_shortcut", "remove_shortcut"),

@@ -2,6 +2,8 @@
 
 """What operators share that work on an image, or make one."""
 
+from collections.abc import Sequence
+
 import bpy
 from bpy.props import StringProperty
 
@@ -51,10 +53,20 @@ class ImageOperator:
             raise ValueError("image: no name is given, and the editor shows no image")
         return image
 
+    def targets(self, context: bpy.types.Context) -> list[bpy.types.Image]:
+        """Returns the image."""
+        return [self.chosen_image(context)]
+
+    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+        """Names the image."""
+        self.image = targets[0].name
+
 
 class MakesImage(WorkOperator):
     """A mixin: work that makes an image, which the editor then shows that the operator is called
     from."""
+
+    line = "images"
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Writes the image, shows it, and returns what to report."""

@@ -45,7 +45,12 @@ class Button:
         self, layout: bpy.types.UILayout, context: bpy.types.Context, text: str | None = None
     ) -> None:
         """Draws it as the main button of a panel, or how far the operator is."""
-        place = main_button(layout, context, self.operator)
+
+        def draw_more(row: bpy.types.UILayout) -> None:
+            self.draw(row, context, "", "ADD")
+
+        more = draw_more if self.operator.line else None
+        place = main_button(layout, context, self.operator, more)
         if place:
             self.draw(place, context, text)
 

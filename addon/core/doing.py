@@ -2,7 +2,7 @@
 
 """What an operator does that works for a while: the functions of which its own class has some."""
 
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Generator, Iterable, Sequence
 from typing import Any, TypeVar
 
 import bpy
@@ -11,6 +11,8 @@ from .jobs import Progress
 from .outcome import Outcome
 from .translations import report
 
+LONG_WORK = "long work"
+"""The line of what takes minutes: levels and surfaces."""
 Compute = Callable[[Progress], Any]
 T = TypeVar("T")
 
@@ -29,6 +31,9 @@ class Doing:
 
     doing: str
     """What the status bar says that goes on."""
+    line = ""
+    """Operators of the same line wait for each other, where a user presses the button of one while
+    another works. One without a line is refused while it works itself."""
 
     def read(self, context: bpy.types.Context) -> Compute:
         """Reads from Blender, and returns what then runs in a thread."""
@@ -92,6 +97,19 @@ class Doing:
 
     def follow_scene(self, context: bpy.types.Context) -> None:
         """Sets the settings that a key, a search or a drop leaves as the scene has them."""
+
+    def targets(self, context: bpy.types.Context) -> Sequence[bpy.types.ID]:
+        """Returns the images or objects of the context that the work cannot do without.
+
+        Raises:
+            ValueError: There are none.
+        """
+        del context
+        return ()
+
+    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+        """Takes what `targets` has returned, once work that has waited begins; it may have got
+        other names."""
 
     def complete_settings(self) -> None:
         """Sets the settings that the caller has left, where they are not as declared."""

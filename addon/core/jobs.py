@@ -114,6 +114,10 @@ class Job(Generic[T]):
         self._work = work
         self._progress = 0.0
         self._cancelled = threading.Event()
+        self._may_go_on = threading.Event()
+        self._may_go_on.set()
+        self._is_held = False
+        self._seconds_held = 0.0
         self._result: T | None = None
         self._error: BaseException | None = None
         self._seconds = 0.0
@@ -135,12 +139,29 @@ class Job(Generic[T]):
 
     @property
     def seconds(self) -> float:
-        """How long the callable has run, once it is done."""
+        """How long the callable has run, once it is done, without pauses."""
         return self._seconds
+
+    @property
+    def is_held(self) -> bool:
+        """Whether the callable waits, at a progress call, for the end of a pause."""
+        return self._is_held
+
+    def pause(self, *, is_paused: bool) -> None:
+        """Has the callable wait at its next progress call, or go on.
+
+        Args:
+            is_paused: Which of the two.
+        """
+        if is_paused:
+            self._may_go_on.clear()
+        else:
+            self._may_go_on.set()
 
     def cancel(self) -> None:
         """Asks the callable to stop; it does so at its next progress call."""
         self._cancelled.set()
+        self._may_go_on.set()
 
     def abandon(self, release: Callable[[], None]) -> None:
         """Asks the callable to stop, and waits for nothing.
@@ -168,7 +189,7 @@ class Job(Generic[T]):
             self._result = self._work(self._advance)
         except BaseException as error:  # Handed on by result().
             self._error = error
-        self._seconds = time.monotonic() - began
+        self._seconds = time.monotonic() - began - self._seconds_held
         with self._lock:
             self._has_ended = True
         if self._release is not None:
@@ -176,4 +197,10 @@ class Job(Generic[T]):
 
     def _advance(self, fraction: float) -> bool:
         self._progress = fraction
+        if not self._may_go_on.is_set() and not self._cancelled.is_set():
+            began = time.monotonic()
+            self._is_held = True
+            self._may_go_on.wait()
+            self._is_held = False
+            self._seconds_held += time.monotonic() - began
         return not self._cancelled.is_set()

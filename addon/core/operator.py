@@ -5,20 +5,22 @@
 import math
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 import bpy
 import prefilter
 from bpy.props import BoolProperty
 
-from . import redo, running
+from . import queue, redo, running
 from .doing import Compute, Doing, read_at_once
 from .jobs import Progress, Work
 from .outcome import FAILURES
 from .parts import PartedWork
+from .queue import Queued, State
 from .running import TICK_SECONDS, Run
-from .translations import CONTEXT, report, tr
+from .targets import Targets
+from .translations import CONTEXT, marked, report, tr
 
 _PATIENCE_SECONDS = 0.1
 """How long an operator waits for a thread that was cancelled. Steps of other libraries, such as
@@ -26,6 +28,10 @@ compressing a file, end when they end; the thread then cleans up by itself."""
 _RUNNING = "It is running; press Esc to cancel it"
 # Said when it is called: a button that poll has disabled under the mouse stays so until the mouse
 # has left it, and takes no click. A redo panel whose poll fails is gone for good.
+_WAITING_TICK_SECONDS = 0.2
+"""How often an operator that waits looks whether it is its turn."""
+_handed_targets: list[Targets | None] = []
+"""What the next operator works on that is started: that of the one whose redo it is."""
 
 
 class BackgroundOperator(Doing):
@@ -46,6 +52,11 @@ class BackgroundOperator(Doing):
 
     _parts: PartedWork
     _run: Run | None = None
+    _queued: Queued | None = None
+    _targets: Targets | None = None
+    """What it works on; None has it work on what the context has."""
+    _waiting_timer: bpy.types.Timer | None = None
+    _has_begun_to_read: bool = False
     _cancelled_at: float = math.inf
     _replaced: int = 0
     """The operator whose result this one is to replace; 0 for none."""
@@ -53,6 +64,16 @@ class BackgroundOperator(Doing):
     """How many seconds the settings of the redo panel would take that are not applied."""
     _problem: str = ""
     """Why the settings of the redo panel cannot be applied."""
+
+    @classmethod
+    def description(
+        cls, context: bpy.types.Context, properties: bpy.types.OperatorProperties
+    ) -> str:
+        """Returns what the tooltip says; empty has it say the usual."""
+        del context, properties
+        if not (cls.line and queue.is_busy(cls.line)):
+            return ""
+        return f"{tr(cls.bl_description)}. {tr('This goes to the end of the queue')}"
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the redo panel."""
@@ -87,6 +108,7 @@ class BackgroundOperator(Doing):
             return self._start_again(use_apply=False)
         if self.options.is_repeat:
             return self._redo(context)
+        self._targets = None
         return self._work(context, lambda _: True)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -94,27 +116,36 @@ class BackgroundOperator(Doing):
         del event
         if bpy.app.background:
             return self.execute(context)
-        if self._is_running():
-            return self._fail(_RUNNING)
-        if self.use_apply and self.may_be_redone(context):
-            self._replaced = context.active_operator.as_pointer()
+        is_redo = self.use_apply and self.may_be_redone(context)
         self.use_apply = False
-        self._parts = PartedWork(self.reading(context))
-        in_steps = type(self).reading is not Doing.reading
+        waits = bool(self.line) and not is_redo and queue.is_busy(self.line)
+        if self._is_running() and not waits:
+            return self._fail(_RUNNING)
+        if is_redo:
+            self._replaced = context.active_operator.as_pointer()
+        self._targets = _handed_targets.pop() if _handed_targets else None
+        self._parts = PartedWork()
         try:
             self.follow_scene(context)
             self.complete_settings()
-            # Blender brings back what it has undone for the redo: nothing read then may be used
-            # in a later step.
-            if not (self._replaced and in_steps):
-                with self._discarding():
-                    self._parts.read_on(TICK_SECONDS)
+            if self.line and not is_redo:
+                self._join_queue(context)
         except FAILURES as error:
             return self._fail(error)
-        return self._enter(context)
+        if waits:
+            timer = context.window_manager.event_timer_add
+            self._waiting_timer = timer(_WAITING_TICK_SECONDS, window=context.window)
+            context.window_manager.modal_handler_add(self)
+            return {"RUNNING_MODAL"}
+        begun = self._begin(context)
+        if begun == {"RUNNING_MODAL"}:
+            context.window_manager.modal_handler_add(self)
+        return begun
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Shows progress, and writes the result once the thread is done."""
+        if self._waiting_timer is not None:
+            return self._wait(context) if event.type == "TIMER" else {"PASS_THROUGH"}
         if event.type == "ESC" and event.value == "PRESS":
             is_asking = self._run is not None and self._run.ask_to_cancel()
             return {"RUNNING_MODAL"} if is_asking else self._stop(context)
@@ -130,10 +161,10 @@ class BackgroundOperator(Doing):
         except prefilter.Cancelled:
             return self._end_cancelled(context)
         except FAILURES as error:
-            self._leave(context)
+            self._leave(context, State.FAILED, str(error))
             return self._fail(error)
-        except BaseException:
-            self._leave(context)
+        except BaseException as error:
+            self._leave(context, State.FAILED, str(error))
             raise
 
     def cancel(self, context: bpy.types.Context) -> None:
@@ -148,7 +179,74 @@ class BackgroundOperator(Doing):
             self.report({"WARNING"}, report(str(error)))
         finally:
             self._let_go()
+            if self._queued is not None:
+                self._queued.leave(context)
             self._leave(context)
+
+    def _join_queue(self, context: bpy.types.Context) -> None:
+        """Notes what the operator is about, as the selection may be another at its turn."""
+        self._targets = self._targets or Targets.of(context, self.targets(context))
+        name = self._targets.name
+        label = tr(self.bl_label)
+        title = f"{label}: {name}" if name else label
+        self._queued = queue.add(context, self.line, title)
+
+    def _wait(self, context: bpy.types.Context) -> set[str]:
+        """Begins if it is its turn."""
+        assert self._queued is not None
+        assert self._targets is not None
+        if self._queued.switches.is_cancelled(context):
+            return self._end_cancelled(context)
+        if not self._queued.is_next(context) or self._is_running():
+            return {"PASS_THROUGH"}
+        if self._targets.mode == "OBJECT" != context.mode:
+            self._queued.hold(context, marked("Waits for Object Mode"))
+            return {"PASS_THROUGH"}
+        self._stop_waiting(context)
+        return self._begin(context)
+
+    def _stop_waiting(self, context: bpy.types.Context) -> None:
+        if self._waiting_timer is not None:
+            context.window_manager.event_timer_remove(self._waiting_timer)
+            self._waiting_timer = None
+
+    def _begin(self, context: bpy.types.Context) -> set[str]:
+        """Begins to read."""
+        in_steps = type(self).reading is not Doing.reading
+        try:
+            with self._discarding():
+                self._parts.steps = self.reading(context)
+                # Blender brings back what it has undone for the redo: nothing read then may be
+                # used in a later step.
+                if not (self._replaced and in_steps):
+                    self._read_on(context)
+                own = self._queued.switches if self._queued is not None else None
+                self._run = Run(context, self._key(), is_redo=bool(self._replaced), own=own)
+        except FAILURES as error:
+            self._leave(context, State.FAILED, str(error))
+            return self._fail(error)
+        except BaseException as error:
+            self._leave(context, State.FAILED, str(error))
+            raise
+        if self._queued is not None:
+            self._queued.begin(self._run)
+        return {"RUNNING_MODAL"}
+
+    def _read_on(self, context: bpy.types.Context) -> None:
+        """Reads for a tick; what was chosen is read first."""
+        with nullcontext() if self._has_begun_to_read else self._aimed(context):
+            self._has_begun_to_read = True
+            self._parts.read_on(TICK_SECONDS)
+
+    @contextmanager
+    def _aimed(self, context: bpy.types.Context) -> Iterator[None]:
+        """Has the context say what was chosen when the button was pressed."""
+        if self._targets is None:
+            yield
+            return
+        self.aim(self._targets.found(context))
+        with self._targets.selecting(context):
+            yield
 
     def _stop(self, context: bpy.types.Context) -> set[str]:
         """Ends the reading, or has the thread end."""
@@ -162,16 +260,25 @@ class BackgroundOperator(Doing):
     def _tick(self, context: bpy.types.Context) -> set[str]:
         """Goes on with what is to do: reading, waiting for the thread, writing."""
         parts = self._parts
+        assert self._run is not None
+        is_paused = self._cancelled_at == math.inf and self._run.is_paused(context)
         if parts.job is None:
-            parts.read_on(TICK_SECONDS)
+            self._read_on(context)
         if parts.job is None:
-            self._show(context, tr("Reading"), parts.fraction_read)
+            # Nothing else may happen meanwhile, so that the pause comes after that.
+            pause = marked("Pausing") if is_paused else ""
+            self._run.show(context, tr("Reading"), parts.fraction_read, pause)
             return {"RUNNING_MODAL"}
+        parts.job.pause(is_paused=is_paused)
         if not parts.job.is_done:
             if time.monotonic() - self._cancelled_at > _PATIENCE_SECONDS:
                 parts.job.abandon(self.releaser())
                 return self._end_cancelled(context)
-            self._show(context, tr(self.doing), parts.job.progress)
+            pause = (marked("Paused") if parts.job.is_held else "Pausing") if is_paused else ""
+            self._run.show(context, tr(self.doing), parts.job.progress, pause)
+            return {"PASS_THROUGH"}
+        if is_paused:
+            self._run.show(context, tr(self.doing), parts.job.progress, "Paused")
             return {"PASS_THROUGH"}
         result = parts.result()
         parts.steps = self.following(context)
@@ -180,10 +287,11 @@ class BackgroundOperator(Doing):
             if self._cancelled_at < math.inf:
                 raise prefilter.Cancelled("cancelled")
             return {"RUNNING_MODAL"}
-        self._leave(context)
+        self._end_run(context)
         undoes = bool(self._replaced) and "UNDO" in self.bl_options
         with redo.in_place_of(self._replaced, context, is_undoable=undoes):
             self._finish(context, result)
+        self._leave(context, State.DONE)
         return {"FINISHED"}
 
     def _work(self, context: bpy.types.Context, progress: Progress) -> set[str]:
@@ -191,7 +299,9 @@ class BackgroundOperator(Doing):
         try:
             with self._discarding():
                 with self._parts.clock():
-                    result = self.read(context)(progress)
+                    with self._aimed(context):
+                        compute = self.read(context)
+                    result = compute(progress)
                     while (steps := self.following(context)) is not None:
                         result = read_at_once(steps)(progress)
                 self._finish(context, result)
@@ -222,11 +332,14 @@ class BackgroundOperator(Doing):
     def _start_again(self, *, use_apply: bool) -> set[str]:
         """Starts another operator with the settings of this one in the background."""
         settings = self.handed_on()
+        _handed_targets[:] = [self._targets] if use_apply else []
         start = getattr(bpy.ops.prefilter, self._key().partition(".")[2])
         try:
             start("INVOKE_DEFAULT", use_apply=use_apply, **settings)
         except RuntimeError as error:
             self._problem = str(error).removeprefix("Error: ").strip()
+        finally:
+            _handed_targets.clear()
         return {"CANCELLED"}
 
     def _expected_seconds(self) -> float:
@@ -254,7 +367,7 @@ class BackgroundOperator(Doing):
         self.discard()
 
     def _end_cancelled(self, context: bpy.types.Context) -> set[str]:
-        self._leave(context)
+        self._leave(context, State.CANCELLED)
         self.report({"INFO"}, report("{} canceled").format(report(self.doing)))
         return {"CANCELLED"}
 
@@ -267,19 +380,18 @@ class BackgroundOperator(Doing):
     def _is_running(cls) -> bool:
         return running.find(cls._key()) is not None
 
-    def _enter(self, context: bpy.types.Context) -> set[str]:
-        self._run = Run(context, self._key(), is_redo=bool(self._replaced))
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
-
-    def _show(self, context: bpy.types.Context, what: str, fraction: float) -> None:
-        assert self._run is not None
-        self._run.show(context, what, fraction)
-
-    def _leave(self, context: bpy.types.Context) -> None:
+    def _end_run(self, context: bpy.types.Context) -> None:
         if self._run is not None:
             self._run.end(context)
             self._run = None
+
+    def _leave(
+        self, context: bpy.types.Context, state: State = State.CANCELLED, message: str = ""
+    ) -> None:
+        self._stop_waiting(context)
+        self._end_run(context)
+        if self._queued is not None:
+            self._queued.end(context, state, message)
 
 
 class WorkOperator(BackgroundOperator):

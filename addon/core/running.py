@@ -3,10 +3,14 @@
 """Operators at work: how far they are, in panels and in the status bar, with buttons to cancel."""
 
 import time
+from collections.abc import Callable
 
 import bpy
-from bpy.props import BoolProperty, CollectionProperty, StringProperty
+from bpy.props import StringProperty
 
+from . import switches
+from .registration import classes, registration
+from .switches import Switches
 from .translations import CONTEXT, tr
 
 TICK_SECONDS = 0.05
@@ -25,22 +29,8 @@ _HARMLESS_EVENTS = frozenset(
     }
 )
 
-_SWITCH = "use_cancel"
 _STATUS_UNITS = 20.0
 _runs: dict[str, "Run"] = {}
-
-
-class PREFILTER_PG_run(bpy.types.PropertyGroup):
-    """The button that cancels an operator, whose identifier is the name.
-
-    It is a property as Blender tells over which property the mouse is, but not over which operator.
-    """
-
-    use_cancel: BoolProperty(
-        name="Cancel",
-        translation_context=CONTEXT,
-        description="Stop and discard the result. Esc does the same",
-    )
 
 
 class PREFILTER_OT_confirm_cancel(bpy.types.Operator):
@@ -62,57 +52,82 @@ class PREFILTER_OT_confirm_cancel(bpy.types.Operator):
             self,
             event,
             title=tr("Cancel?"),
-            message=tr("{}. It has worked for {} s").format(run.text, round(run.seconds)),
+            message=tr("{}. It has worked for {} s").format(run.status, round(run.seconds)),
             confirm_text=tr("Stop and Discard"),
             icon="QUESTION",
         )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Presses the button that cancels."""
-        switch = _switch(context.window_manager, self.key)
-        if switch is None:
+        run = _runs.get(self.key)
+        if run is None:
             return {"CANCELLED"}
-        switch.use_cancel = True
+        run.switches.press_cancel(context)
         return {"FINISHED"}
 
 
 class Run:
-    """An operator at work, and what Blender shows of that."""
+    """An operator at work, and what Blender shows of that.
 
-    def __init__(self, context: bpy.types.Context, key: str, *, is_redo: bool) -> None:
+    Attributes:
+        is_redo: Whether the redo panel shows the progress, too.
+        switches: The buttons.
+        fraction: How much is done, as it is drawn.
+        text: The same in words.
+    """
+
+    def __init__(
+        self, context: bpy.types.Context, key: str, *, is_redo: bool, own: Switches | None = None
+    ) -> None:
         """Begins.
 
         Args:
             context: Where the operator runs; its timer is for the window.
             key: The identifier of the operator.
-            is_redo: Whether the redo panel shows the progress, too.
+            is_redo: See `is_redo`.
+            own: The buttons of the operator, if it has some already.
+
+        Raises:
+            ValueError: There are too many buttons.
         """
         self.is_redo = is_redo
+        self.switches = own or Switches(context)
         self.fraction = 0.0
-        self.text = ""
+        self.text = _percent(0.0)
+        self._what = ""
         self._key = key
-        self._began = time.monotonic()
+        self._seconds = 0.0
+        self._looked_at = time.monotonic()
         self._drawn_at = 0.0
+        self._was_paused = False
         manager = context.window_manager
-        switch = _switch(manager, key)
-        if switch is None:
-            switch = manager.prefilter_runs.add()
-            switch.name = key
-        switch.use_cancel = False
         manager.progress_begin(0, 100)
         self._timer = manager.event_timer_add(TICK_SECONDS, window=context.window)
         _runs[key] = self
-        _redraw_panels(context)
-
-    def is_cancelled(self, context: bpy.types.Context) -> bool:
-        """Tells whether someone has pressed the button."""
-        switch = _switch(context.window_manager, self._key)
-        return switch is not None and switch.use_cancel
+        redraw_panels(context)
 
     @property
     def seconds(self) -> float:
         """How long it has worked."""
-        return time.monotonic() - self._began
+        return self._seconds
+
+    @property
+    def status(self) -> str:
+        """What goes on, and how much of it is done."""
+        return f"{self._what}: {self.text}"
+
+    def is_cancelled(self, context: bpy.types.Context) -> bool:
+        """Tells whether someone has pressed the button."""
+        return self.switches.is_cancelled(context)
+
+    def is_paused(self, context: bpy.types.Context) -> bool:
+        """Tells whether the work is to pause; counts the time that it does not."""
+        now = time.monotonic()
+        if not self._was_paused:
+            self._seconds += now - self._looked_at
+        self._looked_at = now
+        self._was_paused = self.switches.is_paused(context)
+        return self._was_paused
 
     def ask_to_cancel(self) -> bool:
         """Asks whether to cancel, if much would be thrown away; False if there is no need."""
@@ -121,23 +136,31 @@ class Run:
         bpy.ops.prefilter.confirm_cancel("INVOKE_DEFAULT", key=self._key)
         return True
 
-    def show(self, context: bpy.types.Context, what: str, fraction: float) -> None:
-        """Shows what goes on, and how much of all is done; a few times a second."""
-        percent = round(100 * fraction)
-        text = f"{what}: {percent} %"
+    def show(self, context: bpy.types.Context, what: str, fraction: float, pause: str = "") -> None:
+        """Shows what goes on, and how much of all is done; a few times a second.
+
+        Args:
+            context: The context.
+            what: What goes on.
+            fraction: How much is done.
+            pause: "Pausing" or "Paused"; empty while it works.
+        """
+        text = f"{tr(pause)}, {_percent(fraction)}" if pause else _percent(fraction)
         now = time.monotonic()
-        if text == self.text or now - self._drawn_at < _REDRAW_SECONDS:
+        is_same = (what, text) == (self._what, self.text)
+        if is_same or now - self._drawn_at < _REDRAW_SECONDS:
             return
-        self.fraction, self.text, self._drawn_at = fraction, text, now
-        context.window_manager.progress_update(percent)
+        self._what, self.fraction, self.text, self._drawn_at = what, fraction, text, now
+        context.window_manager.progress_update(round(100 * fraction))
         context.workspace.status_text_set(_draw_status)
-        _redraw_panels(context)
+        redraw_panels(context)
 
     def end(self, context: bpy.types.Context) -> None:
         """Takes everything back; another call does nothing."""
         if _runs.get(self._key) is not self:
             return
         del _runs[self._key]
+        self.switches.release(context)
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         if not _runs:
@@ -153,14 +176,29 @@ def find(key: str) -> Run | None:
     return _runs.get(key)
 
 
-def draw(layout: bpy.types.UILayout, context: bpy.types.Context, key: str) -> bool:
-    """Draws how far an operator is, and a button that cancels it; False if it does not run."""
+def draw(
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    key: str,
+    more: Callable[[bpy.types.UILayout], object] | None = None,
+) -> bool:
+    """Draws how far an operator is, and a button that cancels it; False if it does not run.
+
+    Args:
+        layout: Where.
+        context: The context.
+        key: The identifier of the operator.
+        more: Draws another button, away from that which cancels.
+    """
     run = _runs.get(key)
     if run is None:
         return False
     parts = layout.split(factor=0.65, align=True)
-    parts.progress(factor=run.fraction, text=f"{round(100 * run.fraction)} %")
-    _draw_switch(parts, context, key)
+    row = parts.row(align=True)
+    if more is not None:
+        more(row)
+    row.progress(factor=run.fraction, text=run.text)
+    run.switches.draw_cancel(parts, context)
     return True
 
 
@@ -173,7 +211,7 @@ def is_over_button(context: bpy.types.Context, event: bpy.types.Event) -> bool:
                 continue
             with context.temp_override(area=area, region=region):
                 under = bpy.context.property
-            if under is not None and under[1].rpartition(".")[2] == _SWITCH:
+            if under is not None and switches.is_one(under[1]):
                 return True
     return False
 
@@ -192,41 +230,23 @@ def handed_on(context: bpy.types.Context, event: bpy.types.Event, *, is_free: bo
     return {"PASS_THROUGH"} if is_click else {"RUNNING_MODAL"}
 
 
-def register() -> None:
-    """Registers the buttons."""
-    _register_classes()
-    bpy.types.WindowManager.prefilter_runs = CollectionProperty(type=PREFILTER_PG_run)
+register, unregister = registration(switches, classes(PREFILTER_OT_confirm_cancel))
 
 
-def unregister() -> None:
-    """Removes them."""
-    del bpy.types.WindowManager.prefilter_runs
-    _unregister_classes()
-
-
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
-    (PREFILTER_PG_run, PREFILTER_OT_confirm_cancel)
-)
-
-
-def _switch(manager: bpy.types.WindowManager, key: str) -> PREFILTER_PG_run | None:
-    return manager.prefilter_runs.get(key)
-
-
-def _draw_switch(layout: bpy.types.UILayout, context: bpy.types.Context, key: str) -> None:
-    # Loading a file may have removed it.
-    switch = _switch(context.window_manager, key)
-    if switch is not None:
-        layout.prop(switch, _SWITCH, icon="X", toggle=True)
+def _percent(fraction: float) -> str:
+    return f"{round(100 * fraction)} %"
 
 
 def _draw_status(header: bpy.types.Header, context: bpy.types.Context) -> None:
-    for key, run in _runs.items():
+    for run in _runs.values():
         row = header.layout.row(align=True)
         row.ui_units_x = _STATUS_UNITS
-        row.progress(factor=run.fraction, text=run.text)
-        _draw_switch(row, context, key)
-    header.layout.label(text="Esc: Cancel")
+        row.progress(factor=run.fraction, text=run.status)
+        run.switches.draw_cancel(row, context)
+    waiting = switches.taken() - len(_runs)
+    if waiting:
+        header.layout.label(text=tr("{} waiting").format(waiting))
+    header.layout.label(text="Esc: Cancel", text_ctxt=CONTEXT)
     header.layout.separator_spacer()
 
 
@@ -239,7 +259,8 @@ def _clear_status(context: bpy.types.Context) -> None:
         header.draw = header._draw_orig
 
 
-def _redraw_panels(context: bpy.types.Context) -> None:
+def redraw_panels(context: bpy.types.Context) -> None:
+    """Has the panels drawn that show how far operators are."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             for region in area.regions:

@@ -4,7 +4,7 @@
 
 import math
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import bpy
@@ -90,16 +90,25 @@ class ImagePanel:
 
 
 def main_button(
-    layout: bpy.types.UILayout, context: bpy.types.Context, operator: type[bpy.types.Operator]
+    layout: bpy.types.UILayout,
+    context: bpy.types.Context,
+    operator: type[bpy.types.Operator],
+    more: Callable[[bpy.types.UILayout], object] | None = None,
 ) -> bpy.types.UILayout | None:
     """Returns where the main button of a panel goes.
+
+    Args:
+        layout: The panel.
+        context: The context.
+        operator: What the button starts.
+        more: Draws a button that adds to the queue, beside the progress.
 
     Returns:
         None while the operator runs, whose progress is then drawn there.
     """
     row = layout.row()
     row.scale_y = 1.5
-    return None if running.draw(row, context, operator.bl_idname) else row
+    return None if running.draw(row, context, operator.bl_idname, more) else row
 
 
 def button(

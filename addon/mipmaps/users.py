@@ -8,6 +8,7 @@ import bpy
 
 from ..bridge import users
 from ..core.remembered import Remembered
+from ..core.targets import selected
 from ..core.translations import tr
 from ..core.wording import counted, listed
 from .choices import TEXTURE_SPACE_FILTERS
@@ -34,8 +35,9 @@ def objects_to_read(
         choice: A key of `choices.OBJECTS`.
     """
     if choice == "selected":
+        chosen = set(selected(context))
         objects = context.view_layer.objects
-        return [obj for obj in objects if obj.select_get() or obj.mode == "EDIT"], []
+        return [obj for obj in objects if obj in chosen or obj.mode == "EDIT"], []
     return users_of(image, context)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import bpy
 from bpy.props import BoolProperty
 
+from ..core.doing import LONG_WORK
 from ..core.operator import WorkOperator
 from ..core.preferences import preference
 from ..core.translations import CONTEXT, tr
@@ -48,6 +49,7 @@ class PREFILTER_OT_bake_texture_cache(WorkOperator, bpy.types.Operator):
     )
 
     doing = "Baking PAM into the texture cache"
+    line = LONG_WORK
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

@@ -19,8 +19,8 @@ INDEX = "README"
 PAGES = (
     INDEX,
     *("install", "bake", "data", "view", "texture_cache", "engines", "resize", "resample"),
-    *("sampling", "shaders", "voxels", "scans", "shapes", "svg", "preferences", "command_line"),
-    "conventions",
+    *("sampling", "shaders", "voxels", "scans", "shapes", "svg", "queue", "preferences"),
+    *("command_line", "conventions"),
 )
 """What users of the add-on need. Links to other pages become plain text."""
 LARGEST_PICTURE = 128 * 1024

@@ -29,7 +29,8 @@ SUBJECTS = {
 
 def of_the_tab():
     """Returns the panels of the tab that always are the same."""
-    others = {f"PREFILTER_PT_{name}" for name in ("nothing", "drawn", "welcome", "before_after")}
+    names = ("nothing", "drawn", "welcome", "before_after", "queue", "queue_of_images")
+    others = {f"PREFILTER_PT_{name}" for name in names}
     return [
         panel
         for panel in drawn.registered_panels()

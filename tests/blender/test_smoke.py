@@ -303,6 +303,11 @@ def test_import_preset(panel, tmp_path):
     assert bpy.ops.prefilter.add_preset(**arguments) == FINISHED
 
 
+def test_clear_queue():
+    """Of jobs that have ended, which are in windows only."""
+    assert not bpy.ops.prefilter.clear_queue.poll()
+
+
 def test_confirm_cancel():
     """Of an operator at work, which is in windows only."""
     assert bpy.ops.prefilter.confirm_cancel(key="") == {"CANCELLED"}

@@ -2,8 +2,10 @@
 
 """What the sessions share that run in a Blender with a window."""
 
+import importlib
 import os
 import sys
+import threading
 import time
 import traceback
 from collections.abc import Callable, Generator, Iterator
@@ -57,13 +59,23 @@ def held() -> Iterator[None]:
         job._advance = advance
 
 
-def refused(operator: Callable[..., object]) -> str:
-    """Returns what an operator says that is called although it works; empty if it does not mind."""
+@contextmanager
+def working_on(module: str, name: str, *, until_cancelled: bool = True) -> Iterator[None]:
+    """Has work take until the end of the block, or until it is cancelled."""
+    work = getattr(importlib.import_module(f"{PACKAGE}.{module}"), name)
+    compute, is_over = work.compute, threading.Event()
+
+    def wait(self: object, progress: Callable[[float], bool]) -> None:
+        while progress(0.5) and (until_cancelled or not is_over.wait(0.01)):
+            time.sleep(0.001)
+        compute(self, progress)
+
+    work.compute = wait
     try:
-        operator("INVOKE_DEFAULT")
-    except RuntimeError as error:
-        return str(error)
-    return ""
+        yield
+    finally:
+        is_over.set()
+        work.compute = compute
 
 
 def moved(window: bpy.types.Window, x: int, y: int) -> Iterator[None]:
@@ -98,7 +110,7 @@ def cancelled(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
         yield from moved(window, x, y)
         with bpy.context.temp_override(window=window, area=area, region=sidebar):
             under = bpy.context.property
-        if under is not None and under[1].endswith("use_cancel"):
+        if under is not None and "use_cancel" in under[1]:
             yield from clicked(window, x, y)
             return
     raise AssertionError("there is no button Cancel in the sidebar")

@@ -8,6 +8,7 @@ import bpy
 
 from ...bridge.meshes import may_show_image
 from ...core.remembered import Remembered
+from ...core.targets import selected
 from ...core.translations import marked, tr
 from .plan import Plan, plan
 
@@ -54,7 +55,7 @@ def images(context: bpy.types.Context, choice: str, material: str = "") -> list[
     found = _plans.get(context)
     if found is None:
         return None
-    chosen = chosen_objects(context.view_layer, choice)
+    chosen = chosen_objects(context, choice)
     wanted = None if chosen is None else {obj.name for obj in chosen}
     names = {item.full_name: item.image for item in found.items}
     return [
@@ -65,16 +66,16 @@ def images(context: bpy.types.Context, choice: str, material: str = "") -> list[
     ]
 
 
-def chosen_objects(view_layer: bpy.types.ViewLayer, choice: str) -> list[bpy.types.Object] | None:
+def chosen_objects(context: bpy.types.Context, choice: str) -> list[bpy.types.Object] | None:
     """Returns the selected objects if these are to be baked; None for all visible ones.
 
     Args:
-        view_layer: Has the objects.
+        context: The context.
         choice: A key of `choices.MODEL_OBJECTS`.
     """
     if choice == "scene":
         return None
-    chosen = [obj for obj in view_layer.objects if obj.select_get()]
+    chosen = list(selected(context))
     if choice == "auto" and not any(map(may_show_image, chosen)):
         return None
     return chosen
@@ -84,5 +85,5 @@ def why_none(context: bpy.types.Context, choice: str, material: str = "") -> str
     """Returns why there is nothing to bake, as `images` says; empty if there is, or may be."""
     if images(context, choice, material) != []:
         return ""
-    is_all = chosen_objects(context.view_layer, choice) is None
+    is_all = chosen_objects(context, choice) is None
     return tr(_NONE[is_all, bool(material)]).format(material)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.doing import Compute, read_at_once
+from ...core.doing import LONG_WORK, Compute, read_at_once
 from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
 from ...core.properties import set_unset
@@ -38,6 +38,7 @@ class PREFILTER_OT_bake_mipmaps(
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking mipmaps"
+    line = LONG_WORK
     presets = BAKE
 
     if TYPE_CHECKING:

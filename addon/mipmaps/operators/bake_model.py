@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from ...core.doing import Compute, read_at_once
+from ...core.doing import LONG_WORK, Compute, read_at_once
 from ...core.operator import BackgroundOperator
 from ...core.presets import PresetsOperator
 from ...core.translations import tr
@@ -32,6 +32,7 @@ class PREFILTER_OT_bake_model(
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Baking all images"
+    line = LONG_WORK
     presets = MODEL
 
     _model: Any = None
@@ -108,7 +109,7 @@ class PREFILTER_OT_bake_model(
                 f"Folder: '{self.folder}' is beside the .blend file; save that first, or choose "
                 f"another folder"
             )
-        chosen = chosen_objects(context.view_layer, own.objects)
+        chosen = chosen_objects(context, own.objects)
         planned = plan(
             context.view_layer, context.evaluated_depsgraph_get(), chosen, material=own.material
         )

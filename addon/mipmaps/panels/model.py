@@ -68,7 +68,7 @@ def _what_is_made(context: bpy.types.Context, settings: Any, count: int) -> str:
     """Returns whose images are baked, and where their levels go."""
     from ..model import known
 
-    is_all = known.chosen_objects(context.view_layer, settings.objects) is None
+    is_all = known.chosen_objects(context, settings.objects) is None
     whose = tr("the scene") if is_all else tr("the selection")
     if settings.material:
         whose = tr("'{material}' in {whose}").format(material=settings.material, whose=whose)

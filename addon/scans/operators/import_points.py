@@ -29,6 +29,7 @@ class PREFILTER_OT_import_points(
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Importing"
+    line = "files"
 
     filter_glob: StringProperty(
         default="*.las;*.laz;*.e57;*.pcd;*.ply;*.xyz;*.xyzn;*.pts;*.asc;*.txt", options={"HIDDEN"}

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.doing import LONG_WORK
 from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
 from ...core.translations import report, tr
@@ -27,6 +28,7 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
     )
     bl_options = {"REGISTER", "UNDO"}
     doing = "Reconstructing"
+    line = LONG_WORK
     presets = RECONSTRUCT
 
     if TYPE_CHECKING:
@@ -44,6 +46,10 @@ class PREFILTER_OT_reconstruct(ScanProperties, PresetsOperator, WorkOperator, bp
             cls.poll_message_set(tr("Select objects with vertices and no faces, or point clouds"))
             return False
         return True
+
+    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Returns the selected points."""
+        return _chosen(context)
 
     def read_work(self, context: bpy.types.Context) -> "Reconstruction":
         """Copies the selected points."""

@@ -40,6 +40,13 @@ class PREFILTER_OT_rasterize(RasterizesOperator, bpy.types.Operator):
             return False
         return True
 
+    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Returns the curves, or the mesh with the UV map."""
+        source = "" if self.source == "svg" else found_source(context, self.source)
+        if not source:
+            return []
+        return [context.active_object] if source == "uv" else chosen_curves(context)
+
     def read_work(self, context: bpy.types.Context) -> "Rasterization":
         """Copies the selected curves, or the UV map."""
         from ..memory import Request

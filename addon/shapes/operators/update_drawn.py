@@ -47,16 +47,20 @@ class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator
     def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
         """Draws nothing: the image has the settings."""
 
+    def chosen_image(self, context: bpy.types.Context) -> bpy.types.Image:
+        """Returns the image that is named or shown, or the only one that remembers."""
+        from ...bridge import images
+
+        if self.image:
+            return images.find(self.image)
+        return self.shown_image(context) or _only_drawn()
+
     def read_work(self, context: bpy.types.Context) -> "Rasterization":
         """Copies what the image shows."""
-        from ...bridge import images
         from ..memory import is_drawn, recall
         from ..rasterization import Rasterization
 
-        if self.image:
-            image = images.find(self.image)
-        else:
-            image = self.shown_image(context) or _only_drawn()
+        image = self.chosen_image(context)
         if not is_drawn(image):
             raise ValueError(f"image '{image.name}' was not made by Rasterize")
         if image.library is not None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import bpy
 
+from ...core.doing import LONG_WORK
 from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
 from ...core.translations import tr
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 class VoxelOperator(PresetsOperator, WorkOperator):
     """A mixin: voxels from the selected objects."""
+
+    line = LONG_WORK
 
     if TYPE_CHECKING:
         work: Voxelization | Boolean | None
@@ -36,6 +39,10 @@ class VoxelOperator(PresetsOperator, WorkOperator):
     def effort(self, load: "list[Load]") -> float:
         """Returns about how many seconds voxels take with the present settings."""
         return sum((one.seconds(self.to_settings()) for one in load), 0.0)
+
+    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Returns the selected objects."""
+        return chosen_solids(context)
 
     def draw_settings(self, context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""

@@ -58,6 +58,7 @@ void parallel_for(std::int64_t count, int threads, const Progress& progress,
       while (!stop.load(std::memory_order_relaxed)) {
         const std::int64_t i = next.fetch_add(1, std::memory_order_relaxed);
         if (i >= count) break;
+        if (!reports) progress.wait_while_held();
         body(i);
         if (reports) progress.report(static_cast<double>(i + 1) / static_cast<double>(count));
       }

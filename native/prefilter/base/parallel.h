@@ -18,7 +18,8 @@ int resolve_threads(int threads);
 
 /// Calls body(i) once for every i in [0, count), on up to `threads` threads, in no set order.
 /// Rethrows the first exception of a body. The calling thread takes part and reports to `progress`
-/// between its indices; where that cancels, the others stop after the index in hand.
+/// between its indices; where that cancels, the others stop after the index in hand, and while that
+/// waits, so do they.
 void parallel_for(std::int64_t count, int threads, const Progress& progress,
                   const std::function<void(std::int64_t)>& body);
 

@@ -9,10 +9,36 @@
 namespace prefilter {
 namespace {
 constexpr std::chrono::milliseconds kInterval{30};
+// A callback may wait for a lock, such as Python's, which is no reason to keep all threads waiting.
+constexpr std::chrono::milliseconds kPatience{200};
+
+std::int64_t ticks(std::chrono::steady_clock::duration time) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(time).count();
 }
 
-Progress::Progress(Callback callback)
-    : state_(callback ? std::make_shared<State>(State{std::move(callback), {}, 0.0}) : nullptr) {}
+std::int64_t now_in_ticks() { return ticks(std::chrono::steady_clock::now().time_since_epoch()); }
+
+// Marks for how long a callback runs, whichever way it ends.
+class Call {
+ public:
+  explicit Call(std::atomic<std::int64_t>* called_at) : called_at_(called_at) {
+    called_at_->store(now_in_ticks());
+  }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+  ~Call() {
+    called_at_->store(0);
+    called_at_->notify_all();
+  }
+
+ private:
+  std::atomic<std::int64_t>* called_at_;
+};
+}  // namespace
+
+Progress::Progress(Callback callback) : state_(callback ? std::make_shared<State>() : nullptr) {
+  if (state_) state_->callback = std::move(callback);
+}
 
 Progress Progress::part(double from, double to) const {
   Progress result = *this;
@@ -29,7 +55,17 @@ void Progress::report(double fraction) const {
   if (whole < 1.0 && now - state_->last < kInterval) return;
   state_->last = now;
   state_->highest = whole;
+  const Call call(&state_->called_at);
   if (!state_->callback(whole)) throw Error(ErrorCode::kCancelled, "cancelled");
+}
+
+void Progress::wait_while_held() const {
+  if (!state_) return;
+  while (true) {
+    const std::int64_t called_at = state_->called_at.load(std::memory_order_relaxed);
+    if (called_at == 0 || now_in_ticks() - called_at < ticks(kPatience)) return;
+    state_->called_at.wait(called_at);
+  }
 }
 
 }  // namespace prefilter

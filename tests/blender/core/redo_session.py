@@ -8,10 +8,7 @@ Usage: blender --factory-startup --enable-event-simulate --python redo_session.p
 import importlib
 import json
 import sys
-import threading
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator
 from pathlib import Path
 
 import bpy
@@ -20,7 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import bodies
 import scenes
-from window import PACKAGE, RedoPanel, begun, clicked, play, region, until
+from window import PACKAGE, RedoPanel, begun, clicked, play, region, until, working_on
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -207,25 +204,6 @@ class ButtonPanel(bpy.types.Panel):
         del context
         self.layout.scale_y = 5.0
         self.layout.operator("prefilter.bake_mipmaps")
-
-
-@contextmanager
-def working_on(module: str, name: str, *, until_cancelled: bool = True) -> Iterator[None]:
-    """Has work take until the end of the block, or until it is cancelled."""
-    work = getattr(importlib.import_module(f"{PACKAGE}.{module}"), name)
-    compute, is_over = work.compute, threading.Event()
-
-    def wait(self: object, progress: Callable[[float], bool]) -> None:
-        while progress(0.5) and (until_cancelled or not is_over.wait(0.01)):
-            time.sleep(0.001)
-        compute(self, progress)
-
-    work.compute = wait
-    try:
-        yield
-    finally:
-        is_over.set()
-        work.compute = compute
 
 
 def cleared() -> Iterator[None]:

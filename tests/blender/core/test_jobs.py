@@ -42,6 +42,42 @@ def test_progress_and_cancel(addon):
     assert job.result() == (True, False)
 
 
+def test_a_pause_holds_the_work_until_it_ends(addon):
+    told, reached = [], threading.Event()
+
+    def work(progress):
+        while not reached.is_set():
+            progress(0.25)
+        told.append(progress(0.5))
+
+    job = addon("core.jobs").Job(work)
+    job.pause(is_paused=True)
+    while not job.is_held:
+        time.sleep(0.001)
+    reached.set()
+    time.sleep(0.05)
+    assert not told
+    job.pause(is_paused=False)
+    job.result()
+    assert told == [True]
+    # What a redo is expected to take is what the work has taken.
+    assert job.seconds < 0.05
+
+
+def test_a_pause_does_not_outlast_a_cancel(addon):
+    def work(progress):
+        while progress(0.5):
+            pass
+        return "stopped"
+
+    job = addon("core.jobs").Job(work)
+    job.pause(is_paused=True)
+    while not job.is_held:
+        time.sleep(0.001)
+    job.cancel()
+    assert job.result() == "stopped"
+
+
 @pytest.mark.parametrize("threads", [1, 3])
 def test_several_at_once(addon, threads):
     begun, told, done = [], [], {}

@@ -15,17 +15,6 @@ CLICK = SimpleNamespace(type="LEFTMOUSE", value="PRESS")
 STEPS = ("read", "compute", "finish")
 
 
-class Switches(list):
-    """Stands for a collection of Blender's."""
-
-    def add(self):
-        self.append(SimpleNamespace(name="", use_cancel=False))
-        return self[-1]
-
-    def get(self, name):
-        return next((one for one in self if one.name == name), None)
-
-
 @pytest.fixture
 def context():
     """Returns a context as Blender has it when it quits, which counts what is taken back."""
@@ -38,7 +27,7 @@ def context():
         event_timer_remove=calls.append,
         modal_handler_add=lambda operator: None,
         windows=[],
-        prefilter_runs=Switches(),
+        prefilter_switches=SimpleNamespace(use_cancel=[False] * 32, use_pause=[False] * 32),
     )
     workspace = SimpleNamespace(status_text_set=lambda text: None)
     return SimpleNamespace(window_manager=manager, window=None, workspace=workspace, calls=calls)
@@ -96,6 +85,8 @@ class Drawing:
 
     def split(self, **_):
         return self
+
+    row = split
 
     def progress(self, *, factor, text):
         self.shown.append((text, factor))
@@ -223,8 +214,7 @@ def test_the_button_cancels_as_esc_does(addon, probe, context):
     assert running.draw(drawn, context, probe.bl_idname)
     assert drawn.shown == [("25 %", 0.25), "use_cancel"]
     assert not running.draw(drawn, context, "prefilter.other")
-    (switch,) = context.window_manager.prefilter_runs
-    switch.use_cancel = True
+    context.window_manager.prefilter_switches.use_cancel[0] = True
     while operator.modal(context, TIMER) != {"CANCELLED"}:
         time.sleep(0.001)
     assert operator.reports == ["Probing canceled"]
@@ -246,7 +236,7 @@ def test_the_button_cancels_what_is_read(probe, context):
     operator.reading = reading
     operator.invoke(context, None)
     assert operator.modal(context, TIMER) == {"RUNNING_MODAL"}
-    context.window_manager.prefilter_runs[0].use_cancel = True
+    context.window_manager.prefilter_switches.use_cancel[0] = True
     assert operator.modal(context, TIMER) == {"CANCELLED"}
     assert (closed, operator.discarded) == ([True], 1)
 

@@ -17,7 +17,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
-from window import RedoPanel, Stage, begun, held, idle, play, refused, until
+from window import RedoPanel, Stage, begun, held, idle, play, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -64,7 +64,6 @@ def resampled(stage: Stage) -> Iterator[None]:
         found["started"] = list(
             bpy.ops.prefilter.resample_image("INVOKE_DEFAULT", True, scale_x=0.5, scale_y=0.5)
         )
-        found["refused_while_running"] = refused(bpy.ops.prefilter.resample_image)
     yield from until(idle)
     yield
     found["shown"] = space.image.name

@@ -17,7 +17,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import scenes
-from window import RedoPanel, begun, held, idle, play, refused, until
+from window import RedoPanel, begun, held, idle, play, until
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -45,7 +45,6 @@ def session() -> Iterator[None]:
                 "INVOKE_DEFAULT", True, size="pixels", width=32, filter="box"
             )
         )
-        found["refused_while_running"] = refused(bpy.ops.prefilter.resize_image)
     yield from until(idle)
     yield
     found["shown"] = space.image.name

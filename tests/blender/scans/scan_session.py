@@ -19,7 +19,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import bodies
 import clouds
-from window import RedoPanel, Stage, begun, held, idle, play, refused, until, without_objects
+from window import RedoPanel, Stage, begun, held, idle, play, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -58,7 +58,6 @@ def reconstructed(stage: Stage) -> Iterator[None]:
     bpy.ops.ed.undo_push(message="before")
     with bpy.context.temp_override(**stage.override):
         found["started"] = list(bpy.ops.prefilter.reconstruct("INVOKE_DEFAULT", True, depth=5))
-        found["refused_while_running"] = refused(bpy.ops.prefilter.reconstruct)
     yield from until(idle)
     yield
     found["objects"] = hidden()

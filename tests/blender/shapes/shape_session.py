@@ -18,7 +18,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import outlines
-from window import RedoPanel, Stage, begun, held, idle, play, refused, until, without_objects
+from window import RedoPanel, Stage, begun, held, idle, play, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="8" height="8"><path d="M0 0H8V8Z"/></svg>'
@@ -49,7 +49,6 @@ def rasterized(stage: Stage) -> Iterator[None]:
         found["started"] = list(
             bpy.ops.prefilter.rasterize("INVOKE_DEFAULT", True, width=64, height=64)
         )
-        found["refused_while_running"] = refused(bpy.ops.prefilter.rasterize)
     yield from until(idle)
     yield
     found["made"] = sizes()

@@ -18,7 +18,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import bodies
-from window import Stage, begun, held, idle, play, refused, until, without_objects
+from window import Stage, begun, held, idle, play, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 
@@ -65,7 +65,6 @@ def voxelized(stage: Stage) -> Iterator[None]:
     with bpy.context.temp_override(**stage.override):
         found["polls_alone"] = bpy.ops.prefilter.boolean.poll()
         found["started"] = list(bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", depth=6))
-        found["refused_while_running"] = refused(bpy.ops.prefilter.voxelize)
     yield from until(idle)
     found["closed"] = bodies.is_closed(bpy.data.objects["Ball"])
     found["after"] = vertices()

@@ -60,6 +60,29 @@ TEST(ParallelFor, StopsSoonWhenCancelled) {
   EXPECT_LT(Clock::now() - start, std::chrono::seconds(2));
 }
 
+TEST(ParallelFor, HelpersWaitForACallbackThatDoes) {
+  std::atomic<int> visits = 0;
+  int before = 0;
+  int after = 0;
+  const Progress progress([&](double fraction) {
+    if (fraction < 1.0 && after == 0) {
+      // Helpers go on for a fifth of a second, and end the index in hand.
+      std::this_thread::sleep_for(std::chrono::milliseconds(400));
+      before = visits;
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      after = visits;
+    }
+    return true;
+  });
+  parallel_for(2000, 3, progress, [&](std::int64_t) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ++visits;
+  });
+  EXPECT_GT(before, 0);
+  EXPECT_EQ(after, before);
+  EXPECT_EQ(visits, 2000);
+}
+
 TEST(ParallelRanges, AreWholeGrainsAndTheRest) {
   for (const std::int64_t count : {0, 1, 6, 7, 8, 14, 100}) {
     std::vector<std::atomic<int>> visits(static_cast<std::size_t>(count));

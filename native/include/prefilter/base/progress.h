@@ -3,7 +3,9 @@
 // Progress of long work, and the way to stop it.
 #pragma once
 
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -26,11 +28,16 @@ class Progress {
   /// Error(kCancelled) where it answers false.
   void report(double fraction) const;
 
+  /// Waits until the callback returns, where it has not for a fifth of a second: one that pauses
+  /// the work by waiting pauses the threads too that do not report. They call this between indices.
+  void wait_while_held() const;
+
  private:
   struct State {
     Callback callback;
     std::chrono::steady_clock::time_point last;
     double highest = 0.0;
+    std::atomic<std::int64_t> called_at{0};  // When the callback was entered; 0 outside of it.
   };
   std::shared_ptr<State> state_;
   double from_ = 0.0;

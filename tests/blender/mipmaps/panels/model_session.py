@@ -15,7 +15,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import scenes
-from window import begun, chosen_in_browser, idle, play, refused, until, without_objects
+from window import begun, chosen_in_browser, idle, play, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
 FOLDER = RESULT.parent / "levels"
@@ -41,7 +41,6 @@ def session() -> Iterator[None]:
     options = {"folder": str(FOLDER), "file_format": "tif"}
     with bpy.context.temp_override(**override):
         started = bpy.ops.prefilter.bake_model("INVOKE_DEFAULT", **options)
-        refused_while_running = refused(bpy.ops.prefilter.bake_model)
     yield
     window.event_simulate(type="ESC", value="PRESS")
     yield from until(idle)
@@ -68,7 +67,6 @@ def session() -> Iterator[None]:
             {
                 "tab": tab,
                 "started": list(started),
-                "refused_while_running": refused_while_running,
                 "after_cancel": after_cancel,
                 "after_bake": after_bake,
                 "after_undo": images(),
