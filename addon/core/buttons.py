@@ -7,14 +7,14 @@ from dataclasses import dataclass
 
 import bpy
 
-from .presets import PresetsPanel
+from .presets import PresetsOperator, PresetsPanel
 from .properties import copy
 from .sidebar import main_button
 
 
 @dataclass(frozen=True)
 class Button:
-    """An operator that gets the settings of the scene, in panels and menus.
+    """An operator that has the settings of the scene, in panels and menus.
 
     Attributes:
         operator: The operator.
@@ -34,11 +34,25 @@ class Button:
         context: bpy.types.Context,
         text: str | None = None,
         icon: str = "",
+        *,
+        is_changed: bool = False,
     ) -> bpy.types.OperatorProperties:
-        """Draws it, with another text or icon if one is given."""
+        """Draws it, with another text or icon if one is given.
+
+        An operator that looks up the settings by itself gets none: Blender then finds its key, and
+        shows that in menus and tooltips.
+
+        Args:
+            layout: Where.
+            context: Has the scene.
+            text: What it says; its label if None.
+            icon: Its icon; its usual one if empty.
+            is_changed: Whether the caller changes some of the settings, so that all are needed.
+        """
         made = layout.operator(self.operator.bl_idname, text=text, icon=icon or self.icon)
-        for settings, without in self.settings.items():
-            copy(getattr(context.scene, self.group), made, settings, without)
+        if is_changed or not issubclass(self.operator, PresetsOperator):
+            for settings, without in self.settings.items():
+                copy(getattr(context.scene, self.group), made, settings, without)
         return made
 
     def draw_main(

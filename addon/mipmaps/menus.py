@@ -57,7 +57,8 @@ def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> Non
     if material is None:
         return
     menu.layout.separator()
-    operator = MODEL_BUTTON.draw(menu.layout, context, "Bake All Images of Material")
+    text = "Bake All Images of Material"
+    operator = MODEL_BUTTON.draw(menu.layout, context, text, is_changed=True)
     operator.objects, operator.material = "scene", material.name
 
 

@@ -122,7 +122,7 @@ def _draw_decal_entry(layout: bpy.types.UILayout) -> None:
 
 def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
-    _RASTERIZE.draw(menu.layout, context).source = "auto"
+    _RASTERIZE.draw(menu.layout, context)
     _draw_decal_entry(menu.layout)
 
 
@@ -159,7 +159,7 @@ def _draw_svg(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
 
 def _draw_uv_mask(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     """Draws the button of a mask, of the size of the image that the editor shows."""
-    operator = _RASTERIZE.draw(layout, context, "Rasterize UV Map", "UV")
+    operator = _RASTERIZE.draw(layout, context, "Rasterize UV Map", "UV", is_changed=True)
     operator.source = "uv"
     image = getattr(context.space_data, "image", None)
     if image is not None and all(image.size):

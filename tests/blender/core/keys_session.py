@@ -7,7 +7,7 @@ Usage: blender --factory-startup --enable-event-simulate --python keys_session.p
 
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from pathlib import Path
 from types import ModuleType
 
@@ -16,6 +16,7 @@ import bpy
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import bodies
+import outlines
 from window import PACKAGE, Stage, begun, idle, moved, play, region, until, without_objects
 
 RESULT = Path(sys.argv[sys.argv.index("--") + 1])
@@ -33,6 +34,7 @@ def session() -> Iterator[None]:
     found["clashes"] = clashes()
     yield from pressed_in_panels_place(stage)
     yield from assigned(stage)
+    yield from changed(stage)
     yield from shown_in_preferences(stage)
     RESULT.write_text(json.dumps(found))
 
@@ -90,7 +92,46 @@ def pressed_in_panels_place(stage: Stage) -> Iterator[None]:
 
 
 def assigned(stage: Stage) -> Iterator[None]:
-    """Right-clicks buttons until it is that of Voxelize, and takes the last entries of its menu."""
+    """Takes the key of Voxelize, and assigns one, in the context menu of its button."""
+    x, y = yield from found_button(stage, "PREFILTER_OT_voxelize")
+    # Add to Quick Favorites, Change Shortcut, Remove Shortcut: as the settings are looked up by
+    # the operator, Blender finds its key.
+    yield from chosen(stage, "HOME", "DOWN_ARROW", "DOWN_ARROW")
+    found["removed"] = keys("voxelize")
+    for key, modifiers in (("ESC", {}), ("K", NEW)):
+        yield from right_clicked(stage, x, y)
+        yield from chosen(stage, "END")
+        yield from pressed(stage, key, **modifiers)
+        found[f"assigned_{key}"] = keys("voxelize")
+    bpy.context.scene.prefilter_voxelize.depth = 3
+    yield from pressed(stage, "K", **NEW)
+    yield from until(idle)
+    yield
+    last = bpy.context.window_manager.operators[-1]
+    found["pressed_again"] = [last.bl_idname, last.properties.depth]
+    bpy.ops.ed.undo()
+    yield
+
+
+def changed(stage: Stage) -> Iterator[None]:
+    """Changes and takes the key of an operator whose button has settings of its own."""
+    without_objects()
+    outlines.text("A")
+    yield from stage.redrawn()
+    x, y = yield from found_button(stage, "PREFILTER_OT_rasterize")
+    yield from chosen(stage, "END", "UP_ARROW")
+    yield from pressed(stage, "A")
+    found["changed"] = keys("rasterize")
+    with bpy.context.temp_override(**stage.override):
+        _, item = own_module("keys").find(bpy.context, "prefilter.rasterize")
+        found["rivals"] = own_module("keys").rivals(bpy.context, item)
+    yield from right_clicked(stage, x, y)
+    yield from chosen(stage, "END")
+    found["taken"] = keys("rasterize")
+
+
+def found_button(stage: Stage, name: str) -> Generator[None, None, tuple[int, int]]:
+    """Right-clicks in the sidebar until that is over the button of an operator."""
     yield from stage.open_tab()
     yield
     sidebar = region(stage.area, "UI")
@@ -103,40 +144,15 @@ def assigned(stage: Stage) -> Iterator[None]:
 
     bpy.types.UI_MT_button_context_menu.prepend(note)
     x = sidebar.x + sidebar.width // 2 - 20
-    for below_top in range(10, sidebar.height, 8):
+    for below_top in range(10, sidebar.height, 20):
         y = sidebar.y + sidebar.height - below_top
         yield from right_clicked(stage, x, y)
-        if seen and seen[-1] == "PREFILTER_OT_voxelize":
-            break
+        if name in seen:
+            bpy.types.UI_MT_button_context_menu.remove(note)
+            return x, y
         stage.escape()
         yield
-    # Change Shortcut, above Remove Shortcut.
-    yield from chosen_from_below(stage, 2)
-    yield from pressed(stage, "K", **NEW)
-    found["changed"] = keys()
-    bpy.context.scene.prefilter_voxelize.depth = 3
-    yield from pressed(stage, "K", **NEW)
-    yield from until(idle)
-    yield
-    last = bpy.context.window_manager.operators[-1]
-    found["pressed_again"] = [last.bl_idname, last.properties.depth]
-    bpy.ops.ed.undo()
-    yield
-    yield from right_clicked(stage, x, y)
-    yield from chosen_from_below(stage, 1)
-    found["removed"] = keys()
-    yield from right_clicked(stage, x, y)
-    yield from chosen_from_below(stage, 1)
-    stage.escape()
-    yield
-    found["left"] = keys()
-    yield from right_clicked(stage, x, y)
-    yield from chosen_from_below(stage, 1)
-    yield from pressed(stage, "A")
-    found["assigned"] = keys()
-    with bpy.context.temp_override(**stage.override):
-        _, item = own_module("keys").find(bpy.context, "prefilter.voxelize")
-        found["rivals"] = own_module("keys").rivals(bpy.context, item)
+    raise AssertionError(f"the sidebar has no button of {name}")
 
 
 def right_clicked(stage: Stage, x: int, y: int) -> Iterator[None]:
@@ -148,23 +164,21 @@ def right_clicked(stage: Stage, x: int, y: int) -> Iterator[None]:
     yield
 
 
-def chosen_from_below(stage: Stage, number: int) -> Iterator[None]:
-    """Chooses an entry of a menu by its number from below."""
-    # The entry that was chosen last is active when the menu opens.
-    for key in ("END", *("UP_ARROW",) * (number - 1), "RET"):
-        stage.window.event_simulate(type=key, value="PRESS")
-        yield
-        stage.window.event_simulate(type=key, value="RELEASE")
-        yield
+def chosen(stage: Stage, *ways: str) -> Iterator[None]:
+    """Chooses the entry of a menu that keys lead to."""
+    for key in (*ways, "RET"):
+        for value in ("PRESS", "RELEASE"):
+            stage.window.event_simulate(type=key, value=value)
+            yield
 
 
-def keys() -> list[str]:
-    """Returns the keys of Voxelize."""
+def keys(operator: str) -> list[str]:
+    """Returns the keys of an operator."""
     return [
         item.to_string()
         for keymap in keymaps("user")
         for item in keymap.keymap_items
-        if item.idname == "prefilter.voxelize"
+        if item.idname == f"prefilter.{operator}"
     ]
 
 

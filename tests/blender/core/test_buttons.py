@@ -18,17 +18,24 @@ class Layout:
 def test_a_button_has_the_settings_of_the_scene(addon):
     bpy.context.scene.prefilter_voxelize.depth = 5
     layout = Layout()
-    made = addon("voxels.panel")._VOXELIZE.draw(layout, bpy.context)
+    made = addon("voxels.panel")._VOXELIZE.draw(layout, bpy.context, is_changed=True)
     assert (layout.name, made.depth) == ("prefilter.voxelize", 5)
     assert layout.more == {"text": None, "icon": "MOD_REMESH"}
     addon("voxels.panel")._VOXELIZE.draw(layout, bpy.context, "Again", "X")
     assert layout.more == {"text": "Again", "icon": "X"}
 
 
+def test_a_button_leaves_them_to_operators_that_look_them_up(addon):
+    """So that Blender finds the key of the operator."""
+    assert not vars(addon("voxels.panel")._VOXELIZE.draw(Layout(), bpy.context))
+    table = addon("resampling.panels.sampling_table")._BUTTON.draw(Layout(), bpy.context)
+    assert table.filter == bpy.context.scene.prefilter_sampling_table.filter
+
+
 def test_of_two_settings_with_one_name_the_button_has_the_one_that_counts(addon):
     """A bake of a model chooses objects in its own way, and leaves out what it finds by itself."""
     bpy.context.scene.prefilter_model.objects = "selected"
-    made = addon("mipmaps.menus").MODEL_BUTTON.draw(Layout(), bpy.context)
+    made = addon("mipmaps.menus").MODEL_BUTTON.draw(Layout(), bpy.context, is_changed=True)
     assert made.objects == "selected"
     assert made.filter == bpy.context.scene.prefilter_model.filter
     assert not hasattr(made, "content")

@@ -22,11 +22,16 @@ def test_a_key_has_the_settings_of_the_panel(found):
     assert found["pressed_again"] == ["PREFILTER_OT_voxelize", 3]
 
 
-def test_keys_of_buttons_are_changed_in_their_context_menus(found):
-    assert found["changed"] == ["Shift Ctrl K"]
-    assert found["removed"] == found["left"] == []
-    assert found["assigned"] == ["A"]
+def test_keys_are_assigned_in_the_context_menus_of_buttons(found):
+    assert found["removed"] == found["assigned_ESC"] == []
+    assert found["assigned_K"] == ["Shift Ctrl K"]
+
+
+def test_buttons_with_settings_of_their_own(found):
+    """Blender does not find their keys, and the add-on shows and changes them."""
+    assert found["changed"] == ["A"]
     assert "elect All" in found["rivals"][0]
+    assert found["taken"] == []
 
 
 def test_keys_are_in_the_preferences(found):
