@@ -30,7 +30,10 @@ _HARMLESS_EVENTS = frozenset(
 )
 
 _STATUS_UNITS = 20.0
+_CONFUSES_BUTTONS = bpy.app.version < (5, 0, 0)
+"""Whether Blender may take a button under the mouse for one of another type in a new layout."""
 _runs: dict[str, "Run"] = {}
+_ended: set[str] = set()
 
 
 class PREFILTER_OT_confirm_cancel(bpy.types.Operator):
@@ -160,6 +163,7 @@ class Run:
         if _runs.get(self._key) is not self:
             return
         del _runs[self._key]
+        _ended.add(self._key)
         self.switches.release(context)
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
@@ -200,6 +204,17 @@ def draw(
     row.progress(factor=run.fraction, text=run.text)
     run.switches.draw_cancel(parts, context)
     return True
+
+
+def draw_successor(layout: bpy.types.UILayout, key: str) -> None:
+    """Draws what nobody sees in the place of progress that was drawn, before anything else.
+
+    A progress bar under the mouse would live on as the first label below, until the mouse moves.
+    """
+    if _CONFUSES_BUTTONS and key in _ended:
+        row = layout.row()
+        row.scale_y = 0.01
+        row.progress(factor=0.0)
 
 
 def is_over_button(context: bpy.types.Context, event: bpy.types.Event) -> bool:

@@ -106,16 +106,24 @@ def main_button(
     Returns:
         None while the operator runs, whose progress is then drawn there.
     """
-    row = layout.row()
+    column = layout.column(align=True)
+    row = column.row()
     row.scale_y = 1.5
-    return None if running.draw(row, context, operator.bl_idname, more) else row
+    if running.draw(row, context, operator.bl_idname, more):
+        return None
+    running.draw_successor(column, operator.bl_idname)
+    return row
 
 
 def button(
     layout: bpy.types.UILayout, context: bpy.types.Context, operator: type[bpy.types.Operator]
 ) -> bpy.types.UILayout | None:
     """Returns where another button goes, as `main_button` does."""
-    return None if running.draw(layout, context, operator.bl_idname) else layout
+    if running.draw(layout, context, operator.bl_idname):
+        return None
+    column = layout.column(align=True)
+    running.draw_successor(column, operator.bl_idname)
+    return column.column()
 
 
 def note(layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str) -> None:

@@ -7,6 +7,7 @@ Usage: blender --factory-startup --enable-event-simulate --python queue_session.
 
 import importlib
 import json
+import os
 import sys
 import time
 from collections.abc import Iterator
@@ -48,6 +49,7 @@ def session() -> Iterator[None]:
     bpy.utils.register_class(BakePanel)
     bpy.utils.register_class(VoxelizePanel)
     yield from by_mouse(stage)
+    yield from mouse_over_progress(stage)
     yield from steps_of_their_own(stage)
     yield from what_goes_meanwhile(stage)
     yield from threads_rest(stage)
@@ -105,6 +107,33 @@ def by_mouse(stage: Stage) -> Iterator[None]:
     told["ball"] = vertices("Ball")
     bpy.ops.prefilter.clear_queue()
     told["cleared"] = [listed(), is_shown()]
+
+
+def mouse_over_progress(stage: Stage) -> Iterator[None]:
+    """Has the mouse where it has pressed until the work is over, and looks at what is drawn."""
+    yield from sidebar(stage, "Button")
+    with working_on("voxels.voxelization", "Voxelization", until_cancelled=False):
+        chosen("Ball")
+        bpy.context.scene.prefilter_voxelize.depth = 5
+        yield from stage.redrawn()
+        yield from clicked(stage.window, *button(stage, 0.4))
+        yield from until(lambda: running_text() == "50 %")
+        for _ in range(8):
+            yield
+        told = found["blue"] = [blue(stage)]
+    yield from until(idle)
+    for _ in range(8):
+        yield
+    told.append(blue(stage))
+    bpy.ops.ed.undo_push(message="before")
+
+
+def blue(stage: Stage) -> int:
+    """Returns how many pixels of the sidebar are as blue as what is selected, or progress."""
+    side = region(stage.area, "UI")
+    seen = scenes.screen(os.environ["FRAMEBUFFER"])
+    there = seen[side.y : side.y + side.height, side.x : side.x + side.width].astype(int)
+    return int(((there[..., 2] > 140) & (there[..., 0] < 100)).sum())
 
 
 def steps_of_their_own(stage: Stage) -> Iterator[None]:
@@ -219,6 +248,7 @@ class _ButtonPanel:
         module, name = self.button
         made = getattr(importlib.import_module(f"{PACKAGE}.{module}"), name)
         made.draw_main(self.layout, context)
+        self.layout.label(text="Below", icon="INFO")
 
 
 class BakePanel(_ButtonPanel, bpy.types.Panel):

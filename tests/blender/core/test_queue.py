@@ -33,6 +33,13 @@ def test_the_mouse_pauses_and_cancels(found):
     assert told["cleared"] == [[], False]
 
 
+def test_nothing_stays_drawn_as_progress(found):
+    """The label below took its place in Blender 4.3, until the mouse passed."""
+    while_running, afterward = found["blue"]
+    assert while_running > 1000
+    assert afterward == 0
+
+
 def test_each_is_a_step_to_undo(found):
     """What was selected at the press counts, under whichever name; for the redo too."""
     told = found["steps"]
