@@ -11,6 +11,7 @@ import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
+from ..core.wording import Sentence
 from . import kept_sources
 from .layers import COLOR, NORMALS, UV_MAP, VERTEX_GROUP, NewLayer, write_layer
 from .solids import SOLID_TYPES, MaterialKey
@@ -55,11 +56,11 @@ def is_editable(obj: bpy.types.Object) -> bool:
 def check_editable(obj: bpy.types.Object) -> None:
     """Raises ValueError where an object's mesh cannot be replaced."""
     if obj.library is not None:
-        raise ValueError(
-            f"object '{obj.name}' is linked from '{obj.library.filepath}'; make it local first"
-        )
+        text = "object '{}' is linked from '{}'; make it local first"
+        raise ValueError(Sentence(text, obj.name, obj.library.filepath))
     if obj.override_library is not None:
-        raise ValueError(f"object '{obj.name}' is a library override; make it local first")
+        text = "object '{}' is a library override; make it local first"
+        raise ValueError(Sentence(text, obj.name))
 
 
 def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:

@@ -11,6 +11,8 @@ import numpy as np
 from mathutils import Matrix
 from numpy.typing import NDArray
 
+from ..core.wording import Sentence
+
 
 @dataclass(frozen=True)
 class Place:
@@ -65,9 +67,9 @@ def still_there(name: str) -> bpy.types.Object:
     """Returns the object of a name; raises ValueError where it is gone or in another mode."""
     obj = bpy.data.objects.get(name)
     if obj is None:
-        raise ValueError(f"object '{name}' is gone")
+        raise ValueError(Sentence("object '{}' is gone", name))
     if obj.mode != "OBJECT":
-        raise ValueError(f"object '{name}' is not in Object Mode any more")
+        raise ValueError(Sentence("object '{}' is not in Object Mode any more", name))
     return obj
 
 
@@ -77,6 +79,6 @@ def naming(name: str) -> Iterator[None]:
     try:
         yield
     except ValueError as error:
-        raise ValueError(f"object '{name}': {error}") from error
+        raise ValueError(Sentence("object '{}': {}", name, str(error))) from error
     except MemoryError as error:
-        raise MemoryError(f"object '{name}': {error}") from error
+        raise MemoryError(Sentence("object '{}': {}", name, str(error))) from error

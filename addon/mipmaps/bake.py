@@ -175,7 +175,7 @@ class Bake:
             names += made
             base = staged.picture.name
             if any(name != level_name(base, i) for i, name in enumerate(made, start=1)):
-                self.warnings.append(f"the level images are named {listed(made)}")
+                self.warnings.append(Sentence("the level images are named {}", listed(made)))
         self._staged_levels.clear()
         self.discard()
         return Outcome(

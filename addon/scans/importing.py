@@ -69,10 +69,11 @@ class PointsImport:
         bpy.context.view_layer.objects.active = made[0]
         if offset.any():
             shown = ", ".join(f"{value:.0f}" for value in offset)
-            self._warnings.append(
-                f"far from the origin: moved by the negative of ({shown}), which is kept as the "
-                "custom property 'scan_offset'"
+            text = (
+                "far from the origin: moved by the negative of ({}), which is kept as the custom "
+                "property 'scan_offset'"
             )
+            self._warnings.append(Sentence(text, shown))
         points = sum(len(cloud.positions) for cloud in self._clouds)
         from_files = f"'{self._sources[0].name}'" if len(made) == 1 else counted(made, "file")
         return Outcome(
@@ -91,12 +92,10 @@ class PointsImport:
         is_finite = np.asarray(np.isfinite(found.positions).all(axis=1))
         unfit = int(np.count_nonzero(~is_finite))
         if unfit == len(is_finite):
-            raise ValueError(f"'{path.name}': no points")
+            raise ValueError(Sentence("'{}': no points", path.name))
         if unfit:
-            self._notes.append(
-                f"'{path.name}': left out, because they have no finite position: "
-                f"{amount(unfit, 'point')}"
-            )
+            text = "'{}': left out, because they have no finite position: {}"
+            self._notes.append(Sentence(text, path.name, amount(unfit, "point")))
         layers = attribute_layers(found.attributes, len(is_finite))
         if found.weights is not None:
             weights = np.asarray(found.weights, np.float32)[:, None]
@@ -123,7 +122,6 @@ class PointsImport:
                 f"'{path.name}': {error}; a lower value of Most Points keeps fewer"
             ) from error
         if found.stride > 1:
-            self._warnings.append(
-                f"'{path.name}': one of {found.stride} points was kept, as Most Points is {most}"
-            )
+            text = "'{}': one of {} points was kept, as Most Points is {}"
+            self._warnings.append(Sentence(text, path.name, found.stride, most))
         return found if told is None else replace(found, normals=told[0], weights=told[1])

@@ -113,7 +113,7 @@ class Reconstruction:
         """
         check(settings)
         if not objects:
-            raise ValueError("no object is selected that has points and no faces")
+            raise ValueError(Sentence("no object is selected that has points and no faces"))
         if settings.points == "delete":
             for obj in objects:
                 new_meshes.check_editable(obj)
@@ -121,7 +121,8 @@ class Reconstruction:
         read = read_points(objects, depsgraph, place.origin)
         names = [obj.name for obj in objects]
         if not read:
-            raise ValueError(f"object{'s' if len(names) > 1 else ''} {listed(names)}: no points")
+            text = "object {}: no points" if len(names) == 1 else "objects {}: no points"
+            raise ValueError(Sentence(text, listed(names)))
         return cls(place, names, read, settings)
 
     def compute(self, progress: Progress) -> None:
@@ -134,7 +135,7 @@ class Reconstruction:
         """
         without = list(dict.fromkeys(one.name for one in self._read if one.normals is None))
         if without:
-            self._notes.append(f"normals were estimated for {listed(without)}")
+            self._notes.append(Sentence("normals were estimated for {}", listed(without)))
         carried = _carried(self._read)
         scans = [_scan(one, carried) for one in self._read]
         surface = reconstructed(scans, self._settings, progress)

@@ -80,8 +80,9 @@ def reconstructed(
         )
     positions, triangles, attributes = cast("_MeshWithAttributes", found)
     if len(triangles) == 0:
-        reason = "Trim has left nothing of it" if settings.trim else "the points enclose nothing"
-        raise ValueError(f"the result is empty: {reason}")
+        if settings.trim:
+            raise ValueError(Sentence("the result is empty: Trim has left nothing of it"))
+        raise ValueError(Sentence("the result is empty: the points enclose nothing"))
     return Surface(positions, triangles, attributes, report)
 
 
@@ -143,18 +144,18 @@ def told(report: "prefilter.ReconstructionReport") -> str:
 
 def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
     """Returns what is odd about the points, as warnings."""
-    found = []
+    found: list[str] = []
     if report.dropped:
         dropped = amount(report.dropped, "point")
-        found.append(
-            f"left out, because they have no normal, no finite position or no weight: {dropped}"
-        )
+        text = "left out, because they have no normal, no finite position or no weight: {}"
+        found.append(Sentence(text, dropped))
     if report.outliers > _FEW:
-        outliers = f"{100.0 * report.outliers:.2g} % of the points"
-        found.append(
+        outliers = f"{100.0 * report.outliers:.2g} %"
+        text = (
             "left out as outliers, because they are sampled much more sparsely than the rest: "
-            f"{outliers}"
+            "{} of the points"
         )
+        found.append(Sentence(text, outliers))
     if report.is_flipped:
-        found.append("most normals point inward; all were flipped")
+        found.append(Sentence("most normals point inward; all were flipped"))
     return found

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import bpy
 
 from ..core.options import declared
+from ..core.wording import Sentence
 from .choices import RasterizeSettings
 from .framing import Place
 
@@ -98,12 +99,14 @@ def recall(image: bpy.types.Image) -> tuple[Request, RasterizeSettings, list[str
     settings = kept.to_settings()
     objects = sources_of(image)
     if kept.source != "svg" and not objects:
-        raise ValueError(f"image '{image.name}': the objects that it shows are gone")
+        raise ValueError(Sentence("image '{}': the objects that it shows are gone", image.name))
     gone = len(kept.objects) - len(objects)
-    warnings = []
+    warnings: list[str] = []
     if gone:
-        what = "1 object that the image showed is" if gone == 1 else f"{gone} objects are"
-        warnings.append(f"{what} gone")
+        text = "{} objects that the image showed are gone"
+        if gone == 1:
+            text = "1 object that the image showed is gone"
+        warnings.append(Sentence(text, gone))
     return Request(kept.source, objects, settings.filepath), settings, warnings
 
 

@@ -20,7 +20,7 @@ from ..bridge.outlines import add_contour, box_of
 from ..bridge.uv_layouts import read_layout
 from ..core.colors import Color
 from ..core.jobs import Progress, go_on, share
-from ..core.wording import listed
+from ..core.wording import Sentence, counted, listed
 from .choices import RasterizeSettings
 from .framing import Frame, Place, check_memory, find_view, fitted_frame, whole_frame
 
@@ -181,7 +181,8 @@ def curves_source(
             else:
                 layers.append(_Layer(contours, fill.color))
     if behind:
-        warnings.append(f"left out, as it reaches behind the camera: {listed(behind)}")
+        text = "left out, as it reaches behind the camera: {}"
+        warnings.append(Sentence(text, listed(behind)))
     if not layers:
         names = listed(obj.name for obj in objects)
         raise ValueError(
@@ -207,7 +208,9 @@ def uv_source(
     """
     row, column = divmod(settings.tile - 1001, _TILES_PER_ROW)
     polygons = read_layout(obj, depsgraph)
-    warnings = [] if polygons else [f"object '{obj.name}': no face has an area in the UV map"]
+    warnings: list[str] = []
+    if not polygons:
+        warnings.append(Sentence("object '{}': no face has an area in the UV map", obj.name))
     contours = []
     for polygon in polygons:
         corners = np.concatenate([polygon, np.ones((len(polygon), 1))], axis=1)
@@ -225,7 +228,7 @@ def svg_source(path: str) -> tuple[Source, list[str]]:
         OSError: There is no such file.
     """
     if not path:
-        raise ValueError("SVG File: none is named")
+        raise ValueError(Sentence("SVG File: none is named"))
     file = Path(path)
     if not file.is_file():
         raise OSError(f"SVG File: there is no file '{path}'")
@@ -240,14 +243,13 @@ def _stand(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> dict[str, A
 
 
 def _problems(found: Sequence[Curves]) -> list[str]:
-    warnings = []
+    warnings: list[str] = []
     open_splines = [curves.name for curves in found if curves.open_splines]
     if open_splines:
         count = sum(curves.open_splines for curves in found)
-        splines = "1 open spline of" if count == 1 else f"{count} open splines of"
-        warnings.append(
-            f"left out, because Blender fills only closed ones: {splines} {listed(open_splines)}"
-        )
+        splines = counted(range(count), "open spline")
+        text = "left out, because Blender fills only closed ones: {} of {}"
+        warnings.append(Sentence(text, splines, listed(open_splines)))
     for problem in dict.fromkeys(one for curves in found for one in curves.problems):
         names = listed(curves.name for curves in found if problem in curves.problems)
         warnings.append(f"{problem} of {names} do not show")

@@ -112,21 +112,22 @@ class CacheBake:
             OSError: This Blender has no texture cache.
         """
         if not tx.is_available():
-            raise OSError(NEEDED)
+            raise OSError(Sentence(NEEDED))
         warnings: list[str] = []
         notes: list[str] = []
         if scene.render.engine != _CYCLES:
-            warnings.append(
-                f"scene '{scene.name}' is not rendered by Cycles, and only Cycles reads the "
-                "texture cache: set Render Engine to Cycles"
+            text = (
+                "scene '{}' is not rendered by Cycles, and only Cycles reads the texture cache: "
+                "set Render Engine to Cycles"
             )
+            warnings.append(Sentence(text, scene.name))
         viewers = rendered.viewers(scene, depsgraph)
         files: dict[bpy.types.Image, dict[int | None, tx.Source]] = {}
         for image in viewers:
             try:
                 if unpack and image.packed_files:
                     names = listed(path.name for path in packed.unpack(image))
-                    notes.append(f"image '{image.name}': unpacked into {names}")
+                    notes.append(Sentence("image '{}': unpacked into {}", image.name, names))
                 files[image] = tx.sources(image)
             except (ValueError, OSError) as error:
                 warnings.append(str(error))

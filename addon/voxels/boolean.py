@@ -65,7 +65,7 @@ class Boolean:
         """
         check(settings)
         if active is None or not others:
-            raise ValueError("select two objects or more, one of them active")
+            raise ValueError(Sentence("select two objects or more, one of them active"))
         new_meshes.check_editable(active)
         if settings.operands == "delete":
             for obj in others:
@@ -77,7 +77,7 @@ class Boolean:
         )
         for solid in read:
             if not solid.parts:
-                raise ValueError(f"object '{solid.name}': found no faces")
+                raise ValueError(Sentence("object {}: found no faces", listed([solid.name])))
         return cls(place, read, settings)
 
     def compute(self, progress: Progress) -> None:
@@ -167,7 +167,7 @@ class Boolean:
         low = np.max([low for low, _ in boxes], axis=0)
         high = np.min([high for _, high in boxes], axis=0)
         if np.any(low >= high):
-            raise ValueError("the objects have nothing in common")
+            raise ValueError(Sentence("the objects have nothing in common"))
         return low, high
 
     def _merged(self) -> solids.Solid:

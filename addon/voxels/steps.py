@@ -16,7 +16,8 @@ from ..bridge.new_meshes import Contour
 from ..bridge.place import Place
 from ..bridge.units import length, volume
 from ..core.jobs import Progress, go_on, share
-from ..core.wording import Sentence, amount
+from ..core.translations import marked
+from ..core.wording import Sentence, amount, counted, joined
 from .choices import VoxelSettings
 from .grid import Box, Grid, cells_crossed, choose_grid
 from .solid_meshes import SolidMesh, solid_mesh
@@ -188,8 +189,10 @@ def contoured(
     positions, triangles, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
     if len(triangles) == 0:
         raise ValueError(
-            "the result is empty: no cell is at least half full. Parts that are thinner "
-            "than a cell, or enclose nothing, disappear"
+            Sentence(
+                "the result is empty: no cell is at least half full. Parts that are thinner "
+                "than a cell, or enclose nothing, disappear"
+            )
         )
     transfer = Transfer(sources, positions, triangles, origins, settings.threads)
     face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
@@ -232,6 +235,13 @@ def _surface(
     return traced.positions, traced.triangles, traced.origins
 
 
+_THICKENED = marked("parts thinner than a cell that got the minimum thickness: {}")
+_FILLED = marked("parts filled where the outside does not reach: {}")
+_TURNED = marked("faces flipped to agree with their neighbors: {}")
+_WELDED = marked("vertices welded: {}")
+_DUPLICATE = marked("duplicate faces dropped: {}")
+
+
 class Told:
     """What is odd about meshes, and what was done about it, in words."""
 
@@ -248,45 +258,31 @@ class Told:
             solid: What was made of it.
             open_edges: How many edges its faces left open.
         """
-        who = f"object '{name}'"
-        if solid.turned_parts:
-            if solid.turned_parts >= solid.parts:
-                what = f"{who} was inside out"
-            else:
-                what = f"{solid.turned_parts} of {solid.parts} parts of {who} were inside out"
-            self.warnings.append(f"{what}; {_their(solid.turned_parts)} normals were flipped")
+        turned = solid.turned_parts
+        if turned and turned >= solid.parts:
+            text = "object '{}' was inside out; its normals were flipped"
+            self.warnings.append(Sentence(text, name))
+        elif turned:
+            text = "object '{}': {} of {} parts were inside out; their normals were flipped"
+            self.warnings.append(Sentence(text, name, turned, solid.parts))
         if solid.lost_parts:
-            self.warnings.append(
-                f"{amount(solid.lost_parts, 'part')} of {who} {_were(solid.lost_parts)} lost: too "
-                "small for a cell"
-            )
+            lost = amount(solid.lost_parts, "part")
+            text = "object '{}': lost, as too small for a cell: {}"
+            self.warnings.append(Sentence(text, name, lost))
         rows = [
-            (solid.thickened_parts, "part", "thinner than a cell got the minimum thickness"),
-            (solid.filled_parts, "part", "filled where the outside does not reach"),
-            (solid.turned_faces, "face", "flipped to agree with their neighbors"),
-            (solid.welded_vertices, "vertex", "welded"),
-            (solid.duplicate_faces, "duplicate face", "dropped"),
+            (solid.thickened_parts, _THICKENED),
+            (solid.filled_parts, _FILLED),
+            (solid.turned_faces, _TURNED),
+            (solid.welded_vertices, _WELDED),
+            (solid.duplicate_faces, _DUPLICATE),
         ]
-        done = [f"{_counted(count, thing)} {what}" for count, thing, what in rows if count]
+        done = [Sentence(text, count) for count, text in rows if count]
         if done:
-            self.notes.append(f"{who}: {', '.join(done)}")
+            self.notes.append(Sentence("object '{}': {}", name, joined(", ", done)))
         if open_edges:
-            edges = "1 open edge" if open_edges == 1 else f"{open_edges} open edges"
-            self.notes.append(f"{who} has {edges}; the result is closed")
-
-
-def _counted(count: int, thing: str) -> str:
-    if thing == "vertex" and count != 1:
-        return f"{count} vertices"
-    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
-
-
-def _their(count: int) -> str:
-    return "its" if count == 1 else "their"
-
-
-def _were(count: int) -> str:
-    return "was" if count == 1 else "were"
+            edges = counted(range(open_edges), "open edge")
+            text = "object '{}' has {}; the result is closed"
+            self.notes.append(Sentence(text, name, edges))
 
 
 def told(result: Result) -> str:

@@ -65,7 +65,7 @@ class Voxelization:
         """
         check(settings)
         if not objects:
-            raise ValueError("no object is selected that has a surface")
+            raise ValueError(Sentence("no object is selected that has a surface"))
         is_volume = settings.output == "volume"
         if is_volume and not volumes.is_available():
             raise OSError(volumes.NEEDED)
@@ -131,11 +131,10 @@ class Voxelization:
         empty = [place.name for place, solid in self._read if not solid.parts]
         self._read = [(place, solid) for place, solid in self._read if solid.parts]
         if not self._read:
-            raise ValueError(
-                f"object{'s' if len(empty) > 1 else ''} {listed(empty)}: found no faces"
-            )
+            raise ValueError(_no_faces(empty))
         if empty:
-            self._told.warnings.append(f"left out, as they have no faces: {listed(empty)}")
+            text = "left out, as they have no faces: {}"
+            self._told.warnings.append(Sentence(text, listed(empty)))
 
     def _compute_one(
         self, index: int, place: Place, solid: solids.Solid, progress: Progress
@@ -187,3 +186,9 @@ def _volume_files(names: list[str], settings: VoxelizeSettings) -> list[Path]:
     else:
         raise ValueError("File: choose a file for the volume, or save the .blend file first")
     return [staging.check_plain_target(str(path), ".vdb") for path in paths]
+
+
+def _no_faces(names: list[str]) -> Sentence:
+    if len(names) == 1:
+        return Sentence("object {}: found no faces", listed(names))
+    return Sentence("objects {}: found no faces", listed(names))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ...core.outcome import Outcome
-from ...core.wording import Sentence, counted, listed, together
+from ...core.wording import Sentence, counted, joined, listed, together
 from .plan import LeftOut
 
 
@@ -39,7 +39,7 @@ class Results:
             ValueError: Nothing was baked.
         """
         if not self.outcomes:
-            raise ValueError("\n".join(self.nothing()))
+            raise ValueError(joined("\n", self.nothing()))
         files = [path for one in self.outcomes for path in one.files]
         names = [name for one in self.outcomes for name in one.images]
         return Outcome(
@@ -52,14 +52,17 @@ class Results:
 
     def nothing(self) -> list[str]:
         """Returns lines that say why there is no image that can be baked."""
-        return ["no image was baked", *self._problems(), *self.lines_of_left_out()]
+        return [Sentence("no image was baked"), *self._problems(), *self.lines_of_left_out()]
 
     def lines_of_left_out(self) -> list[str]:
         """Returns a line for each reason why images are left out."""
         by_reason: dict[str, list[str]] = {}
         for one in self.left_out:
             by_reason.setdefault(one.reason, []).append(one.image)
-        return [f"Left out, {reason}: {listed(names)}" for reason, names in by_reason.items()]
+        return [
+            Sentence("Left out, {}: {}", reason, listed(names))
+            for reason, names in by_reason.items()
+        ]
 
     def summary(self, files: Sequence[str], names: Sequence[str]) -> str:
         """Returns how many images were baked into which files and level images, in a line."""
@@ -80,7 +83,9 @@ class Results:
         return done
 
     def _problems(self) -> list[str]:
-        return [f"image '{one.image}' is not baked: {one.reason}" for one in self.failed]
+        return [
+            Sentence("image '{}' is not baked: {}", one.image, one.reason) for one in self.failed
+        ]
 
 
 def without_names(names: Iterable[str], text: str) -> list[LeftOut]:

@@ -13,6 +13,7 @@ from ...core.operator import WorkOperator
 from ...core.presets import PresetsOperator
 from ...core.properties import set_unset
 from ...core.translations import tr
+from ...core.wording import Sentence
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
 from ..properties import BAKE, BakeProperties
 from ..view.preview import VIEW, PreviewWork
@@ -63,7 +64,7 @@ class PREFILTER_OT_bake_mipmaps(
             set_unset(self, {"result": "file"})
         alone = bool(self.roughness_filepath) and not self.roughness
         if alone and given("roughness_filepath") and not self.options.is_repeat:
-            raise ValueError("Roughness File: choose a Roughness image too")
+            raise ValueError(Sentence("Roughness File: choose a Roughness image too"))
         found = file_names.format_of(self.filepath or self.roughness_filepath)
         if found:
             set_unset(self, {"file_format": found})
