@@ -311,7 +311,10 @@ class RedoPanel:
             if getattr(self.operator.properties, name) != before:
                 return
             if self._settings() != settings:
+                # Meanwhile the panel may have other rows, and another height.
+                yield from self._settled()
                 yield from self._stepped(below_top, up=not up)
+                yield from self._settled()
         raise AssertionError(f"no setting {name} in the redo panel")
 
     def apply(self) -> Iterator[None]:
@@ -322,6 +325,11 @@ class RedoPanel:
     def _stepped(self, below_top: int, *, up: bool) -> Iterator[None]:
         x = self._region.x + self._region.width * 3 // 4
         yield from stepped(self._window, x, self._region.y + self._region.height - below_top, up=up)
+
+    def _settled(self) -> Iterator[None]:
+        yield from until(idle)
+        for _ in range(4):
+            yield
 
     def _settings(self) -> dict[str, object]:
         return {key: str(value) for key, value in self.operator.properties.items()}
