@@ -35,10 +35,10 @@ def show_anywhere(context: bpy.types.Context, image: bpy.types.Image) -> bool:
 
 
 def redraw() -> None:
-    """Has every Image editor drawn again."""
+    """Has every Image editor and 3D view drawn again."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
-            if area.type == "IMAGE_EDITOR":
+            if area.type in {"IMAGE_EDITOR", "VIEW_3D"}:
                 area.tag_redraw()
 
 

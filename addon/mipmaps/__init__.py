@@ -13,6 +13,7 @@ MANUAL = {
     ),
     "view": (
         *("view", "preview_levels", "end_preview", "plot_error"),
+        *("preview_on_model", "end_model_preview"),
         *("show_weights", "show_source", "fill_unused"),
     ),
 }

@@ -471,12 +471,32 @@ class RemoveSettings:
     )
 
 
+LEVEL_CHOICES = {
+    "distance": Choice(
+        "Distance", "The levels that a GPU reads there, and as if the object were farther away"
+    ),
+    "level": Choice("Mip Value", "One level everywhere"),
+}
+
+
 @dataclass(frozen=True)
 class PreviewSettings:
     """What a preview shows beside the levels of a bake."""
 
     compare: str = one_of(
         "box", "Compare With", "The filter on the left of the wipe", FILTERS, flag=""
+    )
+    choice: str = one_of(
+        "distance", "Levels by", "Which level each pixel of a 3D view shows", LEVEL_CHOICES, flag=""
+    )
+    distance: float = number(
+        1.0,
+        "Times as Far",
+        "How many times as far away as they are objects get the levels of",
+        low=1.0,
+        high=1024.0,
+        display={"soft_max": 64.0, "precision": 1, "step": 100},
+        flag="",
     )
 
 

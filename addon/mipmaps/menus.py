@@ -15,6 +15,10 @@ from .operators.export import PREFILTER_OT_export_mipmaps, PREFILTER_OT_export_m
 from .operators.fill_unused import PREFILTER_OT_fill_unused
 from .operators.plot_error import PREFILTER_OT_plot_error
 from .operators.preview_levels import PREFILTER_OT_end_preview, PREFILTER_OT_preview_levels
+from .operators.preview_on_model import (
+    PREFILTER_OT_end_model_preview,
+    PREFILTER_OT_preview_on_model,
+)
 from .operators.remove_levels import PREFILTER_OT_remove_levels
 from .operators.show_weights import PREFILTER_OT_show_source, PREFILTER_OT_show_weights
 from .properties import BAKE, MODEL
@@ -50,6 +54,10 @@ def _draw_object_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
     BAKE_BUTTON.draw(menu.layout, context)
     MODEL_BUTTON.draw(menu.layout, context)
+    name = PREFILTER_OT_preview_on_model.bl_idname
+    preview = menu.layout.operator(name, icon="SHADING_TEXTURE")
+    preview.compare = context.window_manager.prefilter_view.compare
+    menu.layout.operator(PREFILTER_OT_end_model_preview.bl_idname, icon="X")
 
 
 def _draw_material_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

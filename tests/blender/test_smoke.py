@@ -113,6 +113,18 @@ def test_end_preview(paint):
         assert not bpy.ops.prefilter.end_preview.poll()
 
 
+def test_preview_on_model(paint):
+    bpy.context.view_layer.objects.active = bpy.data.objects["Quad"]
+    assert bpy.ops.prefilter.preview_on_model() == FINISHED
+
+
+def test_end_model_preview(paint):
+    assert not bpy.ops.prefilter.end_model_preview.poll()
+    bpy.ops.prefilter.preview_on_model(image="Paint")
+    assert bpy.ops.prefilter.end_model_preview() == FINISHED
+    assert not bpy.ops.prefilter.end_model_preview.poll()
+
+
 def test_show_weights(paint):
     assert bpy.ops.prefilter.show_weights(image="Paint") == FINISHED
     assert "Paint.weights" in bpy.data.images

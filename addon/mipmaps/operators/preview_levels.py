@@ -16,16 +16,9 @@ from ..view import preview
 from .source import SurfaceOperator, reading_source
 
 
-class PREFILTER_OT_preview_levels(WorkOperator, SurfaceOperator, bpy.types.Operator):
-    """Computes the levels of an image for the editors to draw."""
+class PreviewOperator(WorkOperator, SurfaceOperator):
+    """A mixin: computes the levels of an image, to be drawn."""
 
-    bl_idname = "prefilter.preview_levels"
-    bl_label = "Preview Levels"
-    bl_description = (
-        "Compute the levels of the image with the settings of the bake, and draw them at "
-        "full size in its place. The image itself does not change"
-    )
-    bl_options = {"REGISTER"}
     doing = "Computing levels"
 
     compare: single_property(choices.PreviewSettings, "compare")
@@ -50,6 +43,18 @@ class PREFILTER_OT_preview_levels(WorkOperator, SurfaceOperator, bpy.types.Opera
         settings = context.scene.prefilter_bake.to_settings()
         self.work = yield from reading_preview(context, self.image, settings, self.compare)
         return self.work.compute
+
+
+class PREFILTER_OT_preview_levels(PreviewOperator, bpy.types.Operator):
+    """Computes the levels of an image for the editors to draw."""
+
+    bl_idname = "prefilter.preview_levels"
+    bl_label = "Preview Levels"
+    bl_description = (
+        "Compute the levels of the image with the settings of the bake, and draw them at "
+        "full size in its place. The image itself does not change"
+    )
+    bl_options = {"REGISTER"}
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Has the editors draw the levels."""

@@ -3,6 +3,6 @@
 """Seeing mipmaps: levels drawn in the editor, their errors as a figure, the weights of texels."""
 
 from ...core.registration import registration
-from . import overlay, preview, state, wipe
+from . import on_model, overlay, preview, state, wipe
 
-register, unregister = registration(state, preview, overlay, wipe)
+register, unregister = registration(state, preview, overlay, on_model, wipe)

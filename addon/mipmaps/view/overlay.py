@@ -34,13 +34,15 @@ void main()
   across = gl_Position.x * 0.5 + 0.5;
 }
 """
-_FRAGMENT = """
+LOOKUP = """
 int wrapped(int index, int size, int mode)
 {
   return mode == 1 ? index - size * int(floor(float(index) / float(size)))
                    : clamp(index, 0, size - 1);
 }
-
+"""
+"""GLSL: the index of a texel after the wrap mode; 2 is that of what has no texels outside."""
+_FRAGMENT = """
 vec4 texel(sampler2D level, ivec2 index)
 {
   ivec2 size = textureSize(level, 0);
@@ -175,7 +177,7 @@ def _compiled() -> gpu.types.GPUShader:
         info.fragment_out(0, "VEC4", "color")
         info.vertex_source(_VERTEX)
         info.define("MULTIPLIES_LIGHT", str(_MULTIPLIES_LIGHT).lower())
-        info.fragment_source(COLOR_FUNCTIONS + _FRAGMENT)
+        info.fragment_source(COLOR_FUNCTIONS + LOOKUP + _FRAGMENT)
         _shader = gpu.shader.create_from_info(info)
     return _shader
 

@@ -52,6 +52,15 @@ class PREFILTER_PG_view(bpy.types.PropertyGroup):
         max=1.0,
         update=editors.redraw_on_change,
     )
+    use_model: BoolProperty(
+        name="Show Levels",
+        translation_context=CONTEXT,
+        description="Draw levels over the objects that show the image, in the 3D views",
+        default=True,
+        update=editors.redraw_on_change,
+    )
+    choice: single_property(PreviewSettings, "choice", update=editors.redraw_on_change)
+    distance: single_property(PreviewSettings, "distance", update=editors.redraw_on_change)
     compare: single_property(PreviewSettings, "compare", update=editors.redraw_on_change)
     plot_filters: single_property(
         PlotSettings, "filters", description="The filters to compare; Shift-click to choose several"

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The line between the levels of two filters, dragged in the Image editor."""
+"""The line between the levels of two filters, dragged in the Image editor and the 3D view."""
 
 import bpy
 
 from ...bridge.wipe import WipeGizmo, WipeGroup
-from . import preview
+from . import on_model, preview
 
 
 class PREFILTER_GT_level_wipe(WipeGizmo, bpy.types.Gizmo):
@@ -32,6 +32,35 @@ class PREFILTER_GGT_level_wipe(WipeGroup, bpy.types.GizmoGroup):
         return state.use_wipe and compares
 
 
+class PREFILTER_GT_model_wipe(WipeGizmo, bpy.types.Gizmo):
+    """The line in the 3D view."""
+
+    bl_idname = "PREFILTER_GT_model_wipe"
+    view = preview.VIEW
+
+
+class PREFILTER_GGT_model_wipe(WipeGroup, bpy.types.GizmoGroup):
+    """Shows it where two filters are compared on the model."""
+
+    bl_idname = "PREFILTER_GGT_model_wipe"
+    bl_space_type = "VIEW_3D"
+    gizmo = PREFILTER_GT_model_wipe
+    view = preview.VIEW
+
+    @classmethod
+    def is_there(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the view draws the line."""
+        state, shown = cls.view.state(context), on_model.current()
+        if shown is None or not (state.use_model and state.use_wipe):
+            return False
+        return state.compare in shown.levels and state.compare != next(iter(shown.levels))
+
+
 register, unregister = bpy.utils.register_classes_factory(
-    (PREFILTER_GT_level_wipe, PREFILTER_GGT_level_wipe)
+    (
+        PREFILTER_GT_level_wipe,
+        PREFILTER_GGT_level_wipe,
+        PREFILTER_GT_model_wipe,
+        PREFILTER_GGT_model_wipe,
+    )
 )

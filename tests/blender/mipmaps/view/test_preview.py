@@ -301,7 +301,8 @@ def test_removed_image_and_disabled_addon_leave_nothing(addon):
     addon("mipmaps.view").unregister()
     try:
         assert not module._previews
-        assert len(bpy.app.handlers.depsgraph_update_post) == len(before) - 1
+        # Those of previews, and of the 3D views that draw them.
+        assert len(bpy.app.handlers.depsgraph_update_post) == len(before) - 2
         assert not hasattr(bpy.types.WindowManager, "prefilter_view")
     finally:
         addon("mipmaps.view").register()
