@@ -4,6 +4,7 @@
 
 import bpy
 
+from ..core.wording import Sentence
 from . import materials, nodes
 
 _MARK = "prefilter_decal_of"
@@ -53,11 +54,11 @@ def put_over(obj: bpy.types.Object, image: bpy.types.Image, *, is_mask: bool) ->
         material = _new(obj.name)
         obj.active_material = material
     if material.library is not None:
-        raise ValueError(f"material '{material.name}' is linked; make it local first")
+        raise ValueError(Sentence("material '{}' is linked; make it local first", material.name))
     shader = materials.shown_shader(material)
     if shader is None:
         raise ValueError(
-            f"material '{material.name}': its output shows no shader with a base color"
+            Sentence("material '{}': its output shows no shader with a base color", material.name)
         )
     tree = material.node_tree
     color = shader.inputs[materials.color_input(shader)]

@@ -50,7 +50,7 @@ class ImageOperator:
 
         image = images.find(self.image) if self.image else self.shown_image(context)
         if image is None:
-            raise ValueError("image: no name is given, and the editor shows no image")
+            raise ValueError(Sentence("image: no name is given, and the editor shows no image"))
         return image
 
     def targets(self, context: bpy.types.Context) -> list[bpy.types.Image]:

@@ -20,12 +20,12 @@ from .parts import PartedWork
 from .queue import Queued, State
 from .running import TICK_SECONDS, Run
 from .targets import Targets
-from .translations import CONTEXT, marked, report, tr
+from .translations import CONTEXT, marked, report, reported, tr
 
 _PATIENCE_SECONDS = 0.1
 """How long an operator waits for a thread that was cancelled. Steps of other libraries, such as
 compressing a file, end when they end; the thread then cleans up by itself."""
-_RUNNING = "It is running; press Esc to cancel it"
+_RUNNING = marked("It is running; press Esc to cancel it")
 # Said when it is called: a button that poll has disabled under the mouse stays so until the mouse
 # has left it, and takes no click. A redo panel whose poll fails is gone for good.
 _WAITING_TICK_SECONDS = 0.2
@@ -337,7 +337,7 @@ class BackgroundOperator(Doing):
         try:
             start("INVOKE_DEFAULT", use_apply=use_apply, **settings)
         except RuntimeError as error:
-            self._problem = str(error).removeprefix("Error: ").strip()
+            self._problem = reported(error)
         finally:
             _handed_targets.clear()
         return {"CANCELLED"}

@@ -12,6 +12,7 @@ import bpy
 
 from .sidebar import wrapped
 from .translations import tr
+from .wording import Sentence
 
 QUICK_SECONDS = 1.0
 """Work up to this long is redone at once when a user changes a setting; longer work waits for
@@ -99,7 +100,7 @@ def in_place_of(replaced: int, context: bpy.types.Context, *, is_undoable: bool)
     if replaced:
         last = context.active_operator
         if last is None or last.as_pointer() != replaced:
-            raise ValueError("Not applied: something else has changed in the meantime")
+            raise ValueError(Sentence("Not applied: something else has changed in the meantime"))
         if is_undoable:
             bpy.ops.ed.undo()
             is_undone = True

@@ -34,6 +34,12 @@ def report(text: str) -> str:
     return _translated(text, bpy.app.translations.pgettext_rpt)
 
 
+def reported(error: RuntimeError) -> str:
+    """Returns what an operator has reported that has raised an error."""
+    kind = bpy.app.translations.pgettext_rpt("Error")
+    return str(error).strip().removeprefix(f"{kind}: ")
+
+
 def _translated(text: str, translate: Callable[[str, str], str]) -> str:
     if not isinstance(text, Sentence):
         return translate(text, CONTEXT)

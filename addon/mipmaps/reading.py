@@ -14,7 +14,7 @@ from ..bridge.files import engines, textures
 from ..bridge.images import Picture
 from ..core.doing import read_at_once
 from ..core.options import check
-from ..core.wording import listed
+from ..core.wording import Sentence, listed
 from . import blocks, contents, frames, udim
 from .bake import Bake, Outputs
 from .choices import TEXTURE_SPACE_FILTERS, Settings
@@ -134,7 +134,7 @@ def read_level_0(request: Request) -> Level0:
     numbers = images.tile_numbers(image)
     targets = [textures.check_target(path) for path in udim.paths(settings.filepath, numbers)]
     if not targets and not settings.use_images and request.writes_image:
-        raise ValueError("nothing to write: choose level images or a file")
+        raise ValueError(Sentence("nothing to write: choose level images or a file"))
     pictures = [images.read_tile(image, number) for number in numbers] or [images.read(image)]
     for picture in pictures:
         _check_levels(picture, settings.levels)
@@ -287,7 +287,7 @@ def read_roughness(request: Request, level_0: Level0) -> Rough:
     settings = request.settings
     if not settings.roughness:
         if settings.roughness_filepath:
-            raise ValueError("Roughness File: choose a Roughness image too")
+            raise ValueError(Sentence("Roughness File: choose a Roughness image too"))
         return Rough()
     if level_0.content != "normal":
         if settings.content == "auto":
@@ -298,7 +298,7 @@ def read_roughness(request: Request, level_0: Level0) -> Rough:
         )
     if not settings.use_images and not settings.roughness_filepath:
         raise ValueError(
-            "nothing to write the roughness to: choose level images or a Roughness File"
+            Sentence("nothing to write the roughness to: choose level images or a Roughness File")
         )
     target = None
     if settings.roughness_filepath:

@@ -50,10 +50,14 @@ def _onto_plane(
     drawn = image.prefilter_drawn
     if drawn.source == "uv":
         raise ValueError(
-            f"image '{image.name}' shows a UV map, which is in no place; put it on a material"
+            Sentence(
+                "image '{}' shows a UV map, which is in no place; put it on a material", image.name
+            )
         )
     if not drawn.has_place:
-        raise ValueError(f"image '{image.name}': where it is is not known; press Update first")
+        raise ValueError(
+            Sentence("image '{}': where it is is not known; press Update first", image.name)
+        )
     sources = sources_of(image)
     made = _new_plane(image, sources, context)
     placed = _stand(sources[0], drawn.rotation) if sources else context.scene.cursor.matrix

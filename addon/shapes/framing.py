@@ -11,6 +11,7 @@ from mathutils import Matrix, Quaternion
 from numpy.typing import NDArray
 
 from ..core.memory import usable_memory
+from ..core.wording import Sentence
 from .choices import LARGEST_SIDE, RasterizeSettings
 
 FloatArray = NDArray[np.float64]
@@ -94,7 +95,7 @@ def find_view(
         return View(np.array(placed.inverted(), np.float64))
     camera = scene.camera
     if camera is None:
-        raise ValueError("View: the scene has no camera")
+        raise ValueError(Sentence("View: the scene has no camera"))
     if camera.data.type == "PANO":
         raise ValueError(f"View: camera '{camera.name}' is panoramic; another type is needed")
     shown = camera.evaluated_get(depsgraph)
@@ -150,7 +151,7 @@ def fitted_frame(box: FloatArray, settings: RasterizeSettings) -> Frame:
     """
     size = box[1] - box[0]
     if not np.all(size > 0.0):
-        raise ValueError("the shapes have no area, as seen from there")
+        raise ValueError(Sentence("the shapes have no area, as seen from there"))
     if settings.resolution == "density":
         scale = settings.density
         sides = np.ceil(size * scale + 2.0 * settings.margin - 1e-6)

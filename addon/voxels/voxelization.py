@@ -184,7 +184,9 @@ def _volume_files(names: list[str], settings: VoxelizeSettings) -> list[Path]:
         folder = Path(bpy.data.filepath).parent
         paths = [folder / f"{bpy.path.clean_name(name)}.vdb" for name in names]
     else:
-        raise ValueError("File: choose a file for the volume, or save the .blend file first")
+        raise ValueError(
+            Sentence("File: choose a file for the volume, or save the .blend file first")
+        )
     return [staging.check_plain_target(str(path), ".vdb") for path in paths]
 
 

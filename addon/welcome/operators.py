@@ -9,7 +9,7 @@ from bpy.props import EnumProperty
 
 from ..core.choices import items
 from ..core.preferences import PACKAGE
-from ..core.translations import CONTEXT, tr
+from ..core.translations import CONTEXT, reported, tr
 from .choices import DEMONSTRATIONS, is_demonstration
 
 
@@ -53,7 +53,7 @@ class PREFILTER_OT_demonstrate(bpy.types.Operator):
         try:
             demonstrations.begin(context, self.kind)
         except RuntimeError as error:
-            self.report({"ERROR"}, str(error))
+            self.report({"ERROR"}, reported(error))
         return {"FINISHED"}
 
 

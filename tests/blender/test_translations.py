@@ -112,6 +112,7 @@ def test_texts_are_shown_in_the_language_of_the_user(addon, german):
     assert said.report(sentence("Baked {} of {} images", inner, "Images")) == (
         "3 Dateien von Images Bildern gebacken"  # Only what is a sentence is translated.
     )
+    assert said.reported(RuntimeError("Fehler: Objekt 'Cube' ist weg\n")) == "Objekt 'Cube' ist weg"
     with pytest.raises(RuntimeError, match="In dieser Datei ist kein Bild"):
         bpy.ops.prefilter.resize_image()
 
@@ -123,3 +124,13 @@ def test_texts_are_english_once_the_add_on_is_disabled(addon, german):
         assert said.tr("Wipe") == "Wipe"
     finally:
         said.register()
+
+
+def test_results_are_told_in_the_language_of_the_user(german, capfd):
+    bpy.ops.mesh.primitive_cube_add()
+    bpy.context.active_object.name = "Scene"
+    bpy.ops.prefilter.voxelize(depth=4)
+    out = capfd.readouterr().out
+    assert "'Scene' in 16³ Zellen von" in out
+    assert "Dreiecke, Volumen" in out
+    assert "voxelisiert" in out

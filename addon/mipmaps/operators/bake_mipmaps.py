@@ -110,7 +110,9 @@ class PREFILTER_OT_bake_mipmaps(
             for path, own in zip(paths, given, strict=True)
         ):
             raise ValueError(
-                "File: goes beside the .blend file; save that first, or choose a file elsewhere"
+                Sentence(
+                    "File: goes beside the .blend file; save that first, or choose a file elsewhere"
+                )
             )
         found = []
         for path, name in zip(paths, (image.name, settings.roughness), strict=True):

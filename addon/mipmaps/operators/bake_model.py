@@ -12,6 +12,7 @@ from ...core.doing import LONG_WORK, Compute, read_at_once
 from ...core.operator import BackgroundOperator
 from ...core.presets import PresetsOperator
 from ...core.translations import tr
+from ...core.wording import Sentence
 from ..properties import MODEL, ModelProperties
 
 if TYPE_CHECKING:
@@ -103,12 +104,12 @@ class PREFILTER_OT_bake_model(
         own, shared = self.to_settings()
         folder = own.folder if own.result == "file" else ""
         if own.result == "file" and not folder:
-            raise ValueError("Folder: found none; choose one, or Images as the result")
+            raise ValueError(Sentence("Folder: found none; choose one, or Images as the result"))
         if folder and self.folder.startswith("//") and not bpy.data.is_saved:
-            raise ValueError(
-                f"Folder: '{self.folder}' is beside the .blend file; save that first, or choose "
-                f"another folder"
+            text = (
+                "Folder: '{}' is beside the .blend file; save that first, or choose another folder"
             )
+            raise ValueError(Sentence(text, self.folder))
         chosen = chosen_objects(context, own.objects)
         planned = plan(
             context.view_layer, context.evaluated_depsgraph_get(), chosen, material=own.material

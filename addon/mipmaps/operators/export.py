@@ -9,6 +9,7 @@ import bpy
 from bpy.props import BoolProperty, StringProperty
 
 from ...core.properties import properties
+from ...core.translations import reported
 from ..choices import FILE_FORMATS, ModelSettings
 from ..properties import BAKE, MODEL
 from .bake_mipmaps import PREFILTER_OT_bake_mipmaps
@@ -43,7 +44,7 @@ class _Export:
         try:
             done = start(mode, **settings)
         except RuntimeError as error:
-            self.report({"ERROR"}, str(error).removeprefix("Error: ").strip())
+            self.report({"ERROR"}, reported(error))
             return {"CANCELLED"}
         return {"FINISHED"} if done & {"FINISHED", "RUNNING_MODAL"} else {"CANCELLED"}
 

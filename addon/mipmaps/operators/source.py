@@ -11,6 +11,7 @@ import bpy
 from ...bridge.image_operator import ImageOperator
 from ...core.doing import read_at_once
 from ...core.operator import BackgroundOperator
+from ...core.wording import Sentence
 from ..choices import Settings
 
 if TYPE_CHECKING:
@@ -79,8 +80,10 @@ def image_to_read(context: bpy.types.Context, name: str) -> bpy.types.Image:
     image = shown_image(context) or _image_of(context.active_object)
     if image is None:
         raise ValueError(
-            "image: no name is given, the editor shows no image, and the active object has no "
-            "single base color image"
+            Sentence(
+                "image: no name is given, the editor shows no image, and the active object has no "
+                "single base color image"
+            )
         )
     return image
 

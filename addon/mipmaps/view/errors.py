@@ -90,7 +90,7 @@ def measure(source: Source, filters: Sequence[str], progress: Progress) -> Error
         OSError: The color space needs a module that is missing.
     """
     if not filters:
-        raise ValueError("Filters: choose at least one")
+        raise ValueError(Sentence("Filters: choose at least one"))
     linear = source.linear(progress)
     errors = []
     for name, part in zip(filters, parts(progress, len(filters)), strict=True):

@@ -8,6 +8,7 @@ import bpy
 
 from ...bridge.image_operator import ImageOperator
 from ...core.translations import tr
+from ...core.wording import Sentence
 from .shape_operator import ShapeOperator
 
 if TYPE_CHECKING:
@@ -62,9 +63,11 @@ class PREFILTER_OT_update_drawn(ImageOperator, ShapeOperator, bpy.types.Operator
 
         image = self.chosen_image(context)
         if not is_drawn(image):
-            raise ValueError(f"image '{image.name}' was not made by Rasterize")
+            raise ValueError(Sentence("image '{}' was not made by Rasterize", image.name))
         if image.library is not None:
-            raise ValueError(f"image '{image.name}' is linked; update it in its own file")
+            raise ValueError(
+                Sentence("image '{}' is linked; update it in its own file", image.name)
+            )
         request, settings, warnings = recall(image)
         self.warn(warnings)
         return Rasterization.read(request, settings, context, image=image)
@@ -75,5 +78,5 @@ def _only_drawn() -> bpy.types.Image:
 
     drawn = [image for image in bpy.data.images if is_drawn(image)]
     if len(drawn) != 1:
-        raise ValueError("image: no name is given, and the editor shows no image")
+        raise ValueError(Sentence("image: no name is given, and the editor shows no image"))
     return drawn[0]

@@ -8,6 +8,7 @@ from ...bridge.image_operator import ImageOperator
 from ...core.outcome import FAILURES
 from ...core.properties import properties, values
 from ...core.translations import report, tr
+from ...core.wording import Sentence
 from ..choices import DecalSettings
 
 
@@ -47,7 +48,7 @@ class PREFILTER_OT_use_as_decal(ImageOperator, bpy.types.Operator):
         try:
             image = images.find(self.image) if self.image else _found(context)
             if image is None or not is_drawn(image):
-                raise ValueError(f"image '{self.image}' was not made by Rasterize")
+                raise ValueError(Sentence("image '{}' was not made by Rasterize", self.image))
             self.image = image.name
             outcome = use_as_decal(image, values(self, DecalSettings), context)
         except FAILURES as error:
