@@ -75,6 +75,9 @@ WHOLE = {
     ),
     "rasterize": Photograph(("PREFILTER_PT_rasterize", "PREFILTER_PT_drawn"), "shapes"),
     "plane": Photograph(("PREFILTER_PT_plane",), "plane", opened=("PREFILTER_PT_plane",)),
+    "on_model": Photograph(
+        ("PREFILTER_PT_on_model",), "on_model", opened=("PREFILTER_PT_on_model",)
+    ),
     "model": Photograph(("PREFILTER_PT_model",), "model", opened=("PREFILTER_PT_model",)),
 }
 """Photographs of a window: `NAME.png`."""

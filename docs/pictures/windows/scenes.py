@@ -426,6 +426,25 @@ def show_model(shown: Photograph) -> Iterator[float]:
     yield from open_tab(area)
 
 
+def show_on_model(shown: Photograph) -> Iterator[float]:
+    """The demo's monkey with levels as from a distance, those of Box left of the line."""
+    obj = demo_scene.add_monkey()
+    demo_scene.add_material(obj, demo_scene.new_image(demo_scene.paint(demo_scene.read_model(obj))))
+    obj.select_set(True)
+    bpy.context.view_layer.objects.active = obj
+    bpy.context.preferences.system.use_region_overlap = False
+    area = largest_area()
+    view = plain_view(area)
+    view.view_rotation = Euler((1.3, 0.0, 0.4)).to_quaternion()
+    view.view_location, view.view_distance = (0.0, 0.0, 0.0), 3.5
+    rearrange(shown.opened, only=shown.panels)
+    settings = bpy.context.window_manager.prefilter_view
+    settings.distance, settings.use_wipe, settings.wipe = 16.0, True, 0.5
+    with inside(area):
+        bpy.ops.prefilter.preview_on_model()
+    yield from open_tab(area)
+
+
 def plain_view(area: bpy.types.Area) -> bpy.types.RegionView3D:
     """Shows objects alone in a 3D view, and returns its view."""
     space = area.spaces.active
