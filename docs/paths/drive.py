@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Has a Blender walk the paths of walks.py in a window that nobody sees, and keeps what it took.
+
+usage: python3 drive.py [NAME...]
+"""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import page
+
+HERE = Path(__file__).resolve().parent
+sys.path.append(str(HERE.parent / "pictures" / "windows"))
+
+import photograph  # noqa: E402
+
+SIZE = (1280, 800)
+TOLD = "prefilter: path "
+MOST_SECONDS = 300
+WITHOUT_EXTENSION = {"newcomer"}
+"""Paths of a Blender that never had the extension, and gets the zip in build/."""
+
+
+def main(names: list[str]) -> None:
+    """Walks the paths one after another, each in a Blender of its own."""
+    for name in names or list(page.WHO):
+        with photograph.screen(*SIZE) as (display, _), tempfile.TemporaryDirectory() as folder:
+            told = walked(name, display, folder)
+        kept = page.read()
+        kept.setdefault(name, {})[told.pop("version")] = told
+        page.write(kept)
+        print(name, json.dumps(told), flush=True)
+
+
+def walked(name: str, display: str, folder: str) -> dict[str, object]:
+    """Returns what a path took."""
+    environment = {**os.environ, "DISPLAY": display}
+    if name in WITHOUT_EXTENSION:
+        environment["BLENDER_USER_RESOURCES"] = folder
+    done = subprocess.run(
+        [
+            *("blender", "--factory-startup", "--enable-event-simulate", "--window-geometry"),
+            *("0", "0", *map(str, SIZE), "--python-exit-code", "1"),
+            *("--python", str(HERE / "walks.py"), "--", name, folder),
+        ],
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=MOST_SECONDS,
+        check=False,
+    )
+    for line in done.stdout.splitlines():
+        if line.startswith(TOLD):
+            return dict(json.loads(line.removeprefix(TOLD)))
+    raise SystemExit(f"{name}: the path did not end\n{done.stdout}\n{done.stderr}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The page of the paths: a table of what each took, and its steps, from paths.json.
+
+usage: python3 page.py     writes docs/paths.md again
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+DATA = HERE / "paths.json"
+PAGE = HERE.parent / "paths.md"
+VERSIONS = ("4.3", "5.2")
+
+WHO = {
+    "game_artist": ("Game artist", "all maps of a model, from a file just opened", 5),
+    "look_dev": ("Look-dev artist", "a texture cache for Cycles, from a file just opened", 4),
+    "printer": ("3D printer", "a solid, from a file with a broken mesh", 2),
+    "sculptor": ("Sculptor", "a solid of a sculpture, from Sculpt Mode", 4),
+    "scanner": ("Scanner", "a surface of a scan that is dropped onto the view", 1),
+    "designer": ("Designer", "an image of a text", 3),
+    "texture_artist": ("Texture artist", "a facade, straightened", 3),
+    "newcomer": ("Newcomer", "a demonstration, from the zip", 4),
+}
+"""Who walks a path, to what, and in how many clicks at most."""
+NOT_IN = {("look_dev", "4.3"): "Texture caches came with Blender 5.2."}
+
+_HEAD = """# Paths to a first result
+
+`docs/paths/drive` walks these paths in real windows of Blender 4.3 and 5.2, by mouse and keys, and
+makes this page of what it measured. A click is a press of a mouse button, a drag one that moves.
+The wait is how long Prefilter works until the result is there. The gap is the longest time for
+which Blender answered nothing meanwhile: between two ticks of a timer that should tick every
+hundredth of a second. Own is the longest time for which Prefilter kept the main thread; the rest is
+Blender, mostly drawing. Here the processor draws, and does other work as well, so times are
+above those of a desktop.
+"""
+
+
+def read() -> dict[str, Any]:
+    """Returns what was measured, by path and version."""
+    return json.loads(DATA.read_text(encoding="utf-8")) if DATA.exists() else {}
+
+
+def write(kept: dict[str, Any]) -> None:
+    """Writes the data, in the order of the page, and the page."""
+    ordered = {
+        name: {version: kept[name][version] for version in VERSIONS if version in kept[name]}
+        for name in WHO
+        if name in kept
+    }
+    DATA.write_text(json.dumps(ordered, indent=1) + "\n", encoding="utf-8")
+    PAGE.write_text(text(ordered), encoding="utf-8")
+
+
+def text(kept: dict[str, Any]) -> str:
+    """Returns the page."""
+    lines = [
+        _HEAD,
+        "| Who | Gets | Blender | Clicks | Keys | Drags | Wait (s) | Longest gap (s) | Own (s) |",
+        "|---|---|---|---:|---:|---:|---:|---:|---:|",
+    ]
+    for name, (who, what, _) in WHO.items():
+        for version, took in kept.get(name, {}).items():
+            numbers = [took[key] for key in ("clicks", "keys", "drags")]
+            times = [f"{took[key]:.2f}" for key in ("wait", "gap", "own")]
+            lines.append(f"| {' | '.join(map(str, [who, what, version, *numbers, *times]))} |")
+    for name, (who, _, _) in WHO.items():
+        walks = kept.get(name, {})
+        if not walks:
+            continue
+        lines += ["", f"## {who}", ""]
+        latest = list(walks.values())[-1]
+        lines.append(f"{latest['start']}")
+        lines.append("")
+        lines += [f"{i}. {step}" for i, step in enumerate(latest["steps"], start=1)]
+        lines += ["", f"{latest['result']}"]
+        lines += ["", *(why for (left_out, _), why in NOT_IN.items() if left_out == name)]
+    while not lines[-1]:
+        lines.pop()
+    return "\n".join(lines).replace("\n\n\n", "\n\n") + "\n"
+
+
+if __name__ == "__main__":
+    write(read())
