@@ -39,6 +39,7 @@ def _panel(name: str, scene: str = "mesh", **more: Any) -> Photograph:
 
 
 CROPPED = {
+    "welcome": _panel("welcome"),
     "bake": _panel("bake"),
     "bake_unfolded": _panel("bake", unfolded=True),
     "bake_all_images": _panel("model"),
@@ -77,6 +78,9 @@ WHOLE = {
     "plane": Photograph(("PREFILTER_PT_plane",), "plane", opened=("PREFILTER_PT_plane",)),
     "on_model": Photograph(
         ("PREFILTER_PT_on_model",), "on_model", opened=("PREFILTER_PT_on_model",)
+    ),
+    "welcome": Photograph(
+        ("PREFILTER_PT_welcome",), "demonstration", opened=("PREFILTER_PT_welcome",)
     ),
     "model": Photograph(("PREFILTER_PT_model",), "model", opened=("PREFILTER_PT_model",)),
 }

@@ -40,6 +40,7 @@ def session(kind: str, name: str) -> Iterator[float]:
     told["drawn"] = drawn.drawn(shown.panels)
     largest_area().type = "VIEW_3D"
     clear()
+    dismiss_welcome(unless="PREFILTER_PT_welcome" in shown.panels)
     yield 1.0
     if kind == "panels":
         area = yield from show_panel(shown)
@@ -61,6 +62,13 @@ def clear() -> None:
     for kind in (bpy.data.objects, bpy.data.materials, bpy.data.images):
         for one in list(kind):
             kind.remove(one)
+
+
+def dismiss_welcome(*, unless: bool) -> None:
+    """Hides the welcome from photographs of other panels."""
+    for addon in bpy.context.preferences.addons:
+        if hasattr(addon.preferences, "show_welcome"):
+            addon.preferences.show_welcome = unless
 
 
 def largest_area() -> bpy.types.Area:
@@ -443,6 +451,16 @@ def show_on_model(shown: Photograph) -> Iterator[float]:
     with inside(area):
         bpy.ops.prefilter.preview_on_model()
     yield from open_tab(area)
+
+
+def show_demonstration(shown: Photograph) -> Iterator[float]:
+    """The welcome, after its first button was pressed."""
+    area = largest_area()
+    rearrange(shown.opened, only=(*shown.panels, "PREFILTER_PT_model"))
+    yield from open_tab(area)
+    with inside(area):
+        bpy.ops.prefilter.demonstrate(kind="mipmaps")
+    area.spaces.active.overlay.show_overlays = False
 
 
 def plain_view(area: bpy.types.Area) -> bpy.types.RegionView3D:
