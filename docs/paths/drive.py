@@ -20,10 +20,7 @@ sys.path.append(str(HERE.parent / "pictures" / "windows"))
 import photograph  # noqa: E402
 
 SIZE = (1280, 800)
-TOLD = "prefilter: path "
 MOST_SECONDS = 300
-WITHOUT_EXTENSION = {"newcomer"}
-"""Paths of a Blender that never had the extension, and gets the zip in build/."""
 
 
 def main(names: list[str]) -> None:
@@ -40,7 +37,7 @@ def main(names: list[str]) -> None:
 def walked(name: str, display: str, folder: str) -> dict[str, object]:
     """Returns what a path took."""
     environment = {**os.environ, "DISPLAY": display}
-    if name in WITHOUT_EXTENSION:
+    if name in page.WITHOUT_EXTENSION:
         environment["BLENDER_USER_RESOURCES"] = folder
     done = subprocess.run(
         [
@@ -55,8 +52,8 @@ def walked(name: str, display: str, folder: str) -> dict[str, object]:
         check=False,
     )
     for line in done.stdout.splitlines():
-        if line.startswith(TOLD):
-            return dict(json.loads(line.removeprefix(TOLD)))
+        if line.startswith(page.TOLD):
+            return dict(json.loads(line.removeprefix(page.TOLD)))
     raise SystemExit(f"{name}: the path did not end\n{done.stdout}\n{done.stderr}")
 
 

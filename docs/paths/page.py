@@ -25,6 +25,10 @@ WHO = {
     "newcomer": ("Newcomer", "a demonstration, from the zip", 4),
 }
 """Who walks a path, to what, and in how many clicks at most."""
+WITHOUT_EXTENSION = {"newcomer"}
+"""Paths of a Blender that never had the extension, and gets the zip in build/."""
+TOLD = "prefilter: path "
+"""What the line begins with in which a Blender tells what a path took."""
 NOT_IN = {("look_dev", "4.3"): "Texture caches came with Blender 5.2."}
 
 _HEAD = """# Paths to a first result

@@ -17,15 +17,15 @@ import bpy
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.append(str(ROOT / "tests" / "blender"))
+sys.path += [str(ROOT / "tests" / "blender"), str(Path(__file__).parent)]
 
 import bodies  # noqa: E402
+import page  # noqa: E402
 import scenes  # noqa: E402
 import window  # noqa: E402
 from window import PACKAGE, Stage, begun, clicked, idle, largest, moved, region, until  # noqa: E402
 
 NAME, FOLDER = sys.argv[sys.argv.index("--") + 1], Path(sys.argv[sys.argv.index("--") + 2])
-TOLD = "prefilter: path "
 TICK = 0.01
 _CORNERS = ("lower_left", "lower_right", "upper_right", "upper_left")
 
@@ -468,7 +468,7 @@ def on_screen(stage: Stage, place, size: tuple[int, int]) -> tuple[int, int]:
 def session() -> Iterator[None]:
     """Walks the path, and tells what it took."""
     told = yield from globals()[NAME]()
-    print(TOLD + json.dumps(told), flush=True)
+    print(page.TOLD + json.dumps(told), flush=True)
 
 
 window.play(session())

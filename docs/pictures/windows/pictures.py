@@ -67,7 +67,7 @@ CROPPED = {
 
 WHOLE = {
     "panel": Photograph(("PREFILTER_PT_bake",), "image"),
-    "preview": Photograph(("PREFILTER_PT_preview",), "levels"),
+    "preview": Photograph(("PREFILTER_PT_preview",), "levels", opened=("PREFILTER_PT_preview",)),
     "weights": Photograph(
         ("PREFILTER_PT_texel_use",), "weights", opened=("PREFILTER_PT_texel_use",)
     ),

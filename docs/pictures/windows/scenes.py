@@ -106,10 +106,12 @@ def rearrange(opened: Sequence[str], only: Sequence[str] = (), first: str = "") 
     """Has panels start open; the other ones of the add-on closed, or absent.
 
     Args:
-        opened: The names of the panels.
+        opened: The names of the panels; those around them open too.
         only: Names of panels that stay, with those below; all if empty.
-        first: The panel on top.
+        first: The panel on top, with the one around it.
     """
+    opened = [one for name in opened for one in (name, parent_of(name))]
+    first = parent_of(first) or first
     ours = [one for one in drawn.registered_panels() if one.__name__.startswith("PREFILTER_PT_")]
     kept = [one for name in only for one in drawn.family(getattr(bpy.types, name))] or ours
     for panel in reversed(ours):
@@ -125,6 +127,12 @@ def rearrange(opened: Sequence[str], only: Sequence[str] = (), first: str = "") 
         # Panels of headers are lists of presets, which buttons in other panels open.
         if panel in kept or panel.bl_region_type == "HEADER":
             bpy.utils.register_class(panel)
+
+
+def parent_of(name: str) -> str:
+    """Returns the panel of the add-on that one is in; empty if there is none."""
+    parent = getattr(getattr(bpy.types, name, None), "bl_parent_id", "")
+    return parent if parent.startswith("PREFILTER_") else ""
 
 
 class Unfolded:
