@@ -2,7 +2,9 @@
 
 """Scenes of the demonstrations: made beside those of the user, removed with all that is in them."""
 
+import time
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import bpy
 import numpy as np
@@ -15,6 +17,8 @@ from . import models, place
 from .choices import HOME, is_demonstration
 
 _LEVEL = 4
+_SECONDS_BETWEEN_LOOKS = 0.1
+_MOST_SECONDS = 120.0
 _WIDTHS = {"mipmaps": 8.0, "solid": 6.4, "surface": 5.8}
 
 
@@ -65,26 +69,59 @@ def end(context: bpy.types.Context) -> None:
 def _mipmaps(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
     """Shows a stone with its texture, and with a level of it by two filters."""
     model, pixels = models.stone(), models.paint()
-    for i, (name, text, kind) in enumerate(
-        (
-            ("Stone", tr("Full texture"), ""),
-            ("Stone Box", tr("Box, level {}").format(_LEVEL), "box"),
-            ("Stone Prefilter", tr("Prefilter, level {}").format(_LEVEL), "pam-bilinear"),
-        )
-    ):
+    named = (
+        ("Stone", tr("Full texture"), ""),
+        ("Stone Box", tr("Box, level {}").format(_LEVEL), "box"),
+        ("Stone Prefilter", tr("Prefilter, level {}").format(_LEVEL), "pam-bilinear"),
+    )
+    baked: dict[str, str] = {}
+    for i, (name, text, kind) in enumerate(named):
         image = bpy.data.images.new(name, *pixels.shape[1::-1])
         image.pixels.foreach_set(pixels.ravel())
         image.pack()
         obj = _add(scene, _mesh(name, model), 2.6 * (i - 1))
-        node = _show(obj, image)
+        _show(obj, image)
         _label(scene, text, obj)
         if kind:
-            context.view_layer.update()
-            bpy.ops.prefilter.bake_mipmaps(
-                image=image.name, filter=kind, result="images", objects="all"
-            )
-            node.image = level_images.levels_of(image)[_LEVEL - 1]
+            baked[image.name] = kind
     _select(context, [obj])
+    for name, kind in baked.items():
+        # One waits for the other.
+        bpy.ops.prefilter.bake_mipmaps(
+            "INVOKE_DEFAULT", image=name, filter=kind, result="images", objects="all"
+        )
+    show = partial(_show_levels, scene.name, list(baked), time.monotonic() + _MOST_SECONDS)
+    if show() is not None:
+        bpy.app.timers.register(show, first_interval=_SECONDS_BETWEEN_LOOKS)
+
+
+def _show_levels(scene_name: str, names: list[str], end: float) -> float | None:
+    """Shows a level of images once they are baked, instead of the images.
+
+    Args:
+        scene_name: The scene of the demonstration.
+        names: The images.
+        end: When to give up.
+
+    Returns:
+        In how many seconds to look again; None for never.
+    """
+    scene = bpy.data.scenes.get(scene_name)
+    images = [bpy.data.images.get(name) for name in names]
+    if scene is None or None in images or time.monotonic() > end:
+        return None
+    levels = [level_images.levels_of(image) for image in images]
+    if not all(levels):
+        return _SECONDS_BETWEEN_LOOKS
+    shown = {image: found[_LEVEL - 1] for image, found in zip(images, levels, strict=True)}
+    for obj in scene.objects:
+        for slot in obj.material_slots:
+            for node in slot.material.node_tree.nodes if slot.material else ():
+                if node.type == "TEX_IMAGE" and node.image in shown:
+                    node.image = shown[node.image]
+    if not bpy.app.background:
+        bpy.ops.ed.undo_push(message="Bake and Compare")
+    return None
 
 
 def _solid(context: bpy.types.Context, scene: bpy.types.Scene) -> None:
@@ -145,8 +182,8 @@ def _label(scene: bpy.types.Scene, text: str, below: bpy.types.Object) -> None:
     scene.collection.objects.link(obj)
 
 
-def _show(obj: bpy.types.Object, image: bpy.types.Image) -> bpy.types.ShaderNodeTexImage:
-    """Gives an object a material that shows an image, and returns its node."""
+def _show(obj: bpy.types.Object, image: bpy.types.Image) -> None:
+    """Gives an object a material that shows an image."""
     material = bpy.data.materials.new(obj.name)
     if material.node_tree is None:
         material.use_nodes = True
@@ -158,7 +195,6 @@ def _show(obj: bpy.types.Object, image: bpy.types.Image) -> bpy.types.ShaderNode
     tree.links.new(node.outputs["Color"], shader.inputs["Base Color"])
     tree.nodes.active = node
     obj.data.materials.append(material)
-    return node
 
 
 def _select(context: bpy.types.Context, objects: Sequence[bpy.types.Object]) -> None:

@@ -28,9 +28,8 @@ def main(names: list[str]) -> None:
     for name in names or list(page.WHO):
         with photograph.screen(*SIZE) as (display, _), tempfile.TemporaryDirectory() as folder:
             told = walked(name, display, folder)
-        kept = page.read()
-        kept.setdefault(name, {})[told.pop("version")] = told
-        page.write(kept)
+        if "left_out" not in told:
+            page.keep(name, told)
         print(name, json.dumps(told), flush=True)
 
 

@@ -42,6 +42,8 @@ def session() -> Iterator[None]:
         yield from pressed(stage, f"prefilter.demonstrate(kind='{kind}'")
         yield
         yield from until(idle)
+        if kind == "mipmaps":
+            yield from until(lambda: any(".mip" in name for name in shown()["images"]))
         yield from stage.redrawn()
         found[kind] = shown()
     yield from undone(stage)
