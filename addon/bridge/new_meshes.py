@@ -3,7 +3,7 @@
 """Triangles to Blender: meshes with materials and colors, and the objects that show them."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass, field
 
 import bpy
@@ -35,6 +35,7 @@ class Contour:
         rendered: Likewise of those that renders use.
         sharp_angle: Edges with a greater angle are sharp, in radians; None for flat faces.
         edges: Its edges; None has Blender find them, on the main thread.
+        made: The mesh of it, while that is made and nothing shows it.
     """
 
     positions: NDArray[np.float32]
@@ -46,6 +47,7 @@ class Contour:
     rendered: dict[str, str] = field(default_factory=dict)
     sharp_angle: float | None = None
     edges: "prefilter.MeshEdges | None" = None
+    made: list[bpy.types.Mesh] = field(default_factory=list)
 
 
 def is_editable(obj: bpy.types.Object) -> bool:
@@ -64,20 +66,53 @@ def check_editable(obj: bpy.types.Object) -> None:
 
 
 def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
-    """Makes a mesh datablock of a surface."""
-    mesh = bpy.data.meshes.new(name)
+    """Makes a mesh datablock of a surface, if `making_mesh` has not yet."""
+    for _ in making_mesh(contour):
+        pass
+    mesh = contour.made.pop()
+    mesh.name = name
+    return mesh
+
+
+def making_mesh(contour: Contour) -> Generator[None, None, None]:
+    """Makes a mesh datablock of a surface in steps, for `new_mesh` to return."""
+    if contour.made:
+        return
+    mesh = bpy.data.meshes.new("Surface")
+    try:
+        yield from _filling(mesh, contour)
+    except BaseException:
+        bpy.data.meshes.remove(mesh)
+        raise
+    contour.made.append(mesh)
+
+
+def forget_mesh(contour: Contour) -> None:
+    """Removes what `making_mesh` has made, if nothing shows it."""
+    for mesh in contour.made:
+        bpy.data.meshes.remove(mesh)
+    contour.made.clear()
+
+
+def _filling(mesh: bpy.types.Mesh, contour: Contour) -> Generator[None, None, None]:
     count = len(contour.triangles)
     mesh.vertices.add(len(contour.positions))
+    yield
     mesh.loops.add(3 * count)
+    yield
     mesh.polygons.add(count)
+    yield
     mesh.attributes["position"].data.foreach_set(
         "vector", np.ascontiguousarray(contour.positions, np.float32).ravel()
     )
+    yield
     mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
+    yield
     # Attributes take arrays as they are, a hundred times faster than loops and polygons do.
     mesh.attributes[".corner_vert"].data.foreach_set(
         "value", np.ascontiguousarray(contour.triangles, np.int32).ravel()
     )
+    yield
     for key in contour.materials:
         mesh.materials.append(key.find() if key is not None else None)
     if contour.face_materials is not None and contour.face_materials.any():
@@ -86,7 +121,9 @@ def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
     for layer in contour.layers:
         if layer.kind not in {VERTEX_GROUP, NORMALS}:
             write_layer(mesh, layer)
+            yield
     _add_edges(mesh, contour)
+    yield
     if contour.sharp_angle is None:
         mesh.shade_flat()
     else:
@@ -94,11 +131,11 @@ def new_mesh(name: str, contour: Contour) -> bpy.types.Mesh:
     if contour.sharp_angle is not None and contour.sharp_angle < math.pi:
         mesh.set_sharp_from_angle(angle=contour.sharp_angle)
     _choose_active(mesh, contour)
+    yield
     for layer in contour.layers:
         if layer.kind == NORMALS:
             is_deformed = any(other.kind == VERTEX_GROUP for other in contour.layers)
             _set_normals(mesh, layer.values, is_deformed=is_deformed)
-    return mesh
 
 
 def _set_normals(mesh: bpy.types.Mesh, values: NDArray[np.float32], *, is_deformed: bool) -> None:

@@ -53,6 +53,14 @@ class Doing:
         del context
         return None
 
+    def making(self) -> Generator[None, None, None]:
+        """Makes in steps what `finish` then puts into place, where that takes long.
+
+        Nothing else may happen in between. `finish` makes what is not made, as in a redo.
+        """
+        return
+        yield
+
     def finish(self, context: bpy.types.Context, result: Any) -> str:
         """Writes the result of the last part to Blender, and returns what to report."""
         raise NotImplementedError

@@ -4,7 +4,7 @@
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from contextlib import contextmanager, nullcontext
 from typing import Any
 
@@ -57,6 +57,7 @@ class BackgroundOperator(Doing):
     """What it works on; None has it work on what the context has."""
     _waiting_timer: bpy.types.Timer | None = None
     _has_begun_to_read: bool = False
+    _result: Any = None
     _cancelled_at: float = math.inf
     _replaced: int = 0
     """The operator whose result this one is to replace; 0 for none."""
@@ -150,7 +151,8 @@ class BackgroundOperator(Doing):
             is_asking = self._run is not None and self._run.ask_to_cancel()
             return {"RUNNING_MODAL"} if is_asking else self._stop(context)
         if event.type != "TIMER":
-            is_free = self._parts.job is not None and not self._replaced
+            parts = self._parts
+            is_free = parts.job is not None and parts.making is None and not self._replaced
             return running.handed_on(context, event, is_free=is_free)
         assert self._run is not None
         if self._cancelled_at == math.inf and self._run.is_cancelled(context):
@@ -277,20 +279,32 @@ class BackgroundOperator(Doing):
             pause = (marked("Paused") if parts.job.is_held else "Pausing") if is_paused else ""
             self._run.show(context, tr(self.doing), parts.job.progress, pause)
             return {"PASS_THROUGH"}
-        if is_paused:
+        if is_paused and parts.making is None:
             self._run.show(context, tr(self.doing), parts.job.progress, "Paused")
             return {"PASS_THROUGH"}
-        result = parts.result()
-        parts.steps = self.following(context)
-        if parts.steps is not None:
-            parts.job = None
-            if self._cancelled_at < math.inf:
-                raise prefilter.Cancelled("cancelled")
+        return self._write_on(context)
+
+    def _write_on(self, context: bpy.types.Context) -> set[str]:
+        """Goes on once a part is computed: with the next, or with the results of all."""
+        parts = self._parts
+        if parts.making is None:
+            self._result = parts.result()
+            parts.steps = self.following(context)
+            if parts.steps is not None:
+                parts.job = None
+                if self._cancelled_at < math.inf:
+                    raise prefilter.Cancelled("cancelled")
+                return {"RUNNING_MODAL"}
+            parts.making = self.making()
+        elif self._cancelled_at < math.inf:
+            raise prefilter.Cancelled("cancelled")
+        # What is made would not outlast the undo that a redo begins with.
+        if not (self._replaced or parts.make_on(TICK_SECONDS)):
             return {"RUNNING_MODAL"}
         self._end_run(context)
         undoes = bool(self._replaced) and "UNDO" in self.bl_options
         with redo.in_place_of(self._replaced, context, is_undoable=undoes):
-            self._finish(context, result)
+            self._finish(context, self._result)
         self._leave(context, State.DONE)
         return {"FINISHED"}
 
@@ -407,6 +421,11 @@ class WorkOperator(BackgroundOperator):
         """Reads from Blender, and returns what then runs in a thread."""
         self.work = self.read_work(context)
         return self.work.compute
+
+    def making(self) -> Generator[None, None, None]:
+        """Makes what the work then writes, if that takes long."""
+        making = getattr(self.work, "making", None)
+        return making() if making is not None else super().making()
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Writes the result, and returns what to report."""

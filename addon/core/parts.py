@@ -22,12 +22,14 @@ class PartedWork:
         steps: What reads the part that is next; None once it is read.
         job: What computes the part that was read last; None while one is read.
         fraction_read: How much of the part is read.
+        making: What then makes the results in steps; None before the last part is computed.
         seconds: How long the work has taken so far, in all threads that it has had.
     """
 
     steps: Steps | None = None
     job: Job[Any] | None = None
     fraction_read: float = 0.0
+    making: Generator[None, None, None] | None = None
     seconds: float = 0.0
 
     @contextmanager
@@ -51,6 +53,16 @@ class PartedWork:
                 self.steps = None
                 self.job = Job(done.value)
 
+    def make_on(self, seconds: float) -> bool:
+        """Makes results for a time; returns whether all are made."""
+        assert self.making is not None
+        end = time.monotonic() + seconds
+        with self.clock():
+            for _ in self.making:
+                if time.monotonic() >= end:
+                    return False
+        return True
+
     def result(self) -> Any:
         """Waits for the thread, and returns or raises what it did."""
         assert self.job is not None
@@ -62,3 +74,5 @@ class PartedWork:
         """Ends the reading, so that it takes back what it has changed."""
         if self.steps is not None:
             self.steps.close()
+        if self.making is not None:
+            self.making.close()

@@ -105,7 +105,7 @@ def read(request: Request) -> Bake | udim.TiledBake:
 
 
 def reading(request: Request) -> Generator[float, None, Bake | udim.TiledBake]:
-    """Does what `read` does, in steps of a frame.
+    """Does what `read` does, in steps: the images, then frame after frame.
 
     The scene is at other frames in between; closing the generator takes it back, as its end
     does. Nothing else may change meanwhile.
@@ -118,10 +118,12 @@ def reading(request: Request) -> Generator[float, None, Bake | udim.TiledBake]:
     """
     check(request.settings)
     level_0 = read_level_0(request)
+    yield 0.0
     request = with_format(request, level_0)
     told = told_of_files(request, level_0)
     rough = read_roughness(request, level_0)
     told += told_of_roughness(request, rough)
+    yield 0.0
     found = yield from read_surfaces(request)
     job = bake_of(request, level_0, rough, found)
     job.warnings.extend(told + odd_uses(request, level_0, rough))

@@ -3,7 +3,7 @@
 """The surface of selected points in three steps: read from Blender, compute, write to Blender."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import dataclass
 
 import bpy
@@ -146,6 +146,11 @@ class Reconstruction:
         go_on(progress, 1.0)
         self._read.clear()
 
+    def making(self) -> Generator[None, None, None]:
+        """Makes the mesh that `write` shows, in steps."""
+        assert self._contour is not None
+        yield from new_meshes.making_mesh(self._contour)
+
     def write(self) -> Outcome:
         """Adds the object, and does with the points as was chosen.
 
@@ -180,7 +185,9 @@ class Reconstruction:
         )
 
     def discard(self) -> None:
-        """Does nothing: nothing is staged."""
+        """Removes a mesh that nothing shows."""
+        if self._contour is not None:
+            new_meshes.forget_mesh(self._contour)
 
     def _look(self, surface: Surface, carried: dict[str, Carried]) -> Look:
         """Returns what the surface has, with the active object's materials and colors if it can."""

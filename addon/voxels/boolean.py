@@ -2,7 +2,7 @@
 
 """Set operations on objects, in the same three steps as voxelizing them."""
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from dataclasses import replace
 from functools import partial, reduce
 
@@ -126,6 +126,12 @@ class Boolean:
         go_on(progress, 1.0)
         self._read.clear()
 
+    def making(self) -> Generator[None, None, None]:
+        """Makes the mesh that `write` shows, in steps."""
+        assert self._result is not None
+        assert self._result.contour is not None
+        yield from new_meshes.making_mesh(self._result.contour)
+
     def write(self) -> Outcome:
         """Puts the result into the first operand, and does with the others as was chosen.
 
@@ -154,7 +160,9 @@ class Boolean:
         )
 
     def discard(self) -> None:
-        """Does nothing: nothing is staged."""
+        """Removes a mesh that nothing shows."""
+        if self._result is not None and self._result.contour is not None:
+            new_meshes.forget_mesh(self._result.contour)
 
     def _box(self, boxes: list[Box]) -> Box:
         if self._settings.operation == "union":

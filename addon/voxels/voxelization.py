@@ -5,7 +5,7 @@
 The operator and the command are two ways to call this.
 """
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
 from pathlib import Path
 
 import bpy
@@ -97,6 +97,12 @@ class Voxelization:
         go_on(progress, 1.0)
         self._read.clear()
 
+    def making(self) -> Generator[None, None, None]:
+        """Makes the meshes that `write` shows, in steps."""
+        for result in self._results:
+            if result.contour is not None:
+                yield from new_meshes.making_mesh(result.contour)
+
     def write(self) -> Outcome:
         """Puts the results into Blender.
 
@@ -126,6 +132,8 @@ class Voxelization:
         for result in self._results:
             if result.staged is not None:
                 result.staged.discard()
+            if result.contour is not None:
+                new_meshes.forget_mesh(result.contour)
 
     def _leave_out_empty(self) -> None:
         empty = [place.name for place, solid in self._read if not solid.parts]

@@ -115,16 +115,22 @@ class ModelBake:
 
     def stage_images(self) -> None:
         """Makes level images of what is computed, which then needs less memory; writes nothing."""
+        for _ in self.staging_images():
+            pass
+
+    def staging_images(self) -> Generator[None, None, None]:
+        """Does what `stage_images` does, in steps of an image."""
         if not self._settings.use_images:
             return
-        computed, self._computed = self._computed, []
-        for job, bake in computed:
+        for one in list(self._computed):
+            job, bake = one
             try:
                 bake.stage_images()
                 bake.let_pixels_go()
-                self._computed.append((job, bake))
             except FAILURES as error:
+                self._computed.remove(one)
                 self.results.fail(job.images, error)
+            yield
 
     def write(self) -> list[Outcome]:
         """Writes what is computed, the files of all images together or none of them."""
@@ -161,6 +167,7 @@ class ModelBake:
             self._done -= len(job.images)
             return None
         made = prepared(job, pair, self._settings, self._files)
+        yield 0.0
         settings = made.settings
         fits = self._settings.texture_format in decisions.BY_CONTENT
         if self._is_rehearsal:

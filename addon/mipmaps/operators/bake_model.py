@@ -66,6 +66,7 @@ class PREFILTER_OT_bake_model(
     def reading(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
         """Does what `read` does, frame after frame."""
         self._model = self._planned(context)
+        yield 0.0
         following = self.following(context)
         assert following is not None
         return (yield from following)
@@ -77,6 +78,11 @@ class PREFILTER_OT_bake_model(
             return None
         self.doing = tr("Baking {}").format(self._model.next_name)
         return self._model.reading(context.evaluated_depsgraph_get())
+
+    def making(self) -> Generator[None, None, None]:
+        """Makes the level images, those of an image at a time."""
+        assert self._model is not None
+        return self._model.staging_images()
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Writes what was baked."""

@@ -373,3 +373,32 @@ def test_esc_between_parts(in_parts, context, is_waiting):
     assert operator.discarded == 1
     assert operator.done == (["read"] if is_waiting else ["read", "compute"])
     assert operator.reports == ["Probing canceled"]
+
+
+@pytest.mark.parametrize("is_cancelled", [False, True])
+def test_results_are_made_in_steps(addon, probe, context, monkeypatch, is_cancelled):
+    """Nothing but the button and Esc counts in between, and what is made goes with Esc."""
+    monkeypatch.setattr(addon("core.running"), "is_over_button", lambda *_: False)
+    operator, made = probe(), []
+
+    def making():
+        for number in range(3):
+            time.sleep(0.06)
+            made.append(number)
+            yield
+
+    operator.making = making
+    operator.invoke(context, None)
+    while not made:
+        assert operator.modal(context, TIMER) <= {"PASS_THROUGH", "RUNNING_MODAL"}
+    assert made == [0]
+    assert operator.modal(context, CLICK) == {"RUNNING_MODAL"}
+    if is_cancelled:
+        operator.modal(context, ESC)
+    status = {"RUNNING_MODAL"}
+    while status == {"RUNNING_MODAL"}:
+        status = operator.modal(context, TIMER)
+    assert status == ({"CANCELLED"} if is_cancelled else {"FINISHED"})
+    assert made == ([0] if is_cancelled else [0, 1, 2])
+    assert operator.discarded == is_cancelled
+    assert operator.reports == ["Probing canceled" if is_cancelled else "done"]
