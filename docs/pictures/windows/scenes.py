@@ -468,6 +468,8 @@ def show_demonstration(shown: Photograph) -> Iterator[float]:
     yield from open_tab(area)
     with inside(area):
         bpy.ops.prefilter.demonstrate(kind="mipmaps")
+    while "Stone Prefilter.mip04" not in bpy.data.images:
+        yield 0.5
     area.spaces.active.overlay.show_overlays = False
 
 
