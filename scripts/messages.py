@@ -18,7 +18,7 @@ import bpy
 
 PACKAGE = "bl_ext.user_default.prefilter"
 ADDON = Path(__file__).resolve().parents[1] / "addon"
-LABEL, TIP, TEXT = "label", "tip", "text"
+LABEL, TIP, TEXT, BUTTON = "label", "tip", "text", "button"
 _BASES = (
     *(bpy.types.Operator, bpy.types.Panel, bpy.types.Menu, bpy.types.PropertyGroup),
     *(bpy.types.AddonPreferences, bpy.types.FileHandler, bpy.types.UIList),
@@ -33,6 +33,8 @@ _DRAWING = {"draw": 2, "draw_main": 2, "note": 2, "subpanel": 2}
 """Functions that draw a text, and which argument it is."""
 _SAYING = {"poll_message_set", "report"}
 """Methods that show a text as it is."""
+_BUTTONS = {"operator", "prop", "label", "draw", "draw_main", "subpanel"}
+"""Functions that draw a text into one line of a panel."""
 _DRAWN = {"text", "heading", "placeholder", "message"}
 _SAID = {"doing", "makes", "wanted", "nothing"}
 
@@ -93,6 +95,8 @@ def written() -> Iterator[tuple[str, str, str]]:
     for node, place in nodes():
         for text in _texts(node):
             yield TEXT, text, place
+        if isinstance(node, ast.Call) and _name(node) in _BUTTONS and "menus.py" not in place:
+            yield from ((BUTTON, text, place) for one in _drawn(node) for text in _constants(one))
 
 
 def untranslated() -> Iterator[str]:
