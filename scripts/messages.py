@@ -10,6 +10,7 @@ usage: scripts/run blender --background --python-exit-code 1 --python scripts/me
 import ast
 import importlib
 import json
+import re
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -35,6 +36,8 @@ _SAYING = {"poll_message_set", "report"}
 """Methods that show a text as it is."""
 _BUTTONS = {"operator", "prop", "label", "draw", "draw_main", "subpanel"}
 """Functions that draw a text into one line of a panel."""
+_WIDE = re.compile(r".*\bmenus\.py|core/shortcuts\.py|preferences\.py")
+"""Modules that draw menus and the preferences, where there is room."""
 _DRAWN = {"text", "heading", "placeholder", "message"}
 _SAID = {"doing", "makes", "wanted", "nothing"}
 
@@ -95,7 +98,7 @@ def written() -> Iterator[tuple[str, str, str]]:
     for node, place in nodes():
         for text in _texts(node):
             yield TEXT, text, place
-        if isinstance(node, ast.Call) and _name(node) in _BUTTONS and "menus.py" not in place:
+        if isinstance(node, ast.Call) and _name(node) in _BUTTONS and not _WIDE.match(place):
             yield from ((BUTTON, text, place) for one in _drawn(node) for text in _constants(one))
 
 
