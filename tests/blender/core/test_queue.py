@@ -2,6 +2,7 @@
 
 """The queue, mostly in a window that nobody sees: what waits has its turn, pauses, is canceled."""
 
+import json
 from pathlib import Path
 
 import bpy
@@ -77,6 +78,12 @@ def test_another_file_ends_everything(found):
     assert told["after"] == [[], True]
     assert told["next"] > 8
     assert not told["left"]
+
+
+def test_blender_quits_while_work_is_paused(in_window, tmp_path):
+    result = tmp_path / "result.json"
+    in_window(SESSION.with_name("quit_session.py"), result)
+    assert json.loads(result.read_text()) == ["RUNNING", "WAITING"]
 
 
 @pytest.fixture
