@@ -61,7 +61,8 @@ def test_closing_the_reading_takes_the_scene_back(addon, pulse):
     settings = addon("mipmaps.choices").Settings(use_frames=True, frame_start=2, frame_end=9)
     module = addon("mipmaps.reading")
     reading = module.reading(module.Request(*pulse, settings, scenes.depsgraph()))
-    assert next(reading) == pytest.approx(1 / 8)
+    # The images come before the frames.
+    assert next(share for share in reading if share > 0.0) == pytest.approx(1 / 8)
     assert bpy.context.scene.frame_current == 2
     reading.close()
     assert bpy.context.scene.frame_current == 1
