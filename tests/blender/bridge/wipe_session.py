@@ -67,7 +67,14 @@ def dragged(stage: Stage, state: bpy.types.PropertyGroup, name: str) -> Iterator
     here["drawn under the mouse"] = float(np.mean(differs[:, width // 2]))
     # The server draws the pointer where it really is: in the middle of the screen.
     here["pointer changes"] = bool(np.any(differs[:, width // 2 + 30 :]))
-    here["changes back"] = bool(np.all(off_again == off))
+    # The server may have hidden the pointer in one of the pictures.
+    for _ in range(5):
+        here["changes back"] = bool(np.all(off_again == off))
+        if here["changes back"]:
+            break
+        yield from moved(stage.window, x - 80, y)
+        yield from moved(stage.window, x - 90, y)
+        off_again = yield from steady(stage)
     here["dragged"] = yield from dragged_by(stage, state.wipe, 60, state)
     here["beside"] = yield from dragged_by(stage, state.wipe + 0.1, -60, state)
     here["near"] = yield from dragged_by(stage, state.wipe, -40, state, off=4)
