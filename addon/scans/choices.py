@@ -9,6 +9,8 @@ import prefilter
 from ..core.choices import Choice
 from ..core.options import number, one_of, switch, threads
 
+EXTENSIONS = (".las", ".laz", ".e57", ".pcd", ".ply", ".xyz", ".xyzn", ".pts", ".asc", ".txt")
+"""Of files of points: `prefilter.POINT_EXTENSIONS`, which takes long to import."""
 RESOLUTIONS = {
     "depth": Choice("Depth", "Halve the cube around the points this many times"),
     "size": Choice("Voxel Size", "Cells of at most this size, in the units of the world"),

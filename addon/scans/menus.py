@@ -7,8 +7,6 @@ import bpy
 from ..core.registration import entry
 from .operators.import_points import PREFILTER_OT_import_points
 
-_ENTRY = "Point Cloud (.las/.laz/.e57/.pcd/.xyz/.pts/.ply)"
-
 
 def _draw_import(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     del context

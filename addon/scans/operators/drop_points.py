@@ -5,6 +5,7 @@
 import bpy
 
 from ...core.translations import marked, tr
+from ..choices import EXTENSIONS
 from ..properties import FilesProperties
 from .import_points import PREFILTER_OT_import_points
 
@@ -12,6 +13,8 @@ _CHOICES = (
     (marked("Import Points"), "IMPORT", False),
     (marked("Reconstruct Surface"), "POINTCLOUD_DATA", True),
 )
+_OTHERS = frozenset({".ply", ".txt"})
+"""What Blender or other add-ons read, too."""
 
 
 class PREFILTER_OT_drop_points(FilesProperties, bpy.types.Operator):
@@ -60,7 +63,7 @@ class PREFILTER_FH_points(bpy.types.FileHandler):
     bl_idname = "PREFILTER_FH_points"
     bl_label = "Point Cloud"
     bl_import_operator = PREFILTER_OT_drop_points.bl_idname
-    bl_file_extensions = ".las;.laz;.e57;.pcd;.xyz;.xyzn;.pts;.asc"
+    bl_file_extensions = ";".join(ending for ending in EXTENSIONS if ending not in _OTHERS)
 
     @classmethod
     def poll_drop(cls, context: bpy.types.Context) -> bool:

@@ -10,6 +10,7 @@ from bpy.props import StringProperty
 from ...core.browsing import BrowsingOperator
 from ...core.operator import WorkOperator
 from ...core.translations import tr
+from ..choices import EXTENSIONS
 from ..properties import RECONSTRUCT, ImportProperties
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ class PREFILTER_OT_import_points(
     line = "files"
 
     filter_glob: StringProperty(
-        default="*.las;*.laz;*.e57;*.pcd;*.ply;*.xyz;*.xyzn;*.pts;*.asc;*.txt", options={"HIDDEN"}
+        default=";".join(f"*{ending}" for ending in EXTENSIONS), options={"HIDDEN"}
     )
 
     if TYPE_CHECKING:

@@ -9,6 +9,7 @@ import bodies
 import bpy
 import clouds
 import numpy as np
+import prefilter
 import pytest
 
 COUNT = 2_000
@@ -239,3 +240,14 @@ def test_real_scans(name):
     found = clouds.points(obj)
     assert len(found) > 5_000
     assert np.isfinite(found).all()
+
+
+def test_every_kind_of_file_is_offered(addon):
+    choices = addon("scans.choices")
+    assert sorted(choices.EXTENSIONS) == sorted(prefilter.POINT_EXTENSIONS)
+    pattern = bpy.ops.prefilter.import_points.get_rna_type().properties["filter_glob"].default
+    assert pattern.split(";") == [f"*{ending}" for ending in choices.EXTENSIONS]
+    dropped = set(
+        addon("scans.operators.drop_points").PREFILTER_FH_points.bl_file_extensions.split(";")
+    )
+    assert set(choices.EXTENSIONS) - dropped == {".ply", ".txt"}
