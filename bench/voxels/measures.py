@@ -124,6 +124,31 @@ def sharp_edges(positions: Floats, triangles: Indices, degrees: float) -> Edges:
     return Edges(positions[ends[sharp]], turn[sharp])
 
 
+def folds(positions: Floats, triangles: Indices, degrees: float = 120.0) -> int:
+    """Counts the edges that turn by more than so many degrees."""
+    return int((edges(positions, triangles)[2] > degrees).sum())
+
+
+def topology(triangles: Indices) -> tuple[int, int]:
+    """Returns the number of parts of a closed surface, and the genus of all of them together."""
+    triangles = np.asarray(triangles, np.int64)
+    if len(triangles) == 0:
+        return 0, 0
+    label = np.arange(int(triangles.max()) + 1)
+    while True:
+        least = label[triangles].min(axis=1)
+        before = label.copy()
+        for k in range(3):
+            np.minimum.at(label, triangles[:, k], least)
+        label = label[label]
+        if np.array_equal(before, label):
+            break
+    used = np.unique(triangles)
+    parts = len(np.unique(label[used]))
+    euler = len(used) - 3 * len(triangles) // 2 + len(triangles)
+    return parts, (2 * parts - euler) // 2
+
+
 def corner_points(lines: Edges) -> Floats:
     """Ends of edges where one, or more than two, or two that turn by over 30 degrees come."""
     points = lines.ends.reshape(-1, 3)

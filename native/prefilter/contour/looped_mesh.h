@@ -12,6 +12,24 @@
 
 namespace prefilter {
 
+/// Where vertices between cells go back to, in this order.
+struct Crossings {
+  std::vector<Vector3> fitted;  // before they were sampled
+  std::vector<Vector3> plain;   // of two cells alone
+  std::vector<Vector3> middle;  // halfway between the centers of cells: never folded
+
+  /// Moves a vertex to the next of them; returns whether there is one.
+  bool put_back(std::size_t v, Vector3* position) const {
+    if (*position == middle[v]) return false;
+    if (*position == plain[v]) {
+      *position = middle[v];
+    } else {
+      *position = *position == fitted[v] ? plain[v] : fitted[v];
+    }
+    return true;
+  }
+};
+
 /// A loop of a contour whose vertices are on different sides of an edge.
 struct SharpLoop {
   std::array<std::int32_t, 12> corners;

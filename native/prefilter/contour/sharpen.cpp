@@ -5,6 +5,7 @@
 #include "prefilter/contour/sharpen.h"
 
 #include <algorithm>
+#include <optional>
 #include <unordered_set>
 #include <utility>
 
@@ -17,6 +18,7 @@
 #include "prefilter/contour/merged_loops.h"
 #include "prefilter/contour/near_intersections.h"
 #include "prefilter/contour/relaxed_features.h"
+#include "prefilter/remesh/folds.h"
 
 namespace prefilter {
 namespace {
@@ -164,22 +166,95 @@ Flags suspects(const LayeredMesh& layered, const LoopTriangles& made, const Chan
   return is_suspect;
 }
 
-// Puts a sampled vertex back onto the line between its leaves; returns whether it was off that.
-bool put_on_line(std::int32_t vertex, const VertexSamples& samples,
-                 std::vector<Vector3>* positions) {
+// The sample of a vertex whose line misses the surface; -1 for others, and where it is on its line.
+std::int32_t off_line(std::int32_t vertex, const VertexSamples& samples,
+                      std::span<const Vector3> positions) {
   const auto v = static_cast<std::size_t>(vertex);
-  if (v >= samples.index.size() || samples.index[v] < 0) return false;
+  if (v >= samples.index.size() || samples.index[v] < 0) return -1;
   const auto sample = static_cast<std::size_t>(samples.index[v]);
-  if ((*positions)[v] != samples.samples[sample].position) return false;
-  if ((*positions)[v] == samples.on_lines[sample]) return false;
-  (*positions)[v] = samples.on_lines[sample];
-  return true;
+  const bool is_off = samples.samples[sample].position != samples.on_lines[sample];
+  return is_off && positions[v] != samples.on_lines[sample] ? samples.index[v] : -1;
 }
 
-// Of pairs of triangles: puts vertices onto their lines; otherwise blames loops; otherwise puts
-// vertices where they were before they were sampled. Flags the vertices that have moved.
+// Moves sampled vertices that are off their lines between those around them, along the surface.
+// Where that does not do, they go to their lines, which may be off the surface.
+class OffLineVertices {
+ public:
+  OffLineVertices(const FeatureSurface& surface, const VertexSamples& samples)
+      : surface_(surface), samples_(samples), moves_(samples.samples.size(), 0) {}
+
+  // Takes those of a triangle; returns whether there are any.
+  bool take(const Triangle& triangle, std::span<const Vector3> positions) {
+    bool is_any = false;
+    for (const std::int32_t corner : triangle) {
+      const std::int32_t sample = off_line(corner, samples_, positions);
+      if (sample < 0 || moves_[static_cast<std::size_t>(sample)] > kMostMoves) continue;
+      taken_.push_back(corner);
+      is_any = true;
+    }
+    return is_any;
+  }
+
+  // Flags those that have moved.
+  void move(std::span<const Triangle> triangles, Flags* is_moved, std::vector<Vector3>* positions) {
+    if (taken_.empty()) return;
+    std::sort(taken_.begin(), taken_.end());
+    taken_.erase(std::unique(taken_.begin(), taken_.end()), taken_.end());
+    const std::vector<Vector3> means = means_around(triangles, *positions);
+    for (std::size_t k = 0; k < taken_.size(); ++k) {
+      const auto v = static_cast<std::size_t>(taken_[k]);
+      (*positions)[v] = next_place((*positions)[v], means[k], samples_.index[v]);
+      (*is_moved)[v] = 1;
+    }
+    taken_.clear();
+  }
+
+ private:
+  static constexpr std::uint8_t kMostMoves = 3;
+  static constexpr double kReachCells = 1.0;
+
+  Vector3 next_place(const Vector3& from, const Vector3& mean, std::int32_t index) {
+    const auto sample = static_cast<std::size_t>(index);
+    if (moves_[sample]++ < kMostMoves) {
+      const std::optional<SourcePoint> found = surface_.nearest(
+          0.5 * (from + mean), kReachCells * surface_.cell(), samples_.samples[sample].label);
+      if (found) return found->position;
+    }
+    return samples_.on_lines[sample];
+  }
+
+  // Of the vertices that are taken: the means of those around them.
+  std::vector<Vector3> means_around(std::span<const Triangle> triangles,
+                                    std::span<const Vector3> positions) const {
+    std::vector<Vector3> sums(taken_.size());
+    std::vector<double> counts(taken_.size(), 0.0);
+    for (const Triangle& triangle : triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto found = std::lower_bound(taken_.begin(), taken_.end(), triangle[k]);
+        if (found == taken_.end() || *found != triangle[k]) continue;
+        const auto i = static_cast<std::size_t>(found - taken_.begin());
+        for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
+          sums[i] = sums[i] + positions[static_cast<std::size_t>(triangle[other])];
+        }
+        counts[i] += 2.0;
+      }
+    }
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      sums[i] = (1.0 / std::max(counts[i], 1.0)) * sums[i];
+    }
+    return sums;
+  }
+
+  const FeatureSurface& surface_;
+  const VertexSamples& samples_;
+  std::vector<std::uint8_t> moves_;
+  std::vector<std::int32_t> taken_;
+};
+
+// Of pairs of triangles: moves vertices that are off their lines; otherwise blames loops; otherwise
+// puts vertices where they were before they were sampled. Flags the vertices that have moved.
 std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, const Flags& is_sharp,
-                              const VertexSamples& samples, std::span<const Vector3> crossings,
+                              const Crossings& crossings, OffLineVertices* off_lines,
                               Flags* is_moved, LayeredMesh* layered) {
   FacetedMesh& mesh = layered->mesh;
   std::vector<BlamedLoop> blamed;
@@ -187,11 +262,7 @@ std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, con
     bool has_moved = false;
     Labels loops;
     for (const std::uint32_t t : pairs[p]) {
-      for (const std::int32_t corner : mesh.triangles[t]) {
-        if (!put_on_line(corner, samples, &mesh.positions)) continue;
-        (*is_moved)[static_cast<std::size_t>(corner)] = 1;
-        has_moved = true;
-      }
+      has_moved |= off_lines->take(mesh.triangles[t], mesh.positions);
       if (t < layered->loops) continue;
       for (const std::int32_t owner : made.owners[t - layered->loops]) {
         if (owner >= 0 && is_sharp[static_cast<std::size_t>(owner)] != 0) loops.push_back(owner);
@@ -205,12 +276,14 @@ std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, con
     for (const std::uint32_t t : pairs[p]) {
       for (const std::int32_t corner : mesh.triangles[t]) {
         const auto v = static_cast<std::size_t>(corner);
-        if (v >= crossings.size() || mesh.positions[v] == crossings[v]) continue;
-        mesh.positions[v] = crossings[v];
+        if (v >= crossings.fitted.size()) continue;
+        if (!crossings.put_back(v, &mesh.positions[v])) continue;
         (*is_moved)[v] = 1;
       }
     }
   }
+  const auto near = std::span<const Triangle>(mesh.triangles).subspan(layered->near);
+  off_lines->move(near, is_moved, &mesh.positions);
   return blamed;
 }
 
@@ -230,27 +303,33 @@ std::vector<std::size_t> take_attempts(std::vector<std::uint8_t>* attempts,
   return moving;
 }
 
-// What cannot reach the edge gets as close to it as it can.
-void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flags* is_changed) {
-  Feature& feature = states->features[i];
-  feature.position = 0.5 * (feature.start + feature.position);
-  if (++states->halvings[i] > kMostHalvings) states->is_sharp[i] = 0;
+// Those beside a loop lose or gain a joint.
+void mark_around(std::size_t i, const LinkedLoops& loops, Flags* is_changed) {
   (*is_changed)[i] = 1;
-  // Those beside it lose a joint.
   for (std::size_t k = 0; k < loops.side_count(i); ++k) {
     const std::int32_t other = loops.sides[i][k].other;
     if (other >= 0) (*is_changed)[static_cast<std::size_t>(other)] = 1;
   }
 }
 
-// Of the triangles that are suspect: those that intersect any, and those upside down. Triangles of
-// a plane that overlap need not intersect, by rounding: then one is upside down.
+// What cannot reach the edge gets as close to it as it can.
+void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flags* is_changed) {
+  Feature& feature = states->features[i];
+  feature.position = 0.5 * (feature.start + feature.position);
+  if (++states->halvings[i] > kMostHalvings) states->is_sharp[i] = 0;
+  mark_around(i, loops, is_changed);
+}
+
+// Of the triangles that are suspect: those that intersect any, that fold, and that are upside down.
+// Triangles of a plane that overlap need not intersect, by rounding: then one is upside down.
 Pairs faulty_pairs(const LayeredMesh& layered, const Flags& is_suspect,
                    const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned,
                    double cell, const Progress& progress, int threads) {
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
   Pairs pairs =
       near_intersections(view, layered.near, is_suspect, kCubeCells * cell, progress, threads);
+  const Pairs folds = folded_pairs(view, 0, is_suspect);
+  pairs.insert(pairs.end(), folds.begin(), folds.end());
   for (std::size_t t = layered.near; t < is_suspect.size(); ++t) {
     if (is_suspect[t] == 0) continue;
     if (!is_upside_down(view, t, layered.mesh.labels[t], samples, turned, cell)) continue;
@@ -259,11 +338,64 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Flags& is_suspect,
   }
   return pairs;
 }
+
+// The loops that were drawn back, which may have their places where what was in their way has moved
+// since.
+class SecondTry {
+ public:
+  SecondTry(const LinkedLoops& loops, std::span<const Feature> wanted, LoopStates* states)
+      : loops_(loops), states_(*states), settled_(*states), is_tried_(loops.size(), 0) {
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+      if (states->halvings[i] == 0) continue;
+      is_tried_[i] = 1;
+      states->features[i] = wanted[i];
+      states->is_sharp[i] = 1;
+    }
+  }
+
+  Flags changed() const {
+    Flags is_changed(loops_.size(), 0);
+    for (std::size_t i = 0; i < loops_.size(); ++i) {
+      if (is_tried_[i] != 0) mark_around(i, loops_, &is_changed);
+    }
+    return is_changed;
+  }
+
+  // Puts those back that have a triangle of a pair, or all where none has; returns which changed.
+  Flags give_up(const Pairs& pairs, const LoopTriangles& made, std::size_t first) {
+    Flags is_changed(loops_.size(), 0);
+    for (const auto& pair : pairs) {
+      for (const std::uint32_t t : pair) {
+        if (t < first) continue;
+        for (const std::int32_t owner : made.owners[t - first]) {
+          if (owner >= 0) put_back(static_cast<std::size_t>(owner), &is_changed);
+        }
+      }
+    }
+    for (std::size_t i = 0; i < loops_.size() && !has_any(is_changed); ++i) {
+      put_back(i, &is_changed);
+    }
+    return is_changed;
+  }
+
+ private:
+  void put_back(std::size_t i, Flags* is_changed) {
+    if (is_tried_[i] == 0) return;
+    is_tried_[i] = 0;
+    states_.features[i] = settled_.features[i];
+    states_.is_sharp[i] = settled_.is_sharp[i];
+    mark_around(i, loops_, is_changed);
+  }
+
+  const LinkedLoops& loops_;
+  LoopStates& states_;
+  LoopStates settled_;
+  Flags is_tried_;
+};
 }  // namespace
 
-FacetedMesh sharpen(LoopedMesh looped, const std::vector<Vector3>& crossings,
-                    const FeatureSurface& surface, const VertexSamples& samples,
-                    const Progress& progress, int threads) {
+FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const FeatureSurface& surface,
+                    const VertexSamples& samples, const Progress& progress, int threads) {
   const double cell = surface.cell();
   const LinkedLoops loops =
       link_loops(std::move(looped.loops), surface, samples, progress.part(0.0, 0.1), threads);
@@ -271,21 +403,24 @@ FacetedMesh sharpen(LoopedMesh looped, const std::vector<Vector3>& crossings,
   const FeaturePlaces places(surface);
   LoopStates states =
       first_states(loops, looped.positions, samples, places, progress.part(0.1, 0.5), threads);
+  const std::vector<Feature> wanted = states.features;
   LayeredMesh layered =
       without_loops(std::move(looped.positions), std::move(looped.triangles), samples);
-  Changes changes{Flags(loops.size(), 1), Flags(crossings.size(), 0)};
-  for (std::size_t v = 0; v < crossings.size(); ++v) {
-    if (layered.mesh.positions[v] != crossings[v]) changes.vertices[v] = 1;
+  const std::size_t vertices = crossings.fitted.size();
+  Changes changes{Flags(loops.size(), 1), Flags(vertices, 0)};
+  for (std::size_t v = 0; v < vertices; ++v) {
+    if (layered.mesh.positions[v] != crossings.fitted[v]) changes.vertices[v] = 1;
   }
+  OffLineVertices off_lines(surface, samples);
   const Progress checking = progress.part(0.6, 1.0);
   do {
     const LoopTriangles made =
         assemble(loops, looped.loop_triangles, samples, cell, &states, &changes.loops, &layered);
     const Flags is_suspect = suspects(layered, made, changes);
     const Pairs pairs = faulty_pairs(layered, is_suspect, samples, turned, cell, checking, threads);
-    changes = {Flags(loops.size(), 0), Flags(crossings.size(), 0)};
+    changes = {Flags(loops.size(), 0), Flags(vertices, 0)};
     std::vector<BlamedLoop> blamed =
-        blame(pairs, made, states.is_sharp, samples, crossings, &changes.vertices, &layered);
+        blame(pairs, made, states.is_sharp, crossings, &off_lines, &changes.vertices, &layered);
     for (const std::size_t i : relax_features(take_attempts(&states.attempts, &blamed), loops,
                                               states.is_sharp, places, &states.features)) {
       changes.loops[i] = 1;
@@ -294,6 +429,16 @@ FacetedMesh sharpen(LoopedMesh looped, const std::vector<Vector3>& crossings,
       draw_back(i, loops, &states, &changes.loops);
     }
   } while (has_any(changes.loops) || has_any(changes.vertices));
+  SecondTry again(loops, wanted, &states);
+  changes.loops = again.changed();
+  while (has_any(changes.loops)) {
+    const LoopTriangles made =
+        assemble(loops, looped.loop_triangles, samples, cell, &states, &changes.loops, &layered);
+    const Flags is_suspect = suspects(layered, made, changes);
+    const Pairs pairs = faulty_pairs(layered, is_suspect, samples, turned, cell, checking, threads);
+    if (pairs.empty()) break;
+    changes.loops = again.give_up(pairs, made, layered.loops);
+  }
   return std::move(layered.mesh);
 }
 

@@ -20,8 +20,7 @@ namespace prefilter {
 /// loops stay as they are: the result is closed, two-manifold and free of intersections where it is
 /// without its edges. `crossings` are the positions of the vertices between cells, the first ones,
 /// before they were sampled. Throws Error(kCancelled).
-FacetedMesh sharpen(LoopedMesh looped, const std::vector<Vector3>& crossings,
-                    const FeatureSurface& surface, const VertexSamples& samples,
-                    const Progress& progress, int threads);
+FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const FeatureSurface& surface,
+                    const VertexSamples& samples, const Progress& progress, int threads);
 
 }  // namespace prefilter

@@ -24,6 +24,7 @@
 #include "prefilter/contour/sharpen.h"
 #include "prefilter/contour/source_surface.h"
 #include "prefilter/contour/surface_vertices.h"
+#include "prefilter/contour/unfold.h"
 #include "prefilter/remesh/clean_up.h"
 #include "prefilter/remesh/simplify.h"
 #include "prefilter/remesh/spread_labels.h"
@@ -312,7 +313,7 @@ struct EdgeSource {
   std::optional<PartSides> part_sides;           // where several meshes meet
   std::optional<OccupancySurface> smooth_parts;  // where there are no meshes
   VertexSamples samples;
-  std::vector<Vector3> crossings;  // the vertices before they were sampled
+  Crossings crossings;
 
   const FeatureSurface* surface() const {
     if (meshes) return &*meshes;
@@ -331,7 +332,6 @@ void read_sources(const CellTree& cells, const RootFrame& frame, const ContourOp
 
 void sample_edges(const ContourTree& tree, const RootFrame& frame, const Progress& progress,
                   int threads, SurfaceVertices* vertices, EdgeSource* edges) {
-  edges->crossings = vertices->positions();
   if (edges->meshes) {
     edges->samples = sample_vertices(tree, frame, *edges->meshes,
                                      edges->part_sides ? &*edges->part_sides : nullptr, progress,
@@ -391,14 +391,21 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
     read_sources(cells, frame, options, progress.part(0.2, 0.35), &tree, &edges);
   }
   SurfaceVertices vertices(tree, frame, interpolant, progress.part(0.35, 0.45), threads);
-  if (fits) fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
+  if (fits) {
+    edges.crossings.plain = vertices.positions();
+    fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
+    edges.crossings.fitted = vertices.positions();
+    edges.crossings.middle = halfway(tree, frame, vertices);
+  }
   if (!is_sharp) {
     LoopedMesh looped = make_loops(tree, nullptr, progress.part(0.6, 0.85), threads, &vertices);
+    if (fits) unfold({}, &edges.crossings, &looped);
     return {std::move(looped.positions), std::move(looped.triangles), {}, {}};
   }
   sample_edges(tree, frame, progress.part(0.5, 0.6), threads, &vertices, &edges);
   const Division division = {*edges.surface(), edges.samples};
   LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
+  unfold(edges.samples, &edges.crossings, &looped);
   FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 1.0), threads);
   if (sources_of_labels != nullptr && edges.meshes) {
     *sources_of_labels = trace_labels(*edges.meshes, threads, &mesh);

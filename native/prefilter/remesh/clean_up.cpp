@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "prefilter/base/parallel.h"
+#include "prefilter/remesh/folds.h"
 #include "prefilter/remesh/intersections.h"
 #include "prefilter/remesh/patch_editor.h"
 #include "prefilter/remesh/triangle_parts.h"
@@ -184,7 +185,7 @@ Left find_left(const std::vector<Triangle>& triangles, const std::vector<Triangl
   return left;
 }
 
-// Those among the changed ones that intersect others.
+// Those among the changed ones that intersect others, or fold.
 std::vector<std::uint32_t> crossing_triangles(const FacetedMesh& mesh,
                                               const std::vector<Triangle>& original,
                                               const Progress& progress, int threads, Left* left) {
@@ -192,6 +193,11 @@ std::vector<std::uint32_t> crossing_triangles(const FacetedMesh& mesh,
   std::vector<std::uint32_t> crossing;
   for (const auto& pair : intersecting_triangles(
            {mesh.positions, left->triangles}, left->is_changed, progress.part(0.1, 1.0), threads)) {
+    for (const std::uint32_t t : pair) {
+      if (left->is_changed[t] != 0) crossing.push_back(left->places[t]);
+    }
+  }
+  for (const auto& pair : folded_pairs({mesh.positions, left->triangles}, 0, left->is_changed)) {
     for (const std::uint32_t t : pair) {
       if (left->is_changed[t] != 0) crossing.push_back(left->places[t]);
     }
