@@ -96,7 +96,7 @@ class VoxelSettings:
     thickness: float = number(
         1.5,
         "Min Thickness",
-        "Sheets and parts too thin for any cell get this thickness, in cells. If 0, they are lost",
+        "What is thinner, and sheets, get this thickness, in cells. If 0, it breaks up or is lost",
         low=0.0,
         high=100.0,
         display={"soft_max": 5.0, "precision": 2, "step": 10},

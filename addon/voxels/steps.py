@@ -139,6 +139,7 @@ def voxelized(
         cell=grid.spacing,
         gap=settings.gap,
         thickness=settings.thickness,
+        sheets="faces",
         progress=share(progress, 0.0, 0.2),
         threads=settings.threads,
     )
@@ -161,6 +162,7 @@ def voxelized(
         triangles,
         depth=grid.depth,
         bounds=grid.bounds,
+        thickness=settings.thickness,
         progress=share(progress, 0.3, 1.0),
         threads=settings.threads,
     )

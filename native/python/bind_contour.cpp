@@ -62,6 +62,7 @@ MeshArrays bound_contour_octree(const Octree& octree,
   options.progress = to_progress(progress);
   const std::vector<SourceMesh> sources = sources_of(source_arrays);
   options.sources = sources;
+  options.thickened = &octree.thickened;
   TriangleMesh mesh;
   {
     const py::gil_scoped_release unlocked;
@@ -78,6 +79,7 @@ TracedArrays bound_traced_contour(const Octree& octree,
   options.progress = to_progress(progress);
   const std::vector<SourceMesh> sources = sources_of(source_arrays);
   options.sources = sources;
+  options.thickened = &octree.thickened;
   TracedMesh traced;
   {
     const py::gil_scoped_release unlocked;

@@ -97,11 +97,12 @@ std::pair<Array<std::int32_t>, Array<std::int32_t>> bound_mesh_edges(const py::a
 }  // namespace
 
 void bind_solid(py::module_& m) {
-  bind_options<SolidOptions>(m, "SolidOptions")
-      .def_readwrite("cell", &SolidOptions::cell)
+  auto options = bind_options<SolidOptions>(m, "SolidOptions");
+  options.def_readwrite("cell", &SolidOptions::cell)
       .def_readwrite("weld", &SolidOptions::weld)
       .def_readwrite("gap", &SolidOptions::gap)
       .def_readwrite("thickness", &SolidOptions::thickness);
+  bind_named(options, "sheets", &SolidOptions::sheets, kSheetMethods);
   m.def("as_solid", &bound_as_solid, py::arg("positions"), py::arg("triangles"), py::arg("options"),
         py::arg("progress"));
   m.def("close_holes", &bound_close_holes, py::arg("positions"), py::arg("triangles"),

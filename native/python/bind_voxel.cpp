@@ -32,10 +32,11 @@ using Corners = std::pair<Vector3, Vector3>;
 Box to_box(const Corners& corners) { return {corners.first, corners.second}; }
 
 Octree bound_voxelize(const py::array& positions, const py::array& triangles, int depth,
-                      const std::optional<Corners>& bounds, const py::object& progress,
-                      int threads) {
+                      const std::optional<Corners>& bounds, double thickness,
+                      const py::object& progress, int threads) {
   VoxelizeOptions options;
   options.depth = depth;
+  options.thickness = thickness;
   if (bounds) options.bounds = to_box(*bounds);
   options.threads = threads;
   options.progress = to_progress(progress);
@@ -148,7 +149,7 @@ void bind_voxel(py::module_& m) {
   m.def("coarsened", &coarsened, py::arg("octree"), py::arg("depth"));
   m.def("levels_of", &bound_levels, py::arg("octree"));
   m.def("voxelize", &bound_voxelize, py::arg("positions"), py::arg("triangles"), py::arg("depth"),
-        py::arg("bounds"), py::arg("progress"), py::arg("threads"));
+        py::arg("bounds"), py::arg("thickness"), py::arg("progress"), py::arg("threads"));
   m.def(
       "cube_around",
       [](const Corners& box, int depth) {

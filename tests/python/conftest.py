@@ -58,6 +58,7 @@ SAME_IN_ANY_PYTHON = {
     "test_sharp_edges.py",
     "test_sharp_occupancies.py",
     "test_stochastic_sampling.py",
+    "test_thickness.py",
     "test_structure.py",
     "test_subdivision.py",
     "test_surfaces.py",

@@ -79,6 +79,8 @@ VOXEL_ROWS = [
             ({"bounds": ((0, 0, 0), (1, 1, NAN))}, ["bounds: ", "nan"]),
             ({"bounds": (0, 1)}, ["bounds: shape (2,)", "(2, 3)"]),
             ({"bounds": "all"}, ["bounds: 'all'", "two corners"]),
+            ({"thickness": -1}, ["thickness: -1", "0 or more"]),
+            ({"thickness": NAN}, ["thickness: nan"]),
         )
     ),
     *(
@@ -163,6 +165,7 @@ SOLID_ROWS = [
         ({"weld": -0.1}, ["weld: -0.1", "0 or more"]),
         ({"gap": np.inf}, ["gap: inf", "finite"]),
         ({"thickness": -1}, ["thickness: -1", "0 or more"]),
+        ({"sheets": "prisms"}, ["sheets: 'prisms'", "shell, faces"]),
     )
 ]
 CONTOUR_ROWS = [

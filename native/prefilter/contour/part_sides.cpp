@@ -152,7 +152,8 @@ std::optional<SourcePoint> PartSides::exit(const Vector3& in, const Vector3& out
   return best;
 }
 
-void PartSides::settle(const Progress& progress, int threads, ContourTree* tree) const {
+void PartSides::settle(const ThickenedCells& thickened, const Progress& progress, int threads,
+                       ContourTree* tree) const {
   struct Leaf {
     std::size_t level;
     std::size_t block;
@@ -179,7 +180,7 @@ void PartSides::settle(const Progress& progress, int threads, ContourTree* tree)
         size[a] = frame_.cell(a, octant.depth);
         center[a] = frame_.position(a, octant_cell[a] + 0.5, octant.depth);
       }
-      if (surface_.meeting_parts(center).empty()) continue;
+      if (surface_.meeting_parts(center).empty() || thickened.holds(center)) continue;
       leaves.push_back({static_cast<std::size_t>(octant.depth - 1), octant.block, o, center, size});
     }
   };

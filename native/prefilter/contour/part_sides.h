@@ -13,6 +13,7 @@
 #include "prefilter/contour/contour_tree.h"
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/source_surface.h"
+#include "prefilter/contour/thickened_cells.h"
 
 namespace prefilter {
 
@@ -26,9 +27,10 @@ class PartSides {
   PartSides(const ContourTree& tree, const RootFrame& frame, const SourceSurface& surface,
             const Progress& progress);
 
-  /// Puts leaves where parts meet on the side that most of them is on, by the parts' planes. Throws
-  /// Error(kCancelled).
-  void settle(const Progress& progress, int threads, ContourTree* tree) const;
+  /// Puts leaves where parts meet on the side that most of them is on, by the parts' planes, but
+  /// for those that are thickened. Throws Error(kCancelled).
+  void settle(const ThickenedCells& thickened, const Progress& progress, int threads,
+              ContourTree* tree) const;
 
   /// Where the segment from `in`, a point that counts as inside, to `out` leaves the shape; of
   /// several places the one nearest to `expected`. `is_known` tells whether what is inside is known

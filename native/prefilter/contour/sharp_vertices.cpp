@@ -32,8 +32,13 @@ struct TaskSamples {
 class Sampler {
  public:
   Sampler(const ContourTree& tree, const RootFrame& frame, const SourceSurface& surface,
-          const PartSides* parts, SurfaceVertices* vertices)
-      : tree_(tree), frame_(frame), surface_(surface), parts_(parts), vertices_(*vertices) {}
+          const PartSides* parts, const ThickenedCells& thickened, SurfaceVertices* vertices)
+      : tree_(tree),
+        frame_(frame),
+        surface_(surface),
+        parts_(parts),
+        thickened_(thickened),
+        vertices_(*vertices) {}
 
   template <typename Descend>
   void visit_block(const Block& block, TaskSamples* task, const Descend& descend) const {
@@ -67,6 +72,7 @@ class Sampler {
     Vector3 to = from;
     const double side = frame_.cell(axis, depth);
     to[axis] += (face & 1) != 0 ? side : -side;
+    if (thickened_.holds(from) || thickened_.holds(to)) return;
     std::optional<SourcePoint> found;
     bool is_known = false;
     if (parts_ != nullptr && !surface_.meeting_parts(expected).empty()) {
@@ -93,6 +99,7 @@ class Sampler {
   const RootFrame& frame_;
   const SourceSurface& surface_;
   const PartSides* parts_;
+  const ThickenedCells& thickened_;
   SurfaceVertices& vertices_;
 };
 
@@ -150,8 +157,9 @@ void move_tips(const SourceSurface& surface, VertexSamples* samples, SurfaceVert
 
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
                               const SourceSurface& surface, const PartSides* parts,
-                              const Progress& progress, int threads, SurfaceVertices* vertices) {
-  const Sampler sampler(tree, frame, surface, parts, vertices);
+                              const ThickenedCells& thickened, const Progress& progress,
+                              int threads, SurfaceVertices* vertices) {
+  const Sampler sampler(tree, frame, surface, parts, thickened, vertices);
   std::vector<TaskSamples> tasks(1);
   std::vector<Block> roots;
   const auto above = [&](const auto& self, const Block& block) -> void {

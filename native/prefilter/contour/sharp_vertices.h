@@ -10,6 +10,7 @@
 #include "prefilter/contour/part_sides.h"
 #include "prefilter/contour/source_surface.h"
 #include "prefilter/contour/surface_vertices.h"
+#include "prefilter/contour/thickened_cells.h"
 
 namespace prefilter {
 
@@ -37,6 +38,7 @@ struct VertexSamples {
 /// Error(kCancelled).
 VertexSamples sample_vertices(const ContourTree& tree, const RootFrame& frame,
                               const SourceSurface& surface, const PartSides* parts,
-                              const Progress& progress, int threads, SurfaceVertices* vertices);
+                              const ThickenedCells& thickened, const Progress& progress,
+                              int threads, SurfaceVertices* vertices);
 
 }  // namespace prefilter

@@ -10,6 +10,7 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/pulse.h"
 #include "prefilter/spatial/curve_order.h"
+#include "prefilter/spatial/triangle_pieces.h"
 #include "prefilter/spatial/triangle_point.h"
 
 namespace prefilter {
@@ -66,37 +67,7 @@ Box box_of(const Vector3& a, const Vector3& b) {
   return box;
 }
 
-Box box_of(const std::array<Vector3, 3>& corners) {
-  Box box = kEmptyBox;
-  for (const Vector3& corner : corners) box.include(corner);
-  return box;
-}
-
 Vector3 middle_of(const Box& box) { return 0.5 * (box.low + box.high); }
-
-// Calls visit(box) for boxes that cover a triangle, none of them much larger than `size`.
-template <typename Visit>
-void for_pieces(const std::array<Vector3, 3>& corners, double size, const Visit& visit) {
-  std::size_t longest = 0;
-  double most = 0.0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Vector3 side = corners[(i + 1) % 3] - corners[i];
-    if (dot(side, side) > most) {
-      most = dot(side, side);
-      longest = i;
-    }
-  }
-  if (most <= size * size) {
-    visit(box_of(corners));
-    return;
-  }
-  const Vector3& a = corners[longest];
-  const Vector3& b = corners[(longest + 1) % 3];
-  const Vector3& c = corners[(longest + 2) % 3];
-  const Vector3 middle = 0.5 * (a + b);
-  for_pieces<Visit>({a, middle, c}, size, visit);
-  for_pieces<Visit>({middle, b, c}, size, visit);
-}
 
 // Where the segment from a to b, as a share of it, meets a triangle.
 std::optional<double> meeting(const Vector3& a, const Vector3& b,
@@ -175,11 +146,12 @@ void SourceSurface::mark_meetings(const Progress& progress) {
     pulse.step();
     if (regions_.labels[t] < 0) continue;
     const std::int32_t part = regions_.parts[t];
-    for_pieces(regions_.corners_of(t), brick_, [&](const Box& box) {
-      BrickRange(box, kContactCells * cell_, brick_).for_each([&](std::uint64_t key) {
-        meetings_[key].add(part);
-      });
-    });
+    const auto add = [&](const std::array<Vector3, 3>& piece) {
+      BrickRange(triangle_box(piece), kContactCells * cell_, brick_)
+          .for_each([&](std::uint64_t key) { meetings_[key].add(part); });
+    };
+    for_pieces(
+        regions_.corners_of(t), brick_, [](const auto&) { return true; }, add);
   }
   for (auto brick = meetings_.begin(); brick != meetings_.end();) {
     if (brick->second.count < 2) {
@@ -225,7 +197,7 @@ std::span<const std::int32_t> SourceSurface::meeting_parts(const Vector3& point)
 
 void SourceSurface::build_trees(const Progress& progress, int threads) {
   const auto box_of_triangle = [&](std::int32_t triangle) {
-    return box_of(regions_.corners_of(static_cast<std::size_t>(triangle)));
+    return triangle_box(regions_.corners_of(static_cast<std::size_t>(triangle)));
   };
   std::vector<std::int32_t> near;
   for (std::size_t t = 0; t < regions_.triangles.size(); ++t) {

@@ -24,6 +24,7 @@
 #include "prefilter/contour/sharpen.h"
 #include "prefilter/contour/source_surface.h"
 #include "prefilter/contour/surface_vertices.h"
+#include "prefilter/contour/thickened_cells.h"
 #include "prefilter/contour/unfold.h"
 #include "prefilter/remesh/clean_up.h"
 #include "prefilter/remesh/simplify.h"
@@ -327,15 +328,17 @@ void read_sources(const CellTree& cells, const RootFrame& frame, const ContourOp
                         progress.part(0.0, 0.66), options.threads);
   if (!edges->meshes->has_meetings()) return;
   edges->part_sides.emplace(*tree, frame, *edges->meshes, progress.part(0.66, 0.86));
-  edges->part_sides->settle(progress.part(0.86, 1.0), options.threads, tree);
+  edges->part_sides->settle({options.thickened, frame}, progress.part(0.86, 1.0), options.threads,
+                            tree);
 }
 
-void sample_edges(const ContourTree& tree, const RootFrame& frame, const Progress& progress,
-                  int threads, SurfaceVertices* vertices, EdgeSource* edges) {
+void sample_edges(const ContourTree& tree, const RootFrame& frame, const CellTree* thickened,
+                  const Progress& progress, int threads, SurfaceVertices* vertices,
+                  EdgeSource* edges) {
   if (edges->meshes) {
     edges->samples = sample_vertices(tree, frame, *edges->meshes,
-                                     edges->part_sides ? &*edges->part_sides : nullptr, progress,
-                                     threads, vertices);
+                                     edges->part_sides ? &*edges->part_sides : nullptr,
+                                     {thickened, frame}, progress, threads, vertices);
     return;
   }
   edges->smooth_parts.emplace(tree, frame, *vertices, progress.part(0.0, 0.5), threads);
@@ -402,7 +405,7 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
     if (fits) unfold({}, &edges.crossings, &looped);
     return {std::move(looped.positions), std::move(looped.triangles), {}, {}};
   }
-  sample_edges(tree, frame, progress.part(0.5, 0.6), threads, &vertices, &edges);
+  sample_edges(tree, frame, options.thickened, progress.part(0.5, 0.6), threads, &vertices, &edges);
   const Division division = {*edges.surface(), edges.samples};
   LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
   unfold(edges.samples, &edges.crossings, &looped);
@@ -411,6 +414,14 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
     *sources_of_labels = trace_labels(*edges.meshes, threads, &mesh);
   }
   return mesh;
+}
+
+Vector3 middle_of(const FacetedMesh& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const auto at = [&](std::int32_t v) -> const Vector3& {
+    return mesh.positions[static_cast<std::size_t>(v)];
+  };
+  return (1.0 / 3.0) * (at(a) + at(b) + at(c));
 }
 
 // The contour of a tree whose root is split.
@@ -444,8 +455,12 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
                     options.progress.part(simplifying, kPlacing), options.threads);
   }
   if (origins != nullptr) {
-    for (const std::int32_t label : mesh.labels) {
-      origins->push_back(sources_of_labels[static_cast<std::size_t>(label)]);
+    const ThickenedCells thickened(options.thickened, frame);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      const Vector3 middle = middle_of(mesh, t);
+      const bool is_thickened = thickened.holds(places_first ? frame.from_space(middle) : middle);
+      origins->push_back(
+          is_thickened ? -1 : sources_of_labels[static_cast<std::size_t>(mesh.labels[t])]);
     }
   }
   if (!places_first) {

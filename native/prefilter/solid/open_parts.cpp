@@ -110,14 +110,26 @@ std::vector<bool> fill_hollow(const Patches& patches, std::span<const double> ar
 
 // The triangles that get a shell.
 std::vector<std::uint32_t> thin_triangles(const Patches& patches, std::span<const float> kept,
-                                          std::span<const PartFate> fates) {
+                                          std::span<const PartFate> fates, float most_kept) {
   std::vector<std::uint32_t> thin;
   for (std::size_t t = 0; t < kept.size(); ++t) {
     const auto& [fate, is_thickened] = fates[patches.patch_of[t]];
-    const bool is_lost = is_thickened && kept[t] < 1.0F;
+    const bool is_lost = is_thickened && kept[t] < most_kept;
     if (fate == Fate::kSheet || is_lost) thin.push_back(static_cast<std::uint32_t>(t));
   }
   return thin;
+}
+
+// Both sides of triangles, but for those of closed parts, which have them.
+void add_faces(const WorkMesh& mesh, const Patches& patches, std::span<const std::uint32_t> thin,
+               WorkMesh* result) {
+  for (const std::uint32_t t : thin) {
+    if (patches.patches[patches.patch_of[t]].is_closed()) continue;
+    const auto& [a, b, c] = mesh.triangles[t];
+    result->triangles.push_back({a, b, c});
+    result->triangles.push_back({a, c, b});
+    result->origins.insert(result->origins.end(), 2, mesh.origins[t]);
+  }
 }
 
 void append(const TriangleMesh& surface, WorkMesh* mesh) {
@@ -206,7 +218,8 @@ bool mend_open_parts(const Patches& patches, const SolidOptions& options, const 
   }
   Verdict verdict = judge(*mesh, patches, areas, grid ? &*grid : nullptr, sides, options,
                           progress.part(0.3, 0.8));
-  const std::vector<std::uint32_t> thin = thin_triangles(patches, verdict.kept, verdict.fates);
+  const std::vector<std::uint32_t> thin = thin_triangles(
+      patches, verdict.kept, verdict.fates, options.sheets == SheetMethod::kFaces ? 0.5F : 1.0F);
   const bool is_same = thin.empty() && verdict.is_wound();
   if (!is_same) {
     WorkMesh result = wound_parts(*mesh, patches, verdict.fates);
@@ -215,11 +228,19 @@ bool mend_open_parts(const Patches& patches, const SolidOptions& options, const 
                             options.threads),
              &result);
     }
-    add_shell(mesh->view(), mesh->origins, thin, thickness / 2.0, &result);
-    const Octree octree =
-        voxels_of(result, patches, cell, progress.part(0.9, 0.96), options.threads);
-    verdict.kept = kept_shares(mesh->view(), octree, progress.part(0.96, 1.0), options.threads);
+    if (options.sheets == SheetMethod::kFaces) {
+      add_faces(*mesh, patches, thin, &result);
+    } else {
+      add_shell(mesh->view(), mesh->origins, thin, thickness / 2.0, &result);
+      const Octree octree =
+          voxels_of(result, patches, cell, progress.part(0.9, 0.96), options.threads);
+      verdict.kept = kept_shares(mesh->view(), octree, progress.part(0.96, 1.0), options.threads);
+    }
     std::swap(*mesh, result);
+  }
+  // What is thin is thickened later, wherever it is.
+  if (options.sheets == SheetMethod::kFaces && thickness > 0.0) {
+    std::fill(verdict.kept.begin(), verdict.kept.end(), 1.0F);
   }
   count_fates(patches, verdict.fates, areas, verdict.kept, report);
   progress.report(1.0);

@@ -232,6 +232,13 @@ bool same_box(const Box& a, const Box& b) {
   return true;
 }
 
+// Where either is.
+CellTree all_thickened(const Octree& a, const Octree& b, int threads) {
+  if (a.thickened.levels.empty()) return b.thickened;
+  if (b.thickened.levels.empty()) return a.thickened;
+  return merge_trees(a.thickened, b.thickened, SetOperation::kUnion, Progress(), threads);
+}
+
 // The first depth at which the root's cells are no larger, along any axis, than the octree's
 // finest.
 int matching_depth(const Box& root, const Octree& octree) {
@@ -251,6 +258,7 @@ Octree combine(const Octree& a, const Octree& b, SetOperation operation, const P
     result.bounds = a.bounds;
     result.depth = std::max(a.depth, b.depth);
     result.cells = combine_trees(a.cells, b.cells, operation, progress, threads);
+    result.thickened = all_thickened(a, b, threads);
     progress.report(1.0);
     return result;
   }

@@ -14,6 +14,7 @@
 #include "prefilter/base/memory.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/voxel/thicken.h"
 #include "prefilter/wavelet/triangle_analysis.h"
 
 namespace prefilter {
@@ -106,6 +107,10 @@ Octree voxelize(const InputMesh& mesh, const VoxelizeOptions& options) {
   check_depth(options.depth, 1, "depth");
   if (options.bounds) check_box(*options.bounds, "bounds");
   check_mesh(mesh, kLargestCoordinate);
+  if (!(std::isfinite(options.thickness) && options.thickness >= 0.0)) {
+    throw_invalid("thickness: " + to_text(options.thickness) +
+                  "; a finite number of 0 or more is needed");
+  }
   Octree octree;
   octree.depth = options.depth;
   if (options.bounds) {
@@ -119,12 +124,16 @@ Octree voxelize(const InputMesh& mesh, const VoxelizeOptions& options) {
     check_box(octree.bounds, "positions");
   }
 
+  const bool is_thickened = options.thickness > 0.0;
+  const Progress making = options.progress.part(0.0, is_thickened ? 0.5 : 1.0);
   const RootTriangles in_root{mesh, octree.bounds};
-  check_surface(in_root, options.depth, options.progress.part(0.0, 0.05), options.threads);
+  check_surface(in_root, options.depth, making.part(0.0, 0.05), options.threads);
   HaarTree coefficients =
-      analyze_triangles(in_root, options.depth, options.progress.part(0.05, 0.9), options.threads);
-  octree.cells =
-      synthesise(std::move(coefficients), -1, options.progress.part(0.9, 1.0), options.threads);
+      analyze_triangles(in_root, options.depth, making.part(0.05, 0.9), options.threads);
+  octree.cells = synthesise(std::move(coefficients), -1, making.part(0.9, 1.0), options.threads);
+  if (is_thickened) {
+    thicken(in_root, options.thickness, options.progress.part(0.5, 1.0), options.threads, &octree);
+  }
   return octree;
 }
 

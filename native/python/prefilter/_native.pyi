@@ -542,6 +542,7 @@ def voxelize(
     triangles: npt.NDArray[np.integer],
     depth: int,
     bounds: tuple[list[float], list[float]] | None,
+    thickness: float,
     progress: ProgressCallback | None,
     threads: int,
 ) -> Octree: ...
@@ -555,6 +556,7 @@ class SolidOptions:
     weld: float
     gap: float
     thickness: float
+    sheets: str
     threads: int
 
 def as_solid(

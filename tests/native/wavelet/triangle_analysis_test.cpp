@@ -22,7 +22,8 @@ std::vector<float> occupancies(const Mesh& mesh, int depth, int shown_depth = -1
   HaarTree coefficients = analyze_triangles(mesh.view(), depth, Progress(), threads);
   Octree octree{synthesise(std::move(coefficients), shown_depth, Progress(), threads),
                 {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}},
-                depth};
+                depth,
+                {}};
   return dense_values(octree, shown_depth < 0 ? depth : shown_depth, Progress(), 1);
 }
 

@@ -10,6 +10,7 @@
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
 
@@ -42,6 +43,9 @@ struct ContourOptions {
   double adaptivity = 0.0;
   // What kSharp takes the edges and corners from; none: from the occupancies alone.
   std::span<const SourceMesh> sources;
+  // Above 0 in the cells of the finest depth where the surface is not that of the sources, as they
+  // are thin there: it is kPlane's.
+  const CellTree* thickened = nullptr;
   int threads = 0;  // 0: all processors
   Progress progress;
 };

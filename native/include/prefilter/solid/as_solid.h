@@ -9,15 +9,26 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/base/names.h"
 #include "prefilter/base/progress.h"
 
 namespace prefilter {
+
+/// What becomes of parts that enclose nothing.
+enum class SheetMethod {
+  kShell,  // prisms on both sides of their faces
+  kFaces,  // their faces, from both sides: nothing until voxelize thickens it
+};
+
+inline constexpr Named<SheetMethod> kSheetMethods[] = {{"shell", SheetMethod::kShell},
+                                                       {"faces", SheetMethod::kFaces}};
 
 struct SolidOptions {
   double cell = 0.0;   // the side of the cells that it is voxelized in, in the mesh's unit; above 0
   double weld = 0.05;  // in cells: vertices along open edges count as one up to this distance
   double gap = 2.0;    // in cells: gaps up to this width do not let the outside in
   double thickness = 1.5;  // in cells: what sheets and parts without an inside get
+  SheetMethod sheets = SheetMethod::kShell;
   int threads = 0;         // 0: all processors
   Progress progress;
 };

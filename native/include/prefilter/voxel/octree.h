@@ -15,6 +15,8 @@ struct Octree {
   CellTree cells;
   Box bounds;
   int depth = 0;  // 2^depth cells along each axis are the finest that there may be
+  // Above 0 in the finest cells that are fuller than the mesh, as it is thin there.
+  CellTree thickened;
 
   /// The side of a cell of this depth.
   double cell_size(int axis, int at_depth) const;

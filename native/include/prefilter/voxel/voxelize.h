@@ -14,6 +14,7 @@ namespace prefilter {
 struct VoxelizeOptions {
   int depth = 8;              // 1 to kMaxTreeDepth: 2^depth cells along an axis
   std::optional<Box> bounds;  // the root; none: a cube around the mesh
+  double thickness = 0.0;     // in cells: what is thinner gets it; 0: stays as it is
   int threads = 0;            // 0: all processors
   Progress progress;
 };
@@ -24,9 +25,14 @@ struct VoxelizeOptions {
 /// or more; values are clamped to [0, 1]. A hole disturbs the cells around it alone (see
 /// analyze_triangles). Without `bounds` the root is cube_around the mesh's box.
 ///
-/// Throws Error for a depth out of range, a mesh without triangles or where all have zero area, an
-/// index that names no vertex, a position that is not finite, and bounds of no volume;
-/// Error(kOutOfMemory) for a tree that would not fit into memory; Error(kCancelled).
+/// With a `thickness` the solid is made as thick as this wherever it is thinner, by as little as it
+/// takes, so that it holds together; rods get a quarter more. What faces the outside counts alone,
+/// not where parts touch or overlap, nor edges of more than 45 degrees.
+///
+/// Throws Error for a depth out of range, a thickness that is negative or not finite, a mesh
+/// without triangles or where all have zero area, an index that names no vertex, a position that is
+/// not finite, and bounds of no volume; Error(kOutOfMemory) for a tree that would not fit into
+/// memory; Error(kCancelled).
 Octree voxelize(const InputMesh& mesh, const VoxelizeOptions& options);
 
 /// The cube around a box that leaves a margin of two of the 2^depth cells along an axis on all

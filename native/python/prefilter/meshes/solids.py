@@ -9,7 +9,14 @@ import numpy as np
 import numpy.typing as npt
 
 from .. import _native
-from .._border.arguments import Check, ProgressCallback, as_number, as_progress, set_options
+from .._border.arguments import (
+    Check,
+    ProgressCallback,
+    as_name,
+    as_number,
+    as_progress,
+    set_options,
+)
 from .._border.arrays import as_mesh, as_threads
 
 _CHECKS: dict[str, Check] = {
@@ -17,6 +24,7 @@ _CHECKS: dict[str, Check] = {
     "weld": partial(as_number, "weld"),
     "gap": partial(as_number, "gap"),
     "thickness": partial(as_number, "thickness"),
+    "sheets": partial(as_name, "sheets"),
     "threads": as_threads,
 }
 
@@ -66,6 +74,7 @@ def as_solid(
     weld: float = 0.05,
     gap: float = 2.0,
     thickness: float = 1.5,
+    sheets: str = "shell",
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> SolidMesh:
@@ -85,6 +94,8 @@ def as_solid(
             alone that are at one place.
         gap: In cells: the outside does not get through gaps up to this width.
         thickness: In cells: what sheets and thin parts get. 0 leaves them as they are.
+        sheets: What they get it by: "shell", prisms on both sides, or "faces", no more than their
+            faces from both sides, for a `voxelize` with this `thickness`.
         progress: Called with the fraction done; returning False stops the work.
         threads: 0 means all processors. The result does not depend on it.
 

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Triangles cut into small ones, and what these are like.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "prefilter/base/geometry.h"
+
+namespace prefilter {
+
+inline Vector3 triangle_middle(const std::array<Vector3, 3>& p) {
+  return (1.0 / 3.0) * (p[0] + p[1] + p[2]);
+}
+
+inline double triangle_area(const std::array<Vector3, 3>& p) {
+  return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
+}
+
+inline Box triangle_box(const std::array<Vector3, 3>& corners) {
+  Box box = kEmptyBox;
+  for (const Vector3& corner : corners) box.include(corner);
+  return box;
+}
+
+/// Calls visit(corners) for pieces of a triangle with no side longer than `size`, of those parts of
+/// it that are of interest by `may_be(corners)`.
+template <typename MayBe, typename Visit>
+void for_pieces(const std::array<Vector3, 3>& corners, double size, const MayBe& may_be,
+                const Visit& visit) {
+  if (!may_be(corners)) return;
+  std::size_t longest = 0;
+  double most = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3 side = corners[(i + 1) % 3] - corners[i];
+    if (dot(side, side) > most) {
+      most = dot(side, side);
+      longest = i;
+    }
+  }
+  if (most <= size * size) {
+    visit(corners);
+    return;
+  }
+  const Vector3& a = corners[longest];
+  const Vector3& b = corners[(longest + 1) % 3];
+  const Vector3& c = corners[(longest + 2) % 3];
+  const Vector3 middle = 0.5 * (a + b);
+  for_pieces({a, middle, c}, size, may_be, visit);
+  for_pieces({middle, b, c}, size, may_be, visit);
+}
+
+}  // namespace prefilter

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/voxel/inner_balls.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "prefilter/spatial/curve_order.h"
+#include "prefilter/spatial/triangle_pieces.h"
+#include "prefilter/spatial/triangle_point.h"
+#include "prefilter/voxel/opposed_bricks.h"
+
+namespace prefilter {
+namespace {
+
+constexpr std::size_t kLeafItems = 4;
+constexpr int kMostSteps = 12;
+constexpr double kSettled = 1e-3;  // of a radius
+constexpr double kAlike = 0.02;    // what radii differ by, in cells
+
+}  // namespace
+
+InnerBalls::InnerBalls(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
+                       const std::vector<std::uint32_t>& triangles, const Progress& progress,
+                       int threads)
+    : mesh_(mesh), normals_(normals) {
+  const std::vector<CurvePlace> places = along_curve(
+      triangles.size(), [&](std::size_t i) { return triangle_middle(mesh.corners(triangles[i])); },
+      progress.part(0.0, 0.7), threads);
+  std::vector<std::uint64_t> keys;
+  for (const CurvePlace& place : places) {
+    keys.push_back(place.key);
+    triangles_.push_back(triangles[place.index]);
+  }
+  tree_ = BoxTree(
+      keys, kLeafItems, [&](std::size_t i) { return triangle_box(mesh.corners(triangles_[i])); },
+      progress.part(0.7, 1.0));
+}
+
+std::optional<InnerBalls::Touched> InnerBalls::nearest_across(const Vector3& point, double reach,
+                                                              const Vector3& normal) const {
+  std::optional<Touched> touched;
+  double best = reach * reach;
+  const auto may_be = [&](double squared, std::size_t) { return squared < best; };
+  tree_.search(point, may_be, [&](std::size_t node) {
+    const BoxTree::Node& leaf = tree_.nodes()[node];
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+      const std::uint32_t t = triangles_[i];
+      const double facing = dot(normals_[t], normal);
+      if (facing > kAcross) continue;
+      const auto [a, b, c] = mesh_.corners(t);
+      const Vector3 w = nearest_weights(point, a, b, c);
+      const Vector3 p = w[0] * a + w[1] * b + w[2] * c;
+      const Vector3 d = p - point;
+      if (dot(d, d) >= best) continue;
+      best = dot(d, d);
+      touched = {p, facing};
+    }
+  });
+  return touched;
+}
+
+std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& normal,
+                                        double largest) const {
+  // From a little outside, so that the other face of a sheet is below the point.
+  const Vector3 start = point + kJustOutside * normal;
+  InnerBall ball = {largest, 0.0};
+  for (int step = 0; step < kMostSteps; ++step) {
+    const double reach = ball.radius * (1.0 - kSettled) - 0.1 * kJustOutside;
+    if (!(reach > 0.0)) break;
+    const std::optional<Touched> touched =
+        nearest_across(start - ball.radius * normal, reach, normal);
+    if (!touched) break;
+    const Vector3 away = start - touched->point;
+    const double depth = dot(away, normal);
+    if (!(depth > 0.0)) break;
+    ball.facing = std::min(ball.facing, touched->facing);
+    ball.radius = dot(away, away) / (2.0 * depth);
+  }
+  if (ball.radius >= largest) return std::nullopt;
+  ball.radius = std::max(0.0, ball.radius - kJustOutside / 2.0);
+  return ball;
+}
+
+bool InnerBalls::are_alike(const std::array<Vector3, 3>& piece, const Vector3& normal,
+                           double largest) const {
+  const Vector3 middle = triangle_middle(piece);
+  const std::optional<InnerBall> first = at(middle, normal, largest);
+  if (!first) return false;
+  for (const Vector3& corner : piece) {
+    for (const double share : {0.5, 0.95}) {
+      const std::optional<InnerBall> ball = at(middle + share * (corner - middle), normal, largest);
+      if (!ball || std::abs(ball->radius - first->radius) > kAlike) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace prefilter

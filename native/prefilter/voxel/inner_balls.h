@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Balls inside of a solid that touch its surface on two sides.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
+#include "prefilter/spatial/box_tree.h"
+
+namespace prefilter {
+
+/// A distance from a surface at which a point is outside of it, in cells.
+inline constexpr double kJustOutside = 0.01;
+
+/// A ball inside of the solid that touches a point from within, and what is across.
+struct InnerBall {
+  double radius;
+  double facing;  // the least cosine between the normals of the point and of what is across
+};
+
+/// Searches among the triangles of a mesh that are given; lengths are cells.
+class InnerBalls {
+ public:
+  /// Holds no copy of the mesh. Throws Error(kCancelled).
+  InnerBalls(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
+             const std::vector<std::uint32_t>& triangles, const Progress& progress, int threads);
+
+  /// The largest ball at a point of the surface that holds nothing of what is across from it: it
+  /// shrinks until it touches that. None where a ball of the largest radius fits.
+  std::optional<InnerBall> at(const Vector3& point, const Vector3& normal, double largest) const;
+
+  /// Whether a piece of a triangle is as thin everywhere, by samples.
+  bool are_alike(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest) const;
+
+ private:
+  struct Touched {
+    Vector3 point;
+    double facing;
+  };
+  // What is nearest to a point, and nearer than this, of all that is across from a normal.
+  std::optional<Touched> nearest_across(const Vector3& point, double reach,
+                                        const Vector3& normal) const;
+
+  MeshView<std::int32_t> mesh_;
+  std::span<const Vector3> normals_;
+  std::vector<std::uint32_t> triangles_;  // along the curve
+  BoxTree tree_;
+};
+
+}  // namespace prefilter

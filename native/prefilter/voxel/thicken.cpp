@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/voxel/thicken.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "prefilter/spatial/triangle_point.h"
+#include "prefilter/voxel/combine.h"
+#include "prefilter/voxel/thin_places.h"
+#include "prefilter/wavelet/leaf_surface.h"
+#include "prefilter/wavelet/tree_builder.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kSamples = 2;  // along an axis of a cell
+constexpr double kHalfDiagonal = 0.8660254037844386;
+constexpr float kLeastAdded = 0.02F;
+constexpr double kUsualThickness = 1.5;
+constexpr double kMargin = 4.0;  // around the root, of what may reach into it
+
+struct PieceCell {
+  LeafPlace at;  // in cells of its depth
+  std::vector<std::uint32_t> pieces;
+};
+
+// The cells of the pieces, in cells of the finest depth.
+class PieceRule {
+ public:
+  PieceRule(const std::vector<ThickPiece>& pieces, const Octree& octree)
+      : pieces_(pieces), octree_(octree) {
+    boxes_.reserve(pieces.size());
+    for (const ThickPiece& piece : pieces) {
+      Box box = kEmptyBox;
+      for (const Vector3& p : piece.middles) box.include(p);
+      for (int a = 0; a < 3; ++a) {
+        box.low[a] -= piece.radius;
+        box.high[a] += piece.radius;
+      }
+      boxes_.push_back(box);
+    }
+  }
+
+  PieceCell root() const {
+    PieceCell cell{{0, 0, 0}, {}};
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i) cell.pieces.push_back(i);
+    return cell;
+  }
+
+  bool is_split(const PieceCell& cell, int depth) const {
+    return depth < octree_.depth && !cell.pieces.empty() && !is_full(cell, depth);
+  }
+
+  PieceCell octant(const PieceCell& cell, int depth, int o) const {
+    PieceCell result;
+    const double side = std::ldexp(1.0, octree_.depth - depth - 1);
+    Box box;
+    for (int a = 0; a < 3; ++a) {
+      result.at[a] = 2 * cell.at[a] + ((o >> a) & 1);
+      box.low[a] = result.at[a] * side;
+      box.high[a] = box.low[a] + side;
+    }
+    for (const std::uint32_t i : cell.pieces) {
+      if (boxes_[i].overlaps(box)) result.pieces.push_back(i);
+    }
+    return result;
+  }
+
+  // What of a cell is within the pieces, where that is more than there is.
+  float value(const PieceCell& cell, int depth) const {
+    if (cell.pieces.empty()) return 0.0F;
+    if (depth < octree_.depth) return 1.0F;
+    const float before = occupancy_at(octree_.cells, octree_.depth, cell.at);
+    if (before >= 1.0F) return 0.0F;
+    Vector3 center;
+    for (int a = 0; a < 3; ++a) center[a] = cell.at[a] + 0.5;
+    std::vector<const ThickPiece*> near;
+    for (const std::uint32_t i : cell.pieces) {
+      if (gap(pieces_[i], center).size < kHalfDiagonal) near.push_back(&pieces_[i]);
+    }
+    if (near.empty()) return 0.0F;
+    double sum = 0.0;
+    constexpr double kSide = 1.0 / kSamples;
+    for (int i = 0; i < kSamples * kSamples * kSamples; ++i) {
+      const std::array<int, 3> k = {i % kSamples, i / kSamples % kSamples, i / kSamples / kSamples};
+      Vector3 point;
+      for (std::size_t a = 0; a < 3; ++a) point[a] = cell.at[a] + (k[a] + 0.5) * kSide;
+      Gap least = {kHalfDiagonal * 2.0, {1.0, 0.0, 0.0}};
+      for (const ThickPiece* piece : near) {
+        const Gap one = gap(*piece, point);
+        if (one.size < least.size) least = one;
+      }
+      const double width =
+          kSide * (std::abs(least.away[0]) + std::abs(least.away[1]) + std::abs(least.away[2]));
+      sum += std::clamp(0.5 - least.size / width, 0.0, 1.0);
+    }
+    const auto share = static_cast<float>(sum * kSide * kSide * kSide);
+    return share > before + kLeastAdded ? share : 0.0F;
+  }
+
+ private:
+  // Whether a cell is within one of the pieces.
+  bool is_full(const PieceCell& cell, int depth) const {
+    const double side = std::ldexp(1.0, octree_.depth - depth);
+    const Vector3 center = {(cell.at[0] + 0.5) * side, (cell.at[1] + 0.5) * side,
+                            (cell.at[2] + 0.5) * side};
+    return std::any_of(cell.pieces.begin(), cell.pieces.end(), [&](std::uint32_t i) {
+      return pieces_[i].radius > side * kHalfDiagonal &&
+             gap(pieces_[i], center).size < -side * kHalfDiagonal;
+    });
+  }
+
+  // From a piece to a point: negative within.
+  struct Gap {
+    double size;
+    Vector3 away;
+  };
+
+  static Gap gap(const ThickPiece& piece, const Vector3& point) {
+    const auto& [a, b, c] = piece.middles;
+    const Vector3 w = nearest_weights(point, a, b, c);
+    const Vector3 d = point - (w[0] * a + w[1] * b + w[2] * c);
+    const double distance = std::sqrt(dot(d, d));
+    if (!(distance > 0.0)) return {-piece.radius, {1.0, 0.0, 0.0}};
+    return {distance - piece.radius, (1.0 / distance) * d};
+  }
+
+  const std::vector<ThickPiece>& pieces_;
+  const Octree& octree_;
+  std::vector<Box> boxes_;
+};
+
+// The mesh in units of which the root has so many along an axis, without what is very far away.
+TriangleMesh in_units(const RootTriangles& mesh, double count) {
+  constexpr double kFarthest = 1e9;
+  TriangleMesh result;
+  result.positions.reserve(mesh.mesh.positions.size());
+  std::vector<bool> is_far(mesh.mesh.positions.size(), false);
+  for (const Vector3& p : mesh.mesh.positions) {
+    Vector3 q;
+    for (int a = 0; a < 3; ++a) {
+      q[a] = (p[a] - mesh.root.low[a]) / mesh.root.size(a) * count;
+      if (std::abs(q[a]) <= kFarthest) continue;
+      is_far[result.positions.size()] = true;
+      q[a] = 0.0;
+    }
+    result.positions.push_back(q);
+  }
+  result.triangles.reserve(mesh.mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.mesh.triangles) {
+    if (is_far[static_cast<std::size_t>(a)] || is_far[static_cast<std::size_t>(b)] ||
+        is_far[static_cast<std::size_t>(c)]) {
+      continue;
+    }
+    result.triangles.push_back(
+        {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)});
+  }
+  return result;
+}
+
+// What is to be added to the octree, in cells of its depth.
+std::vector<ThickPiece> pieces_for(const RootTriangles& mesh, double thickness,
+                                   const Octree& octree, const Progress& progress, int threads) {
+  // Of these the thickness is no more than usual, so that there are not very many pieces.
+  const double unit = std::max(1.0, thickness / kUsualThickness);
+  const double count = std::ldexp(1.0, octree.depth) / unit;
+  const TriangleMesh scaled = in_units(mesh, count);
+  if (scaled.triangles.empty()) return {};
+  const auto occupancy = [&](const Vector3& point) {
+    LeafPlace place;
+    for (std::size_t a = 0; a < 3; ++a) {
+      place[a] = static_cast<int>(std::floor(std::clamp(point[a], -1.0, count) * unit));
+    }
+    return occupancy_at(octree.cells, octree.depth, place);
+  };
+  const Box bounds = {{-kMargin, -kMargin, -kMargin},
+                      {count + kMargin, count + kMargin, count + kMargin}};
+  std::vector<ThickPiece> pieces = thick_pieces(
+      {scaled.positions, scaled.triangles}, thickness / unit, bounds, occupancy, progress, threads);
+  for (ThickPiece& piece : pieces) {
+    for (Vector3& middle : piece.middles) middle = unit * middle;
+    piece.radius *= unit;
+    piece.thickness *= unit;
+  }
+  return pieces;
+}
+
+}  // namespace
+
+void thicken(const RootTriangles& mesh, double thickness, const Progress& progress, int threads,
+             Octree* octree) {
+  const std::vector<ThickPiece> pieces =
+      pieces_for(mesh, thickness, *octree, progress.part(0.0, 0.6), threads);
+  if (pieces.empty()) {
+    progress.report(1.0);
+    return;
+  }
+  const PieceRule rule(pieces, *octree);
+  Octree added;
+  added.bounds = octree->bounds;
+  added.depth = octree->depth;
+  added.cells = build_tree(rule.root(), octree->depth, rule, progress.part(0.6, 0.9), threads);
+  *octree = combine(*octree, added, SetOperation::kUnion, progress.part(0.9, 1.0), threads);
+  octree->thickened = std::move(added.cells);
+}
+
+}  // namespace prefilter

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Where a solid is thinner than its cells can show.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
+
+namespace prefilter {
+
+/// What is within a radius of a triangle in the middle of the solid.
+struct ThickPiece {
+  std::array<Vector3, 3> middles;
+  double radius;
+  std::uint32_t triangle;  // of the mesh, that it is below
+  double thickness;        // of the solid there
+};
+
+/// Pieces that, added to a closed mesh, make it as thick as `thickness` where it is thinner and in
+/// a box; lengths are cells. Rods and specks get more, by as much as cells need to hold them
+/// together. The medial balls of Ma, Bae, Choi, "3D medial point approximation using nearest
+/// neighbors and the normal field" (2012), that touch what faces the other way: what is rough, or
+/// an edge, is not thin. `occupancy(point)` is that of the cell that holds a point.
+std::vector<ThickPiece> thick_pieces(const MeshView<std::int32_t>& mesh, double thickness,
+                                     const Box& bounds,
+                                     const std::function<float(const Vector3&)>& occupancy,
+                                     const Progress& progress, int threads);
+
+}  // namespace prefilter

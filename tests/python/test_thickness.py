@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Solids that are thinner than cells can show get a thickness there, and nowhere else."""
+
+import numpy as np
+import prefilter
+import pytest
+from octrees import octrees_are_same
+from solids import Solid, box, join, sheet, sphere, surface_faults
+
+from bench.voxels.measures import folds, topology
+from bench.voxels.thin_shapes import SHAPES, plate, posed, ring, rod
+
+DEPTH = 6
+CELLS = 2**DEPTH
+LEAST = 1.5
+BOUNDS = (np.zeros(3), np.full(3, float(CELLS)))
+
+
+def voxelized(solid: Solid, thickness: float = LEAST, **options) -> prefilter.Octree:
+    return prefilter.voxelize(
+        solid.positions,
+        solid.triangles,
+        depth=DEPTH,
+        bounds=BOUNDS,
+        thickness=thickness,
+        **options,
+    )
+
+
+def surface(solid: Solid, tree: prefilter.Octree, **options):
+    sources = [(solid.positions, solid.triangles)]
+    return tree.contour(interpolant="sharp", sources=sources, **options)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize("thickness", [0.02, 0.8, 1.3, 2.0])
+def test_parts_and_holes_are_those_of_the_shape(name, thickness):
+    shape = SHAPES[name](thickness)
+    for seed in range(3):
+        solid = posed(shape, seed, CELLS)
+        positions, triangles = surface(solid, voxelized(solid))
+        assert topology(triangles) == (shape.parts, shape.genus)
+        assert surface_faults(positions, triangles).none
+        assert folds(positions, triangles) == 0
+
+
+@pytest.mark.parametrize("thickness", [0.02, 0.5, 1.2])
+def test_a_plate_is_what_a_ball_sweeps(thickness):
+    """A plate of a x b becomes the points within half of the thickness of its middle."""
+    half = LEAST / 2
+    expected = 40 * 30 * LEAST + (40 + 30) * np.pi * half**2 + 4 / 3 * np.pi * half**3
+    for seed in range(3):
+        solid = posed(plate(thickness), seed, CELLS)
+        assert voxelized(solid).volume == pytest.approx(expected, rel=0.01)
+    solid = posed(plate(thickness), 0, CELLS)
+    positions, _ = surface(solid, voxelized(solid), cleanup=False)
+    across = np.abs(positions - CELLS / 2)
+    inner = (across[:, 0] < 18) & (across[:, 1] < 13)
+    assert np.abs(across[inner, 2] - half).max() < 0.01
+
+
+@pytest.mark.parametrize("thickness", [0.02, 0.5, 1.2, 1.6])
+def test_rods_and_rings_have_one_section(thickness):
+    for shape, length in ((rod(thickness), 40.0), (ring(thickness), 30 * np.pi)):
+        volumes = [voxelized(posed(shape, seed, CELLS)).volume for seed in range(3)]
+        radius = np.sqrt(np.array(volumes) / np.pi / length)
+        assert (radius > 0.9).all()
+        assert (radius < 1.0).all()
+
+
+def test_what_is_thick_stays_as_it_is():
+    """Edges and roughness are not thin."""
+    ball = sphere(20.0, 5)
+    noise = np.random.default_rng(0).normal(0, 0.01, len(ball.positions))
+    rough = Solid(ball.positions * (1 + noise[:, None]) + 32, ball.triangles)
+    for solid in (
+        sphere(20.0, 4, (32, 32, 32)),
+        box((10.3, 10.3, 10.3), (40.4, 50.1, 12.4)),
+        rough,
+    ):
+        assert octrees_are_same(voxelized(solid, 0.0), voxelized(solid))
+
+
+def test_parts_that_touch_or_overlap_are_no_sheets():
+    first = box((10, 10, 10), (30, 30, 30))
+    for gap in (0.0, -0.1, -1.0):
+        second = box((10, 10, 30 + gap), (30, 30, 50))
+        both = join(first, second)
+        assert voxelized(both).volume == pytest.approx(voxelized(both, 0.0).volume, rel=1e-4)
+
+
+def test_it_ends_without_a_step():
+    """A wedge of 6 degrees: its surface leaves that of the mesh where that is thick enough."""
+    positions = np.array(
+        [(x, y, z) for x, h in ((0.0, 0.0), (50.0, 5.0)) for y in (0.0, 30.0) for z in (-h, h)]
+    )
+    faces = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    triangles = np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))])
+    wedge = Solid(positions + np.array([7.2, 17.1, 32.3]), triangles[:, ::-1])
+    points, _ = surface(wedge, voxelized(wedge), cleanup=False)
+    inner = (np.abs(points[:, 1] - 32) < 10) & (points[:, 0] > 9) & (points[:, 0] < 50)
+    x, height = points[inner, 0] - 7.2, np.abs(points[inner, 2] - 32.3)
+    expected = np.maximum(LEAST / 2, x / 10)
+    assert np.abs(height - expected).max() < 0.25
+    thick = x > 9.0
+    assert np.abs(height - expected)[thick].max() < 0.02
+
+
+def test_sheets_are_their_faces():
+    flat = sheet(8, lambda x, y: 0 * x).transformed(20 * np.eye(3), np.full(3, 32.4))
+    found = prefilter.as_solid(flat.positions, flat.triangles, cell=1.0, sheets="faces")
+    assert len(found.triangles) == 2 * len(flat.triangles)
+    assert found.origins.tolist() == np.repeat(np.arange(len(flat.triangles)), 2).tolist()
+    assert found.lost_parts == 0
+    tree = voxelized(Solid(found.positions, found.triangles))
+    expected = 40 * 40 * LEAST + 80 * np.pi * (LEAST / 2) ** 2
+    assert tree.volume == pytest.approx(expected, rel=0.01)
+    assert voxelized(Solid(found.positions, found.triangles), 0.0).volume == 0.0
+
+
+def test_threads_do_not_change_a_bit():
+    solid = join(posed(ring(0.5), 3, CELLS), posed(plate(0.3), 4, CELLS))
+    first = voxelized(solid, threads=1)
+    for threads in (2, 5):
+        assert octrees_are_same(first, voxelized(solid, threads=threads))
+
+
+def test_set_operations_keep_what_is_thick():
+    solid = posed(rod(0.3), 2, CELLS)
+    ball = sphere(6.0, 3, (32, 32, 32))
+    both = voxelized(solid).union(voxelized(ball))
+    sources = [(one.positions, one.triangles) for one in (solid, ball)]
+    _, triangles = both.contour(interpolant="sharp", sources=sources)
+    assert topology(triangles) == (1, 0)
+
+
+def test_origins_are_unknown_where_it_is_thickened():
+    solid = join(posed(rod(0.3), 0, CELLS), box((4, 4, 4), (12, 12, 12)))
+    traced = voxelized(solid).traced_contour([(solid.positions, solid.triangles)])
+    middles = traced.positions[traced.triangles].mean(axis=1)
+    is_rod = middles[:, 0] > 20
+    assert (traced.origins[is_rod] == -1).all()
+    assert (traced.origins[~is_rod] >= len(solid.triangles) - 12).all()
+
+
+def test_nasty_meshes():
+    triangle = np.array([(10.0, 10, 10), (30, 10, 10), (10, 30, 10)])
+    both = np.array([(0, 1, 2), (0, 2, 1)])
+    assert voxelized(Solid(triangle, both)).volume > 200 * LEAST
+    point = Solid(np.array([(20.0, 20, 20), (21, 20, 20), (20, 21, 20)]), both)
+    assert voxelized(point).volume > 0
+    flat = np.concatenate([triangle, [(40.0, 40, 40)]])
+    with_flat = Solid(flat, np.array([(0, 1, 2), (0, 2, 1), (3, 3, 3), (0, 0, 1)]))
+    expected = voxelized(Solid(triangle, both)).volume
+    assert voxelized(with_flat).volume == pytest.approx(expected, rel=1e-3)
+    twice = join(posed(plate(0.3), 1, CELLS), posed(plate(0.3), 1, CELLS))
+    once = voxelized(posed(plate(0.3), 1, CELLS))
+    assert voxelized(twice).volume == pytest.approx(once.volume, rel=1e-3)
