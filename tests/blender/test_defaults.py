@@ -15,6 +15,8 @@ ABSENT = {
     "memory_limit": (0, None),
     "background": ("transparent", None),
     "table": ("", None),
+    # Without it, occupancies are exact.
+    "thickness": (1.5, 0.0),
 }
 
 
