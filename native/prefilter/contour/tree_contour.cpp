@@ -6,7 +6,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "prefilter/base/error.h"
@@ -14,21 +13,18 @@
 #include "prefilter/base/text.h"
 #include "prefilter/contour/contour_slab.h"
 #include "prefilter/contour/dual_cells.h"
+#include "prefilter/contour/edge_source.h"
 #include "prefilter/contour/fit_vertices.h"
 #include "prefilter/contour/linked_loops.h"
 #include "prefilter/contour/marching_table.h"
-#include "prefilter/contour/occupancy_surface.h"
-#include "prefilter/contour/part_sides.h"
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/sharp_vertices.h"
 #include "prefilter/contour/sharpen.h"
-#include "prefilter/contour/source_surface.h"
 #include "prefilter/contour/surface_vertices.h"
 #include "prefilter/contour/thickened_cells.h"
 #include "prefilter/contour/unfold.h"
 #include "prefilter/remesh/clean_up.h"
 #include "prefilter/remesh/simplify.h"
-#include "prefilter/remesh/spread_labels.h"
 #include "prefilter/wavelet/refine.h"
 
 namespace prefilter {
@@ -289,62 +285,6 @@ std::vector<std::int32_t> leave_out_unused(Mesh* mesh) {
   return used;
 }
 
-// Gives all triangles labels; returns a triangle of the sources for each of these.
-std::vector<std::int64_t> trace_labels(const SourceSurface& surface, int threads,
-                                       FacetedMesh* mesh) {
-  std::vector<std::int64_t> triangles = surface.first_triangles();
-  const auto known = static_cast<std::int32_t>(triangles.size());
-  const int added = spread_labels(mesh, known, Progress(), threads);
-  triangles.resize(triangles.size() + static_cast<std::size_t>(added), -1);
-  // What has no edges close to it is of one region: one of its triangles tells.
-  for (std::size_t t = 0; t < mesh->triangles.size() && added > 0; ++t) {
-    std::int64_t& triangle = triangles[static_cast<std::size_t>(mesh->labels[t])];
-    if (triangle >= 0) continue;
-    const auto& [a, b, c] = mesh->triangles[t];
-    triangle = surface.nearest_of_all((1.0 / 3.0) * (mesh->positions[static_cast<std::size_t>(a)] +
-                                                     mesh->positions[static_cast<std::size_t>(b)] +
-                                                     mesh->positions[static_cast<std::size_t>(c)]));
-  }
-  return triangles;
-}
-
-// Where the edges of a contour are: a surface, and what the vertices know of it.
-struct EdgeSource {
-  std::optional<SourceSurface> meshes;
-  std::optional<PartSides> part_sides;           // where several meshes meet
-  std::optional<OccupancySurface> smooth_parts;  // where there are no meshes
-  VertexSamples samples;
-  Crossings crossings;
-
-  const FeatureSurface* surface() const {
-    if (meshes) return &*meshes;
-    return smooth_parts ? &*smooth_parts : nullptr;
-  }
-};
-
-void read_sources(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
-                  const Progress& progress, ContourTree* tree, EdgeSource* edges) {
-  edges->meshes.emplace(options.sources, frame, frame.cell(0, cells.depth()),
-                        progress.part(0.0, 0.66), options.threads);
-  if (!edges->meshes->has_meetings()) return;
-  edges->part_sides.emplace(*tree, frame, *edges->meshes, progress.part(0.66, 0.86));
-  edges->part_sides->settle({options.thickened, frame}, progress.part(0.86, 1.0), options.threads,
-                            tree);
-}
-
-void sample_edges(const ContourTree& tree, const RootFrame& frame, const CellTree* thickened,
-                  const Progress& progress, int threads, SurfaceVertices* vertices,
-                  EdgeSource* edges) {
-  if (edges->meshes) {
-    edges->samples = sample_vertices(tree, frame, *edges->meshes,
-                                     edges->part_sides ? &*edges->part_sides : nullptr,
-                                     {thickened, frame}, progress, threads, vertices);
-    return;
-  }
-  edges->smooth_parts.emplace(tree, frame, *vertices, progress.part(0.0, 0.5), threads);
-  edges->samples = edges->smooth_parts->sample_vertices(progress.part(0.5, 1.0), threads, vertices);
-}
-
 LoopedMesh make_loops(const ContourTree& tree, const Division* division, const Progress& progress,
                       int threads, SurfaceVertices* vertices) {
   const DualCells dual(tree);
@@ -372,10 +312,6 @@ FacetedMesh sharpened(LoopedMesh looped, const EdgeSource& edges, const Progress
   }
   mesh.kinds.resize(std::min(mesh.kinds.size(), used.size()));
   return mesh;
-}
-
-Interpolant interpolant_of(const ContourOptions& options) {
-  return options.interpolant.value_or(Interpolant::kSharp);
 }
 
 // The full contour, in the frame. With `sources_of_labels`, all triangles get labels, of each of
