@@ -18,8 +18,6 @@ class _RemeshPanel:
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
     bl_context = "data"
-    bl_parent_id = "DATA_PT_remesh"
-    bl_options = frozenset({"DEFAULT_CLOSED"})
 
 
 class _SidebarPanel(SidebarPanel):
@@ -37,22 +35,34 @@ _VOXELIZE = Button(PREFILTER_OT_voxelize, "MOD_REMESH", VOXELIZE.group, {Voxeliz
 _BOOLEAN = Button(PREFILTER_OT_boolean, "MOD_BOOLEAN", BOOLEAN.group, {BooleanSettings: ()})
 
 
+class _BooleanPanel:
+    """A mixin: in the panel of voxelizing, which has the other settings."""
+
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    layout: bpy.types.UILayout
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        _BOOLEAN.draw_main(self.layout, context, "Make Boolean")
+        context.scene.prefilter_boolean.draw_own(self.layout)
+
+
 class PREFILTER_PT_voxelize(_RemeshPanel, SettingsPanel, bpy.types.Panel):
     """Button and settings of voxelizing, of meshes."""
 
     bl_label = "Prefilter Voxelize"
+    bl_parent_id = "DATA_PT_remesh"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
     presets = VOXELIZE
     button = _VOXELIZE
     makes = "Make Solid"
 
 
-class PREFILTER_PT_boolean(_RemeshPanel, SettingsPanel, bpy.types.Panel):
-    """Button and settings of booleans, of meshes."""
+class PREFILTER_PT_boolean(_BooleanPanel, _RemeshPanel, bpy.types.Panel):
+    """Button and own settings of booleans, of meshes."""
 
     bl_label = "Prefilter Boolean"
-    presets = BOOLEAN
-    button = _BOOLEAN
-    makes = "Make Boolean"
+    bl_parent_id = "PREFILTER_PT_voxelize"
 
 
 class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Panel):
@@ -64,15 +74,11 @@ class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Pane
     makes = "Make Solid"
 
 
-class PREFILTER_PT_boolean_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Panel):
-    """Button and settings of booleans."""
+class PREFILTER_PT_boolean_sidebar(_BooleanPanel, _SidebarPanel, bpy.types.Panel):
+    """Button and own settings of booleans."""
 
     bl_label = "Voxel Boolean"
     bl_parent_id = "PREFILTER_PT_voxelize_sidebar"
-    bl_options = frozenset({"DEFAULT_CLOSED"})
-    presets = BOOLEAN
-    button = _BOOLEAN
-    makes = "Make Boolean"
 
 
 def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:

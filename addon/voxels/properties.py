@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of voxelizing and of booleans as properties, of operators and of the scene."""
+"""The settings of voxelizing and of booleans as properties, of operators and of the scene.
+
+A scene has one set of what both have in common.
+"""
 
 import bpy
 
 from ..core import preset_menu, presets
-from ..core.properties import properties, values
+from ..core.properties import properties, shared, values
 from ..core.registration import classes, registration, state
 from ..core.sidebar import PartedSettings, note, subpanel
 from ..core.translations import tr
-from .choices import BooleanSettings, VoxelizeSettings
+from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
 
-VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, ())])
-BOOLEAN = presets.Kind("boolean", "prefilter_boolean", [(BooleanSettings, ["operation"])])
+# The presets of both are the same.
+VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, ("output",))])
+BOOLEAN = presets.Kind(
+    "voxelize", "prefilter_boolean", [(BooleanSettings, ("operation", "operands"))]
+)
 
 
 class VoxelProperties(PartedSettings):
@@ -105,9 +111,15 @@ class BooleanProperties(VoxelProperties):
         """Returns the settings."""
         return values(self, BooleanSettings)
 
-    def _draw_first(self, layout: bpy.types.UILayout) -> None:
+    def draw_own(self, layout: bpy.types.UILayout) -> None:
+        """Draws what voxelizing does not have."""
+        layout.use_property_split = True
+        layout.use_property_decorate = False
         layout.prop(self, "operation")
         layout.prop(self, "operands")
+
+    def _draw_first(self, layout: bpy.types.UILayout) -> None:
+        self.draw_own(layout)
 
 
 class PREFILTER_PG_voxelize(VoxelizeProperties, bpy.types.PropertyGroup):
@@ -115,11 +127,13 @@ class PREFILTER_PG_voxelize(VoxelizeProperties, bpy.types.PropertyGroup):
 
 
 class PREFILTER_PG_boolean(BooleanProperties, bpy.types.PropertyGroup):
-    """The settings that the panel shows; they stay with the scene."""
+    """The settings that the panel shows; what voxelizing has too is that of its settings."""
+
+    __annotations__ = shared(VoxelSettings, VOXELIZE.group)
 
 
 register, unregister = registration(
     state(bpy.types.Scene, VOXELIZE.group, PREFILTER_PG_voxelize),
     state(bpy.types.Scene, BOOLEAN.group, PREFILTER_PG_boolean),
-    classes(preset_menu.panel(VOXELIZE), preset_menu.panel(BOOLEAN)),
+    classes(preset_menu.panel(VOXELIZE)),
 )

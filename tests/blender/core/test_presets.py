@@ -20,7 +20,6 @@ KINDS = {
     "bake": "mipmaps.properties.BAKE",
     "model": "mipmaps.properties.MODEL",
     "voxelize": "voxels.properties.VOXELIZE",
-    "boolean": "voxels.properties.BOOLEAN",
     "reconstruct": "scans.properties.RECONSTRUCT",
     "rasterize": "shapes.properties.RASTERIZE",
     "resize": "resampling.properties.RESIZE",

@@ -4,6 +4,8 @@
 
 from pathlib import Path
 
+import bpy
+
 SESSION = Path(__file__).with_name("voxel_session.py")
 
 
@@ -19,3 +21,15 @@ def test_panels_and_modal_operators(found):
     assert found["without_operand"] == vertices
     assert found["polls_in_next_file"]
     assert found["in_next_file"] == {"Next": 8}
+
+
+def test_booleans_have_the_settings_of_voxelizing():
+    """One set in the scene: either group shows what the other one got."""
+    scene = bpy.context.scene
+    scene.prefilter_voxelize.depth = 5
+    scene.prefilter_voxelize.interpolant = "linear"
+    settings = scene.prefilter_boolean.to_settings()
+    assert (settings.depth, settings.interpolant) == (5, "linear")
+    scene.prefilter_boolean.holes = "fan"
+    assert scene.prefilter_voxelize.to_settings().holes == "fan"
+    assert scene.prefilter_voxelize.is_property_set("holes")

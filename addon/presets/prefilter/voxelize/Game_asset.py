@@ -16,4 +16,3 @@ settings.use_uv_maps = True
 settings.use_colors = True
 settings.use_attributes = True
 settings.use_smooth_shading = True
-settings.output = "mesh"

@@ -9,4 +9,3 @@ settings.depth = 6
 settings.interpolant = "plane"
 settings.adaptivity = 0.0
 settings.use_cleanup = False
-settings.output = "mesh"

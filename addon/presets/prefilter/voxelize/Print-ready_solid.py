@@ -13,4 +13,3 @@ settings.gap = 2.0
 settings.use_close_holes = True
 settings.holes = "smooth"
 settings.use_cleanup = True
-settings.output = "mesh"
