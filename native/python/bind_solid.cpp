@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "prefilter/solid/as_solid.h"
 #include "prefilter/solid/close_holes.h"
 #include "prefilter/solid/mesh_edges.h"
+#include "prefilter/solid/mesh_topology.h"
 
 namespace py = pybind11;
 
@@ -94,6 +96,22 @@ std::pair<Array<std::int32_t>, Array<std::int32_t>> bound_mesh_edges(const py::a
           to_array<std::int32_t>(std::move(edges.of_corners), {corners / 3, py::ssize_t{3}})};
 }
 
+// The numbers of parts and of borders, the genus, and the part of each triangle.
+std::tuple<std::size_t, std::size_t, std::optional<std::size_t>, Array<std::int32_t>>
+bound_mesh_topology(const py::array& positions, const py::array& triangles, bool welds,
+                    const py::object& callback, int threads) {
+  const Progress progress = to_progress(callback);
+  const InputMesh mesh = mesh_of(positions, triangles);
+  MeshTopology found;
+  {
+    const py::gil_scoped_release unlocked;
+    found = mesh_topology(mesh, welds, progress, threads);
+  }
+  const auto count = static_cast<py::ssize_t>(found.part_of.size());
+  return {found.parts, found.borders, found.genus,
+          to_array<std::int32_t>(std::move(found.part_of), {count})};
+}
+
 }  // namespace
 
 void bind_solid(py::module_& m) {
@@ -109,6 +127,8 @@ void bind_solid(py::module_& m) {
         py::arg("method"), py::arg("progress"), py::arg("threads"));
   m.def("mesh_edges", &bound_mesh_edges, py::arg("positions"), py::arg("triangles"),
         py::arg("progress"), py::arg("threads"));
+  m.def("mesh_topology", &bound_mesh_topology, py::arg("positions"), py::arg("triangles"),
+        py::arg("welds"), py::arg("progress"), py::arg("threads"));
 }
 
 }  // namespace prefilter::python

@@ -436,6 +436,7 @@ def test_every_function_is_there():
         "MeshEdges",
         "MipmapFilter",
         "MeshMeasures",
+        "MeshTopology",
         "NearestPoints",
         "PickedTexels",
         "PixelFilter",

@@ -54,6 +54,10 @@ FUNCTIONS = {
         prefilter.mesh_edges,
         {"positions": BOX.positions, "triangles": BOX.triangles},
     ),
+    "mesh_topology": (
+        prefilter.mesh_topology,
+        {"positions": BOX.positions, "triangles": BOX.triangles},
+    ),
     "close_holes": (
         prefilter.close_holes,
         {"positions": BOX.positions, "triangles": BOX.triangles},
@@ -142,6 +146,7 @@ EMPTY_ROWS = [
         "nearest_points",
         "measure_mesh",
         "mesh_edges",
+        "mesh_topology",
         "close_holes",
         "as_solid",
     )

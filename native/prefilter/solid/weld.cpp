@@ -227,17 +227,17 @@ void keep_one_of_each(const std::vector<Corners>& triangles,
 
 }  // namespace
 
-std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads) {
-  const std::vector<Vector3>& positions = mesh->positions;
+std::vector<std::int32_t> first_at_each_place(const PositionView& positions,
+                                              const Progress& progress, int threads) {
   const std::size_t slots = std::bit_ceil(positions.size() / 2 + 1);
   const Buckets buckets(
       slots, positions.size(),
       [&](std::size_t begin, std::size_t end, const auto& put) {
         for (std::size_t v = begin; v < end; ++v) put(hash_of(positions[v]) & (slots - 1), v);
       },
-      progress.part(0.0, 0.7), threads);
+      progress.part(0.0, 0.8), threads);
   std::vector<std::int32_t> names(positions.size());
-  parallel_ranges(static_cast<std::int64_t>(slots), kRowsPerTask, threads, progress.part(0.7, 0.9),
+  parallel_ranges(static_cast<std::int64_t>(slots), kRowsPerTask, threads, progress.part(0.8, 1.0),
                   [&](std::int64_t begin, std::int64_t end) {
                     for (auto slot = static_cast<std::size_t>(begin);
                          slot < static_cast<std::size_t>(end); ++slot) {
@@ -249,7 +249,12 @@ std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads) {
                       }
                     }
                   });
-  const std::size_t count = rename(names, mesh);
+  return names;
+}
+
+std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads) {
+  const std::size_t count =
+      rename(first_at_each_place(mesh->positions, progress.part(0.0, 0.9), threads), mesh);
   progress.report(1.0);
   return count;
 }

@@ -25,6 +25,10 @@ struct WorkMesh {
   std::array<Vector3, 3> corners(std::size_t triangle) const { return view().corners(triangle); }
 };
 
+/// For each vertex, the first of those at its place.
+std::vector<std::int32_t> first_at_each_place(const PositionView& positions,
+                                              const Progress& progress, int threads);
+
 /// Lets triangles name the first of the vertices at each place. Returns how many other vertices are
 /// not named any more.
 std::size_t weld_equal(WorkMesh* mesh, const Progress& progress, int threads);

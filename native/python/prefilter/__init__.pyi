@@ -34,6 +34,8 @@ from .meshes.nearest import nearest_points as nearest_points
 from .meshes.solids import SolidMesh as SolidMesh
 from .meshes.solids import as_solid as as_solid
 from .meshes.surface import Surface as Surface
+from .meshes.topology import MeshTopology as MeshTopology
+from .meshes.topology import mesh_topology as mesh_topology
 from .points.normals import estimate_normals as estimate_normals
 from .points.normals import grid_normals as grid_normals
 from .points.normals import mesh_normals as mesh_normals

@@ -284,6 +284,13 @@ def mesh_edges(
     progress: ProgressCallback | None,
     threads: int,
 ) -> tuple[npt.NDArray[np.int32], npt.NDArray[np.int32]]: ...
+def mesh_topology(
+    positions: npt.NDArray[np.floating],
+    triangles: npt.NDArray[np.integer],
+    welds: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[int, int, int | None, npt.NDArray[np.int32]]: ...
 def nearest_points(
     points: npt.NDArray[np.float64],
     positions: npt.NDArray[np.floating],

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Parts, genus and borders of meshes against shapes of which they are known, and against a walk."""
+
+import numpy as np
+import prefilter
+import pytest
+
+from bench.solids import box, torus
+from bench.voxels.thin_shapes import grating, plate
+
+
+def joined(*meshes):
+    """Returns meshes as one."""
+    starts = np.cumsum([0, *(len(positions) for positions, _ in meshes)])
+    return (
+        np.concatenate([positions for positions, _ in meshes]),
+        np.concatenate(
+            [np.asarray(t) + start for (_, t), start in zip(meshes, starts[:-1], strict=True)]
+        ),
+    )
+
+
+def shape(solid, shift=(0, 0, 0)):
+    return solid.positions + np.array(shift, float), solid.triangles
+
+
+def walked_parts(triangles):
+    """Returns the part of each triangle, by walking from neighbor to neighbor over edges."""
+    beside = {}
+    for t, corners in enumerate(triangles.tolist()):
+        for k in range(3):
+            beside.setdefault(frozenset((corners[k], corners[k - 1])), []).append(t)
+    parts = np.full(len(triangles), -1)
+    count = 0
+    for first in range(len(triangles)):
+        if parts[first] >= 0 or len(set(triangles[first].tolist())) < 3:
+            continue
+        todo = [first]
+        parts[first] = count
+        while todo:
+            corners = triangles[todo.pop()].tolist()
+            for k in range(3):
+                for other in beside[frozenset((corners[k], corners[k - 1]))]:
+                    if parts[other] < 0 and len(set(triangles[other].tolist())) == 3:
+                        parts[other] = count
+                        todo.append(other)
+        count += 1
+    return count, parts
+
+
+BOX = box((0, 0, 0), (1, 1, 1))
+TORUS = torus(2.0, 0.5, 24, 10)
+SOUP = np.arange(3 * len(TORUS.triangles)).reshape(-1, 3)
+STRIP = [[i % 10, (i + 1) % 10, (i + 2) % 10] for i in range(10)]
+MOEBIUS = [[i % 9, (i + 1) % 9, (i + 2) % 9] for i in range(9)]
+
+
+TWO = joined(shape(BOX), shape(BOX, (1, 1, 0)))  # with an edge in common
+PLACES, NAMES = np.unique(TWO[0], axis=0, return_inverse=True)
+AT_EDGE = (PLACES, NAMES.reshape(-1)[TWO[1]])
+
+
+@pytest.mark.parametrize(
+    ("mesh", "parts", "genus", "borders"),
+    [
+        (shape(BOX), 1, 0, 0),
+        (shape(TORUS), 1, 1, 0),
+        (shape(grating(1.0).solid), 1, 16, 0),
+        (shape(plate(1.0).solid), 1, 0, 0),
+        (joined(shape(TORUS), shape(BOX, (9, 0, 0)), shape(TORUS, (20, 0, 0))), 3, 2, 0),
+        (joined(shape(BOX), shape(BOX, (1, 1, 1))), 2, 0, 0),  # touching at a vertex
+        (AT_EDGE, 1, None, 0),
+        ((BOX.positions, BOX.triangles[2:]), 1, 0, 1),
+        ((TORUS.positions, TORUS.triangles[1:]), 1, 1, 1),
+        ((TORUS.positions[TORUS.triangles].reshape(-1, 3), SOUP), 1, 1, 0),
+        ((np.random.default_rng(1).normal(size=(10, 3)), STRIP), 1, 0, 2),
+        ((np.random.default_rng(1).normal(size=(9, 3)), MOEBIUS), 1, None, 1),
+        ((np.eye(3), [[0, 1, 2]]), 1, 0, 1),
+        ((np.eye(3), [[0, 1, 1]]), 0, 0, 0),
+    ],
+)
+def test_what_is_known(mesh, parts, genus, borders):
+    found = prefilter.mesh_topology(*mesh)
+    assert (found.parts, found.genus, found.borders) == (parts, genus, borders)
+
+
+def test_without_welding_the_triangles_of_a_soup_are_parts():
+    soup = BOX.positions[BOX.triangles].reshape(-1, 3)
+    corners = np.arange(36).reshape(-1, 3)
+    assert prefilter.mesh_topology(soup, corners).parts == 1
+    found = prefilter.mesh_topology(soup, corners, weld=False)
+    assert (found.parts, found.genus, found.borders) == (12, 0, 12)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_parts_are_what_a_walk_reaches(seed):
+    rng = np.random.default_rng(seed)
+    positions = rng.integers(0, 3, (60, 3)).astype(np.float32)
+    triangles = rng.integers(0, 60, (rng.integers(1, 40), 3))
+    names = np.unique(positions, axis=0, return_inverse=True)[1].reshape(-1)
+    soup = positions[triangles].reshape(-1, 3)  # where all vertices are of borders
+    corners = np.arange(len(soup)).reshape(-1, 3)
+    for threads, mesh, named in (
+        (1, (soup, corners, True), names[triangles]),
+        (4, (soup, corners, True), names[triangles]),
+        (2, (positions, triangles, False), triangles),
+    ):
+        found = prefilter.mesh_topology(*mesh[:2], weld=mesh[2], threads=threads)
+        parts, part_of = walked_parts(named)
+        assert found.parts == parts
+        np.testing.assert_array_equal(found.part_of, part_of)
+
+
+def test_vertices_where_surfaces_meet_are_several():
+    # A ring of boxes, each of which touches the next at a vertex: no handle.
+    boxes = [(0, 0, 0), (1, 1, 1), (2, 0, 2), (1, -1, 1)]
+    found = prefilter.mesh_topology(*joined(*(shape(BOX, at) for at in boxes)))
+    assert (found.parts, found.genus, found.borders) == (4, 0, 0)
+
+
+def test_closed_parts_are_not_welded():
+    found = prefilter.mesh_topology(*joined(shape(BOX), shape(BOX, (1, 0, 0))))
+    assert (found.parts, found.genus, found.borders) == (2, 0, 0)
+
+
+def test_canceling():
+    with pytest.raises(prefilter.Cancelled):
+        prefilter.mesh_topology(*shape(TORUS), progress=lambda _: False)
