@@ -3,7 +3,9 @@
 """Blender's voxel remesh, the operator: a mesh in memory to a mesh in memory.
 
 Run inside of Blender, it does the work once and prints what `clock` does.
-usage: blender --background --factory-startup --python voxel_remesh.py -- MESH.npz CELL
+usage: blender --background --factory-startup --python voxel_remesh.py -- MESH.npz CELL [whole]
+
+`suzanne.npz` without a file of this name is Blender's own Suzanne, subdivided, with its UV map.
 """
 
 import shutil
@@ -14,17 +16,21 @@ from typing import Any
 
 
 class VoxelRemesh:
-    """`bpy.ops.object.voxel_remesh` without what comes after the contour.
+    """`bpy.ops.object.voxel_remesh`, as a whole or without what comes after the contour.
 
-    Fixing poles, preserving the volume and transferring attributes are off.
+    Then fixing poles, preserving the volume and transferring attributes are off; otherwise they are
+    as Blender has them at first.
     """
 
-    def __init__(self, mesh: Path, cell: float, *, threads: int = 1) -> None:
+    def __init__(
+        self, mesh: Path, cell: float, *, is_whole: bool = False, threads: int = 1
+    ) -> None:
         """`mesh` holds positions and triangles; `cell` is the voxel size."""
         self.name = "Blender voxel remesh"
         command = ["blender", "--background", "--factory-startup", "--python-exit-code", "1"]
         command += ["--threads", str(threads), "--python", __file__]
-        self._command = pinned([*command, "--", str(mesh), repr(cell)], threads)
+        steps = ["whole"] if is_whole else []
+        self._command = pinned([*command, "--", str(mesh), repr(cell), *steps], threads)
 
     @staticmethod
     def missing() -> str:
@@ -36,14 +42,15 @@ class VoxelRemesh:
         return run_clocked(self._command)
 
 
-def remesh(mesh: Path, cell: float) -> Callable[[], Any]:
-    """Returns the work."""
+def new_object(mesh: Path) -> Any:
+    """Returns an object of the mesh, the only one that is selected, and active."""
     import bpy
     import numpy as np
 
+    if not mesh.exists():
+        return _suzanne()
     loaded = dict(np.load(mesh))
     positions, triangles = loaded["positions"], loaded["triangles"]
-    bpy.ops.wm.read_factory_settings(use_empty=True)
     made = bpy.data.meshes.new("Mesh")
     made.vertices.add(len(positions))
     made.vertices.foreach_set("co", positions.astype(np.float32).ravel())
@@ -54,12 +61,34 @@ def remesh(mesh: Path, cell: float) -> Callable[[], Any]:
     made.update(calc_edges=True)
     obj = bpy.data.objects.new("Mesh", made)
     bpy.context.scene.collection.objects.link(obj)
+    for other in bpy.context.view_layer.objects:
+        other.select_set(other == obj)
     bpy.context.view_layer.objects.active = obj
-    obj.select_set(True)
-    made.remesh_voxel_size = cell
-    made.remesh_voxel_adaptivity = 0.0
-    for option in ("fix_poles", "preserve_volume", "preserve_attributes"):
-        setattr(made, f"use_remesh_{option}", False)
+    return obj
+
+
+def _suzanne() -> Any:
+    import bpy
+
+    for obj in list(bpy.context.scene.objects):
+        bpy.data.objects.remove(obj)
+    bpy.ops.mesh.primitive_monkey_add()
+    obj = bpy.context.view_layer.objects.active
+    obj.modifiers.new("Subdivision", "SUBSURF").levels = 3
+    bpy.ops.object.modifier_apply(modifier="Subdivision")
+    return obj
+
+
+def remesh(mesh: Path, cell: float, *, is_whole: bool) -> Callable[[], Any]:
+    """Returns the work."""
+    import bpy
+
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    obj = new_object(mesh)
+    obj.data.remesh_voxel_size = cell
+    obj.data.remesh_voxel_adaptivity = 0.0
+    for option in () if is_whole else ("fix_poles", "preserve_volume", "preserve_attributes"):
+        setattr(obj.data, f"use_remesh_{option}", False)
     bpy.context.view_layer.update()
 
     def work() -> Any:
@@ -72,10 +101,12 @@ def remesh(mesh: Path, cell: float) -> Callable[[], Any]:
 if __package__:
     from . import Measurement
     from .clock import pinned, run_clocked
-else:
+elif __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).resolve().parent))
     from clock import clocked
 
     arguments = sys.argv[sys.argv.index("--") + 1 :]
-    result = clocked(remesh(Path(arguments[0]), float(arguments[1])))
+    result = clocked(
+        remesh(Path(arguments[0]), float(arguments[1]), is_whole=arguments[2:] == ["whole"])
+    )
     print(len(result.polygons), "faces,", len(result.vertices), "vertices")

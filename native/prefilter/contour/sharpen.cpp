@@ -16,9 +16,9 @@
 #include "prefilter/contour/linked_loops.h"
 #include "prefilter/contour/loop_triangles.h"
 #include "prefilter/contour/merged_loops.h"
-#include "prefilter/contour/near_intersections.h"
 #include "prefilter/contour/relaxed_features.h"
 #include "prefilter/remesh/folds.h"
+#include "prefilter/remesh/near_intersections.h"
 
 namespace prefilter {
 namespace {
@@ -320,14 +320,33 @@ void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flag
   mark_around(i, loops, is_changed);
 }
 
+// Vertices on their lines keep a triangle in its cell of the dual grid, which meets no other: left
+// are the suspects of loops, and those with a vertex elsewhere.
+Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flags is_suspect) {
+  const auto is_on_line = [&](std::int32_t corner) {
+    const auto v = static_cast<std::size_t>(corner);
+    if (v >= crossings.fitted.size()) return true;  // inside of its cell
+    const Vector3& at = layered.mesh.positions[v];
+    const Vector3& fitted = crossings.fitted[v];
+    return (at[0] != fitted[0]) + (at[1] != fitted[1]) + (at[2] != fitted[2]) <= 1;
+  };
+  for (std::size_t t = layered.near; t < layered.loops; ++t) {
+    if (is_suspect[t] == 0) continue;
+    const Triangle& corners = layered.mesh.triangles[t];
+    if (std::all_of(corners.begin(), corners.end(), is_on_line)) is_suspect[t] = 0;
+  }
+  return is_suspect;
+}
+
 // Of the triangles that are suspect: those that intersect any, that fold, and that are upside down.
 // Triangles of a plane that overlap need not intersect, by rounding: then one is upside down.
-Pairs faulty_pairs(const LayeredMesh& layered, const Flags& is_suspect,
+Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const Flags& is_suspect,
                    const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned,
                    double cell, const Progress& progress, int threads) {
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
   Pairs pairs =
-      near_intersections(view, layered.near, is_suspect, kCubeCells * cell, progress, threads);
+      near_intersections(view, layered.near, may_intersect(layered, crossings, is_suspect),
+                         kCubeCells * cell, progress, threads);
   const Pairs folds = folded_pairs(view, 0, is_suspect);
   pairs.insert(pairs.end(), folds.begin(), folds.end());
   for (std::size_t t = layered.near; t < is_suspect.size(); ++t) {
@@ -417,7 +436,8 @@ FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const Feature
     const LoopTriangles made =
         assemble(loops, looped.loop_triangles, samples, cell, &states, &changes.loops, &layered);
     const Flags is_suspect = suspects(layered, made, changes);
-    const Pairs pairs = faulty_pairs(layered, is_suspect, samples, turned, cell, checking, threads);
+    const Pairs pairs =
+        faulty_pairs(layered, crossings, is_suspect, samples, turned, cell, checking, threads);
     changes = {Flags(loops.size(), 0), Flags(vertices, 0)};
     std::vector<BlamedLoop> blamed =
         blame(pairs, made, states.is_sharp, crossings, &off_lines, &changes.vertices, &layered);
@@ -435,7 +455,8 @@ FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const Feature
     const LoopTriangles made =
         assemble(loops, looped.loop_triangles, samples, cell, &states, &changes.loops, &layered);
     const Flags is_suspect = suspects(layered, made, changes);
-    const Pairs pairs = faulty_pairs(layered, is_suspect, samples, turned, cell, checking, threads);
+    const Pairs pairs =
+        faulty_pairs(layered, crossings, is_suspect, samples, turned, cell, checking, threads);
     if (pairs.empty()) break;
     changes.loops = again.give_up(pairs, made, layered.loops);
   }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/remesh/folds.h"
 #include "prefilter/remesh/intersections.h"
+#include "prefilter/remesh/near_intersections.h"
 #include "prefilter/remesh/patch_editor.h"
 #include "prefilter/remesh/triangle_parts.h"
 
@@ -54,7 +56,6 @@ struct Borders {
 struct Left {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> places;  // among all
-  Flags is_changed;
 };
 
 EditedMesh edited_mesh(FacetedMesh mesh, double crease_tolerance) {
@@ -154,8 +155,7 @@ std::vector<std::uint32_t> edit_patch(const TriangleParts& patches, std::size_t 
   return editor.narrow();
 }
 
-Left find_left(const std::vector<Triangle>& triangles, const std::vector<Triangle>& original,
-               const Progress& progress, int threads) {
+Left find_left(const std::vector<Triangle>& triangles, const Progress& progress, int threads) {
   const auto rows = static_cast<std::int64_t>(triangles.size());
   std::vector<std::size_t> begins(static_cast<std::size_t>(range_count(rows, kRowsPerTask)) + 1);
   const auto count = [&](std::int64_t begin, std::int64_t end) {
@@ -169,7 +169,6 @@ Left find_left(const std::vector<Triangle>& triangles, const std::vector<Triangl
   Left left;
   left.triangles.resize(begins.back());
   left.places.resize(begins.back());
-  left.is_changed.resize(begins.back());
   const auto fill = [&](std::int64_t begin, std::int64_t end) {
     std::size_t place = begins[static_cast<std::size_t>(begin / kRowsPerTask)];
     for (std::int64_t i = begin; i < end; ++i) {
@@ -177,7 +176,6 @@ Left find_left(const std::vector<Triangle>& triangles, const std::vector<Triangl
       if (triangles[t] == kGone) continue;
       left.triangles[place] = triangles[t];
       left.places[place] = static_cast<std::uint32_t>(t);
-      left.is_changed[place] = triangles[t] != original[t] ? 1 : 0;
       ++place;
     }
   };
@@ -185,25 +183,79 @@ Left find_left(const std::vector<Triangle>& triangles, const std::vector<Triangl
   return left;
 }
 
-// Those among the changed ones that intersect others, or fold.
-std::vector<std::uint32_t> crossing_triangles(const FacetedMesh& mesh,
-                                              const std::vector<Triangle>& original,
-                                              const Progress& progress, int threads, Left* left) {
-  *left = find_left(mesh.triangles, original, progress.part(0.0, 0.1), threads);
-  std::vector<std::uint32_t> crossing;
-  for (const auto& pair : intersecting_triangles(
-           {mesh.positions, left->triangles}, left->is_changed, progress.part(0.1, 1.0), threads)) {
-    for (const std::uint32_t t : pair) {
-      if (left->is_changed[t] != 0) crossing.push_back(left->places[t]);
+// Looks for triangles that intersect others, or fold. Each search but the first looks only at what
+// is not as it was in the last or in the first one, and what has been found: of all other pairs it
+// is known that they do not.
+class CrossingSearch {
+ public:
+  CrossingSearch(const std::vector<Vector3>& positions, const std::vector<Triangle>& original,
+                 int threads)
+      : original_(original), threads_(threads), side_(cube_side({positions, original})) {}
+
+  // The triangles of pairs that are not as they were before the mesh was edited.
+  std::vector<std::uint32_t> find(const FacetedMesh& mesh, const Progress& progress) {
+    Flags is_suspect = changed(first_.empty() ? original_ : last_, mesh.triangles);
+    if (first_.empty()) {
+      first_ = mesh.triangles;
+    } else {
+      Flags since_first = changed(first_, mesh.triangles);
+      const auto count = [](const Flags& flags) {
+        return std::accumulate(flags.begin(), flags.end(), std::size_t{0});
+      };
+      if (count(since_first) < count(is_suspect)) is_suspect = std::move(since_first);
     }
+    last_ = mesh.triangles;
+    for (const std::uint32_t t : found_) is_suspect[t] = 1;
+    const std::vector<std::uint32_t> crossing = find_among(mesh, is_suspect, progress);
+    found_.insert(found_.end(), crossing.begin(), crossing.end());
+    return crossing;
   }
-  for (const auto& pair : folded_pairs({mesh.positions, left->triangles}, 0, left->is_changed)) {
-    for (const std::uint32_t t : pair) {
-      if (left->is_changed[t] != 0) crossing.push_back(left->places[t]);
+
+ private:
+  // Twice the mean size of a triangle.
+  static double cube_side(const MeshView<std::int32_t>& mesh) {
+    double sum = 0.0;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      Box box = kEmptyBox;
+      for (const Vector3& corner : mesh.corners(t)) box.include(corner);
+      sum += std::max({box.size(0), box.size(1), box.size(2)});
     }
+    return std::max(2.0 * sum / static_cast<double>(mesh.triangles.size()),
+                    std::numeric_limits<double>::min());
   }
-  return crossing;
-}
+
+  static Flags changed(const std::vector<Triangle>& before, const std::vector<Triangle>& now) {
+    Flags is_changed(now.size());
+    for (std::size_t t = 0; t < now.size(); ++t) is_changed[t] = now[t] != before[t] ? 1 : 0;
+    return is_changed;
+  }
+
+  std::vector<std::uint32_t> find_among(const FacetedMesh& mesh, const Flags& is_suspect,
+                                        const Progress& progress) const {
+    const NearTriangles near =
+        near_triangles({mesh.positions, mesh.triangles}, 0, is_suspect, side_);
+    std::vector<std::uint32_t> crossing;
+    const auto add = [&](const std::vector<std::array<std::uint32_t, 2>>& pairs) {
+      for (const auto& pair : pairs) {
+        for (const std::uint32_t i : pair) {
+          const std::uint32_t t = near.numbers[i];
+          if (mesh.triangles[t] != original_[t]) crossing.push_back(t);
+        }
+      }
+    };
+    const MeshView<std::int32_t> view{mesh.positions, near.triangles};
+    add(intersecting_triangles(view, near.is_suspect, progress, threads_));
+    add(folded_pairs(view, 0, near.is_suspect));
+    return crossing;
+  }
+
+  const std::vector<Triangle>& original_;
+  int threads_;
+  double side_;
+  std::vector<Triangle> first_;
+  std::vector<Triangle> last_;
+  std::vector<std::uint32_t> found_;
+};
 
 // A patch as it was: vertices that are gone are its own again.
 void restore_patch(const TriangleParts& patches, std::size_t patch, const Snapshot& original,
@@ -221,17 +273,15 @@ void restore_patch(const TriangleParts& patches, std::size_t patch, const Snapsh
 
 // Edits patches with crossing triangles again, with the vertices of these fixed, until there are
 // none.
-void redo_patches(const TriangleParts& patches, const Snapshot& original, Progress rest,
-                  int threads, EditedMesh* edited, std::vector<std::vector<std::uint32_t>>* narrow,
-                  Left* left) {
-  FacetedMesh& mesh = edited->mesh;
+void redo_patches(const TriangleParts& patches, const Snapshot& original,
+                  std::vector<std::uint32_t> crossing, Progress rest, int threads,
+                  CrossingSearch* search, EditedMesh* edited,
+                  std::vector<std::vector<std::uint32_t>>* narrow) {
+  const FacetedMesh& mesh = edited->mesh;
   edited->is_fixed.assign(mesh.positions.size(), 0);
   const std::vector<std::uint32_t> patch_of =
       patches.numbers(mesh.triangles.size(), EditedMesh::kNobody);
-  while (true) {
-    const std::vector<std::uint32_t> crossing =
-        crossing_triangles(mesh, original.triangles, rest.part(0.0, 0.3), threads, left);
-    if (crossing.empty()) return;
+  while (!crossing.empty()) {
     flag_corners(mesh.triangles, crossing, &edited->is_fixed);
     flag_corners(original.triangles, crossing, &edited->is_fixed);
     Flags is_due(patches.count());
@@ -242,37 +292,54 @@ void redo_patches(const TriangleParts& patches, const Snapshot& original, Progre
       restore_patch(patches, patch, original, edited);
       (*narrow)[patch] = edit_patch(patches, patch, edited);
     };
-    parallel_for(static_cast<std::int64_t>(patches.count()), threads, rest.part(0.3, 0.5), redo);
+    parallel_for(static_cast<std::int64_t>(patches.count()), threads, rest.part(0.0, 0.3), redo);
+    crossing = search->find(mesh, rest.part(0.3, 0.5));
     // Steps without end, each shorter than the one before.
     rest = rest.part(0.5, 1.0);
   }
 }
 
 // Undoes borders with crossing triangles until none has any.
-void undo_borders(const Borders& borders, const std::vector<Triangle>& original, Progress rest,
-                  int threads, FacetedMesh* mesh, Left* left) {
+void undo_borders(const Borders& borders, Progress rest, CrossingSearch* search,
+                  FacetedMesh* mesh) {
   const std::vector<std::uint32_t> border_of =
-      borders.parts.numbers(original.size(), EditedMesh::kNobody);
+      borders.parts.numbers(mesh->triangles.size(), EditedMesh::kNobody);
   Flags is_undone(borders.parts.count());
-  while (true) {
-    const std::vector<std::uint32_t> crossing =
-        crossing_triangles(*mesh, original, rest.part(0.0, 0.5), threads, left);
-    bool is_any = false;
-    for (const std::uint32_t t : crossing) {
+  bool is_any = true;
+  while (is_any) {
+    is_any = false;
+    for (const std::uint32_t t : search->find(*mesh, rest.part(0.0, 0.5))) {
       const std::uint32_t border = border_of[t];
       if (border == EditedMesh::kNobody || is_undone[border] != 0) continue;
       is_undone[border] = 1;
       borders.undo(border, mesh);
       is_any = true;
     }
-    if (!is_any) return;
     rest = rest.part(0.5, 1.0);
   }
 }
 
+// Takes back what makes triangles intersect, or fold.
+void mend(const TriangleParts& patches, const Snapshot& original, Borders borders,
+          const Progress& progress, int threads, EditedMesh* edited,
+          std::vector<std::vector<std::uint32_t>>* narrow) {
+  FacetedMesh& mesh = edited->mesh;
+  CrossingSearch search(mesh.positions, original.triangles, threads);
+  if (search.find(mesh, progress.part(0.0, 0.4)).empty()) return;
+  for (std::size_t i = 0; i < borders.parts.count(); ++i) borders.undo(i, &mesh);
+  std::fill(edited->owners.begin(), edited->owners.end(), EditedMesh::kNobody);
+  find_owners(patches, original.triangles, progress.part(0.4, 0.5), threads, &edited->owners);
+  std::vector<std::uint32_t> crossing = search.find(mesh, progress.part(0.5, 0.6));
+  redo_patches(patches, original, std::move(crossing), progress.part(0.6, 0.8), threads, &search,
+               edited, narrow);
+  borders = edit_borders(*narrow, progress.part(0.8, 0.9), threads, edited);
+  undo_borders(borders, progress.part(0.9, 1.0), &search, &mesh);
+}
+
 // Leaves the triangles that are left, and their vertices.
-void drop_gone(Left left, const Progress& progress, int threads, FacetedMesh* result) {
+void drop_gone(const Progress& progress, int threads, FacetedMesh* result) {
   FacetedMesh& mesh = *result;
+  Left left = find_left(mesh.triangles, progress.part(0.0, 0.2), threads);
   mesh.triangles = std::move(left.triangles);
   if (!mesh.labels.empty()) {
     for (std::size_t i = 0; i < left.places.size(); ++i) {
@@ -290,7 +357,7 @@ void drop_gone(Left left, const Progress& progress, int threads, FacetedMesh* re
       }
     }
   };
-  parallel_ranges(count, kRowsPerTask, threads, progress.part(0.0, 0.3), mark);
+  parallel_ranges(count, kRowsPerTask, threads, progress.part(0.2, 0.5), mark);
   std::int32_t next = 0;
   for (std::size_t v = 0; v < places.size(); ++v) {
     if (places[v] < 0) continue;
@@ -327,17 +394,8 @@ FacetedMesh clean_up(FacetedMesh mesh, double crease_tolerance, const Progress& 
                  narrow[patch] = edit_patch(patches, patch, &edited);
                });
   Borders borders = edit_borders(narrow, progress.part(0.5, 0.6), threads, &edited);
-  Left left;
-  const Progress mending = progress.part(0.6, 0.9);
-  if (!crossing_triangles(edited.mesh, original.triangles, mending, threads, &left).empty()) {
-    for (std::size_t i = 0; i < borders.parts.count(); ++i) borders.undo(i, &edited.mesh);
-    std::fill(edited.owners.begin(), edited.owners.end(), EditedMesh::kNobody);
-    find_owners(patches, original.triangles, mending.part(0.0, 0.1), threads, &edited.owners);
-    redo_patches(patches, original, mending.part(0.1, 0.6), threads, &edited, &narrow, &left);
-    borders = edit_borders(narrow, mending.part(0.6, 0.7), threads, &edited);
-    undo_borders(borders, original.triangles, mending.part(0.7, 1.0), threads, &edited.mesh, &left);
-  }
-  drop_gone(std::move(left), progress.part(0.9, 1.0), threads, &edited.mesh);
+  mend(patches, original, std::move(borders), progress.part(0.6, 0.9), threads, &edited, &narrow);
+  drop_gone(progress.part(0.9, 1.0), threads, &edited.mesh);
   return std::move(edited.mesh);
 }
 

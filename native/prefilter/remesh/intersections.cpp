@@ -52,13 +52,21 @@ struct Extent {
   }
 };
 
-Extent extent_of(std::span<const Vector3> positions, const Progress& progress, int threads) {
-  const auto rows = static_cast<std::int64_t>(positions.size());
+// Of all positions, or of the corners of triangles where that are fewer.
+Extent extent_of(const Mesh& mesh, const Progress& progress, int threads) {
+  const bool is_small = 3 * mesh.triangles.size() < mesh.positions.size();
+  const auto rows =
+      static_cast<std::int64_t>(is_small ? mesh.triangles.size() : mesh.positions.size());
   std::vector<Extent> extents(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
   parallel_ranges(rows, kRowsPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
     Extent& extent = extents[static_cast<std::size_t>(begin / kRowsPerTask)];
-    for (std::int64_t i = begin; i < end; ++i)
-      extent.include(positions[static_cast<std::size_t>(i)]);
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+      if (is_small) {
+        for (const Vector3& corner : mesh.corners(i)) extent.include(corner);
+      } else {
+        extent.include(mesh.positions[i]);
+      }
+    }
   });
   Extent all;
   for (const Extent& extent : extents) all.include(extent);
@@ -154,7 +162,7 @@ std::vector<std::array<std::uint32_t, 2>> intersecting_triangles(
     const MeshView<std::int32_t>& mesh, std::span<const std::uint8_t> is_suspect,
     const Progress& progress, int threads) {
   if (mesh.triangles.empty()) return {};
-  const Extent extent = extent_of(mesh.positions, progress.part(0.0, 0.05), threads);
+  const Extent extent = extent_of(mesh, progress.part(0.0, 0.05), threads);
   if (extent.largest > kLargestExact || extent.smallest < kSmallestExact) {
     const std::vector<Vector3> scaled = in_exact_range(mesh.positions, extent.largest);
     return intersecting_triangles({scaled, mesh.triangles}, is_suspect, progress.part(0.05, 1.0),

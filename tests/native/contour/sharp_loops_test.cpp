@@ -19,10 +19,10 @@
 #include "prefilter/contour/linked_loops.h"
 #include "prefilter/contour/loop_triangles.h"
 #include "prefilter/contour/merged_loops.h"
-#include "prefilter/contour/near_intersections.h"
 #include "prefilter/contour/relaxed_features.h"
 #include "prefilter/contour/sharpen.h"
 #include "prefilter/remesh/intersections.h"
+#include "prefilter/remesh/near_intersections.h"
 
 namespace prefilter {
 namespace {
