@@ -124,9 +124,26 @@ def sharp_edges(positions: Floats, triangles: Indices, degrees: float) -> Edges:
     return Edges(positions[ends[sharp]], turn[sharp])
 
 
-def folds(positions: Floats, triangles: Indices, degrees: float = 120.0) -> int:
-    """Counts the edges that turn by more than so many degrees."""
-    return int((edges(positions, triangles)[2] > degrees).sum())
+def folds(
+    positions: Floats,
+    triangles: Indices,
+    degrees: float = 120.0,
+    true_edges: Edges | None = None,
+    reach: float = 0.0,
+) -> int:
+    """Counts the edges that turn by more than so many degrees.
+
+    With `true_edges`, without those that are at edges of the shape, within `reach`, that turn by at
+    least so much less 20 degrees: a wedge is no fold.
+    """
+    ends, _, turn = edges(positions, triangles)
+    folded = positions[ends[turn > degrees]]
+    if true_edges is None or not len(folded):
+        return len(folded)
+    wedges = true_edges.ends[true_edges.degrees > degrees - 20]
+    if not len(wedges):
+        return len(folded)
+    return int((Nearest(wedges).distances(folded.mean(axis=1)) > reach).sum())
 
 
 def topology(triangles: Indices) -> tuple[int, int]:

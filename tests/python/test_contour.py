@@ -81,6 +81,28 @@ def test_normals_on_a_sphere_of_fifteen_cells(center):
     assert largest["occupancy"] < means["linear"]  # Figure 5.8
 
 
+@pytest.mark.parametrize("center", [(0.2, 0.3, 0.4), (0.61, 0.05, 0.77)])
+def test_facets_of_a_sphere_are_as_good_as_with_exact_vertices(center):
+    """Also where two cells alone put a vertex a tenth of a cell off, as on steep places."""
+    sphere = solids.sphere(18.4, 6, center)
+    octree = prefilter.voxelize(
+        sphere.positions, sphere.triangles, depth=6, bounds=((-32,) * 3, (32,) * 3)
+    )
+    positions, triangles = octree.contour(interpolant="plane", cleanup=False)
+    # Along the lines between samples that they are on.
+    points = positions - center
+    axis = np.abs(positions - 0.5 - np.round(positions - 0.5)).argmax(axis=1)
+    rows = np.arange(len(points))
+    across = (points**2).sum(axis=1) - points[rows, axis] ** 2
+    exact = points.copy()
+    exact[rows, axis] = np.copysign(np.sqrt(18.4**2 - across), points[rows, axis])
+    means = []
+    for vertices in (points, exact):
+        errors, areas = normal_errors(vertices + center, triangles, center)
+        means.append(np.average(errors, weights=areas))
+    assert means[0] < 1.02 * means[1]
+
+
 def test_edges_do_not_bend_what_is_beside_them():
     """Heights of columns across an edge are none: facets are no worse than those of two cells."""
     means = dict.fromkeys(("plane", "occupancy"), 0.0)

@@ -137,6 +137,31 @@ def test_the_rim_of_two_cubes_is_exact():
     assert corpus.volume(positions, triangles) == pytest.approx(16 - inside, rel=1e-6)
 
 
+def wedge(degrees):
+    """A prism over an isosceles triangle, turned against the axes; its tip is an edge."""
+    half = np.radians(degrees) / 2
+    solid = sharp_shapes.Solid()
+    solid.prism(np.array([(0, 0), (1, -np.tan(half)), (1, np.tan(half))]), -0.5, 0.5)
+    return solid.named("wedge").moved(sharp_shapes.rotation(5))
+
+
+@pytest.mark.parametrize("how", [SHARP, CLEAN], ids=["sharp", "clean"])
+@pytest.mark.parametrize("degrees", [45.0, 55.0])
+def test_edges_of_wedges_are_no_folds(degrees, how):
+    """They turn by more than 120 degrees and come out as they are."""
+    shape = wedge(degrees)
+    lines = measures.sharp_edges(shape.positions, shape.triangles, 120)
+    assert len(lines.ends) == 1
+    subject = edges.Subject("wedge", (shape,), "", shape, lines)
+    _, cell = edges.box_around(subject.sources, 64)
+    positions, triangles, _ = edges.contour(subject, 64, how)
+    errors = measures.edge_errors(positions, triangles, lines, cell)
+    assert max(errors.surface_mean, errors.crease_mean) < 0.05, errors  # Tips are thin.
+    assert measures.folds(positions, triangles) > 30
+    assert measures.folds(positions, triangles, 120, lines, 0.5 * cell) == 0
+    check_sound("wedge", positions, triangles)
+
+
 def solids():
     made = corpus.made()
     chosen = [s for s in made if s.name.split()[0] in ("ring", "gear", "joint", "plate", "cone")]

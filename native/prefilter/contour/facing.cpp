@@ -2,13 +2,44 @@
 
 #include "prefilter/contour/facing.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 namespace prefilter {
 namespace {
 
 constexpr double kLeastCosine = 0.05;
-constexpr double kLeastArea = 1e-12;  // twice a triangle's, of a cell's face
+constexpr double kLeastArea = 1e-12;              // twice a triangle's, of a cell's face
+constexpr double kAlong = 0.9396926207859084;     // 20 degrees
+constexpr double kEdgeReach = 0.3;                // cells
+constexpr double kOpposed = -0.1736481776669303;  // 100 degrees
+
+// The middle of the side that two triangles have in common.
+Vector3 middle_between(const MeshView<std::int32_t>& mesh,
+                       const std::array<std::uint32_t, 2>& triangles) {
+  const auto& other = mesh.triangles[triangles[1]];
+  Vector3 sum{};
+  for (const std::int32_t corner : mesh.triangles[triangles[0]]) {
+    if (std::find(other.begin(), other.end(), corner) == other.end()) continue;
+    sum = sum + mesh.positions[static_cast<std::size_t>(corner)];
+  }
+  return 0.5 * sum;
+}
+
+// The sample of a triangle's corner, of its region, along whose plane it lies; null where none is.
+const SourcePoint* sample_along(const MeshView<std::int32_t>& mesh, std::size_t triangle,
+                                std::int32_t label, const VertexSamples& samples, bool is_turned) {
+  const auto [a, b, c] = mesh.corners(triangle);
+  const Vector3 normal = cross(b - a, c - a);
+  for (const std::int32_t corner : mesh.triangles[triangle]) {
+    if (static_cast<std::size_t>(corner) >= samples.index.size()) continue;
+    const SourcePoint* sample = samples.of(corner);
+    if (sample == nullptr || sample->label != label) continue;
+    const double height = dot(normal, sample->normal);
+    if ((is_turned ? -height : height) >= kAlong * length(normal)) return sample;
+  }
+  return nullptr;
+}
 
 }  // namespace
 
@@ -42,6 +73,23 @@ bool is_upside_down(const MeshView<std::int32_t>& mesh, std::size_t triangle, st
     is_any = true;
   }
   return is_any;
+}
+
+bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_t> labels,
+                 const std::array<std::uint32_t, 2>& triangles, const FeatureSurface& surface,
+                 const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned) {
+  const Vector3 middle = middle_between(mesh, triangles);
+  std::array<Vector3, 2> normals;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::int32_t label = labels[triangles[i]];
+    const bool is_turned = turned.contains(label);
+    const SourcePoint* sample = sample_along(mesh, triangles[i], label, samples, is_turned);
+    if (sample == nullptr || !surface.nearest(middle, kEdgeReach * surface.cell(), label)) {
+      return false;
+    }
+    normals[i] = is_turned ? -1.0 * sample->normal : sample->normal;
+  }
+  return dot(normals[0], normals[1]) < kOpposed;
 }
 
 }  // namespace prefilter

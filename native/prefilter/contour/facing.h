@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/contour/feature_surface.h"
 #include "prefilter/contour/sharp_vertices.h"
 
 namespace prefilter {
@@ -21,5 +22,11 @@ std::unordered_set<std::int32_t> turned_labels(const VertexSamples& samples);
 bool is_upside_down(const MeshView<std::int32_t>& mesh, std::size_t triangle, std::int32_t label,
                     const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned,
                     double cell);
+
+/// Whether two triangles lie along the surface on both sides of an edge that turns by more than 100
+/// degrees, and the side between them is close to that. It is no fold.
+bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_t> labels,
+                 const std::array<std::uint32_t, 2>& triangles, const FeatureSurface& surface,
+                 const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned);
 
 }  // namespace prefilter

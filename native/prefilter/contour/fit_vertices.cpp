@@ -20,7 +20,7 @@ constexpr int kMargin = kHeightReach;
 constexpr std::int64_t kBricksPerTask = 64;
 // Columns that an edge passes through, or a thin part, add up to heights that are none. There the
 // crossing is farther than this, in cells, from that of the two cells alone, which on planes is
-// right within 0.03.
+// right within 0.03; on smooth surfaces it may be, too.
 constexpr double kMostApart = 0.1;
 
 // The leaves of one depth below one cell.
@@ -199,7 +199,9 @@ void fit_vertices(const ContourTree& tree, const RootFrame& frame, const Progres
           const bool is_near =
               std::abs(fitted - position[axis]) <= kMostApart * frame.cell(axis, brick.depth);
           position[axis] = fitted;
-          if (is_near) vertices->move(vertex, position);
+          if (is_near || is_smooth_at(window->cell(at), window->strides(), face)) {
+            vertices->move(vertex, position);
+          }
         }
         ++vertex;
       }

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "prefilter/contour/height_patch.h"
 #include "prefilter/wavelet/column_height.h"
 
 namespace prefilter {
@@ -104,6 +105,22 @@ std::optional<float> crossing_from(const float* cell, std::ptrdiff_t along, std:
   }
   return t;
 }
+
+// Whether the heights of the nine columns around a cell are those of a smooth surface.
+bool is_smooth_around(const float* cell, std::ptrdiff_t up,
+                      const std::array<std::ptrdiff_t, 2>& across) {
+  std::array<std::array<double, 3>, 3> heights;
+  for (std::ptrdiff_t i = -1; i <= 1; ++i) {
+    for (std::ptrdiff_t j = -1; j <= 1; ++j) {
+      const std::optional<float> height = height_at(cell + i * across[0] + j * across[1], up);
+      if (!height) return false;
+      heights[static_cast<std::size_t>(i + 1)][static_cast<std::size_t>(j + 1)] =
+          static_cast<double>(*height);
+    }
+  }
+  HeightPatch patch;
+  return fit_heights(heights, &patch);
+}
 }  // namespace
 
 std::optional<float> height_crossing(const float* cell,
@@ -123,6 +140,16 @@ std::optional<float> height_crossing(const float* cell,
   }
   if (!t || !(*t >= -kSlack && *t <= 1.0F + kSlack)) return std::nullopt;
   return t;
+}
+
+bool is_smooth_at(const float* cell, const std::array<std::ptrdiff_t, 3>& strides, int face) {
+  const std::ptrdiff_t along = (face & 1) != 0 ? strides[face / 2] : -strides[face / 2];
+  float change = 0.0F;
+  const int axis = steepest_axis(cell, cell + along, strides, &change);
+  const std::ptrdiff_t up = change < 0.0F ? strides[axis] : -strides[axis];
+  const std::array<std::ptrdiff_t, 2> across = {strides[(axis + 1) % 3], strides[(axis + 2) % 3]};
+  return is_smooth_around(cell, up, across) &&
+         (axis == face / 2 || is_smooth_around(cell + along, up, across));
 }
 
 std::optional<float> height_over_center(const float* cell,

@@ -31,4 +31,7 @@ std::optional<float> height_crossing(const float* cell,
 std::optional<float> height_over_center(const float* cell,
                                         const std::array<std::ptrdiff_t, 3>& strides);
 
+/// Whether the surface around the two cells is smooth, as the heights of the columns there tell.
+bool is_smooth_at(const float* cell, const std::array<std::ptrdiff_t, 3>& strides, int face);
+
 }  // namespace prefilter

@@ -59,6 +59,7 @@ struct Changes {
 };
 
 bool has_any(const Flags& flags) { return std::find(flags.begin(), flags.end(), 1) != flags.end(); }
+bool has_any(const Changes& changes) { return has_any(changes.loops) || has_any(changes.vertices); }
 
 Feature feature_of(const LinkedLoops& loops, std::size_t i, std::span<const Vector3> positions,
                    const VertexSamples& samples, const FeaturePlaces& places) {
@@ -176,12 +177,14 @@ std::int32_t off_line(std::int32_t vertex, const VertexSamples& samples,
   return is_off && positions[v] != samples.on_lines[sample] ? samples.index[v] : -1;
 }
 
-// Moves sampled vertices that are off their lines between those around them, along the surface.
-// Where that does not do, they go to their lines, which may be off the surface.
+// Moves sampled vertices that are off their lines along the surface: to where no triangle of theirs
+// is upside down, or between those around them. Where that does not do, they go to their lines,
+// which may be off the surface.
 class OffLineVertices {
  public:
-  OffLineVertices(const FeatureSurface& surface, const VertexSamples& samples)
-      : surface_(surface), samples_(samples), moves_(samples.samples.size(), 0) {}
+  OffLineVertices(const FeatureSurface& surface, const VertexSamples& samples,
+                  const std::unordered_set<std::int32_t>& turned)
+      : surface_(surface), samples_(samples), turned_(turned), moves_(samples.samples.size(), 0) {}
 
   // Takes those of a triangle; returns whether there are any.
   bool take(const Triangle& triangle, std::span<const Vector3> positions) {
@@ -200,10 +203,10 @@ class OffLineVertices {
     if (taken_.empty()) return;
     std::sort(taken_.begin(), taken_.end());
     taken_.erase(std::unique(taken_.begin(), taken_.end()), taken_.end());
-    const std::vector<Vector3> means = means_around(triangles, *positions);
+    const std::vector<Around> around = look_around(triangles, *positions);
     for (std::size_t k = 0; k < taken_.size(); ++k) {
       const auto v = static_cast<std::size_t>(taken_[k]);
-      (*positions)[v] = next_place((*positions)[v], means[k], samples_.index[v]);
+      (*positions)[v] = next_place((*positions)[v], around[k], samples_.index[v]);
       (*is_moved)[v] = 1;
     }
     taken_.clear();
@@ -212,41 +215,68 @@ class OffLineVertices {
  private:
   static constexpr std::uint8_t kMostMoves = 3;
   static constexpr double kReachCells = 1.0;
+  static constexpr double kBeyondCells = 0.1;
 
-  Vector3 next_place(const Vector3& from, const Vector3& mean, std::int32_t index) {
+  // Of a vertex that is taken.
+  struct Around {
+    Vector3 mean{};    // of the vertices around it
+    Vector3 across{};  // the way over the far side of a triangle that is upside down
+  };
+
+  Vector3 next_place(const Vector3& from, const Around& around, std::int32_t index) {
     const auto sample = static_cast<std::size_t>(index);
     if (moves_[sample]++ < kMostMoves) {
+      const bool is_over = around.across != Vector3{};
+      const Vector3 way = is_over ? around.across : 0.5 * (around.mean - from);
       const std::optional<SourcePoint> found = surface_.nearest(
-          0.5 * (from + mean), kReachCells * surface_.cell(), samples_.samples[sample].label);
+          from + way, kReachCells * surface_.cell(), samples_.samples[sample].label);
       if (found) return found->position;
     }
     return samples_.on_lines[sample];
   }
 
-  // Of the vertices that are taken: the means of those around them.
-  std::vector<Vector3> means_around(std::span<const Triangle> triangles,
-                                    std::span<const Vector3> positions) const {
-    std::vector<Vector3> sums(taken_.size());
+  std::vector<Around> look_around(std::span<const Triangle> triangles,
+                                  std::span<const Vector3> positions) const {
+    std::vector<Around> around(taken_.size());
     std::vector<double> counts(taken_.size(), 0.0);
+    const auto at = [&](std::int32_t v) -> const Vector3& {
+      return positions[static_cast<std::size_t>(v)];
+    };
     for (const Triangle& triangle : triangles) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto found = std::lower_bound(taken_.begin(), taken_.end(), triangle[k]);
         if (found == taken_.end() || *found != triangle[k]) continue;
         const auto i = static_cast<std::size_t>(found - taken_.begin());
-        for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
-          sums[i] = sums[i] + positions[static_cast<std::size_t>(triangle[other])];
-        }
+        const Vector3& a = at(triangle[(k + 1) % 3]);
+        const Vector3& b = at(triangle[(k + 2) % 3]);
+        around[i].mean = around[i].mean + a + b;
         counts[i] += 2.0;
+        const Vector3 way = way_across(triangle[k], at(triangle[k]), a, b);
+        if (dot(way, way) > dot(around[i].across, around[i].across)) around[i].across = way;
       }
     }
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-      sums[i] = (1.0 / std::max(counts[i], 1.0)) * sums[i];
+    for (std::size_t i = 0; i < around.size(); ++i) {
+      around[i].mean = (1.0 / std::max(counts[i], 1.0)) * around[i].mean;
     }
-    return sums;
+    return around;
+  }
+
+  // From a vertex to beyond the line of two others, within the plane of its sample, where the
+  // triangle of the three is upside down; 0 where it is not.
+  Vector3 way_across(std::int32_t vertex, const Vector3& from, const Vector3& a,
+                     const Vector3& b) const {
+    const SourcePoint& sample = *samples_.of(vertex);
+    const Vector3 up = turned_.contains(sample.label) ? -1.0 * sample.normal : sample.normal;
+    const Vector3 inward = cross(up, b - a);
+    const double size = length(inward);
+    const double height = size > 0.0 ? dot(inward, from - a) / size : 0.0;
+    if (!(height < 0.0)) return {};
+    return ((kBeyondCells * surface_.cell() - height) / size) * inward;
   }
 
   const FeatureSurface& surface_;
   const VertexSamples& samples_;
+  const std::unordered_set<std::int32_t>& turned_;
   std::vector<std::uint8_t> moves_;
   std::vector<std::int32_t> taken_;
 };
@@ -254,8 +284,8 @@ class OffLineVertices {
 // Of pairs of triangles: moves vertices that are off their lines; otherwise blames loops; otherwise
 // puts vertices where they were before they were sampled. Flags the vertices that have moved.
 std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, const Flags& is_sharp,
-                              const Crossings& crossings, OffLineVertices* off_lines,
-                              Flags* is_moved, LayeredMesh* layered) {
+                              std::span<const std::uint8_t> attempts, const Crossings& crossings,
+                              OffLineVertices* off_lines, Flags* is_moved, LayeredMesh* layered) {
   FacetedMesh& mesh = layered->mesh;
   std::vector<BlamedLoop> blamed;
   for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -268,11 +298,13 @@ std::vector<BlamedLoop> blame(const Pairs& pairs, const LoopTriangles& made, con
         if (owner >= 0 && is_sharp[static_cast<std::size_t>(owner)] != 0) loops.push_back(owner);
       }
     }
-    if (has_moved) continue;
     std::sort(loops.begin(), loops.end());
     loops.erase(std::unique(loops.begin(), loops.end()), loops.end());
-    for (const std::int32_t i : loops) blamed.push_back({i, p});
-    if (!loops.empty()) continue;
+    for (const std::int32_t i : loops) {
+      const bool may_move = attempts[static_cast<std::size_t>(i)] < kMostAttempts;
+      if (!has_moved || may_move) blamed.push_back({i, p});
+    }
+    if (has_moved || !loops.empty()) continue;
     for (const std::uint32_t t : pairs[p]) {
       for (const std::int32_t corner : mesh.triangles[t]) {
         const auto v = static_cast<std::size_t>(corner);
@@ -341,14 +373,18 @@ Flags may_intersect(const LayeredMesh& layered, const Crossings& crossings, Flag
 // Of the triangles that are suspect: those that intersect any, that fold, and that are upside down.
 // Triangles of a plane that overlap need not intersect, by rounding: then one is upside down.
 Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const Flags& is_suspect,
-                   const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned,
-                   double cell, const Progress& progress, int threads) {
+                   const FeatureSurface& surface, const VertexSamples& samples,
+                   const std::unordered_set<std::int32_t>& turned, const Progress& progress,
+                   int threads) {
+  const double cell = surface.cell();
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
   Pairs pairs =
       near_intersections(view, layered.near, may_intersect(layered, crossings, is_suspect),
                          kCubeCells * cell, progress, threads);
-  const Pairs folds = folded_pairs(view, 0, is_suspect);
-  pairs.insert(pairs.end(), folds.begin(), folds.end());
+  for (const auto& fold : folded_pairs(view, 0, is_suspect)) {
+    if (are_at_edge(view, layered.mesh.labels, fold, surface, samples, turned)) continue;
+    pairs.push_back(fold);
+  }
   for (std::size_t t = layered.near; t < is_suspect.size(); ++t) {
     if (is_suspect[t] == 0) continue;
     if (!is_upside_down(view, t, layered.mesh.labels[t], samples, turned, cell)) continue;
@@ -358,43 +394,60 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const
   return pairs;
 }
 
-// The loops that were drawn back, which may have their places where what was in their way has moved
-// since.
+// The loops that were drawn back, and the vertices that were moved, which may have their places
+// where what was in their way has moved since.
 class SecondTry {
  public:
-  SecondTry(const LinkedLoops& loops, std::span<const Feature> wanted, LoopStates* states)
-      : loops_(loops), states_(*states), settled_(*states), is_tried_(loops.size(), 0) {
+  SecondTry(const LinkedLoops& loops, std::span<const Feature> wanted,
+            std::span<const Vector3> wanted_places, LoopStates* states,
+            std::vector<Vector3>* positions)
+      : loops_(loops),
+        states_(*states),
+        positions_(*positions),
+        settled_(*states),
+        settled_places_(positions->begin(),
+                        positions->begin() + static_cast<std::ptrdiff_t>(wanted_places.size())),
+        is_tried_(loops.size(), 0),
+        is_moved_(wanted_places.size(), 0) {
     for (std::size_t i = 0; i < loops.size(); ++i) {
       if (states->halvings[i] == 0) continue;
       is_tried_[i] = 1;
       states->features[i] = wanted[i];
       states->is_sharp[i] = 1;
     }
+    for (std::size_t v = 0; v < wanted_places.size(); ++v) {
+      if (positions_[v] == wanted_places[v]) continue;
+      is_moved_[v] = 1;
+      positions_[v] = wanted_places[v];
+    }
   }
 
-  Flags changed() const {
-    Flags is_changed(loops_.size(), 0);
+  Changes changed() const {
+    Changes changes{Flags(loops_.size(), 0), is_moved_};
     for (std::size_t i = 0; i < loops_.size(); ++i) {
-      if (is_tried_[i] != 0) mark_around(i, loops_, &is_changed);
+      if (is_tried_[i] != 0) mark_around(i, loops_, &changes.loops);
     }
-    return is_changed;
+    return changes;
   }
 
   // Puts those back that have a triangle of a pair, or all where none has; returns which changed.
-  Flags give_up(const Pairs& pairs, const LoopTriangles& made, std::size_t first) {
-    Flags is_changed(loops_.size(), 0);
+  Changes give_up(const Pairs& pairs, const LoopTriangles& made, const LayeredMesh& layered) {
+    Changes changes{Flags(loops_.size(), 0), Flags(is_moved_.size(), 0)};
     for (const auto& pair : pairs) {
       for (const std::uint32_t t : pair) {
-        if (t < first) continue;
-        for (const std::int32_t owner : made.owners[t - first]) {
-          if (owner >= 0) put_back(static_cast<std::size_t>(owner), &is_changed);
+        for (const std::int32_t corner : layered.mesh.triangles[t]) {
+          put_vertex_back(static_cast<std::size_t>(corner), &changes.vertices);
+        }
+        if (t < layered.loops) continue;
+        for (const std::int32_t owner : made.owners[t - layered.loops]) {
+          if (owner >= 0) put_back(static_cast<std::size_t>(owner), &changes.loops);
         }
       }
     }
-    for (std::size_t i = 0; i < loops_.size() && !has_any(is_changed); ++i) {
-      put_back(i, &is_changed);
-    }
-    return is_changed;
+    if (has_any(changes)) return changes;
+    for (std::size_t i = 0; i < loops_.size(); ++i) put_back(i, &changes.loops);
+    for (std::size_t v = 0; v < is_moved_.size(); ++v) put_vertex_back(v, &changes.vertices);
+    return changes;
   }
 
  private:
@@ -406,10 +459,20 @@ class SecondTry {
     mark_around(i, loops_, is_changed);
   }
 
+  void put_vertex_back(std::size_t v, Flags* is_changed) {
+    if (v >= is_moved_.size() || is_moved_[v] == 0) return;
+    is_moved_[v] = 0;
+    positions_[v] = settled_places_[v];
+    (*is_changed)[v] = 1;
+  }
+
   const LinkedLoops& loops_;
   LoopStates& states_;
+  std::vector<Vector3>& positions_;
   LoopStates settled_;
+  std::vector<Vector3> settled_places_;
   Flags is_tried_;
+  Flags is_moved_;
 };
 }  // namespace
 
@@ -423,6 +486,9 @@ FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const Feature
   LoopStates states =
       first_states(loops, looped.positions, samples, places, progress.part(0.1, 0.5), threads);
   const std::vector<Feature> wanted = states.features;
+  const std::vector<Vector3> wanted_places(
+      looped.positions.begin(),
+      looped.positions.begin() + static_cast<std::ptrdiff_t>(crossings.fitted.size()));
   LayeredMesh layered =
       without_loops(std::move(looped.positions), std::move(looped.triangles), samples);
   const std::size_t vertices = crossings.fitted.size();
@@ -430,17 +496,17 @@ FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const Feature
   for (std::size_t v = 0; v < vertices; ++v) {
     if (layered.mesh.positions[v] != crossings.fitted[v]) changes.vertices[v] = 1;
   }
-  OffLineVertices off_lines(surface, samples);
+  OffLineVertices off_lines(surface, samples, turned);
   const Progress checking = progress.part(0.6, 1.0);
   do {
     const LoopTriangles made =
         assemble(loops, looped.loop_triangles, samples, cell, &states, &changes.loops, &layered);
     const Flags is_suspect = suspects(layered, made, changes);
     const Pairs pairs =
-        faulty_pairs(layered, crossings, is_suspect, samples, turned, cell, checking, threads);
+        faulty_pairs(layered, crossings, is_suspect, surface, samples, turned, checking, threads);
     changes = {Flags(loops.size(), 0), Flags(vertices, 0)};
-    std::vector<BlamedLoop> blamed =
-        blame(pairs, made, states.is_sharp, crossings, &off_lines, &changes.vertices, &layered);
+    std::vector<BlamedLoop> blamed = blame(pairs, made, states.is_sharp, states.attempts, crossings,
+                                           &off_lines, &changes.vertices, &layered);
     for (const std::size_t i : relax_features(take_attempts(&states.attempts, &blamed), loops,
                                               states.is_sharp, places, &states.features)) {
       changes.loops[i] = 1;
@@ -448,17 +514,17 @@ FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const Feature
     for (const std::size_t i : fewest_loops(std::move(blamed), pairs.size())) {
       draw_back(i, loops, &states, &changes.loops);
     }
-  } while (has_any(changes.loops) || has_any(changes.vertices));
-  SecondTry again(loops, wanted, &states);
-  changes.loops = again.changed();
-  while (has_any(changes.loops)) {
+  } while (has_any(changes));
+  SecondTry again(loops, wanted, wanted_places, &states, &layered.mesh.positions);
+  changes = again.changed();
+  while (has_any(changes)) {
     const LoopTriangles made =
         assemble(loops, looped.loop_triangles, samples, cell, &states, &changes.loops, &layered);
     const Flags is_suspect = suspects(layered, made, changes);
     const Pairs pairs =
-        faulty_pairs(layered, crossings, is_suspect, samples, turned, cell, checking, threads);
+        faulty_pairs(layered, crossings, is_suspect, surface, samples, turned, checking, threads);
     if (pairs.empty()) break;
-    changes.loops = again.give_up(pairs, made, layered.loops);
+    changes = again.give_up(pairs, made, layered);
   }
   return std::move(layered.mesh);
 }

@@ -183,14 +183,43 @@ Left find_left(const std::vector<Triangle>& triangles, const Progress& progress,
   return left;
 }
 
+std::vector<std::int32_t> shared_vertices(const Triangle& a, const Triangle& b) {
+  std::vector<std::int32_t> shared;
+  for (const std::int32_t v : a) {
+    if (std::find(b.begin(), b.end(), v) != b.end()) shared.push_back(v);
+  }
+  return shared;
+}
+
+// The ends of edges of the shape that are as sharp as a fold.
+Flags wedge_ends(const MeshView<std::int32_t>& mesh, const std::vector<VertexKind>& kinds) {
+  Flags is_end(mesh.positions.size(), 0);
+  if (kinds.empty()) return is_end;
+  Flags is_suspect(mesh.triangles.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    is_suspect[t] =
+        std::count_if(mesh.triangles[t].begin(), mesh.triangles[t].end(), [&](std::int32_t v) {
+          return kinds[static_cast<std::size_t>(v)] != VertexKind::kSurface;
+        }) > 1;
+  }
+  for (const auto& pair : folded_pairs(mesh, 0, is_suspect)) {
+    for (const std::int32_t v : shared_vertices(mesh.triangles[pair[0]], mesh.triangles[pair[1]])) {
+      is_end[static_cast<std::size_t>(v)] = 1;
+    }
+  }
+  return is_end;
+}
+
 // Looks for triangles that intersect others, or fold. Each search but the first looks only at what
 // is not as it was in the last or in the first one, and what has been found: of all other pairs it
 // is known that they do not.
 class CrossingSearch {
  public:
-  CrossingSearch(const std::vector<Vector3>& positions, const std::vector<Triangle>& original,
-                 int threads)
-      : original_(original), threads_(threads), side_(cube_side({positions, original})) {}
+  CrossingSearch(const FacetedMesh& mesh, const std::vector<Triangle>& original, int threads)
+      : original_(original),
+        threads_(threads),
+        side_(cube_side({mesh.positions, original})),
+        is_wedge_end_(wedge_ends({mesh.positions, original}, mesh.kinds)) {}
 
   // The triangles of pairs that are not as they were before the mesh was edited.
   std::vector<std::uint32_t> find(const FacetedMesh& mesh, const Progress& progress) {
@@ -245,13 +274,22 @@ class CrossingSearch {
     };
     const MeshView<std::int32_t> view{mesh.positions, near.triangles};
     add(intersecting_triangles(view, near.is_suspect, progress, threads_));
-    add(folded_pairs(view, 0, near.is_suspect));
+    std::vector<std::array<std::uint32_t, 2>> folds = folded_pairs(view, 0, near.is_suspect);
+    std::erase_if(folds, [&](const auto& pair) {
+      const std::vector<std::int32_t> side =
+          shared_vertices(view.triangles[pair[0]], view.triangles[pair[1]]);
+      return std::all_of(side.begin(), side.end(), [&](std::int32_t v) {
+        return is_wedge_end_[static_cast<std::size_t>(v)] != 0;
+      });
+    });
+    add(folds);
     return crossing;
   }
 
   const std::vector<Triangle>& original_;
   int threads_;
   double side_;
+  Flags is_wedge_end_;
   std::vector<Triangle> first_;
   std::vector<Triangle> last_;
   std::vector<std::uint32_t> found_;
@@ -324,7 +362,7 @@ void mend(const TriangleParts& patches, const Snapshot& original, Borders border
           const Progress& progress, int threads, EditedMesh* edited,
           std::vector<std::vector<std::uint32_t>>* narrow) {
   FacetedMesh& mesh = edited->mesh;
-  CrossingSearch search(mesh.positions, original.triangles, threads);
+  CrossingSearch search(mesh, original.triangles, threads);
   if (search.find(mesh, progress.part(0.0, 0.4)).empty()) return;
   for (std::size_t i = 0; i < borders.parts.count(); ++i) borders.undo(i, &mesh);
   std::fill(edited->owners.begin(), edited->owners.end(), EditedMesh::kNobody);
