@@ -20,8 +20,6 @@ namespace {
 constexpr std::size_t kLeafTriangles = 4;
 constexpr std::int64_t kPointsPerTask = 256;
 constexpr double kLargest = 1e100;
-// How many radii away a node is taken as one piece.
-constexpr double kFarRadii = 4.0;
 // Below rounding: the point is in the triangle's plane.
 constexpr double kInPlane = 1e-12;
 // Nodes that wait on the way down: one for each split, of which the tree has fewer.
@@ -111,7 +109,7 @@ auto WindingNumbers::far_of(std::size_t n, std::vector<double>* areas) const -> 
   return far;
 }
 
-double WindingNumbers::at(const Vector3& point) const {
+double WindingNumbers::at(const Vector3& point, double far_radii) const {
   const auto nodes = tree_.nodes();
   double winding = 0.0;
   std::array<std::uint32_t, kDeepest> waiting;
@@ -123,7 +121,7 @@ double WindingNumbers::at(const Vector3& point) const {
     const Far& far = fars_[n];
     const Vector3 to = far.middle - point;
     const double squared = dot(to, to);
-    if (squared > kFarRadii * kFarRadii * far.squared_radius) {
+    if (squared > far_radii * far_radii * far.squared_radius) {
       winding += dot(far.normal, to) / (squared * std::sqrt(squared) * 4.0 * std::numbers::pi);
     } else if (node.right == 0) {
       for (std::uint32_t item = node.begin; item < node.end; ++item) {

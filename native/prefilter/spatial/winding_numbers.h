@@ -26,7 +26,8 @@ class WindingNumbers {
   std::vector<double> find(std::span<const Vector3> points, const Progress& progress,
                            int threads) const;
 
-  double at(const Vector3& point) const;
+  /// What is this many radii away is taken as one piece: 2 are enough to tell 0 from 1.
+  double at(const Vector3& point, double far_radii = 4.0) const;
 
  private:
   // What a node's triangles are from afar.

@@ -22,18 +22,4 @@ inline std::uint64_t cube_key(const Vector3& point, double side) {
   return key;
 }
 
-/// Calls visit(key) for a cube and the 26 around it.
-template <typename Visit>
-void for_cubes_around(std::uint64_t key, const Visit& visit) {
-  for (int x = -1; x <= 1; ++x) {
-    for (int y = -1; y <= 1; ++y) {
-      for (int z = -1; z <= 1; ++z) {
-        const std::int64_t step = (std::int64_t{x} * (std::int64_t{1} << 42)) +
-                                  (std::int64_t{y} * (std::int64_t{1} << 21)) + z;
-        visit(key + static_cast<std::uint64_t>(step));
-      }
-    }
-  }
-}
-
 }  // namespace prefilter

@@ -14,6 +14,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::size_t kLeafItems = 4;
+constexpr std::size_t kMostAcross = 128;  // beyond which the tree is searched
 constexpr int kMostSteps = 12;
 constexpr double kSettled = 1e-3;  // of a radius
 constexpr double kAlike = 0.02;    // what radii differ by, in cells
@@ -35,33 +36,83 @@ InnerBalls::InnerBalls(const MeshView<std::int32_t>& mesh, std::span<const Vecto
   tree_ = BoxTree(
       keys, kLeafItems, [&](std::size_t i) { return triangle_box(mesh.corners(triangles_[i])); },
       progress.part(0.7, 1.0));
+  const std::span<const BoxTree::Node> nodes = tree_.nodes();
+  directions_.resize(nodes.size(), 0);
+  for (std::size_t node = nodes.size(); node-- > 0;) {
+    if (nodes[node].right != 0) {
+      directions_[node] = directions_[node + 1] | directions_[nodes[node].right];
+      continue;
+    }
+    for (std::uint32_t i = nodes[node].begin; i < nodes[node].end; ++i) {
+      directions_[node] |= direction_bit(normals[triangles_[i]]);
+    }
+  }
 }
 
-std::optional<InnerBalls::Touched> InnerBalls::nearest_across(const Vector3& point, double reach,
-                                                              const Vector3& normal) const {
-  std::optional<Touched> touched;
-  double best = reach * reach;
-  const auto may_be = [&](double squared, std::size_t) { return squared < best; };
-  tree_.search(point, may_be, [&](std::size_t node) {
+void InnerBalls::find_across(const std::array<Vector3, 3>& piece, const Vector3& normal,
+                             double largest, Across* across) const {
+  across->triangles.clear();
+  across->has_more = false;
+  const Vector3 middle = triangle_middle(piece);
+  double reach = 0.0;
+  for (const Vector3& corner : piece) reach = std::max(reach, length(corner - middle));
+  reach += largest + kJustOutside;
+  const Vector3 center = middle - (largest - kJustOutside) * normal;
+  const std::uint64_t bits = bits_across(normal);
+  const auto may_be = [&](double squared, std::size_t node) {
+    return !across->has_more && squared <= reach * reach && (directions_[node] & bits) != 0;
+  };
+  tree_.search(center, may_be, [&](std::size_t node) {
     const BoxTree::Node& leaf = tree_.nodes()[node];
     for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
       const std::uint32_t t = triangles_[i];
       const double facing = dot(normals_[t], normal);
       if (facing > kAcross) continue;
-      const auto [a, b, c] = mesh_.corners(t);
-      const Vector3 w = nearest_weights(point, a, b, c);
-      const Vector3 p = w[0] * a + w[1] * b + w[2] * c;
-      const Vector3 d = p - point;
-      if (dot(d, d) >= best) continue;
-      best = dot(d, d);
-      touched = {p, facing};
+      const std::array<Vector3, 3> corners = mesh_.corners(t);
+      const Box box = triangle_box(corners);
+      if (box.squared_distance(center) > reach * reach) continue;
+      across->triangles.push_back({corners, box, facing});
+    }
+    across->has_more = across->triangles.size() > kMostAcross;
+  });
+}
+
+std::optional<InnerBalls::Touched> InnerBalls::nearest_across(const Vector3& point, double reach,
+                                                              const Vector3& normal,
+                                                              const Across& across) const {
+  std::optional<Touched> touched;
+  double best = reach * reach;
+  const auto look_at = [&](const std::array<Vector3, 3>& corners, double facing) {
+    const auto& [a, b, c] = corners;
+    const Vector3 w = nearest_weights(point, a, b, c);
+    const Vector3 p = w[0] * a + w[1] * b + w[2] * c;
+    const Vector3 d = p - point;
+    if (dot(d, d) >= best) return;
+    best = dot(d, d);
+    touched = {p, facing};
+  };
+  if (!across.has_more) {
+    for (const Across::One& one : across.triangles) {
+      if (one.box.squared_distance(point) < best) look_at(one.corners, one.facing);
+    }
+    return touched;
+  }
+  const std::uint64_t bits = bits_across(normal);
+  const auto may_be = [&](double squared, std::size_t node) {
+    return squared < best && (directions_[node] & bits) != 0;
+  };
+  tree_.search(point, may_be, [&](std::size_t node) {
+    const BoxTree::Node& leaf = tree_.nodes()[node];
+    for (std::uint32_t i = leaf.begin; i < leaf.end; ++i) {
+      const double facing = dot(normals_[triangles_[i]], normal);
+      if (facing <= kAcross) look_at(mesh_.corners(triangles_[i]), facing);
     }
   });
   return touched;
 }
 
-std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& normal,
-                                        double largest) const {
+std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& normal, double largest,
+                                        const Across& across) const {
   // From a little outside, so that the other face of a sheet is below the point.
   const Vector3 start = point + kJustOutside * normal;
   InnerBall ball = {largest, 0.0};
@@ -69,7 +120,7 @@ std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& nor
     const double reach = ball.radius * (1.0 - kSettled) - 0.1 * kJustOutside;
     if (!(reach > 0.0)) break;
     const std::optional<Touched> touched =
-        nearest_across(start - ball.radius * normal, reach, normal);
+        nearest_across(start - ball.radius * normal, reach, normal, across);
     if (!touched) break;
     const Vector3 away = start - touched->point;
     const double depth = dot(away, normal);
@@ -83,13 +134,14 @@ std::optional<InnerBall> InnerBalls::at(const Vector3& point, const Vector3& nor
 }
 
 bool InnerBalls::are_alike(const std::array<Vector3, 3>& piece, const Vector3& normal,
-                           double largest) const {
+                           double largest, const Across& across) const {
   const Vector3 middle = triangle_middle(piece);
-  const std::optional<InnerBall> first = at(middle, normal, largest);
+  const std::optional<InnerBall> first = at(middle, normal, largest, across);
   if (!first) return false;
   for (const Vector3& corner : piece) {
     for (const double share : {0.5, 0.95}) {
-      const std::optional<InnerBall> ball = at(middle + share * (corner - middle), normal, largest);
+      const std::optional<InnerBall> ball =
+          at(middle + share * (corner - middle), normal, largest, across);
       if (!ball || std::abs(ball->radius - first->radius) > kAlike) return false;
     }
   }

@@ -31,12 +31,28 @@ class InnerBalls {
   InnerBalls(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
              const std::vector<std::uint32_t>& triangles, const Progress& progress, int threads);
 
-  /// The largest ball at a point of the surface that holds nothing of what is across from it: it
+  /// The triangles that are across from a piece of one, as near as a ball at it may reach.
+  struct Across {
+    struct One {
+      std::array<Vector3, 3> corners;
+      Box box;
+      double facing;
+    };
+    std::vector<One> triangles;
+    bool has_more = false;
+    bool is_empty() const { return triangles.empty(); }
+  };
+  void find_across(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest,
+                   Across* across) const;
+
+  /// The largest ball at a point of a piece that holds nothing of what is across from it: it
   /// shrinks until it touches that. None where a ball of the largest radius fits.
-  std::optional<InnerBall> at(const Vector3& point, const Vector3& normal, double largest) const;
+  std::optional<InnerBall> at(const Vector3& point, const Vector3& normal, double largest,
+                              const Across& across) const;
 
   /// Whether a piece of a triangle is as thin everywhere, by samples.
-  bool are_alike(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest) const;
+  bool are_alike(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest,
+                 const Across& across) const;
 
  private:
   struct Touched {
@@ -44,13 +60,14 @@ class InnerBalls {
     double facing;
   };
   // What is nearest to a point, and nearer than this, of all that is across from a normal.
-  std::optional<Touched> nearest_across(const Vector3& point, double reach,
-                                        const Vector3& normal) const;
+  std::optional<Touched> nearest_across(const Vector3& point, double reach, const Vector3& normal,
+                                        const Across& across) const;
 
   MeshView<std::int32_t> mesh_;
   std::span<const Vector3> normals_;
   std::vector<std::uint32_t> triangles_;  // along the curve
   BoxTree tree_;
+  std::vector<std::uint64_t> directions_;  // of what is below each node, as bits
 };
 
 }  // namespace prefilter

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <unordered_map>
+#include <utility>
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/sort.h"
@@ -56,6 +56,11 @@ std::array<std::uint64_t, kBins> bins_across() {
   return across;
 }
 
+const std::array<std::uint64_t, kBins>& across_table() {
+  static const std::array<std::uint64_t, kBins> table = bins_across();
+  return table;
+}
+
 // A brick, and the directions of triangles in it.
 struct Entry {
   std::uint64_t key;
@@ -65,17 +70,48 @@ struct Entry {
   }
 };
 
+// Entries, most of them once.
+class Entries {
+ public:
+  void add(const Entry& entry) {
+    const std::uint64_t hash = (entry.key ^ entry.bins) * 0x9E3779B97F4A7C15U;
+    Entry& recent = recent_[hash >> (64U - kBits)];
+    if (recent.key == entry.key && recent.bins == entry.bins) return;
+    recent = entry;
+    entries_.push_back(entry);
+  }
+  std::vector<Entry>* all() { return &entries_; }
+
+ private:
+  static constexpr unsigned kBits = 10;
+  std::vector<Entry> entries_;
+  std::array<Entry, 1U << kBits> recent_{};
+};
+
 // Those of a piece of a triangle that is no larger than a brick.
 void add_bricks(const std::array<Vector3, 3>& piece, double side, std::uint64_t bin,
-                std::vector<Entry>* entries) {
+                Entries* entries) {
   const Box box = triangle_box(piece);
-  std::uint64_t last = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vector3 at;
-    for (int a = 0; a < 3; ++a) at[a] = ((corner >> a) & 1) != 0 ? box.high[a] : box.low[a];
-    const std::uint64_t key = cube_key(at, side);
-    if (corner == 0 || key != last) entries->push_back({key, bin});
-    last = key;
+  const std::uint64_t low = cube_key(box.low, side);
+  const std::uint64_t high = cube_key(box.high, side);
+  entries->add({low, bin});
+  if (high == low) return;
+  // Of each coordinate, those of both corners of the box that differ.
+  constexpr std::uint64_t kCoordinate = (std::uint64_t{1} << 21U) - 1;
+  std::array<std::uint64_t, 3> steps{};
+  for (unsigned a = 0; a < 3; ++a) {
+    const unsigned shift = 21U * (2 - a);
+    steps[a] = (((high >> shift) & kCoordinate) - ((low >> shift) & kCoordinate)) << shift;
+  }
+  for (unsigned corner = 1; corner < 8; ++corner) {
+    std::uint64_t key = low;
+    bool is_new = true;
+    for (unsigned a = 0; a < 3; ++a) {
+      if (((corner >> a) & 1U) == 0) continue;
+      is_new = is_new && steps[a] != 0;
+      key += steps[a];
+    }
+    if (is_new) entries->add({key, bin});
   }
 }
 
@@ -93,50 +129,75 @@ void merge(std::vector<Entry>* entries) {
   entries->resize(kept);
 }
 
-std::unordered_map<std::uint64_t, std::uint64_t> directions_of(const MeshView<std::int32_t>& mesh,
-                                                               std::span<const Vector3> normals,
-                                                               double side, const Box& bounds,
-                                                               const Progress& progress,
-                                                               int threads) {
+// In order.
+std::vector<Entry> directions_of(const MeshView<std::int32_t>& mesh,
+                                 std::span<const Vector3> normals, double side, const Box& bounds,
+                                 const Progress& progress, int threads) {
   const auto rows = static_cast<std::int64_t>(mesh.triangles.size());
   std::vector<std::vector<Entry>> tasks(static_cast<std::size_t>(range_count(rows, kRowsPerTask)));
   const auto find = [&](std::int64_t begin, std::int64_t end) {
-    std::vector<Entry>& entries = tasks[static_cast<std::size_t>(begin / kRowsPerTask)];
+    Entries entries;
     for (auto t = static_cast<std::size_t>(begin); t < static_cast<std::size_t>(end); ++t) {
       if (dot(normals[t], normals[t]) == 0.0) continue;
-      const std::uint64_t bin = std::uint64_t{1} << bin_of(normals[t]);
+      const std::uint64_t bin = direction_bit(normals[t]);
       for_pieces(
           mesh.corners(t), side,
           [&](const auto& piece) { return triangle_box(piece).overlaps(bounds); },
           [&](const auto& piece) { add_bricks(piece, side, bin, &entries); });
     }
-    merge(&entries);
+    merge(entries.all());
+    tasks[static_cast<std::size_t>(begin / kRowsPerTask)] = std::move(*entries.all());
   };
   parallel_ranges(rows, kRowsPerTask, threads, progress, find);
-  std::unordered_map<std::uint64_t, std::uint64_t> directions;
-  for (const std::vector<Entry>& entries : tasks) {
-    for (const Entry& entry : entries) directions[entry.key] |= entry.bins;
+  std::vector<Entry> directions;
+  for (std::vector<Entry>& entries : tasks) {
+    directions.insert(directions.end(), entries.begin(), entries.end());
+    entries = {};
   }
+  merge(&directions);
   return directions;
+}
+
+// Of each brick, the directions in it and those around it.
+std::vector<std::uint64_t> directions_around(const std::vector<Entry>& directions) {
+  std::vector<std::uint64_t> around(directions.size(), 0);
+  for (int column = 0; column < 9; ++column) {
+    const std::int64_t step =
+        (column / 3 - 1) * (std::int64_t{1} << 42) + (column % 3 - 1) * (std::int64_t{1} << 21);
+    // Those of a column follow each other, as the bricks do.
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+      const std::uint64_t first = directions[i].key + static_cast<std::uint64_t>(step) - 1;
+      while (next < directions.size() && directions[next].key < first) ++next;
+      for (std::size_t k = next; k < directions.size() && directions[k].key <= first + 2; ++k) {
+        around[i] |= directions[k].bins;
+      }
+    }
+  }
+  return around;
 }
 
 }  // namespace
 
+std::uint64_t direction_bit(const Vector3& direction) {
+  return std::uint64_t{1} << bin_of(direction);
+}
+
+std::uint64_t bits_across(const Vector3& direction) {
+  return across_table()[static_cast<std::size_t>(bin_of(direction))];
+}
+
 OpposedBricks::OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
                              double side, const Box& bounds, const Progress& progress, int threads)
     : side_(side), bounds_(bounds) {
-  const auto directions =
+  const std::vector<Entry> directions =
       directions_of(mesh, normals, side, bounds, progress.part(0.0, 0.7), threads);
-  const std::array<std::uint64_t, kBins> across = bins_across();
-  for (const auto& [key, bins] : directions) {
-    std::uint64_t around = 0;
-    for_cubes_around(key, [&](std::uint64_t other) {
-      const auto found = directions.find(other);
-      if (found != directions.end()) around |= found->second;
-    });
-    for (std::uint64_t rest = bins; rest != 0; rest &= rest - 1) {
-      if ((across[static_cast<std::size_t>(std::countr_zero(rest))] & around) == 0) continue;
-      opposed_.insert(key);
+  const std::vector<std::uint64_t> around = directions_around(directions);
+  const std::array<std::uint64_t, kBins>& across = across_table();
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    for (std::uint64_t rest = directions[i].bins; rest != 0; rest &= rest - 1) {
+      if ((across[static_cast<std::size_t>(std::countr_zero(rest))] & around[i]) == 0) continue;
+      opposed_.insert(directions[i].key);
       break;
     }
   }

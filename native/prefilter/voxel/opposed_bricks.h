@@ -17,6 +17,12 @@ namespace prefilter {
 /// The cosine between normals from which on triangles are across from each other: 134 degrees.
 inline constexpr double kAcross = -0.7;
 
+/// The bin of a direction, as a bit.
+std::uint64_t direction_bit(const Vector3& direction);
+
+/// The bins with directions that may be across from one.
+std::uint64_t bits_across(const Vector3& direction);
+
 /// The bricks of space that have, with those around them, triangles which are across.
 class OpposedBricks {
  public:

@@ -28,6 +28,7 @@ constexpr double kClear = 1.2;       // from a surface, in cells: what is empty 
 // common corner, are half of a cell.
 constexpr double kRod = 0.23;
 constexpr double kSpeck = 0.17;
+constexpr double kFarRadii = 2.0;  // of winding numbers that are compared with a half
 constexpr std::int64_t kTrianglesPerTask = 1 << 6;
 
 bool is_small(const std::array<Vector3, 3>& p) {
@@ -108,11 +109,28 @@ double extra_of(const Vector3& values) {
   return kRod * rod_of(values) + kSpeck * speck;
 }
 
-std::vector<Candidate> find_candidates(
-    const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals,
-    std::span<const std::uint32_t> triangles, const OpposedBricks& bricks, const InnerBalls& balls,
-    const std::function<bool(const Vector3&, const Vector3&)>& is_outer, double largest,
-    const Progress& progress, int threads) {
+// Whether points of the surface bound the solid, and are not within another part.
+struct OuterSides {
+  const std::function<float(const Vector3&)>& occupancy;
+  const WindingNumbers& winding;
+
+  // Where a gap is narrower than kClear it is filled, whichever of its sides is moved.
+  bool may_be(const Vector3& point, const Vector3& normal) const {
+    return occupancy(point + kClear * normal) < 1.0F;
+  }
+  bool is_outer(const Vector3& point, const Vector3& normal) const {
+    const float beyond = occupancy(point + kClear * normal);
+    if (beyond <= 0.0F || beyond >= 1.0F) return beyond <= 0.0F;
+    return winding.at(point + kJustOutside * normal, kFarRadii) <= 0.5;
+  }
+};
+
+std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
+                                       std::span<const Vector3> normals,
+                                       std::span<const std::uint32_t> triangles,
+                                       const OpposedBricks& bricks, const InnerBalls& balls,
+                                       const OuterSides& outer, double largest,
+                                       const Progress& progress, int threads) {
   const auto rows = static_cast<std::int64_t>(triangles.size());
   std::vector<std::vector<Candidate>> tasks(
       static_cast<std::size_t>(range_count(rows, kTrianglesPerTask)));
@@ -120,27 +138,40 @@ std::vector<Candidate> find_candidates(
       rows, kTrianglesPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
         std::vector<Candidate>& found = tasks[static_cast<std::size_t>(begin / kTrianglesPerTask)];
         const auto may_meet = [&](const auto& corners) { return bricks.may_meet(corners); };
+        InnerBalls::Across across;
         for (std::int64_t i = begin; i < end; ++i) {
           const std::uint32_t t = triangles[static_cast<std::size_t>(i)];
           const Vector3& normal = normals[t];
+          const auto may_count = [&](const Vector3& point) {
+            return bricks.holds(point) && outer.may_be(point, normal);
+          };
           const auto add = [&](const std::array<Vector3, 3>& piece) {
             const Vector3 middle = triangle_middle(piece);
-            if (!bricks.holds(middle)) return;
-            const std::optional<InnerBall> ball = balls.at(middle, normal, largest);
-            if (!ball || !is_outer(middle, normal)) return;
+            if (!may_count(middle)) return;
+            const std::optional<InnerBall> ball = balls.at(middle, normal, largest, across);
+            if (!ball || !outer.is_outer(middle, normal)) return;
             found.push_back({piece, normal, *ball, t});
           };
           const auto add_large = [&](const std::array<Vector3, 3>& piece) {
+            bool counts = may_count(triangle_middle(piece));
+            if (!counts && !is_small(piece)) {
+              for_pieces(piece, kPiece, may_meet, [&](const auto& small) {
+                counts = counts || may_count(triangle_middle(small));
+              });
+            }
+            if (!counts) return;
+            balls.find_across(piece, normal, largest, &across);
+            if (across.is_empty()) return;
             if (is_small(piece)) {
               add(piece);
-            } else if (balls.are_alike(piece, normal, largest)) {
+              return;
+            }
+            if (balls.are_alike(piece, normal, largest, across)) {
               const std::size_t before = found.size();
               add(piece);
               if (found.size() > before) return;
-              for_pieces(piece, kPiece, may_meet, add);
-            } else {
-              for_pieces(piece, kPiece, may_meet, add);
             }
+            for_pieces(piece, kPiece, may_meet, add);
           };
           for_pieces(mesh.corners(t), kLargestPiece, may_meet, add_large);
         }
@@ -188,15 +219,8 @@ std::vector<ThickPiece> thick_pieces(const MeshView<std::int32_t>& mesh, double 
   }
   const InnerBalls balls(mesh, normals, triangles, progress.part(0.2, 0.4), threads);
   const WindingNumbers winding({mesh.positions, mesh.triangles}, progress.part(0.4, 0.5), threads);
-  // Whether a point of the surface bounds the solid, and is not within another part.
-  const auto is_outer = [&](const Vector3& point, const Vector3& normal) {
-    // Where a gap is narrower than this it is filled, whichever of its sides is moved.
-    const float beyond = occupancy(point + kClear * normal);
-    if (beyond <= 0.0F || beyond >= 1.0F) return beyond <= 0.0F;
-    return winding.at(point + kJustOutside * normal) <= 0.5;
-  };
   const std::vector<Candidate> candidates =
-      find_candidates(mesh, normals, triangles, bricks, balls, is_outer, largest,
+      find_candidates(mesh, normals, triangles, bricks, balls, {occupancy, winding}, largest,
                       progress.part(0.5, 0.95), threads);
   std::unordered_map<std::uint64_t, Place> places;
   for (const Candidate& one : candidates) {
