@@ -16,6 +16,7 @@
 #include "prefilter/base/names.h"
 #include "prefilter/contour/grid_contour.h"
 #include "prefilter/contour/outlines.h"
+#include "prefilter/contour/quad_contour.h"
 #include "prefilter/contour/tree_contour.h"
 #include "prefilter/voxel/octree.h"
 
@@ -91,6 +92,26 @@ TracedArrays bound_traced_contour(const Octree& octree,
           to_array<std::int64_t>(std::move(traced.origins), {count})};
 }
 
+TracedArrays bound_contour_quads(const Octree& octree,
+                                 const std::vector<SourceArrays>& source_arrays,
+                                 ContourOptions options, const py::object& progress) {
+  options.progress = to_progress(progress);
+  const std::vector<SourceMesh> sources = sources_of(source_arrays);
+  options.sources = sources;
+  options.thickened = &octree.thickened;
+  QuadMesh mesh;
+  {
+    const py::gil_scoped_release unlocked;
+    mesh = contour_quads(octree.cells, octree.bounds, options);
+  }
+  const auto vertices = static_cast<py::ssize_t>(mesh.positions.size());
+  const auto quads = static_cast<py::ssize_t>(mesh.quads.size());
+  const auto origins = static_cast<py::ssize_t>(mesh.origins.size());
+  return {to_array<double>(std::move(mesh.positions), {vertices, 3}),
+          to_array<std::int32_t>(std::move(mesh.quads), {quads, 4}),
+          to_array<std::int64_t>(std::move(mesh.origins), {origins})};
+}
+
 // The numbers of samples along the axes of a grid.
 template <std::size_t N>
 std::array<int, N> sides_of(const Array<float>& grid) {
@@ -144,6 +165,8 @@ void bind_contour(py::module_& m) {
   m.def("contour_outlines", &bound_contour_outlines, py::arg("grid"), py::arg("spacing"),
         py::arg("origin"), py::arg("options"), py::arg("progress"));
   m.def("traced_contour", &bound_traced_contour, py::arg("octree"), py::arg("sources"),
+        py::arg("options"), py::arg("progress"));
+  m.def("contour_quads", &bound_contour_quads, py::arg("octree"), py::arg("sources"),
         py::arg("options"), py::arg("progress"));
   m.def("contour_octree", &bound_contour_octree, py::arg("octree"), py::arg("sources"),
         py::arg("options"), py::arg("progress"));

@@ -39,6 +39,7 @@ SAME_IN_ANY_PYTHON = {
     "test_rasterize_laws.py",
     "test_rasterize_nasty.py",
     "test_rasterize_oracle.py",
+    "test_quads.py",
     "test_reader.py",
     "test_reconstruct.py",
     "test_reconstruct_nasty.py",

@@ -440,6 +440,7 @@ def test_every_function_is_there():
         "NearestPoints",
         "PickedTexels",
         "PixelFilter",
+        "QuadContour",
         "ReconstructionReport",
         "SamplingTable",
         "ScanPoints",

@@ -119,6 +119,12 @@ QUERY_ROWS = [
         ["sources[0] groups: found 3 for 12 triangles", "one each"],
     ),
     ("traced_contour", {"sources": []}, ["sources: there are none", "at least one"]),
+    (
+        "quad_contour",
+        {"interpolant": "cubic"},
+        ["interpolant: 'cubic'", "occupancy, plane, linear, sharp"],
+    ),
+    ("quad_contour", {"sources": [BOX.positions]}, ["sources: item 0", "(positions, triangles)"]),
     ("contour", {"isovalue": 0}, ["isovalue: 0", "above 0 and up to 1"]),
 ]
 NEAREST_ROWS = [

@@ -37,6 +37,7 @@ USES = {
         "difference": lambda octree: OCTREE.difference(octree),
         "contour": lambda octree: octree.contour(),
         "traced_contour": lambda octree: octree.traced_contour([(np.eye(3), [[0, 1, 2]])]),
+        "quad_contour": lambda octree: octree.quad_contour(),
         "coarsened": lambda octree: octree.coarsened(1),
         "save": lambda octree: octree.save("never.npz"),
         "load": None,

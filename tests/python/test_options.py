@@ -44,6 +44,7 @@ OPTIONS = [
     (contours.contour, _native.ContourOptions, contours._CHECKS),
     (octree.Octree.contour, _native.ContourOptions, octree._CONTOUR_CHECKS),
     (octree.Octree.traced_contour, _native.ContourOptions, contours.CLEANUP_CHECKS),
+    (octree.Octree.quad_contour, _native.ContourOptions, octree._QUAD_CHECKS),
     (reconstruction.reconstruct, _native.ReconstructOptions, reconstruction._CHECKS),
     (reconstruction.reconstruct_file, _native.ReconstructOptions, reconstruction._CHECKS),
 ]
@@ -68,5 +69,7 @@ def test_defaults_are_those_of_the_library(function, kind, checks):
 def test_every_option_is_an_argument(function, kind, checks):
     if function is octree.Octree.traced_contour:  # by "sharp" alone
         assert options_of(kind) - checks.keys() == {"interpolant", "isovalue"}
+    elif function is octree.Octree.quad_contour:  # no cleanup, and 1/2
+        assert options_of(kind) - checks.keys() == {"adaptivity", "cleanup", "isovalue"}
     else:
         assert options_of(kind) - INTERNAL == checks.keys()

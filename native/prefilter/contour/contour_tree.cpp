@@ -57,4 +57,15 @@ void ContourTree::update_sides(const Progress& progress, int threads) {
   root_sides_ = union_of(blocks_[0][0].sides);
 }
 
+CellTree split_root(float value) {
+  CellTree split;
+  split.root = value;
+  split.levels.resize(1);
+  split.levels[0].blocks.emplace_back();
+  split.levels[0].blocks[0].fill(value);
+  split.levels[0].split.push_back(0);
+  link_blocks(split.levels.data());
+  return split;
+}
+
 }  // namespace prefilter

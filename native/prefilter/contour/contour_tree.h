@@ -91,6 +91,9 @@ class ContourTree {
   std::uint8_t root_sides_ = kOutside;
 };
 
+/// A tree of one cell, split once.
+CellTree split_root(float value);
+
 /// The coordinates of a cell, in cells of its depth.
 using CellCoordinates = std::array<std::int32_t, 3>;
 

@@ -441,14 +441,7 @@ TriangleMesh contour_any(const CellTree& cells, const Box& root, const ContourOp
                   to_text(kLargestAdaptivity));
   }
   if (!cells.levels.empty()) return contour_split(cells, root, options, origins);
-  CellTree split;
-  split.root = cells.root;
-  split.levels.resize(1);
-  split.levels[0].blocks.emplace_back();
-  split.levels[0].blocks[0].fill(cells.root);
-  split.levels[0].split.push_back(0);
-  link_blocks(split.levels.data());
-  return contour_split(split, root, options, origins);
+  return contour_split(split_root(cells.root), root, options, origins);
 }
 
 // As it is, or refined where the surface passes through cells of several sizes.

@@ -73,6 +73,7 @@ from .textures.texture_files import write_ktx2 as write_ktx2
 from .voxels.contours import contour as contour
 from .voxels.octree import MAX_DEPTH as MAX_DEPTH
 from .voxels.octree import Octree as Octree
+from .voxels.octree import QuadContour as QuadContour
 from .voxels.octree import TracedContour as TracedContour
 from .voxels.octree import cube_around as cube_around
 from .voxels.octree import voxelize as voxelize

@@ -613,6 +613,14 @@ def contour_octree(
     options: ContourOptions,
     progress: ProgressCallback | None,
 ) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32]]: ...
+def contour_quads(
+    octree: Octree,
+    sources: Sequence[
+        tuple[npt.NDArray[np.floating], npt.NDArray[np.integer], npt.NDArray[np.int32]]
+    ],
+    options: ContourOptions,
+    progress: ProgressCallback | None,
+) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.int32], npt.NDArray[np.int64]]: ...
 def contour_grid(
     grid: npt.NDArray[np.float32],
     spacing: list[float],

@@ -45,6 +45,11 @@ _CONTOUR_CHECKS: dict[str, Check] = {
     "isovalue": _as_isovalue,
 }
 
+_QUAD_CHECKS: dict[str, Check] = {
+    "interpolant": partial(as_name, "interpolant"),
+    "threads": as_threads,
+}
+
 
 class Octree(_native.Octree):
     """The occupancies of the cells of a box, finely along the surface of a shape.
@@ -239,6 +244,38 @@ class Octree(_native.Octree):
             *_native.traced_contour(self, _as_sources(sources), options, as_progress(progress))
         )
 
+    def quad_contour(
+        self,
+        *,
+        interpolant: str = "sharp",
+        sources: Sequence[Source] | None = None,
+        progress: ProgressCallback | None = None,
+        threads: int = 0,
+    ) -> "QuadContour":
+        """The surface of the shape as quads alone: dual contouring (Ju et al. 2002).
+
+        The mesh is closed and two-manifold whatever the octree: a vertex for each part of the
+        surface in a cell of the dual grid, and a quad for each two neighbors inside and outside,
+        about half as many as `contour` makes triangles. What is outside of the bounds is empty.
+
+        Args:
+            interpolant: As for `contour`. By "sharp", vertices are on edges and corners.
+            sources: As for `contour`; no quad runs across an edge of theirs, or from one group to
+                another.
+            progress: Called with the fraction done; returning False stops the work.
+            threads: 0 means all processors. The result does not depend on it.
+
+        Raises:
+            ValueError: `interpolant` is no such name, or a source is no mesh.
+            MemoryError: The surface would not fit into memory.
+            Cancelled: `progress` returned False.
+        """
+        options = set_options(_native.ContourOptions(), _QUAD_CHECKS, locals())
+        positions, quads, origins = _native.contour_quads(
+            self, _as_sources(sources), options, as_progress(progress)
+        )
+        return QuadContour(positions, quads, origins if len(origins) == len(quads) else None)
+
     def coarsened(self, depth: int) -> "Octree":
         """The octree down to a depth of 0 to 12: means of what was finer."""
         return Octree(_native.coarsened(self, _as_depth(depth, 0)))
@@ -295,6 +332,23 @@ class TracedContour:
     positions: npt.NDArray[np.float64]
     triangles: npt.NDArray[np.int32]
     origins: npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class QuadContour:
+    """A contour of quads.
+
+    Attributes:
+        positions: (vertices, 3) float64.
+        quads: (quads, 4) int32, counter-clockwise seen from outside. They are flat along the
+            diagonal from the first corner to the third, or next to that.
+        origins: (quads,) int64: as of `TracedContour`; None without sources, or for another
+            interpolant than "sharp".
+    """
+
+    positions: npt.NDArray[np.float64]
+    quads: npt.NDArray[np.int32]
+    origins: npt.NDArray[np.int64] | None
 
 
 def voxelize(
