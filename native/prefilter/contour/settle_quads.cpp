@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "prefilter/contour/facing.h"
-#include "prefilter/contour/near_intersections.h"
 #include "prefilter/remesh/folds.h"
+#include "prefilter/remesh/near_intersections.h"
 
 namespace prefilter {
 namespace {
