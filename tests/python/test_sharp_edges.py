@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from bench import solids as bench_solids
 from bench.voxels import booleans, corpus, edges, measures, meshes, sharp_shapes
 
 spatial = pytest.importorskip("scipy.spatial")
@@ -160,6 +161,51 @@ def test_edges_of_wedges_are_no_folds(degrees, how):
     assert measures.folds(positions, triangles) > 30
     assert measures.folds(positions, triangles, 120, lines, 0.5 * cell) == 0
     check_sound("wedge", positions, triangles)
+
+
+def share_off(positions, triangles, shape, degrees):
+    """The share of the area whose normal is farther from the shape's where it is nearest."""
+    points, faces = measures.surface_samples(positions, triangles, 20_000)
+    normals, _ = measures.facet_normals(positions, triangles)
+    true_normals, _ = measures.facet_normals(shape.positions, shape.triangles)
+    best = np.full(len(points), -1.0)
+    tree = measures.Nearest(shape.positions[shape.triangles])
+    for first, pairs in tree.candidates(points, 1e-3):
+        queries = pairs.queries + first
+        cosines = (normals[faces[queries]] * true_normals[pairs.items]).sum(axis=1)
+        np.maximum.at(best, queries, cosines)
+    return (best < np.cos(np.radians(degrees))).mean()
+
+
+def ball(rounds):
+    made = bench_solids.sphere(1.0, rounds)
+    shape = sharp_shapes.Shape("ball", made.positions, made.triangles.astype(np.int64))
+    return shape.moved(sharp_shapes.rotation(3))
+
+
+@pytest.mark.parametrize("how", [SHARP, CLEAN], ids=["sharp", "clean"])
+@pytest.mark.parametrize(
+    "shape",
+    [sharp_shapes.cylinder(24).moved(sharp_shapes.rotation(6)), ball(3)],
+    ids=["cylinder", "ball"],
+)
+def test_blunt_edges_between_wide_facets_are_straight(shape, how):
+    """Of 15 degrees and of 7 to 12: nothing between two facets has a normal of its own."""
+    subject = edges.Subject("", (shape,), "", shape, edges.NO_EDGES)
+    positions, triangles, _ = edges.contour(subject, 64, how)
+    assert share_off(positions, triangles, shape, 2) < 0.01
+    assert share_off(*edges.contour(subject, 64, edges.Contour.named("plane"))[:2], shape, 2) > 0.1
+    check_sound("facets", positions, triangles)
+
+
+def test_facets_that_are_small_beside_cells_have_no_edges():
+    """Of less than a cell, and of two degrees: a smooth surface."""
+    shape = ball(6)
+    subject = edges.Subject("", (shape,), "", shape, edges.NO_EDGES)
+    sharp = edges.contour(subject, 64, SHARP)
+    plain = edges.contour(subject, 64, edges.Contour.named("plane"))
+    np.testing.assert_array_equal(sharp[0], plain[0])
+    np.testing.assert_array_equal(np.sort(sharp[1], axis=0), np.sort(plain[1], axis=0))
 
 
 def solids():

@@ -14,16 +14,28 @@ constexpr double kAlong = 0.9396926207859084;     // 20 degrees
 constexpr double kEdgeReach = 0.3;                // cells
 constexpr double kOpposed = -0.1736481776669303;  // 100 degrees
 
-// The middle of the side that two triangles have in common.
-Vector3 middle_between(const MeshView<std::int32_t>& mesh,
-                       const std::array<std::uint32_t, 2>& triangles) {
-  const auto& other = mesh.triangles[triangles[1]];
+// The side that two triangles have in common.
+struct SharedSide {
+  Vector3 middle;
+  bool is_convex;
+};
+
+SharedSide side_between(const MeshView<std::int32_t>& mesh,
+                        const std::array<std::uint32_t, 2>& triangles) {
+  const auto& first = mesh.triangles[triangles[0]];
   Vector3 sum{};
-  for (const std::int32_t corner : mesh.triangles[triangles[0]]) {
-    if (std::find(other.begin(), other.end(), corner) == other.end()) continue;
-    sum = sum + mesh.positions[static_cast<std::size_t>(corner)];
+  Vector3 far{};
+  for (const std::int32_t corner : mesh.triangles[triangles[1]]) {
+    const Vector3& at = mesh.positions[static_cast<std::size_t>(corner)];
+    if (std::find(first.begin(), first.end(), corner) != first.end()) {
+      sum = sum + at;
+    } else {
+      far = at;
+    }
   }
-  return 0.5 * sum;
+  const Vector3 middle = 0.5 * sum;
+  const auto [a, b, c] = mesh.corners(triangles[0]);
+  return {middle, dot(cross(b - a, c - a), far - middle) < 0.0};
 }
 
 // The sample of a triangle's corner, of its region, along whose plane it lies; null where none is.
@@ -78,13 +90,14 @@ bool is_upside_down(const MeshView<std::int32_t>& mesh, std::size_t triangle, st
 bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_t> labels,
                  const std::array<std::uint32_t, 2>& triangles, const FeatureSurface& surface,
                  const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned) {
-  const Vector3 middle = middle_between(mesh, triangles);
+  const SharedSide side = side_between(mesh, triangles);
+  if (!side.is_convex) return false;
   std::array<Vector3, 2> normals;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::int32_t label = labels[triangles[i]];
     const bool is_turned = turned.contains(label);
     const SourcePoint* sample = sample_along(mesh, triangles[i], label, samples, is_turned);
-    if (sample == nullptr || !surface.nearest(middle, kEdgeReach * surface.cell(), label)) {
+    if (sample == nullptr || !surface.nearest(side.middle, kEdgeReach * surface.cell(), label)) {
       return false;
     }
     normals[i] = is_turned ? -1.0 * sample->normal : sample->normal;

@@ -23,8 +23,8 @@ bool is_upside_down(const MeshView<std::int32_t>& mesh, std::size_t triangle, st
                     const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned,
                     double cell);
 
-/// Whether two triangles lie along the surface on both sides of an edge that turns by more than 100
-/// degrees, and the side between them is close to that. It is no fold.
+/// Whether two triangles lie along the surface on both sides of a convex edge that turns by more
+/// than 100 degrees, and the side between them is close to that. It is no fold; a crevice is one.
 bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_t> labels,
                  const std::array<std::uint32_t, 2>& triangles, const FeatureSurface& surface,
                  const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned);

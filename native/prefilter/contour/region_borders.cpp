@@ -69,6 +69,26 @@ Sets joined_by_length(const std::vector<Shared>& shared, int region_count) {
   return joined;
 }
 
+// Those of less than that width: of their area over half of what is around them.
+std::vector<std::uint8_t> narrow_regions(const WeldedMeshes& welded,
+                                         const std::vector<double>& areas, double narrow,
+                                         const SmoothRegions& regions) {
+  std::vector<double> around(areas.size(), 0.0);
+  for (const Wall& wall : regions.walls) {
+    const auto labels = labels_of(regions.labels, wall);
+    if (labels[0] == labels[1]) continue;
+    const double size = length_of(welded, wall.ends);
+    for (const std::int32_t label : labels) {
+      if (label >= 0) around[static_cast<std::size_t>(label)] += size;
+    }
+  }
+  std::vector<std::uint8_t> is_narrow(areas.size(), 0);
+  for (std::size_t i = 0; i < areas.size(); ++i) {
+    is_narrow[i] = 2.0 * areas[i] < narrow * around[i] ? 1 : 0;
+  }
+  return is_narrow;
+}
+
 // What several edges that hang together are like.
 struct Chain {
   double cells = 0.0;
@@ -137,14 +157,19 @@ RegionAreas measure_regions(const WeldedMeshes& welded, int region_count, const 
 }
 
 void join_small(const WeldedMeshes& welded, const std::vector<double>& areas, double least,
-                SmoothRegions* regions) {
+                double narrow, SmoothRegions* regions) {
+  const std::vector<std::uint8_t> is_narrow = narrow_regions(welded, areas, narrow, *regions);
   std::vector<Shared> shared;
   for (const Wall& wall : regions->walls) {
     const auto [p, q] = labels_of(regions->labels, wall);
-    if (p == q || !are_of_one_group(welded, wall)) continue;
+    if (p == q || p < 0 || q < 0 || !are_of_one_group(welded, wall)) continue;
     const double size = length_of(welded, wall.ends);
-    if (areas[static_cast<std::size_t>(p)] < least) shared.push_back({p, q, size});
-    if (areas[static_cast<std::size_t>(q)] < least) shared.push_back({q, p, size});
+    const auto is_small = [&](std::int32_t label) {
+      const auto region = static_cast<std::size_t>(label);
+      return areas[region] < least || (wall.is_crease && is_narrow[region] != 0);
+    };
+    if (is_small(p)) shared.push_back({p, q, size});
+    if (is_small(q)) shared.push_back({q, p, size});
   }
   if (shared.empty()) return;
   std::sort(shared.begin(), shared.end());
@@ -185,12 +210,15 @@ std::vector<RegionBorder> find_borders(const WeldedMeshes& welded, double cell,
   std::vector<RegionBorder> borders;
   std::vector<RegionBorder> within;
   std::vector<RegionBorder> between;
+  std::vector<RegionBorder> creases;
   for (const Wall& wall : regions->walls) {
     const auto [p, q] = labels_of(regions->labels, wall);
+    if (wall.is_crease && p == q) continue;
     const bool is_of_groups = p != q && !are_of_one_group(welded, wall);
-    (is_of_groups ? borders
-     : p != q     ? between
-                  : within)
+    (is_of_groups     ? borders
+     : wall.is_crease ? creases
+     : p != q         ? between
+                      : within)
         .push_back({wall.ends, {p, q}, wall.triangles});
   }
   regions->walls = {};
@@ -211,9 +239,17 @@ std::vector<RegionBorder> find_borders(const WeldedMeshes& welded, double cell,
   for (std::int32_t& label : regions->labels) {
     if (label >= 0) label = numbers[static_cast<std::size_t>(label)];
   }
+  const std::size_t sharp = borders.size();
+  borders.insert(borders.end(), creases.begin(), creases.end());
   for (RegionBorder& border : borders) {
     for (std::int32_t& label : border.labels) label = numbers[static_cast<std::size_t>(label)];
   }
+  // Edges within a region are found only where they are sharp.
+  borders.erase(std::remove_if(borders.begin() + static_cast<std::ptrdiff_t>(sharp), borders.end(),
+                               [](const RegionBorder& border) {
+                                 return border.labels[0] == border.labels[1];
+                               }),
+                borders.end());
   return borders;
 }
 

@@ -22,9 +22,9 @@ RegionAreas measure_regions(const WeldedMeshes& welded, int region_count, const 
                             std::vector<std::int32_t>* labels);
 
 /// Regions smaller than `least` join the one of their group with which they share the longest
-/// walls.
+/// walls; those that are narrower than `narrow`, the one with which they share the longest creases.
 void join_small(const WeldedMeshes& welded, const std::vector<double>& areas, double least,
-                SmoothRegions* regions);
+                double narrow, SmoothRegions* regions);
 
 /// Of edges that hang together: whether they are `least` cells long, and no roughness: blunt, and
 /// with many vertices where they turn, end or meet.
@@ -33,7 +33,8 @@ std::vector<std::uint8_t> are_smooth(const WeldedMeshes& welded,
                                      double cell);
 
 /// The walls that are borders; regions that only others divide join. Edges within a region count
-/// where those that hang together are eight cells long, and between groups always.
+/// where those that hang together are eight cells long, and between groups always, as do creases
+/// between regions.
 std::vector<RegionBorder> find_borders(const WeldedMeshes& welded, double cell,
                                        SmoothRegions* regions);
 

@@ -433,6 +433,7 @@ class SecondTry {
   // Puts those back that have a triangle of a pair, or all where none has; returns which changed.
   Changes give_up(const Pairs& pairs, const LoopTriangles& made, const LayeredMesh& layered) {
     Changes changes{Flags(loops_.size(), 0), Flags(is_moved_.size(), 0)};
+    states_.is_single = settled_.is_single;
     for (const auto& pair : pairs) {
       for (const std::uint32_t t : pair) {
         for (const std::int32_t corner : layered.mesh.triangles[t]) {

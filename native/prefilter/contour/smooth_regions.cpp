@@ -11,12 +11,14 @@
 #include "prefilter/base/disjoint_sets.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/sort.h"
+#include "prefilter/contour/wide_facets.h"
 
 namespace prefilter {
 namespace {
 
 constexpr std::int64_t kSidesPerSweep = 1 << 21;
 constexpr std::int64_t kMostSweeps = 16;
+constexpr double kPlaneCosine = 0.9998476951563913;  // 1 degree
 
 using Triangle = std::array<std::int32_t, 3>;
 
@@ -92,45 +94,97 @@ bool runs_up(const WeldedMeshes& welded, const Side& side) {
   return corners[side.half % 3] < corners[(side.half + 1) % 3];
 }
 
-// Nothing where some edges have one side alone, unless that may be.
-std::optional<SmoothRegions> try_to_join(const WeldedMeshes& welded, bool may_have_single,
-                                         const Progress& progress, int threads) {
-  using Sets = DisjointSets<std::int32_t>;
-  const std::size_t count = welded.triangle_count();
-  Sets regions(count);
-  Sets parts(count);
-  const auto rows = static_cast<std::int64_t>(3 * count);
+using Sets = DisjointSets<std::int32_t>;
+
+// Two triangles at an edge that no other has.
+struct Neighbors {
+  std::array<std::int32_t, 2> ends;
+  std::array<std::int32_t, 2> triangles;
+  double cosine;  // between their normals
+  bool is_of_one_group;
+
+  bool is_smooth() const { return is_of_one_group && cosine >= kSharpCosine; }
+  bool is_plane() const { return is_of_one_group && cosine >= kPlaneCosine; }
+};
+
+// Calls visit(sweep, neighbors) from several threads; returns whether some edges have one side
+// alone.
+template <typename Visit>
+bool for_neighbors(const WeldedMeshes& welded, std::int64_t sweeps, const Progress& progress,
+                   int threads, const Visit& visit) {
+  std::atomic<bool> has_single = false;
+  for_edges(welded, sweeps, progress, threads,
+            [&](std::size_t sweep, std::int32_t low, std::span<const Side> sides) {
+              if (sides.size() == 1) has_single = true;
+              if (sides.size() != 2 || runs_up(welded, sides[0]) == runs_up(welded, sides[1])) {
+                return;
+              }
+              const std::size_t t = sides[0].half / 3;
+              const std::size_t u = sides[1].half / 3;
+              const Vector3 of_t = welded.normal(t);
+              const Vector3 of_u = welded.normal(u);
+              const double sizes = std::sqrt(dot(of_t, of_t) * dot(of_u, of_u));
+              if (!(sizes > 0.0)) return;
+              visit(sweep, Neighbors{{low, static_cast<std::int32_t>(sides[0].other)},
+                                     {static_cast<std::int32_t>(t), static_cast<std::int32_t>(u)},
+                                     dot(of_t, of_u) / sizes,
+                                     welded.meshes.group(t) == welded.meshes.group(u)});
+            });
+  return has_single;
+}
+
+// Joins where is_joined(neighbors); the others are walls. Returns as for_neighbors does.
+template <typename IsJoined>
+bool join_regions(const WeldedMeshes& welded, const IsJoined& is_joined, const Progress& progress,
+                  int threads, SmoothRegions* found) {
+  Sets regions(welded.triangle_count());
+  const auto rows = static_cast<std::int64_t>(3 * welded.triangle_count());
   const std::int64_t sweeps = std::min(range_count(rows, kSidesPerSweep), kMostSweeps);
   std::vector<std::vector<Wall>> walls(static_cast<std::size_t>(sweeps));
-  std::atomic<bool> has_single = false;
-  const auto join = [&](std::size_t sweep, std::int32_t low, std::span<const Side> sides) {
-    if (sides.size() == 1) has_single = true;
-    if (sides.size() != 2 || runs_up(welded, sides[0]) == runs_up(welded, sides[1])) return;
-    const std::size_t t = sides[0].half / 3;
-    const std::size_t u = sides[1].half / 3;
-    const Vector3 of_t = welded.normal(t);
-    const Vector3 of_u = welded.normal(u);
-    const double sizes = std::sqrt(dot(of_t, of_t) * dot(of_u, of_u));
-    if (!(sizes > 0.0)) return;
-    const std::array<std::int32_t, 2> both = {static_cast<std::int32_t>(t),
-                                              static_cast<std::int32_t>(u)};
-    parts.join_from_threads(both[0], both[1]);
-    const bool is_smooth = dot(of_t, of_u) >= kSharpCosine * sizes;
-    if (is_smooth && welded.meshes.group(t) == welded.meshes.group(u)) {
-      regions.join_from_threads(both[0], both[1]);
+  const auto join = [&](std::size_t sweep, const Neighbors& both) {
+    if (is_joined(both)) {
+      regions.join_from_threads(both.triangles[0], both.triangles[1]);
     } else {
-      walls[sweep].push_back({{low, static_cast<std::int32_t>(sides[0].other)}, both});
+      walls[sweep].push_back({both.ends, both.triangles, both.is_smooth()});
     }
   };
-  for_edges(welded, sweeps, progress, threads, join);
-  if (has_single && !may_have_single) return std::nullopt;
-  SmoothRegions found;
+  const bool has_single = for_neighbors(welded, sweeps, progress, threads, join);
+  found->walls.clear();
   for (std::vector<Wall>& some : walls) {
-    found.walls.insert(found.walls.end(), some.begin(), some.end());
+    found->walls.insert(found->walls.end(), some.begin(), some.end());
     some = {};
   }
-  found.labels = regions.numbers(&found.region_count);
+  found->labels = regions.numbers(&found->region_count);
+  return has_single;
+}
+
+// Nothing where some edges have one side alone, unless that may be.
+std::optional<SmoothRegions> try_to_join(const WeldedMeshes& welded, double least_width,
+                                         bool may_have_single, const Progress& progress,
+                                         int threads) {
+  const std::size_t count = welded.triangle_count();
+  Sets parts(count);
+  Sets facets(count);
+  SmoothRegions found;
+  const auto is_smooth = [&](const Neighbors& both) {
+    parts.join_from_threads(both.triangles[0], both.triangles[1]);
+    if (both.is_plane()) facets.join_from_threads(both.triangles[0], both.triangles[1]);
+    return both.is_smooth();
+  };
+  const bool has_single = join_regions(welded, is_smooth, progress.part(0.0, 0.6), threads, &found);
+  if (has_single && !may_have_single) return std::nullopt;
   found.parts = parts.numbers(&found.part_count);
+  int facet_count = 0;
+  const std::vector<std::int32_t> facet_of = facets.numbers(&facet_count);
+  const std::vector<std::uint8_t> is_wide =
+      of_wide_facets(welded, facet_of, facet_count, least_width);
+  if (is_wide.empty()) return found;
+  const auto is_beside_none = [&](const Neighbors& both) {
+    const auto t = static_cast<std::size_t>(both.triangles[0]);
+    const auto u = static_cast<std::size_t>(both.triangles[1]);
+    return both.is_smooth() && (facet_of[t] == facet_of[u] || (is_wide[t] == 0 && is_wide[u] == 0));
+  };
+  join_regions(welded, is_beside_none, progress.part(0.6, 1.0), threads, &found);
   return found;
 }
 }  // namespace
@@ -154,12 +208,13 @@ std::vector<std::int32_t> first_places(const FramedPositions& positions, const P
   return firsts;
 }
 
-SmoothRegions join_smooth(const Progress& progress, int threads, WeldedMeshes* welded) {
+SmoothRegions join_smooth(double least_width, const Progress& progress, int threads,
+                          WeldedMeshes* welded) {
   std::optional<SmoothRegions> found =
-      try_to_join(*welded, false, progress.part(0.0, 0.5), threads);
+      try_to_join(*welded, least_width, false, progress.part(0.0, 0.5), threads);
   if (!found) {
     welded->firsts = first_places(welded->positions, progress.part(0.5, 0.6), threads);
-    found = try_to_join(*welded, true, progress.part(0.6, 1.0), threads);
+    found = try_to_join(*welded, least_width, true, progress.part(0.6, 1.0), threads);
   }
   return std::move(*found);
 }

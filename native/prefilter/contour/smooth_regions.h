@@ -46,6 +46,7 @@ struct WeldedMeshes {
 struct Wall {
   std::array<std::int32_t, 2> ends;  // the lower vertex first
   std::array<std::int32_t, 2> triangles;
+  bool is_crease = false;  // of less than 20 degrees, beside a wide facet
 };
 
 struct SmoothRegions {
@@ -60,8 +61,10 @@ struct SmoothRegions {
 std::vector<std::int32_t> first_places(const FramedPositions& positions, const Progress& progress,
                                        int threads);
 
-/// Joins triangles that meet at an edge of less than 20 degrees and are of one group. Where some
-/// edges have one side alone, `welded` gets first places before that. Throws Error(kCancelled).
-SmoothRegions join_smooth(const Progress& progress, int threads, WeldedMeshes* welded);
+/// Joins triangles that meet at an edge of less than 20 degrees and are of one group; but facets
+/// that are wider than `least_width` only where it is less than 1 degree. Where some edges have one
+/// side alone, `welded` gets first places before that. Throws Error(kCancelled).
+SmoothRegions join_smooth(double least_width, const Progress& progress, int threads,
+                          WeldedMeshes* welded);
 
 }  // namespace prefilter

@@ -16,6 +16,8 @@ namespace prefilter {
 namespace {
 
 constexpr double kLeastRegion = 4.0;  // of a cell's face
+constexpr double kWideCells = 1.5;    // of facets, beside which blunt edges are edges
+constexpr double kNarrowCells = 1.0;  // of regions between blunt edges, which are none then
 constexpr double kLargest = 1e150;
 
 std::vector<std::uint8_t> ends_of(const std::vector<Wall>& walls, std::size_t vertices) {
@@ -58,10 +60,10 @@ SourceRegions find_regions(std::span<const SourceMesh> sources, const RootFrame&
                            const Progress& progress, int threads) {
   const double least = kLeastRegion * cell * cell;
   WeldedMeshes welded(sources, frame);
-  SmoothRegions regions = join_smooth(progress.part(0.0, 0.7), threads, &welded);
+  SmoothRegions regions = join_smooth(kWideCells * cell, progress.part(0.0, 0.7), threads, &welded);
   const RegionAreas areas =
       measure_regions(welded, regions.region_count, progress.part(0.7, 0.85), &regions.labels);
-  join_small(welded, areas.regions, least, &regions);
+  join_small(welded, areas.regions, least, kNarrowCells * cell, &regions);
   progress.report(0.9);
   const std::vector<std::uint8_t> is_on_wall = ends_of(regions.walls, welded.positions.size());
   std::vector<RegionBorder> borders = find_borders(welded, cell, &regions);

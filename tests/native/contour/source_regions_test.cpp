@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <random>
@@ -21,6 +22,8 @@
 
 namespace prefilter {
 namespace {
+
+constexpr double kNoFacets = std::numeric_limits<double>::infinity();
 
 constexpr Box kUnit = {{0.0, 0.0, 0.0}, {1.0, 1.0, 1.0}};
 
@@ -116,7 +119,7 @@ TEST(SmoothRegions, AreWhatWideningSetsFinds) {
       source.groups.push_back(t > 100 ? 1 : 0);
     }
     WeldedMeshes welded = source.welded();
-    const SmoothRegions found = join_smooth(Progress(), 3, &welded);
+    const SmoothRegions found = join_smooth(kNoFacets, Progress(), 3, &welded);
     const auto shared = [&](std::size_t t, std::size_t u) {
       std::vector<std::int64_t> both;
       for (const std::int64_t v : source.triangles[t]) {
@@ -161,7 +164,7 @@ TEST(SmoothRegions, OfTheSidesOfACubeAreTheSides) {
   // Nothing hangs together before vertices at one place are one.
   const Source source = cube_of_sides(4);
   WeldedMeshes welded = source.welded();
-  const SmoothRegions found = join_smooth(Progress(), 2, &welded);
+  const SmoothRegions found = join_smooth(kNoFacets, Progress(), 2, &welded);
   EXPECT_FALSE(welded.firsts.empty());
   EXPECT_EQ(found.region_count, 6);
   EXPECT_EQ(found.part_count, 1);
@@ -177,6 +180,41 @@ TEST(SmoothRegions, OfTheSidesOfACubeAreTheSides) {
   }
 }
 
+// Rows of two triangles each between x = 0 and 9, through these points of y and z.
+Source ramp(const std::vector<std::array<double, 2>>& profile) {
+  Source source;
+  for (const auto& [y, z] : profile) {
+    source.positions.push_back({0.0, y, z});
+    source.positions.push_back({9.0, y, z});
+  }
+  for (std::int32_t i = 0; i + 1 < static_cast<std::int32_t>(profile.size()); ++i) {
+    const std::int32_t at = 2 * i;
+    source.triangles.push_back({at, at + 1, at + 3});
+    source.triangles.push_back({at, at + 3, at + 2});
+  }
+  return source;
+}
+
+TEST(SmoothRegions, AreWideFacetsWhereEdgesAreBlunt) {
+  // Of 5.7 degrees, of half of one, and of 5.7 again beside rows of 0.2.
+  const Source source = ramp({{0, 0}, {4, 0}, {8, 0.4}, {12, 0.835}, {12.2, 0.835}, {12.4, 0.8}});
+  WeldedMeshes welded = source.welded();
+  EXPECT_EQ(join_smooth(kNoFacets, Progress(), 1, &welded).region_count, 1);
+  SmoothRegions regions = join_smooth(1.5, Progress(), 2, &welded);
+  EXPECT_EQ(regions.region_count, 3);
+  EXPECT_EQ(regions.labels, (std::vector<std::int32_t>{0, 0, 1, 1, 1, 1, 2, 2, 2, 2}));
+  ASSERT_EQ(regions.walls.size(), 2U);
+  EXPECT_TRUE(regions.walls[0].is_crease && regions.walls[1].is_crease);
+  // The rows are too narrow for an edge of their own.
+  const RegionAreas areas =
+      measure_regions(welded, regions.region_count, Progress(), &regions.labels);
+  join_small(welded, areas.regions, 0.1, 1.0, &regions);
+  EXPECT_EQ(regions.labels, (std::vector<std::int32_t>{0, 0, 1, 1, 1, 1, 1, 1, 1, 1}));
+  const std::vector<RegionBorder> borders = find_borders(welded, 1.0, &regions);
+  ASSERT_EQ(borders.size(), 1U);
+  EXPECT_EQ(borders[0].ends, (std::array<std::int32_t, 2>{2, 3}));
+}
+
 TEST(RegionBorders, GiveSmallRegionsToTheNeighborWithTheLongestWall) {
   // A step of three levels: the middle one is small. Walls to the higher one are longer.
   Source source;
@@ -184,7 +222,7 @@ TEST(RegionBorders, GiveSmallRegionsToTheNeighborWithTheLongestWall) {
                       {9, 9, 1}, {9, 9.5, 1}, {0, 9.2, 1}, {5, 20, 9}};
   source.triangles = {{0, 1, 2}, {0, 2, 3}, {3, 2, 5}, {3, 5, 4}, {4, 5, 6}, {4, 6, 7}, {7, 6, 8}};
   WeldedMeshes welded = source.welded();
-  SmoothRegions regions = join_smooth(Progress(), 1, &welded);
+  SmoothRegions regions = join_smooth(kNoFacets, Progress(), 1, &welded);
   ASSERT_EQ(regions.region_count, 4);
   const RegionAreas areas =
       measure_regions(welded, regions.region_count, Progress(), &regions.labels);
@@ -192,7 +230,7 @@ TEST(RegionBorders, GiveSmallRegionsToTheNeighborWithTheLongestWall) {
   EXPECT_NEAR(areas.regions[1], 9.0, 1e-12);
   EXPECT_NEAR(areas.regions[2], 9.0 * 0.5 * (0.5 + 0.2), 1e-12);
   EXPECT_NEAR(static_cast<double>(areas.vertices[0]), 81.0, 1e-5);
-  join_small(welded, areas.regions, 4.0, &regions);
+  join_small(welded, areas.regions, 4.0, 0.0, &regions);
   // Its wall to the last one, from (9, 9.5) to (0, 9.2), is a little longer than 9.
   EXPECT_EQ(regions.region_count, 3);
   EXPECT_EQ(regions.labels, (std::vector<std::int32_t>{0, 0, 1, 1, 2, 2, 2}));
@@ -202,7 +240,7 @@ TEST(RegionBorders, HaveNoLabelWhereThereIsNoArea) {
   Source source = terrain(2, [](int, int) { return 0.0; });
   source.triangles.push_back({0, 1, 1});
   WeldedMeshes welded = source.welded();
-  SmoothRegions regions = join_smooth(Progress(), 1, &welded);
+  SmoothRegions regions = join_smooth(kNoFacets, Progress(), 1, &welded);
   measure_regions(welded, regions.region_count, Progress(), &regions.labels);
   EXPECT_EQ(regions.labels.back(), -1);
   EXPECT_EQ(regions.labels.front(), 0);
@@ -271,7 +309,7 @@ TEST(RegionCorners, OfConesAreTheirTips) {
       source.triangles.push_back({0, 1 + i, 1 + (i + 1) % kAround});
     }
     WeldedMeshes welded = source.welded();
-    SmoothRegions regions = join_smooth(Progress(), 1, &welded);
+    SmoothRegions regions = join_smooth(kNoFacets, Progress(), 1, &welded);
     EXPECT_EQ(regions.region_count, 1);
     const RegionAreas areas = measure_regions(welded, 1, Progress(), &regions.labels);
     std::vector<std::uint8_t> is_on_wall(source.positions.size(), 1);
