@@ -35,6 +35,7 @@ struct DoubledFace {
 
 struct TaskLoops {
   std::vector<std::uint32_t> ends;
+  std::vector<std::uint8_t> shares_cell;
   std::vector<Crossing> crossings;
   std::vector<DoubledFace> doubled;
 };
@@ -75,6 +76,7 @@ class LoopMaker {
             vertices_.between(leaves[low_corner(edge)], leaves[high_corner(edge)], edge / 4);
       }
       add_loop(loop, on_edge, inside, task);
+      task->shares_cell.push_back(cases_[inside].loops.size() > 1 ? 1 : 0);
     }
     for (int face = 0; face < 6; ++face) {
       if (((doubled_[inside] >> face) & 1U) == 0U) continue;
@@ -120,7 +122,7 @@ std::map<std::size_t, DoubledFace> doubled_twice(std::vector<DoubledFace> double
 
 // Puts a loop into the quads of its vertices. Of the four dual cells around an edge, that whose
 // edge is at its low sides comes first.
-void add_to_quads(std::span<const Crossing> crossings, DualLoops* loops) {
+void add_to_quads(std::span<const Crossing> crossings, std::uint8_t shares_cell, DualLoops* loops) {
   constexpr std::array<std::size_t, 4> kInTurn = {0, 1, 3, 2};
   const auto number = static_cast<std::int32_t>(loops->size());
   for (const Crossing& crossing : crossings) {
@@ -130,6 +132,8 @@ void add_to_quads(std::span<const Crossing> crossings, DualLoops* loops) {
     loops->corners.push_back(crossing.vertex);
   }
   loops->begins.push_back(static_cast<std::uint32_t>(loops->corners.size()));
+  loops->first_edges.push_back(crossings[0].edge);
+  loops->shares_cell.push_back(shares_cell);
 }
 
 // All loops of tasks, but those of cells that are cut otherwise.
@@ -157,10 +161,12 @@ DualLoops join(std::size_t vertices, std::vector<TaskLoops>* tasks) {
   std::size_t number = 0;
   for (TaskLoops& task : *tasks) {
     std::uint32_t begin = 0;
-    for (const std::uint32_t end : task.ends) {
+    for (std::size_t k = 0; k < task.ends.size(); ++k) {
+      const std::uint32_t end = task.ends[k];
       while (next != cut.end() && number >= next->second.end) ++next;
       if (next == cut.end() || number < next->first) {
-        add_to_quads(std::span(task.crossings).subspan(begin, end - begin), &loops);
+        add_to_quads(std::span(task.crossings).subspan(begin, end - begin), task.shares_cell[k],
+                     &loops);
       }
       begin = end;
       ++number;
@@ -172,7 +178,7 @@ DualLoops join(std::size_t vertices, std::vector<TaskLoops>* tasks) {
     for (const MarchingLoop& loop : marching_loops(cell.inside, 1U << cell.face)) {
       task = TaskLoops();
       LoopMaker::add_loop(loop, cell.on_edge, cell.inside, &task);
-      add_to_quads(task.crossings, &loops);
+      add_to_quads(task.crossings, 1, &loops);
     }
   }
   return loops;

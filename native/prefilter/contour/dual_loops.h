@@ -19,6 +19,10 @@ namespace prefilter {
 struct DualLoops {
   std::vector<std::uint32_t> begins;  // of each loop, and the end of the last one
   std::vector<std::int32_t> corners;
+  // Of each loop: on which edge of its dual cell its first corner is, and whether there are others
+  // in that cell.
+  std::vector<std::uint8_t> first_edges;
+  std::vector<std::uint8_t> shares_cell;
   // Of each vertex: the loops around it, counter-clockwise seen from outside.
   std::vector<std::array<std::int32_t, 4>> quads;
 

@@ -149,6 +149,16 @@ class Placer {
   double cell_;
 };
 
+// The middle of a dual cell that has an edge with this middle.
+Vector3 cell_of(const Vector3& middle, std::uint8_t edge, const Vector3& cell) {
+  Vector3 found = middle;
+  for (unsigned k = 0; k < 2; ++k) {
+    const std::size_t axis = (edge / 4U + 1U + k) % 3U;
+    found[axis] += ((edge >> k) & 1U) != 0U ? -0.5 * cell[axis] : 0.5 * cell[axis];
+  }
+  return found;
+}
+
 // Of several that are at one corner, the nearest stays there.
 void part_corners(const Placer& placer, double cell, std::vector<Feature>* features) {
   PointGrid grid(kSameCorner * cell);
@@ -225,12 +235,14 @@ void place_tips(const DualLoops& loops, const VertexSamples& samples, DualPlaces
 
 DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& positions,
                        const std::vector<Vector3>& halfway, const EdgeSource& edges,
-                       const FeaturePlaces* features, double cell, const Progress& progress,
+                       const FeaturePlaces* features, const Vector3& cell, const Progress& progress,
                        int threads) {
-  const Placer placer(loops, positions, edges, features, cell);
+  const double side = std::min({cell[0], cell[1], cell[2]});
+  const Placer placer(loops, positions, edges, features, side);
   DualPlaces places;
   places.middles.resize(loops.size());
   places.safe.resize(loops.size());
+  places.cells.resize(loops.size());
   places.positions.resize(loops.size());
   places.is_sharp.assign(loops.size(), 0);
   places.on_edge.assign(loops.size(), -1);
@@ -246,6 +258,8 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
   for_loops(progress.part(0.0, 0.2), [&](std::size_t i) {
     places.middles[i] = Placer::middle(loops.loop(i), positions);
     places.safe[i] = Placer::middle(loops.loop(i), halfway);
+    const auto corner = static_cast<std::size_t>(loops.loop(i).front());
+    places.cells[i] = cell_of(halfway[corner], loops.first_edges[i], cell);
   });
   // First by normals from the middles; then by those from where that puts the loops.
   std::vector<Vector3> first(loops.size());
@@ -254,7 +268,7 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
   for_loops(progress.part(0.4, 0.6),
             [&](std::size_t i) { places.positions[i] = placer.smooth(i, places.middles, first); });
   if (features != nullptr) {
-    place_features(placer, cell, progress.part(0.6, 1.0), threads, &places);
+    place_features(placer, side, progress.part(0.6, 1.0), threads, &places);
     place_tips(loops, edges.samples, &places);
   }
   return places;

@@ -29,6 +29,7 @@ struct DualPlaces {
   // In the middle of their loops: as these are, and of vertices halfway between cells.
   std::vector<Vector3> middles;
   std::vector<Vector3> safe;
+  std::vector<Vector3> cells;  // the middles of their dual cells
 };
 
 /// Smooth ones are where the surface through the loop's vertices is: the mean of these, and half of
@@ -37,7 +38,7 @@ struct DualPlaces {
 /// `halfway` are the positions of vertices halfway between cells. Throws Error(kCancelled).
 DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& positions,
                        const std::vector<Vector3>& halfway, const EdgeSource& edges,
-                       const FeaturePlaces* features, double cell, const Progress& progress,
+                       const FeaturePlaces* features, const Vector3& cell, const Progress& progress,
                        int threads);
 
 }  // namespace prefilter

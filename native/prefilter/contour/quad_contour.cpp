@@ -85,8 +85,8 @@ std::optional<QuadMesh> quads_of(const CellTree& cells, const Box& root, bool is
   const std::vector<Vector3> halves = halfway(tree, frame, vertices);
   const DualLoops loops = dual_loops(tree, vertices, progress.part(0.6, 0.7), threads);
   if (is_sharp) straighten_borders(loops, *edges.surface(), &edges.samples, &vertices);
-  double cell = frame.cell(0, cells.depth());
-  for (int a = 1; a < 3; ++a) cell = std::min(cell, frame.cell(a, cells.depth()));
+  Vector3 cell;
+  for (int a = 0; a < 3; ++a) cell[a] = frame.cell(a, cells.depth());
   std::optional<FeaturePlaces> features;
   if (edges.surface() != nullptr) features.emplace(*edges.surface());
   const FeaturePlaces* on_edges = features ? &*features : nullptr;

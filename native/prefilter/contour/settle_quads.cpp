@@ -3,6 +3,7 @@
 #include "prefilter/contour/settle_quads.h"
 
 #include <algorithm>
+#include <cmath>
 #include <unordered_set>
 #include <utility>
 
@@ -19,7 +20,11 @@ constexpr double kCubeCells = 2.0;
 constexpr std::uint8_t kStepsToMiddle = 3;
 constexpr std::uint8_t kMostSteps = 6;
 constexpr std::uint8_t kMostSlides = 3;
-constexpr double kNarrow = 1e-6;  // of a triangle's longest side
+constexpr double kWithin = 0.5 + 1e-6;  // cells, from the middle of one to its sides
+constexpr double kFlat = 0.5;           // cosine to the mean of normals
+constexpr double kOpposed = -0.17;      // between normals of regions: 100 degrees
+constexpr double kEdgeReach = 0.3;      // cells
+constexpr double kNarrow = 1e-6;        // of a triangle's longest side
 
 using Flags = std::vector<std::uint8_t>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
@@ -27,9 +32,10 @@ using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 class Settling {
  public:
   Settling(const DualLoops& loops, const DualPlaces& places, const EdgeSource& edges,
-           const FeaturePlaces* features, double cell)
+           const FeaturePlaces* features, const Vector3& cell)
       : places_(places),
         samples_(edges.samples),
+        surface_of_(edges.surface()),
         features_(features),
         cell_(cell),
         steps_(loops.size(), 0),
@@ -44,23 +50,19 @@ class Settling {
     }
     if (!samples_.index.empty()) turned_ = turned_labels(samples_);
     for (std::size_t q = 0; q < surface_.quads.size(); ++q) surface_.turn(q);
+    triangles_ = surface_.triangles();
+    is_risky_ = loops.shares_cell;
+    find_risky();
   }
 
   // Moves vertices of what is faulty; returns whether it has.
   bool step(Flags* is_suspect, const Progress& progress, int threads) {
-    const auto triangles = surface_.triangles();
-    const MeshView<std::int32_t> view{surface_.positions, triangles};
-    Pairs pairs = near_intersections(view, 0, *is_suspect, kCubeCells * cell_, progress, threads);
-    const Pairs folds = folded_pairs(view, 0, *is_suspect);
-    pairs.insert(pairs.end(), folds.begin(), folds.end());
-    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-      if ((*is_suspect)[t] != 0 && faces_away(t, view)) pairs.push_back({t, t});
-    }
+    const Pairs pairs = faulty_pairs(*is_suspect, progress, threads);
     Flags is_moved(surface_.positions.size(), 0);
     Flags slides(surface_.positions.size(), 0);
     for (const auto& pair : pairs) {
-      if (mark_slides(pair, triangles, &slides)) continue;
-      const std::int32_t vertex = to_blame(pair, triangles);
+      if (mark_slides(pair, &slides)) continue;
+      const std::int32_t vertex = to_blame(pair);
       if (vertex >= 0) is_moved[static_cast<std::size_t>(vertex)] = 1;
     }
     bool has_moved = false;
@@ -82,6 +84,82 @@ class Settling {
   QuadSurface take() { return std::move(surface_); }
 
  private:
+  // Triangles whose vertices are in their dual cells, alone, and lie flat, meet no others but at
+  // their sides: the cells of two vertices beside each other are one box.
+  void find_risky() {
+    std::vector<Vector3> normals(surface_.positions.size());
+    const auto unit_normal = [&](const std::array<std::int32_t, 3>& triangle) -> Vector3 {
+      const auto at = [&](std::size_t k) -> const Vector3& {
+        return surface_.positions[static_cast<std::size_t>(triangle[k])];
+      };
+      const Vector3 normal = cross(at(1) - at(0), at(2) - at(0));
+      const double size = std::sqrt(dot(normal, normal));
+      return size > 0.0 ? (1.0 / size) * normal : Vector3{};
+    };
+    for (const auto& triangle : triangles_) {
+      const Vector3 normal = unit_normal(triangle);
+      for (const std::int32_t v : triangle) {
+        normals[static_cast<std::size_t>(v)] = normals[static_cast<std::size_t>(v)] + normal;
+      }
+    }
+    for (const auto& triangle : triangles_) {
+      const Vector3 normal = unit_normal(triangle);
+      for (const std::int32_t corner : triangle) {
+        const auto v = static_cast<std::size_t>(corner);
+        const double size = std::sqrt(dot(normals[v], normals[v]));
+        if (!(dot(normal, normals[v]) > kFlat * size)) is_risky_[v] = 1;
+      }
+    }
+    for (std::size_t v = 0; v < is_risky_.size(); ++v) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double off = std::abs(surface_.positions[v][a] - places_.cells[v][a]);
+        if (off > kWithin * cell_[a]) is_risky_[v] = 1;
+      }
+    }
+  }
+
+  Pairs faulty_pairs(const Flags& is_suspect, const Progress& progress, int threads) const {
+    const MeshView<std::int32_t> view{surface_.positions, triangles_};
+    Flags may_intersect = is_suspect;
+    for (std::size_t t = 0; t < triangles_.size(); ++t) {
+      const auto& corners = triangles_[t];
+      const bool is_any = std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) {
+        return is_risky_[static_cast<std::size_t>(v)] != 0;
+      });
+      if (!is_any) may_intersect[t] = 0;
+    }
+    const double side = kCubeCells * std::max({cell_[0], cell_[1], cell_[2]});
+    Pairs pairs = near_intersections(view, 0, may_intersect, side, progress, threads);
+    for (const auto& fold : folded_pairs(view, 0, is_suspect)) {
+      if (!is_at_wedge(fold)) pairs.push_back(fold);
+    }
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      if (is_suspect[t] != 0 && faces_away(t, view)) pairs.push_back({t, t});
+    }
+    return pairs;
+  }
+
+  // Whether two triangles lie along two regions that meet at less than 80 degrees, close to both.
+  bool is_at_wedge(const std::array<std::uint32_t, 2>& fold) const {
+    if (samples_.index.empty()) return false;
+    Vector3 middle{};
+    const auto& other = triangles_[fold[1]];
+    for (const std::int32_t v : triangles_[fold[0]]) {
+      if (std::find(other.begin(), other.end(), v) == other.end()) continue;
+      middle = middle + 0.5 * surface_.positions[static_cast<std::size_t>(v)];
+    }
+    std::array<Vector3, 2> normals;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const SourcePoint* sample = samples_.of(static_cast<std::int32_t>(fold[i] / 2));
+      if (sample == nullptr) return false;
+      if (!surface_of_->nearest(middle, kEdgeReach * surface_of_->cell(), sample->label)) {
+        return false;
+      }
+      normals[i] = turned_.contains(sample->label) ? -1.0 * sample->normal : sample->normal;
+    }
+    return dot(normals[0], normals[1]) < kOpposed;
+  }
+
   // Whether a triangle faces away from what its quad was sampled from, or is as good as a line.
   bool faces_away(std::uint32_t t, const MeshView<std::int32_t>& view) const {
     const auto [a, b, c] = view.corners(t);
@@ -96,11 +174,10 @@ class Settling {
   }
 
   // Flags the vertices of two triangles that may slide yet; returns whether there are any.
-  bool mark_slides(const std::array<std::uint32_t, 2>& pair,
-                   const std::vector<std::array<std::int32_t, 3>>& triangles, Flags* slides) const {
+  bool mark_slides(const std::array<std::uint32_t, 2>& pair, Flags* slides) const {
     bool is_any = false;
     for (const std::uint32_t t : pair) {
-      for (const std::int32_t vertex : triangles[t]) {
+      for (const std::int32_t vertex : triangles_[t]) {
         const auto v = static_cast<std::size_t>(vertex);
         const std::int32_t edge = places_.on_edge[v];
         if (edge < 0 || steps_[v] > 0) continue;
@@ -129,13 +206,12 @@ class Settling {
   }
 
   // Of the vertices of two triangles, the one that is farthest from where it may go back to.
-  std::int32_t to_blame(const std::array<std::uint32_t, 2>& pair,
-                        const std::vector<std::array<std::int32_t, 3>>& triangles) const {
+  std::int32_t to_blame(const std::array<std::uint32_t, 2>& pair) const {
     std::int32_t found = -1;
     std::uint8_t least = kMostSteps;
     double farthest = 0.0;
     for (const std::uint32_t t : pair) {
-      for (const std::int32_t vertex : triangles[t]) {
+      for (const std::int32_t vertex : triangles_[t]) {
         const auto v = static_cast<std::size_t>(vertex);
         const std::uint8_t stage = steps_[v] < kStepsToMiddle ? 0 : steps_[v];
         if (steps_[v] >= kMostSteps || stage > least) continue;
@@ -175,25 +251,33 @@ class Settling {
         return is_moved[static_cast<std::size_t>(v)] != 0;
       });
       (*is_suspect)[2 * q] = (*is_suspect)[2 * q + 1] = is_near ? 1 : 0;
-      if (is_near) surface_.turn(q);
+      if (!is_near) continue;
+      surface_.turn(q);
+      const auto& [a, b, c, d] = surface_.quads[q];
+      triangles_[2 * q] = {a, b, c};
+      triangles_[2 * q + 1] = {a, c, d};
     }
+    for (std::size_t v = 0; v < is_moved.size(); ++v) is_risky_[v] |= is_moved[v];
   }
 
   const DualPlaces& places_;
   const VertexSamples& samples_;
+  const FeatureSurface* surface_of_;
   const FeaturePlaces* features_;
-  double cell_;
+  Vector3 cell_;
   std::unordered_set<std::int32_t> turned_;
   std::vector<std::uint8_t> steps_;
   std::vector<Vector3> wanted_;  // before the first step
   std::vector<std::uint8_t> slides_;
   QuadSurface surface_;
+  std::vector<std::array<std::int32_t, 3>> triangles_;  // of the quads
+  Flags is_risky_;                                      // of each vertex
 };
 }  // namespace
 
 QuadSurface settled_quads(const DualLoops& loops, const DualPlaces& places, const EdgeSource& edges,
-                          const FeaturePlaces* features, double cell, const Progress& progress,
-                          int threads) {
+                          const FeaturePlaces* features, const Vector3& cell,
+                          const Progress& progress, int threads) {
   Settling settling(loops, places, edges, features, cell);
   Flags is_suspect(2 * loops.quads.size(), 1);
   while (settling.step(&is_suspect, progress, threads)) {

@@ -15,7 +15,7 @@ namespace prefilter {
 /// degrees, intersect or face the wrong way, vertices slide along their edges; or go back toward
 /// the middles of their loops, and then to the safe ones. Throws Error(kCancelled).
 QuadSurface settled_quads(const DualLoops& loops, const DualPlaces& places, const EdgeSource& edges,
-                          const FeaturePlaces* features, double cell, const Progress& progress,
-                          int threads);
+                          const FeaturePlaces* features, const Vector3& cell,
+                          const Progress& progress, int threads);
 
 }  // namespace prefilter
