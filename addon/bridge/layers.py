@@ -18,6 +18,8 @@ UV_MAP = "UV_MAP"
 ATTRIBUTE = "ATTRIBUTE"
 VERTEX_GROUP = "VERTEX_GROUP"
 NORMALS = "NORMALS"
+SHADED_KEY = "prefilter_shaded"
+"""Tags meshes whose normals follow from their triangles: other triangles get others."""
 
 # By the type of an attribute: what its values are called, how many there are, and of which type.
 _TYPES: dict[str, tuple[str, int, Any]] = {
@@ -156,7 +158,7 @@ def read_layers(
         return
     for name, values in attributes.group_weights(shown, mesh):
         yield Layer(VERTEX_GROUP, name, "FLOAT", "POINT", values[:, None], triangles.vertices)
-    if mesh.has_custom_normals:
+    if mesh.has_custom_normals and SHADED_KEY not in shown.original.data:
         normals = np.empty((len(mesh.loops), 3), np.float32)
         mesh.corner_normals.foreach_get("vector", normals.ravel())
         yield Layer(NORMALS, "", "FLOAT_VECTOR", "CORNER", normals, indices("CORNER"))

@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from ..core.wording import Sentence
 from . import kept_sources
-from .layers import COLOR, NORMALS, UV_MAP, VERTEX_GROUP, NewLayer, write_layer
+from .layers import COLOR, NORMALS, SHADED_KEY, UV_MAP, VERTEX_GROUP, NewLayer, write_layer
 from .solids import SOLID_TYPES, MaterialKey
 
 _HAS_FREE_NORMALS = bpy.app.version >= (4, 5, 0)
+_FEW_FACES = 200_000
+"""So many get normals that turn with them within a second."""
 _WEIGHT_STEPS = 65535
 """Of vertex groups: so many weights are told apart, and vertices with one are added together."""
 
@@ -35,6 +37,7 @@ class Contour:
         rendered: Likewise of those that renders use.
         sharp_angle: Edges with a greater angle are sharp, in radians; None for flat faces.
         edges: Its edges; None has Blender find them, on the main thread.
+        normals: (3 m, 3) float32 of corners, which follow from the triangles; None for Blender's.
         made: The mesh of it, while that is made and nothing shows it.
     """
 
@@ -47,6 +50,7 @@ class Contour:
     rendered: dict[str, str] = field(default_factory=dict)
     sharp_angle: float | None = None
     edges: "prefilter.MeshEdges | None" = None
+    normals: NDArray[np.float32] | None = None
     made: list[bpy.types.Mesh] = field(default_factory=list)
 
 
@@ -136,6 +140,9 @@ def _filling(mesh: bpy.types.Mesh, contour: Contour) -> Generator[None, None, No
         if layer.kind == NORMALS:
             is_deformed = any(other.kind == VERTEX_GROUP for other in contour.layers)
             _set_normals(mesh, layer.values, is_deformed=is_deformed)
+    if contour.normals is not None:
+        _set_normals(mesh, contour.normals, is_deformed=count <= _FEW_FACES)
+        mesh[SHADED_KEY] = True
 
 
 def _set_normals(mesh: bpy.types.Mesh, values: NDArray[np.float32], *, is_deformed: bool) -> None:

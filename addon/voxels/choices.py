@@ -84,10 +84,11 @@ class VoxelSettings:
         metavar="NAME",
     )
     adaptivity: float = number(
-        0.0,
+        0.05,
         "Adaptivity",
         "Make triangles larger where the surface is flat or gently curved, as long as it stays "
-        "within this distance, in cells. Edges stay sharp",
+        "within this distance, in cells. Edges stay sharp. Triangles stay small where colors are "
+        "painted",
         low=0.0,
         high=10.0,
         display={"soft_max": 1.0, "precision": 2, "step": 1},

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..bridge import solids
 from ..bridge.files.staging import StagedFile
-from ..bridge.layers import Wanted
+from ..bridge.layers import COLOR, NORMALS, NewLayer, Wanted
 from ..bridge.new_meshes import Contour
 from ..bridge.place import Place
 from ..bridge.units import length, volume
@@ -20,6 +20,7 @@ from ..core.translations import marked
 from ..core.wording import Sentence, amount, counted, joined
 from .choices import VoxelSettings
 from .grid import Box, Grid, cells_crossed, choose_grid
+from .shading import weighted_normals
 from .solid_meshes import SolidMesh, solid_mesh
 from .transfer import Source, Transfer, find_groups, find_labels, groups_of
 
@@ -157,6 +158,8 @@ def voxelized(
         origins = np.concatenate([own, np.full(added, -1, np.int64)])
         positions, triangles = closed.positions, closed.triangles
     told.tell(operand.name, solid, closed.open_edges)
+    if settings.adaptivity and _has_painted_colors(mesh):
+        told.notes.append(Sentence(_SMALL, operand.name))
     tree = prefilter.voxelize(
         positions,
         triangles,
@@ -200,6 +203,7 @@ def contoured(
     face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
     go_on(progress, 1.0)
     local, turned = place.localize(positions, triangles)
+    edges = prefilter.mesh_edges(local, turned, threads=settings.threads)
     contour = Contour(
         local,
         turned,
@@ -209,7 +213,8 @@ def contoured(
         solid.active,
         solid.rendered,
         settings.smooth_angle if settings.use_smooth_shading else None,
-        prefilter.mesh_edges(local, turned, threads=settings.threads),
+        edges,
+        _shading(local, turned, edges, layers, settings),
     )
     return Result(place, grid, tree.volume, len(triangles), contour)
 
@@ -218,10 +223,12 @@ def _surface(
     tree: "prefilter.Octree", sources: list[Source], settings: VoxelSettings, progress: Progress
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64] | None]:
     """Returns a surface, and the sources' triangles that its own come from where that is known."""
+    is_painted = any(_has_painted_colors(source.mesh) for source in sources)
+    adaptivity = 0.0 if is_painted else settings.adaptivity
     if settings.interpolant != "sharp":
         found = tree.contour(
             interpolant=settings.interpolant,
-            adaptivity=settings.adaptivity,
+            adaptivity=adaptivity,
             cleanup=settings.use_cleanup,
             progress=progress,
             threads=settings.threads,
@@ -229,7 +236,7 @@ def _surface(
         return (*found, None)
     traced = tree.traced_contour(
         [source.for_contour for source in sources],
-        adaptivity=settings.adaptivity,
+        adaptivity=adaptivity,
         cleanup=settings.use_cleanup,
         progress=progress,
         threads=settings.threads,
@@ -237,6 +244,28 @@ def _surface(
     return traced.positions, traced.triangles, traced.origins
 
 
+def _has_painted_colors(mesh: SolidMesh) -> bool:
+    """Returns whether colors differ between vertices, of which large triangles keep too few."""
+    colors = [layer.values for layer in mesh.layers if layer.kind == COLOR and len(layer.values)]
+    return any(bool((values != values[0]).any()) for values in colors)
+
+
+def _shading(
+    positions: NDArray[np.float32],
+    triangles: NDArray[np.int32],
+    edges: "prefilter.MeshEdges",
+    layers: Sequence[NewLayer],
+    settings: VoxelSettings,
+) -> NDArray[np.float32] | None:
+    """Returns the normals that large triangles need, where the sources have none of their own."""
+    is_closed = 2 * len(edges.vertices) == edges.corners.size and (edges.corners >= 0).all()
+    has_normals = any(layer.kind == NORMALS for layer in layers)
+    if not (settings.adaptivity and settings.use_smooth_shading and is_closed) or has_normals:
+        return None
+    return weighted_normals(positions, triangles, edges, settings.smooth_angle)
+
+
+_SMALL = marked("object '{}' has painted colors, for which triangles stay small")
 _THICKENED = marked("parts thinner than a cell that got the minimum thickness: {}")
 _FILLED = marked("parts filled where the outside does not reach: {}")
 _TURNED = marked("faces flipped to agree with their neighbors: {}")
