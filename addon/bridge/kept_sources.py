@@ -7,7 +7,8 @@ collection until it is shown. Others keep the objects that they were made of. Th
 properties is that of the subject `comparison`.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 
 import bpy
 
@@ -46,6 +47,47 @@ def sources_of(result: bpy.types.Object) -> list[bpy.types.Object]:
     found = [entry.obj for entry in kept.sources if entry.obj is not None]
     # Objects that were deleted stay in the file for as long as something knows them.
     return [obj for obj in found if obj.users_collection or _is_hidden_copy(obj, kept)]
+
+
+def original_of(result: bpy.types.Object) -> bpy.types.Object | None:
+    """Returns what an object was, which is the first of what it was made of; None if it is gone."""
+    sources = result.prefilter_made_of.sources
+    first = sources[0].obj if len(sources) else None
+    return first if first is not None and first in sources_of(result) else None
+
+
+@contextmanager
+def evaluated(
+    result: bpy.types.Object, sources: Sequence[bpy.types.Object], context: bpy.types.Context
+) -> Iterator[bpy.types.Depsgraph]:
+    """Has Blender evaluate what an object was made of, hidden or not.
+
+    Args:
+        result: The object. A copy of what it was is where the object is, if that is shown.
+        sources: What is needed.
+        context: The context.
+    """
+    copy = original_of(result)
+    is_shown = result.prefilter_made_of.is_source_shown
+    if copy is not None and _is_copy(copy, result) and not is_shown:
+        _place(copy, result)
+    root = context.scene.collection
+    linked = [obj for obj in sources if not obj.visible_get() and obj.name not in root.objects]
+    for obj in linked:
+        root.objects.link(obj)
+    hidden = [(obj, obj.hide_get(), obj.hide_viewport) for obj in sources]
+    for obj in sources:
+        obj.hide_set(False)
+        obj.hide_viewport = False
+    context.view_layer.update()
+    try:
+        yield context.evaluated_depsgraph_get()
+    finally:
+        for obj, is_hidden, is_off in hidden:
+            obj.hide_set(is_hidden)
+            obj.hide_viewport = is_off
+        for obj in linked:
+            root.objects.unlink(obj)
 
 
 def copies_of(results: Iterable[bpy.types.Object]) -> list[bpy.types.Object]:

@@ -198,6 +198,18 @@ def show_contour(
     return made
 
 
+def show_again(obj: bpy.types.Object, contour: Contour) -> bpy.types.Object:
+    """Has an object show another surface, with its modifiers, and returns it."""
+    old, name = obj.data, obj.data.name
+    obj.data = new_mesh(name, contour)
+    _add_groups(obj, contour)
+    if old.users == 0 and old.library is None:
+        mesh = obj.data
+        bpy.data.meshes.remove(old)
+        mesh.name = name
+    return obj
+
+
 def new_object_beside(obj: bpy.types.Object, data: bpy.types.ID, suffix: str) -> bpy.types.Object:
     """Adds an object where another one is, in its collections, selected in its stead."""
     made = bpy.data.objects.new(f"{obj.name}{suffix}", data)

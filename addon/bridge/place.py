@@ -4,7 +4,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import bpy
 import numpy as np
@@ -23,9 +23,10 @@ class Place:
     to_local: NDArray[np.float64]
 
     @classmethod
-    def of(cls, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> "Place":
-        """Returns the place of an object itself."""
-        return cls._at(obj, obj.evaluated_get(depsgraph).matrix_world)
+    def of(cls, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph, name: str = "") -> "Place":
+        """Returns the place of an object itself, or of a named one that stands for it."""
+        found = cls._at(obj, obj.evaluated_get(depsgraph).matrix_world)
+        return replace(found, name=name) if name else found
 
     @classmethod
     def beside(cls, obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> "Place":

@@ -6,7 +6,7 @@ from ..core.keys import Key
 from ..core.registration import registration
 from . import operators, panel, properties
 
-MANUAL = {"voxels": ("voxelize", "boolean")}
+MANUAL = {"voxels": ("voxelize", "boolean", "update_voxels", "voxel_result", "operand")}
 """The pages about its operators and settings; see `manual.Manual`."""
 KEYS = (
     Key("voxelize", "V", "Object Mode"),

@@ -20,6 +20,7 @@ from ..core.translations import marked
 from ..core.wording import Sentence, listed
 from .choices import BooleanSettings
 from .grid import Box, check_memory, choose_grid
+from .showing import Way, show
 from .steps import VOXELIZED, Load, Operand, Result, Told, contoured, told, voxelized, wanted
 from .transfer import renumbered
 
@@ -37,7 +38,7 @@ class Boolean:
         """Keeps copies of what was read; use `Boolean.read`."""
         self._told = Told()
         self.loads: list[Load] = []
-        self.keeps_sources = False
+        self.way = Way.ALONE
         self._place = place
         self._read = read
         self._names = [solid.name for solid in read[1:]]
@@ -51,6 +52,7 @@ class Boolean:
         others: Sequence[bpy.types.Object],
         settings: BooleanSettings,
         depsgraph: bpy.types.Depsgraph,
+        into: str = "",
     ) -> "Boolean":
         """Copies everything that the work needs out of Blender.
 
@@ -59,6 +61,7 @@ class Boolean:
             others: The other operands, at least one.
             settings: What to do.
             depsgraph: The evaluated dependency graph.
+            into: The name of the object that gets the result; empty for the first operand.
 
         Raises:
             ValueError: There are too few objects, or one is unfit.
@@ -70,7 +73,7 @@ class Boolean:
         if settings.operands == "delete":
             for obj in others:
                 new_meshes.check_editable(obj)
-        place = Place.of(active, depsgraph)
+        place = Place.of(active, depsgraph, into)
         objects = [active, *others]
         read = solids.read_solids(
             objects, depsgraph, [place.origin] * len(objects), wanted(settings)
@@ -143,8 +146,8 @@ class Boolean:
         assert result.contour is not None
         active = still_there(result.place.name)
         others = [still_there(name) for name in self._names]
-        made = new_meshes.show_contour(active, result.contour, keeps_source=self.keeps_sources)
-        for obj in others:
+        made = show(active, result, self._settings, others, self.way)
+        for obj in others if self.way != Way.AGAIN else ():
             if self._settings.operands == "hide":
                 obj.hide_set(True)
                 obj.hide_render = True

@@ -38,6 +38,10 @@ OUTPUTS = {
         "Add a volume object with an OpenVDB file, whose density is the filled share of each cell",
     ),
 }
+ORIGINALS = {
+    "keep": Choice("Keep", "Keep it with the result, hidden, for Show Source and Update"),
+    "replace": Choice("Replace", "Keep nothing of a mesh, which makes the file smaller"),
+}
 OPERATIONS = {
     "difference": Choice("Difference", "Subtract the others from the active object"),
     "union": Choice("Union", "Keep what lies in any of the objects"),
@@ -155,6 +159,9 @@ class VoxelSettings:
         flag_description="Keep edges sharp where faces meet at a greater angle; 0 shades flat",
         metavar="DEGREES",
     )
+    originals: str = one_of(
+        "keep", "Original", "What to do with what the object was", ORIGINALS, flag=""
+    )
     threads: int = threads()
 
 
@@ -182,4 +189,11 @@ class BooleanSettings(VoxelSettings):
     )
     operands: str = one_of(
         "hide", "Others", "What to do with the other selected objects", OPERANDS, flag=""
+    )
+    use_keep_resolution: bool = switch(
+        True,
+        "Keep Resolution",
+        "Use cells as large as those of the active object, if an earlier run has made it",
+        flag_description="use cells as large as those of the first operand, if an earlier run has "
+        "made it and no resolution is given",
     )

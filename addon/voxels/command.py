@@ -13,6 +13,7 @@ from ..bridge.new_meshes import is_solid
 from ..core import command, presets
 from ..core.flags import add_flags, given, tables
 from ..core.wording import either
+from . import memory
 from .boolean import Boolean
 from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
 from .properties import BOOLEAN, VOXELIZE
@@ -124,6 +125,8 @@ def _boolean(options: argparse.Namespace) -> None:
         names = [Path(path).stem for path in options.files]
         operands = [scenes.as_one(name, group) for name, group in zip(names, groups, strict=True)]
     settings = _settings(options, BOOLEAN, BooleanSettings, operands="hide")
+    if not (options.preset or given(options, BooleanSettings).keys() & set(_RESOLUTIONS)):
+        settings = memory.as_before(operands[0], settings)
     work = Boolean.read(operands[0], operands[1:], settings, bpy.context.evaluated_depsgraph_get())
     outcome = command.done(work)
     scenes.save(target, outcome.objects)

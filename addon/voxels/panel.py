@@ -7,9 +7,11 @@ import bpy
 from ..core.buttons import Button, SettingsPanel
 from ..core.menus import PREFILTER_MT_object
 from ..core.registration import classes, entry, registration
-from ..core.sidebar import SidebarPanel
+from ..core.sidebar import SidebarPanel, Tab, main_button, note
+from ..core.translations import tr
 from .choices import BooleanSettings, VoxelizeSettings
 from .operators.boolean import PREFILTER_OT_boolean
+from .operators.update import PREFILTER_OT_update_voxels
 from .operators.voxelize import PREFILTER_OT_voxelize
 from .properties import BOOLEAN, VOXELIZE
 
@@ -43,8 +45,16 @@ class _BooleanPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws the panel."""
+        from ..bridge.units import length
+        from .memory import cell_of
+
         _BOOLEAN.draw_main(self.layout, context, "Make Boolean")
-        context.scene.prefilter_boolean.draw_own(self.layout)
+        settings = context.scene.prefilter_boolean
+        settings.draw_own(self.layout)
+        cell = cell_of(context.active_object) if settings.use_keep_resolution else 0.0
+        if cell > 0.0:
+            text = tr("Cells of {}").format(length(cell))
+            note(self.layout, context, text, "INFO")
 
 
 class PREFILTER_PT_voxelize(_RemeshPanel, SettingsPanel, bpy.types.Panel):
@@ -81,9 +91,38 @@ class PREFILTER_PT_boolean_sidebar(_BooleanPanel, _SidebarPanel, bpy.types.Panel
     bl_parent_id = "PREFILTER_PT_voxelize_sidebar"
 
 
+class PREFILTER_PT_voxel_result(Tab, bpy.types.Panel):
+    """The button that makes an object again, and what it was made with."""
+
+    bl_label = "Voxel Result"
+    bl_context = "objectmode"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Tells whether the active object remembers how it was made, or was used for one."""
+        from .memory import made_of
+
+        return made_of(context.active_object) is not None
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Draws the panel."""
+        from .memory import made_of
+
+        place = main_button(self.layout, context, PREFILTER_OT_update_voxels)
+        if place:
+            update = PREFILTER_OT_update_voxels.bl_idname
+            place.operator(update, text="Update", icon="FILE_REFRESH")
+        result = made_of(context.active_object)
+        assert result is not None
+        if result != context.active_object:
+            note(self.layout, context, f"'{result.name}'", "OBJECT_DATA")
+        result.prefilter_voxels.draw_closed(self.layout)
+
+
 def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     _VOXELIZE.draw(menu.layout, context)
     _BOOLEAN.draw(menu.layout, context)
+    menu.layout.operator(PREFILTER_OT_update_voxels.bl_idname, icon="FILE_REFRESH")
 
 
 register, unregister = registration(
@@ -92,6 +131,7 @@ register, unregister = registration(
         PREFILTER_PT_boolean,
         PREFILTER_PT_voxelize_sidebar,
         PREFILTER_PT_boolean_sidebar,
+        PREFILTER_PT_voxel_result,
     ),
     entry(PREFILTER_MT_object, _draw_menu),
 )

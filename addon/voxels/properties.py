@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of voxelizing and of booleans as properties, of operators and of the scene.
+"""The settings of voxelizing and of booleans as properties: of operators, scenes and results.
 
 A scene has one set of what both have in common.
 """
 
 import bpy
+from bpy.props import BoolProperty, CollectionProperty, FloatProperty, PointerProperty
 
 from ..core import preset_menu, presets
 from ..core.properties import properties, shared, values
@@ -15,10 +16,9 @@ from ..core.translations import tr
 from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
 
 # The presets of both are the same.
-VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, ("output",))])
-BOOLEAN = presets.Kind(
-    "voxelize", "prefilter_boolean", [(BooleanSettings, ("operation", "operands"))]
-)
+_OF_SCENES = ("output", "originals", "operation", "operands", "use_keep_resolution")
+VOXELIZE = presets.Kind("voxelize", "prefilter_voxelize", [(VoxelizeSettings, _OF_SCENES)])
+BOOLEAN = presets.Kind("voxelize", "prefilter_boolean", [(BooleanSettings, _OF_SCENES)])
 
 
 class VoxelProperties(PartedSettings):
@@ -32,6 +32,8 @@ class VoxelProperties(PartedSettings):
         if self._makes_mesh():
             layout.prop(self, "adaptivity")
         self._draw_last(layout)
+        if self._makes_mesh():
+            self._draw_originals(layout)
 
     def draw_parts(self, layout: bpy.types.UILayout) -> None:
         """Draws the parts."""
@@ -70,6 +72,10 @@ class VoxelProperties(PartedSettings):
 
     def _makes_mesh(self) -> bool:
         return True
+
+    def _draw_originals(self, layout: bpy.types.UILayout) -> None:
+        """Draws what becomes of the original."""
+        layout.prop(self, "originals")
 
     def _draw_first(self, layout: bpy.types.UILayout) -> None:
         """Draws what comes before the resolution."""
@@ -117,6 +123,10 @@ class BooleanProperties(VoxelProperties):
         layout.use_property_decorate = False
         layout.prop(self, "operation")
         layout.prop(self, "operands")
+        self._draw_keeping(layout)
+
+    def _draw_keeping(self, layout: bpy.types.UILayout) -> None:
+        """Draws nothing: the resolution is said by the other settings."""
 
     def _draw_first(self, layout: bpy.types.UILayout) -> None:
         self.draw_own(layout)
@@ -131,9 +141,56 @@ class PREFILTER_PG_boolean(BooleanProperties, bpy.types.PropertyGroup):
 
     __annotations__ = shared(VoxelSettings, VOXELIZE.group)
 
+    def _draw_keeping(self, layout: bpy.types.UILayout) -> None:
+        layout.prop(self, "use_keep_resolution")
+
+
+class PREFILTER_PG_operand(bpy.types.PropertyGroup):
+    """An object that a result was combined with."""
+
+    obj: PointerProperty(type=bpy.types.Object)
+
+
+class PREFILTER_PG_voxel_result(VoxelProperties, bpy.types.PropertyGroup):
+    """How an object was made, which its panel shows.
+
+    Attributes:
+        is_made: Whether it was made.
+        is_boolean: Whether by a boolean.
+        is_operand: Whether something was combined with it.
+        operands: With what it was combined.
+        cell: The side of a cell in its own space: of a cube with the volume of the cell there.
+    """
+
+    __annotations__ = (
+        properties(VoxelizeSettings, {"output", "filepath"})
+        | properties(BooleanSettings, {"operands", "use_keep_resolution"})
+        | {
+            "is_made": BoolProperty(),
+            "is_boolean": BoolProperty(),
+            "is_operand": BoolProperty(),
+            "operands": CollectionProperty(type=PREFILTER_PG_operand),
+            "cell": FloatProperty(),
+        }
+    )
+
+    def to_settings(self) -> VoxelizeSettings | BooleanSettings:
+        """Returns the settings."""
+        if self.is_boolean:
+            return values(self, BooleanSettings, {"operands", "use_keep_resolution"})
+        return values(self, VoxelizeSettings, {"output", "filepath"})
+
+    def _draw_first(self, layout: bpy.types.UILayout) -> None:
+        if self.is_boolean:
+            layout.prop(self, "operation")
+
+    def _draw_originals(self, layout: bpy.types.UILayout) -> None:
+        """Draws nothing: it is kept."""
+
 
 register, unregister = registration(
     state(bpy.types.Scene, VOXELIZE.group, PREFILTER_PG_voxelize),
     state(bpy.types.Scene, BOOLEAN.group, PREFILTER_PG_boolean),
-    classes(preset_menu.panel(VOXELIZE)),
+    classes(preset_menu.panel(VOXELIZE), PREFILTER_PG_operand),
+    state(bpy.types.Object, "prefilter_voxels", PREFILTER_PG_voxel_result),
 )

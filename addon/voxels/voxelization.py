@@ -20,6 +20,7 @@ from ..core.outcome import Outcome
 from ..core.wording import Sentence, amount, counted, listed
 from .choices import VoxelizeSettings
 from .grid import check_dense_memory, check_memory, choose_grid
+from .showing import Way, show
 from .steps import VOXELIZED, Load, Operand, Result, Told, contoured, told, voxelized, wanted
 
 
@@ -39,7 +40,7 @@ class Voxelization:
         """Keeps copies of what was read; use `Voxelization.read`."""
         self._told = Told()
         self.loads: list[Load] = []
-        self.keeps_sources = False
+        self.way = Way.ALONE
         self._read = read
         self._settings = settings
         self._targets = targets
@@ -51,6 +52,7 @@ class Voxelization:
         objects: Sequence[bpy.types.Object],
         settings: VoxelizeSettings,
         depsgraph: bpy.types.Depsgraph,
+        into: str = "",
     ) -> "Voxelization":
         """Copies everything that the work needs out of Blender.
 
@@ -58,6 +60,7 @@ class Voxelization:
             objects: What to voxelize, each by itself.
             settings: How.
             depsgraph: The evaluated dependency graph.
+            into: The name of the object that gets the result of one; each gets its own if empty.
 
         Raises:
             ValueError: There is no object, or one is unfit.
@@ -72,7 +75,7 @@ class Voxelization:
         if not is_volume:
             for obj in objects:
                 new_meshes.check_editable(obj)
-        places = [Place.of(obj, depsgraph) for obj in objects]
+        places = [Place.of(obj, depsgraph, into) for obj in objects]
         found = solids.read_solids(
             objects, depsgraph, [place.origin for place in places], wanted(settings)
         )
@@ -173,7 +176,7 @@ class Voxelization:
 
     def _show(self, obj: bpy.types.Object, result: Result) -> bpy.types.Object:
         if result.contour is not None:
-            return new_meshes.show_contour(obj, result.contour, keeps_source=self.keeps_sources)
+            return show(obj, result, self._settings, (), self.way)
         assert result.staged is not None
         volume = volumes.new_volume(obj.name, result.staged.target)
         made = new_meshes.new_object_beside(obj, volume, ".volume")

@@ -29,7 +29,8 @@ SUBJECTS = {
 
 def of_the_tab():
     """Returns the panels of the tab that always are the same."""
-    names = ("nothing", "drawn", "welcome", "before_after", "queue", "queue_of_images")
+    names = ("nothing", "drawn", "voxel_result", "welcome", "before_after", "queue")
+    names += ("queue_of_images",)
     others = {f"PREFILTER_PT_{name}" for name in names}
     return [
         panel

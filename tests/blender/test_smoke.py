@@ -234,6 +234,13 @@ def test_drop_points(tmp_path):
     assert "Torus" in bpy.data.objects
 
 
+def test_update_voxels():
+    assert not bpy.ops.prefilter.update_voxels.poll()
+    bodies.cube()
+    bpy.ops.prefilter.voxelize(depth=4)
+    assert bpy.ops.prefilter.update_voxels() == FINISHED
+
+
 def test_switch_source():
     assert not bpy.ops.prefilter.switch_source.poll()
     cube = bodies.cube()

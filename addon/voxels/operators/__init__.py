@@ -5,8 +5,9 @@
 import bpy
 
 from .boolean import PREFILTER_OT_boolean
+from .update import PREFILTER_OT_update_voxels
 from .voxelize import PREFILTER_OT_voxelize
 
 register, unregister = bpy.utils.register_classes_factory(
-    (PREFILTER_OT_voxelize, PREFILTER_OT_boolean)
+    (PREFILTER_OT_voxelize, PREFILTER_OT_boolean, PREFILTER_OT_update_voxels)
 )

@@ -27,6 +27,7 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
     bl_options = {"REGISTER", "UNDO"}
     doing = "Combining"
     presets = BOOLEAN
+    _is_resolution_said = False
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -52,10 +53,32 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
             return False
         return True
 
+    def follow_scene(self, context: bpy.types.Context) -> None:
+        """Sets the settings as the scene has them, but for cells that the active object has."""
+        self._is_resolution_said = self._says_resolution()
+        super().follow_scene(context)
+
+    def complete_settings(self) -> None:
+        """Sets what the caller has left."""
+        if not self.options.is_invoke or self.options.is_repeat:
+            self._is_resolution_said = self._says_resolution()
+        super().complete_settings()
+
+    def _says_resolution(self) -> bool:
+        """Returns whether the caller says how large cells are."""
+        is_set = self.properties.is_property_set
+        return bool(self.preset) or any(map(is_set, ("resolution", "depth", "voxel_size")))
+
     def read_work(self, context: bpy.types.Context) -> "Boolean":
         """Copies the selected objects."""
         from ..boolean import Boolean
+        from ..memory import as_before
 
         active = context.active_object
         others = [obj for obj in chosen_solids(context) if obj != active]
-        return Boolean.read(active, others, self.to_settings(), context.evaluated_depsgraph_get())
+        settings = self.to_settings()
+        if not self._is_resolution_said:
+            settings = as_before(active, settings)
+            # For the redo panel, which then says it.
+            self.resolution, self.voxel_size = settings.resolution, settings.voxel_size
+        return Boolean.read(active, others, settings, context.evaluated_depsgraph_get())

@@ -27,8 +27,10 @@ class VoxelOperator(PresetsOperator, WorkOperator):
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
         """Writes the result, beside which what it was made of can be shown."""
+        from ..showing import Way
+
         assert self.work is not None
-        self.work.keeps_sources = True
+        self.work.way = Way.KEEPING
         return super().finish(context, result)
 
     def load(self) -> "list[Load]":

@@ -342,7 +342,8 @@ def chosen(*names: str) -> None:
 
 
 def voxelize(stage: Stage, **settings: object) -> None:
-    """Presses Voxelize."""
+    """Presses Voxelize; so that sizes tell depths, triangles stay small."""
+    settings = {"adaptivity": 0.0, **settings}
     with bpy.context.temp_override(**stage.override):
         assert bpy.ops.prefilter.voxelize("INVOKE_DEFAULT", True, **settings) == {"RUNNING_MODAL"}
 

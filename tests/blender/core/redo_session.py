@@ -92,7 +92,8 @@ def voxelize(window: bpy.types.Window, area: bpy.types.Area) -> Iterator[None]:
     """Changes the depth where all work counts as slow, applies that, and cancels a larger one."""
     yield from cleared()
     bodies.sphere("Ball", subdivisions=4)
-    yield from started(window, area, "voxelize", depth=5, output="mesh")
+    options = {"depth": 5, "output": "mesh", "adaptivity": 0.0}
+    yield from started(window, area, "voxelize", **options)
     panel = RedoPanel(window, area)
     told = {"before": vertices("Ball")}
     yield from panel.step("depth")

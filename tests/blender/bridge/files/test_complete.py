@@ -104,8 +104,9 @@ def test_a_full_disk_keeps_the_earlier_file(tmp_path, small_disk, command, endin
         sources = [exported(tmp_path / "solid.ply")] * (1 if command == "voxelize" else 2)
     target = small_disk / f"old{ending}"
     target.write_bytes(b"earlier")
-    more = ["--operation", "union", "--output"] if command == "boolean" else []
+    more = ["--operation", "union"] if command == "boolean" else []
     more += [] if command == "reconstruct" else ["--adaptivity", 0]
+    more += ["--output"] if command == "boolean" else []
     result = run(command, *sources, *more, target, "--depth", 5)
     # Blender itself prints the whole report of an exporter in Python.
     last = result.stderr.strip().splitlines()[-1]

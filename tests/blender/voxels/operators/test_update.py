@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""`prefilter.update_voxels`: results are made again of what they were made of, as that is now."""
+
+import bodies
+import bpy
+import numpy as np
+import outlines
+import pytest
+
+DONE = {"FINISHED"}
+
+
+def update():
+    assert bpy.ops.prefilter.update_voxels() == DONE
+
+
+def switch():
+    assert bpy.ops.prefilter.switch_source() == DONE
+    bpy.context.view_layer.update()
+    return bpy.context.active_object
+
+
+def seen():
+    return {obj.name for obj in bpy.data.objects if obj.visible_get()}
+
+
+def voxelized(**options):
+    cube = bodies.cube(location=(1, 2, 3), rotation_euler=(0, 0, 0.5))
+    assert bpy.ops.prefilter.voxelize(**{"depth": 5, **options}) == DONE
+    return cube
+
+
+def boolean(**options):
+    """Returns a cube of volume 8 and another that takes half of it away."""
+    other = bodies.cube("Other", location=(1, 0, 0))
+    cube = bodies.cube()
+    other.select_set(True)
+    bpy.context.view_layer.objects.active = cube
+    assert bpy.ops.prefilter.boolean(**{"depth": 5, **options}) == DONE
+    return cube, other
+
+
+def test_the_source_was_changed():
+    result = voxelized()
+    assert bodies.volume(result) == pytest.approx(8, rel=0.01)
+    source = switch()
+    for vertex in source.data.vertices:
+        vertex.co.z *= 2
+    update()
+    assert bodies.volume(result) == pytest.approx(16, rel=0.01)
+    assert seen() == {"Cube"}
+    assert not source.users_collection
+    assert {mesh.name for mesh in bpy.data.meshes} == {"Cube", "Cube.source"}
+    assert len(switch().data.vertices) == 8
+
+
+def test_modifiers_of_the_source_count_and_those_of_the_result_stay():
+    result = voxelized()
+    source = switch()
+    array = source.modifiers.new("Array", "ARRAY")
+    array.use_relative_offset, array.use_constant_offset = False, True
+    array.constant_offset_displace = (4, 0, 0)
+    switch()
+    result.modifiers.new("Decimate", "DECIMATE").ratio = 0.5
+    update()
+    assert bodies.volume(result) == pytest.approx(16, rel=0.01)
+    assert [one.name for one in result.modifiers] == ["Decimate"]
+    assert [one.name for one in source.modifiers] == ["Array"]
+
+
+def test_settings_are_those_of_the_object():
+    result = voxelized(adaptivity=0.0)
+    count = len(result.data.polygons)
+    bpy.context.scene.prefilter_voxelize.depth = 7
+    update()
+    assert len(result.data.polygons) == count
+    result.prefilter_voxels.depth = 6
+    update()
+    assert 3 < len(result.data.polygons) / count < 5
+
+
+def test_the_result_was_moved():
+    result = voxelized()
+    result.location, result.scale = (5, 5, 5), (1, 1, 2)
+    update()
+    np.testing.assert_allclose(result.location, (5, 5, 5))
+    assert bodies.volume(result) == pytest.approx(16, rel=0.01)
+
+
+def test_an_operand_was_moved():
+    """Hidden or not, whichever of both is active."""
+    for operands in ("hide", "keep"):
+        cube, other = boolean(operands=operands)
+        assert bodies.volume(cube) == pytest.approx(4, rel=0.01)
+        other.location.x = 1.5
+        bpy.context.view_layer.update()
+        before = seen()
+        update()
+        assert bodies.volume(cube) == pytest.approx(6, rel=0.01)
+        assert seen() == before
+        other.location.x = 0.5
+        other.hide_set(False)
+        bpy.context.view_layer.objects.active = other
+        update()
+        assert bodies.volume(cube) == pytest.approx(2, rel=0.01)
+        for obj in list(bpy.data.objects):
+            bpy.data.objects.remove(obj)
+
+
+def test_an_operand_in_a_collection_that_is_left_out():
+    cube, other = boolean()
+    kept = bpy.data.collections.new("Kept")
+    bpy.context.scene.collection.children.link(kept)
+    for collection in other.users_collection:
+        collection.objects.unlink(other)
+    kept.objects.link(other)
+    other.location.x = 1.5
+    bpy.context.view_layer.layer_collection.children["Kept"].exclude = True
+    bpy.context.view_layer.objects.active = cube
+    update()
+    assert bodies.volume(cube) == pytest.approx(6, rel=0.01)
+    assert list(other.users_collection) == [kept]
+
+
+def test_gone_operands(capfd):
+    third = bodies.cube("Third", location=(0, 0, 1))
+    cube, other = boolean(operands="keep")
+    bpy.data.objects.remove(third)
+    update()
+    assert bodies.volume(cube) == pytest.approx(4, rel=0.01)
+    assert "Warning: 1 object that it was combined with is gone" in capfd.readouterr().out
+    bpy.data.objects.remove(other)
+    with pytest.raises(RuntimeError, match="the objects that it was combined with are gone"):
+        bpy.ops.prefilter.update_voxels()
+
+
+def test_a_text():
+    text = outlines.text("Text")
+    text.data.extrude = 0.2
+    assert bpy.ops.prefilter.voxelize(depth=6) == DONE
+    made = bpy.context.active_object
+    before = bodies.volume(made)
+    text.data.extrude = 0.4
+    update()
+    assert bpy.context.active_object == made
+    assert bodies.volume(made) == pytest.approx(2 * before, rel=0.15)
+    assert seen() == {made.name}
+
+
+def test_after_opening_the_file_again(tmp_path):
+    boolean()
+    path = str(tmp_path / "cut.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=path)
+    bpy.ops.wm.open_mainfile(filepath=path)
+    bpy.data.objects["Other"].location.x = 1.5
+    update()
+    assert bodies.volume(bpy.data.objects["Cube"]) == pytest.approx(6, rel=0.01)
+
+
+def test_undo():
+    bpy.context.preferences.edit.use_global_undo = True
+    voxelized(depth=4, adaptivity=0.0)
+    count = len(bpy.data.objects["Cube"].data.vertices)
+    bpy.data.objects["Cube"].prefilter_voxels.depth = 5
+    bpy.ops.ed.undo_push(message="before")
+    update()
+    bpy.ops.ed.undo_push(message="updated")
+    bpy.ops.ed.undo()
+    assert len(bpy.data.objects["Cube"].data.vertices) == count
+    update()
+    assert len(bpy.data.objects["Cube"].data.vertices) > count
+
+
+def test_replaced_originals():
+    """Nothing is kept, and what an earlier run has kept goes too."""
+    result = voxelized()
+    assert bpy.ops.prefilter.voxelize(depth=4, originals="replace") == DONE
+    assert [obj.name for obj in bpy.data.objects] == ["Cube"]
+    assert [mesh.name for mesh in bpy.data.meshes] == ["Cube"]
+    assert not bpy.ops.prefilter.update_voxels.poll()
+    assert bodies.is_closed(result)
+
+
+def test_what_was_not_made_is_refused():
+    bodies.cube()
+    assert not bpy.ops.prefilter.update_voxels.poll()
+    with pytest.raises(RuntimeError, match="does not know what it was made of"):
+        bpy.ops.prefilter.update_voxels()
+
+
+def cells(capfd):
+    """Returns how large the cells of the last run were, as it said."""
+    return capfd.readouterr().out.rpartition("cells of ")[2].split(":")[0]
+
+
+def test_a_boolean_keeps_the_cells_of_its_first_operand(capfd):
+    """Unless it is told otherwise; they grow with the object."""
+    cube = voxelized(resolution="size", voxel_size=0.125)
+    cube.scale = (2, 2, 2)
+    bodies.cube("Other", location=(2, 2, 3))
+    cube.select_set(True)
+    bpy.context.view_layer.objects.active = cube
+    capfd.readouterr()
+    assert bpy.ops.prefilter.boolean(operands="keep") == DONE
+    assert cells(capfd) == "25 cm"
+    bpy.ops.prefilter.boolean(operands="keep", resolution="size", voxel_size=0.5)
+    assert cells(capfd) == "50 cm"
+    bpy.ops.prefilter.boolean(operands="keep")
+    assert cells(capfd) == "50 cm"
+    for options in ({"depth": 5}, {"preset": "Preview"}, {"use_keep_resolution": False}):
+        bpy.ops.prefilter.boolean(operands="keep", **options)
+        assert cells(capfd) != "50 cm"
+        bpy.ops.prefilter.boolean(operands="keep", resolution="size", voxel_size=0.5)
