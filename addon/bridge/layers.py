@@ -40,6 +40,9 @@ _BUILT_IN = frozenset(
         *("crease_vert", "crease_edge", "bevel_weight_vert", "bevel_weight_edge", "freestyle_face"),
     }
 )
+FACE_SETS = ".sculpt_face_set"
+_SCULPTED = frozenset({".sculpt_mask", FACE_SETS})
+"""What Sculpt Mode keeps in attributes."""
 
 
 @dataclass(frozen=True)
@@ -201,4 +204,5 @@ def write_layer(mesh: bpy.types.Mesh, layer: NewLayer) -> None:
 
 def _is_free(attribute: bpy.types.Attribute) -> bool:
     name = attribute.name
-    return not name.startswith(".") and name not in _BUILT_IN and not attribute.is_internal
+    is_hidden = name.startswith(".") or attribute.is_internal
+    return name in _SCULPTED or not (is_hidden or name in _BUILT_IN)

@@ -35,6 +35,9 @@ class Doing:
     """Operators of the same line wait for each other, where a user presses the button of one while
     another works. One without a line is refused while it works itself."""
 
+    is_alone = False
+    """Whether nothing else may change meanwhile, such as what strokes of a brush would be lost."""
+
     def read(self, context: bpy.types.Context) -> Compute:
         """Reads from Blender, and returns what then runs in a thread."""
         raise NotImplementedError

@@ -14,10 +14,12 @@ import bpy
 OPERATORS = "prefilter."
 WINDOW = "Window"
 _EDITORS = {"VIEW_3D": "Object Mode", "IMAGE_EDITOR": "Image"}
+_SCULPT = "Sculpt"
 _SPACES = {"Image": "IMAGE_EDITOR"}
 _MODIFIERS = ("ctrl", "shift", "alt", "oskey")
 _RIVALS = {
     "Object Mode": ("Object Mode", "Object Non-modal", "3D View Generic", "3D View"),
+    _SCULPT: (_SCULPT, "3D View Generic", "3D View"),
     "Image": ("Image", "Image Generic", "UV Editor"),
     WINDOW: (WINDOW,),
 }
@@ -31,7 +33,7 @@ class Key(NamedTuple):
     Attributes:
         operator: The operator, without the prefix `prefilter.`.
         letter: The key.
-        keymap: Where it is pressed: "Object Mode" or "Image", an Image editor.
+        keymap: Where it is pressed: "Object Mode", "Sculpt", or "Image", an Image editor.
     """
 
     operator: str
@@ -88,7 +90,11 @@ def find(
 
 def keymap_name(context: bpy.types.Context) -> str:
     """Returns the name of the keymap for operators of the editor."""
-    return _EDITORS.get(context.area.type if context.area is not None else "", WINDOW)
+    if context.area is None:
+        return WINDOW
+    if context.area.type == "VIEW_3D" and context.mode == "SCULPT":
+        return _SCULPT
+    return _EDITORS.get(context.area.type, WINDOW)
 
 
 def assign(

@@ -152,7 +152,8 @@ class BackgroundOperator(Doing):
             return {"RUNNING_MODAL"} if is_asking else self._stop(context)
         if event.type != "TIMER":
             parts = self._parts
-            is_free = parts.job is not None and parts.making is None and not self._replaced
+            is_computing = parts.job is not None and parts.making is None
+            is_free = is_computing and not (self._replaced or self.is_alone)
             return running.handed_on(context, event, is_free=is_free)
         assert self._run is not None
         if self._cancelled_at == math.inf and self._run.is_cancelled(context):

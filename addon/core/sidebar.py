@@ -33,6 +33,8 @@ class SidebarPanel(Tab):
 
     bl_context = "objectmode"
     bl_label = ""
+    mode = "OBJECT"
+    """That in which it shows, which `bl_context` says too."""
     wanted = ""
     """The objects that the panel is for, such as "a curve or a text"."""
 
@@ -44,7 +46,8 @@ class SidebarPanel(Tab):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there is an active object that the panel is for."""
-        return context.active_object is not None and cls.fits(context.active_object)
+        active = context.active_object
+        return context.mode == cls.mode and active is not None and cls.fits(active)
 
 
 class PREFILTER_PT_nothing(Tab, bpy.types.Panel):
@@ -56,7 +59,7 @@ class PREFILTER_PT_nothing(Tab, bpy.types.Panel):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether there is no other panel."""
-        return context.mode != "OBJECT" or not any(panel.poll(context) for panel in _panels())
+        return not any(panel.poll(context) for panel in _panels())
 
     def draw(self, context: bpy.types.Context) -> None:
         """Draws what to select for each panel."""
@@ -68,7 +71,7 @@ class PREFILTER_PT_nothing(Tab, bpy.types.Panel):
             back.mode = "OBJECT"
             return
         note(self.layout, context, "Make one of these the active object", "INFO")
-        for panel in _panels():
+        for panel in (one for one in _panels() if one.mode == "OBJECT"):
             text = f"{tr(panel.bl_label)}: {tr(panel.wanted)}"
             note(self.layout, context, text, "DOT")
 

@@ -10,6 +10,7 @@ MANUAL = {"voxels": ("voxelize", "boolean", "update_voxels", "voxel_result", "op
 """The pages about its operators and settings; see `manual.Manual`."""
 KEYS = (
     Key("voxelize", "V", "Object Mode"),
+    Key("voxelize", "V", "Sculpt"),
     Key("boolean", "B", "Object Mode"),
 )
 """What its operators have at first; see `keys.Keys`."""

@@ -84,6 +84,17 @@ class PREFILTER_PT_voxelize_sidebar(_SidebarPanel, SettingsPanel, bpy.types.Pane
     makes = "Make Solid"
 
 
+class PREFILTER_PT_voxelize_sculpt(_SidebarPanel, SettingsPanel, bpy.types.Panel):
+    """Button and settings of voxelizing what is sculpted."""
+
+    bl_label = "Voxelize"
+    bl_context = "sculpt_mode"
+    mode = "SCULPT"
+    presets = VOXELIZE
+    button = _VOXELIZE
+    makes = "Make Solid"
+
+
 class PREFILTER_PT_boolean_sidebar(_BooleanPanel, _SidebarPanel, bpy.types.Panel):
     """Button and own settings of booleans."""
 
@@ -125,13 +136,20 @@ def _draw_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(PREFILTER_OT_update_voxels.bl_idname, icon="FILE_REFRESH")
 
 
+def _draw_sculpt_menu(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    menu.layout.separator()
+    _VOXELIZE.draw(menu.layout, context)
+
+
 register, unregister = registration(
     classes(
         PREFILTER_PT_voxelize,
         PREFILTER_PT_boolean,
         PREFILTER_PT_voxelize_sidebar,
+        PREFILTER_PT_voxelize_sculpt,
         PREFILTER_PT_boolean_sidebar,
         PREFILTER_PT_voxel_result,
     ),
     entry(PREFILTER_MT_object, _draw_menu),
+    entry(bpy.types.VIEW3D_MT_sculpt, _draw_sculpt_menu),
 )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bridge.layers import COLOR, NORMALS, UV_MAP, Layer
+from ..bridge.layers import COLOR, FACE_SETS, NORMALS, UV_MAP, Layer
 from ..bridge.solids import Part, Positions
 
 IntArray = NDArray[np.int32]
@@ -105,7 +105,7 @@ def _are_alike(one: Layer, other: Layer) -> bool:
 
 
 def _missing(first: Layer, mesh: SolidMesh) -> Layer:
-    """Returns a layer for a mesh that lacks it: white, the mesh's own normals, or 0."""
+    """Returns a layer for a mesh that lacks it: white, its own normals, the face set 1, or 0."""
     width = 1 if first.domain == "FACE" else 3
     if first.kind == NORMALS:
         a, b, c = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
@@ -114,6 +114,6 @@ def _missing(first: Layer, mesh: SolidMesh) -> Layer:
         values = (normals / np.maximum(lengths, 1e-30)).astype(np.float32)
         corners = np.repeat(np.arange(len(values), dtype=np.int32)[:, None], 3, axis=1)
         return replace(first, values=values, corners=corners)
-    fill = 1 if first.kind == COLOR else 0
+    fill = 1 if first.kind == COLOR or first.name == FACE_SETS else 0
     values = np.full((1, first.values.shape[1]), fill, first.values.dtype)
     return replace(first, values=values, corners=np.zeros((len(mesh.triangles), width), np.int32))

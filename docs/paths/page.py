@@ -18,7 +18,7 @@ WHO = {
     "game_artist": ("Game artist", "all maps of a model, from a file just opened", 5),
     "look_dev": ("Look-dev artist", "a texture cache for Cycles, from a file just opened", 4),
     "printer": ("3D printer", "a solid, from a file with a broken mesh", 2),
-    "sculptor": ("Sculptor", "a solid of a sculpture, from Sculpt Mode", 4),
+    "sculptor": ("Sculptor", "a solid of a sculpture, from Sculpt Mode", 3),
     "scanner": ("Scanner", "a surface of a scan that is dropped onto the view", 1),
     "designer": ("Designer", "an image of a text", 3),
     "texture_artist": ("Texture artist", "a facade, straightened", 3),

@@ -263,12 +263,12 @@ def sculptor() -> Walk:
         bpy.ops.object.mode_set(mode="SCULPT")
     yield from hand.stage.redrawn()
     yield from hand.sidebar()
-    yield from hand.press("object.mode_set(", "Click **Object Mode**, which the tab asks for.")
-    yield from until(lambda: bpy.context.mode == "OBJECT")
-    yield from hand.stage.redrawn()
     yield from hand.make("prefilter.voxelize(", "Click **Make Solid**.")
+    assert bpy.context.mode == "SCULPT"
     assert bodies.is_closed(bpy.context.active_object)
-    return hand.told("A sculpture is open in Sculpt Mode.", "It is closed.")
+    return hand.told(
+        "A sculpture is open in Sculpt Mode.", "It is closed, and still in Sculpt Mode."
+    )
 
 
 def scanner() -> Walk:

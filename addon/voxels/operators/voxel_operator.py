@@ -21,6 +21,8 @@ class VoxelOperator(PresetsOperator, WorkOperator):
     """A mixin: voxels from the selected objects."""
 
     line = LONG_WORK
+    modes = frozenset({"OBJECT"})
+    """Those in which it runs."""
 
     if TYPE_CHECKING:
         work: Voxelization | Boolean | None
@@ -30,7 +32,8 @@ class VoxelOperator(PresetsOperator, WorkOperator):
         from ..showing import Way
 
         assert self.work is not None
-        self.work.way = Way.KEEPING
+        if self.work.way == Way.ALONE:
+            self.work.way = Way.KEEPING
         return super().finish(context, result)
 
     def load(self) -> "list[Load]":
@@ -54,7 +57,7 @@ class VoxelOperator(PresetsOperator, WorkOperator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Tells whether the operator may run now, whatever is selected."""
-        if context.mode != "OBJECT":
+        if context.mode not in cls.modes:
             cls.poll_message_set(tr("Switch to Object Mode first"))
             return False
         return True

@@ -2,6 +2,8 @@
 
 """`prefilter.voxelize`: a closed surface in place of any mesh, through voxels."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import bpy
@@ -27,6 +29,9 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
     bl_options = {"REGISTER", "UNDO"}
     doing = "Voxelizing"
     presets = VOXELIZE
+    modes = frozenset({"OBJECT", "SCULPT"})
+
+    _chosen: list[bpy.types.Object] | None = None
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -35,15 +40,64 @@ class PREFILTER_OT_voxelize(VoxelizeProperties, VoxelOperator, bpy.types.Operato
             return False
         if cls.may_be_redone(context):
             return True
+        if context.mode == "SCULPT":
+            return cls._may_be_sculpted(context)
         if not chosen_solids(context):
             cls.poll_message_set(tr("Select an object that has a surface"))
             return False
         return True
 
+    @classmethod
+    def _may_be_sculpted(cls, context: bpy.types.Context) -> bool:
+        from ...bridge.sculpting import obstacle
+
+        found = obstacle(context.active_object)
+        if found:
+            cls.poll_message_set(found)
+        return not found
+
+    def targets(self, context: bpy.types.Context) -> list[bpy.types.Object]:
+        """Returns the selected objects; in Sculpt Mode the one that is sculpted."""
+        return [context.active_object] if context.mode == "SCULPT" else chosen_solids(context)
+
+    def aim(self, targets: Sequence[bpy.types.ID]) -> None:
+        """Takes what was selected, or sculpted, when the button was pressed."""
+        self._chosen = list(targets)
+
     def read_work(self, context: bpy.types.Context) -> "Voxelization":
         """Copies the selected objects."""
         from ..voxelization import Voxelization
 
-        return Voxelization.read(
-            chosen_solids(context), self.to_settings(), context.evaluated_depsgraph_get()
-        )
+        chosen = self.targets(context) if self._chosen is None else self._chosen
+        self._chosen = None  # A redo begins with an undo, which ends them.
+        self.is_alone = chosen == [context.active_object] and context.mode == "SCULPT"
+        if self.is_alone:
+            return self._read_sculpted(context)
+        return Voxelization.read(chosen, self.to_settings(), context.evaluated_depsgraph_get())
+
+    def finish(self, context: bpy.types.Context, result: None) -> str:
+        """Writes the result, in Sculpt Mode if it was read there."""
+        from ...bridge import sculpting
+
+        if not self.is_alone:
+            return super().finish(context, result)
+        if self.options.is_invoke and not (self.options.is_repeat or self._replaced):
+            sculpting.note_before(tr("Before Voxelize"))
+        with sculpting.left():
+            return super().finish(context, result)
+
+    def _read_sculpted(self, context: bpy.types.Context) -> "Voxelization":
+        """Copies the object that is sculpted; brushes need small triangles, and a mesh."""
+        from ...bridge import sculpting
+        from ..showing import Way
+        from ..voxelization import Voxelization
+
+        obj = context.active_object
+        found = sculpting.obstacle(obj)
+        if found:
+            raise ValueError(found)
+        settings = replace(self.to_settings(), adaptivity=0.0, output="mesh")
+        with sculpting.left():
+            work = Voxelization.read([obj], settings, context.evaluated_depsgraph_get())
+        work.way = Way.SCULPTED
+        return work
