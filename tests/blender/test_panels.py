@@ -18,6 +18,7 @@ SUBJECTS = {
     "PREFILTER_PT_texture_cache": "Make Texture Cache",
     "PREFILTER_PT_texture_cache_sidebar": "Make Texture Cache",
     "PREFILTER_PT_voxelize_sidebar": "Make Solid",
+    "PREFILTER_PT_voxelize_sculpt": "Make Solid",
     "PREFILTER_PT_reconstruct": "Make Surface",
     "PREFILTER_PT_rasterize": "Make Image",
     "PREFILTER_PT_shapes": "Make Image of SVG...",

@@ -173,12 +173,12 @@ def chosen(stage: Stage, *ways: str) -> Iterator[None]:
 
 
 def keys(operator: str) -> list[str]:
-    """Returns the keys of an operator."""
+    """Returns the keys of an operator outside of Sculpt Mode."""
     return [
         item.to_string()
         for keymap in keymaps("user")
         for item in keymap.keymap_items
-        if item.idname == f"prefilter.{operator}"
+        if item.idname == f"prefilter.{operator}" and keymap.name != "Sculpt"
     ]
 
 

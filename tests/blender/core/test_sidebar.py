@@ -84,7 +84,7 @@ def test_the_tab_is_there_without_a_mesh(kind):
         assert words in said()
 
 
-@pytest.mark.parametrize("mode", ["EDIT", "SCULPT", "VERTEX_PAINT"])
+@pytest.mark.parametrize("mode", ["EDIT", "VERTEX_PAINT"])
 def test_the_tab_is_there_in_other_modes(mode):
     activate(bodies.cube())
     bpy.ops.object.mode_set(mode=mode)
@@ -92,6 +92,12 @@ def test_the_tab_is_there_in_other_modes(mode):
     assert "Object Mode" in said()
     ((name, made),) = stand_in().operators
     assert (name, made.mode) == ("object.mode_set", "OBJECT")
+
+
+def test_what_works_in_sculpt_mode_is_there():
+    activate(bodies.cube())
+    bpy.ops.object.mode_set(mode="SCULPT")
+    assert shown() == ["PREFILTER_PT_voxelize_sculpt"]
 
 
 def test_nothing_stands_in_where_a_panel_is():
