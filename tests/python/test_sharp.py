@@ -210,3 +210,15 @@ def test_trees_of_one_value():
     empty = tree_of(mesh).difference(tree_of(mesh))
     positions, triangles = empty.contour(interpolant="sharp", sources=[mesh])
     assert len(positions) == len(triangles) == 0
+
+
+def test_a_soup_is_as_by_plane():
+    """Where a cell or two has parts of everything no edges are placed, which bounds the work."""
+    positions = np.random.default_rng(1).random((1500, 3))
+    triangles = np.arange(1500).reshape(-1, 3)
+    tree = prefilter.voxelize(positions, triangles, depth=5)
+    smooth = tree.contour(interpolant="plane", cleanup=False)[1]
+    sharp = tree.contour(sources=[(positions, triangles)], cleanup=False)[1]
+    # Each edge that is placed adds a vertex and its triangles.
+    assert len(smooth) > 10_000
+    assert len(sharp) < 1.01 * len(smooth)

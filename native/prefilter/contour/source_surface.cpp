@@ -22,6 +22,8 @@ constexpr double kContactCells = 1.0;  // of parts that may meet
 constexpr double kSearchCells = 6.0;   // from what is near, of triangles that are found
 constexpr std::size_t kLeafItems = 4;
 constexpr int kBrickBits = 21;
+// Of borders in a brick: where there are more, or very many parts, edges are not told apart.
+constexpr double kMostBorderCells = 64.0;
 constexpr double kMostBricks = 64.0;  // of a triangle's box, above which all count
 
 std::uint64_t brick_key(const std::array<std::int64_t, 3>& brick) {
@@ -117,19 +119,25 @@ void SourceSurface::mark_around(const Box& box) {
 void SourceSurface::mark_borders(const Progress& progress) {
   Pulse pulse(progress);
   const auto& positions = regions_.positions;
+  std::unordered_map<std::uint64_t, double> lengths;
   for (const RegionBorder& border : regions_.borders) {
     pulse.step();
     const Vector3 a = positions[static_cast<std::size_t>(border.ends[0])];
     const Vector3 d = positions[static_cast<std::size_t>(border.ends[1])] - a;
     const int steps = 1 + static_cast<int>(std::min(length(d) / brick_, 1e5));
     for (int i = 0; i < steps; ++i) {
-      mark_around(box_of(a + (static_cast<double>(i) / steps) * d,
-                         a + (static_cast<double>(i + 1) / steps) * d));
+      const Vector3 from = a + (static_cast<double>(i) / steps) * d;
+      const Vector3 to = a + (static_cast<double>(i + 1) / steps) * d;
+      mark_around(box_of(from, to));
+      lengths[brick_of(0.5 * (from + to))] += length(to - from);
     }
   }
   for (const RegionCorner& corner : regions_.corners) {
     const Vector3& p = positions[static_cast<std::size_t>(corner.vertex)];
     mark_around(box_of(p, p));
+  }
+  for (const auto& [key, sum] : lengths) {
+    if (sum > kMostBorderCells * cell_) near_bricks_.erase(key);
   }
 }
 
@@ -161,7 +169,11 @@ void SourceSurface::mark_meetings(const Progress& progress) {
     const std::size_t count = std::min(brick->second.count, kMostMeeting);
     std::sort(brick->second.parts.begin(),
               brick->second.parts.begin() + static_cast<std::ptrdiff_t>(count));
-    near_bricks_.insert(brick->first);
+    if (brick->second.count > kMostMeeting) {
+      near_bricks_.erase(brick->first);
+    } else {
+      near_bricks_.insert(brick->first);
+    }
     ++brick;
   }
 }

@@ -39,7 +39,7 @@ class InnerBalls {
       double facing;
     };
     std::vector<One> triangles;
-    bool has_more = false;
+    bool has_more = false;  // then all are searched
     bool is_empty() const { return triangles.empty(); }
   };
   void find_across(const std::array<Vector3, 3>& piece, const Vector3& normal, double largest,

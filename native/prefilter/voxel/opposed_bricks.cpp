@@ -16,6 +16,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kRowsPerTask = 1 << 10;
+constexpr double kCrowded = 8.0;  // sheets through a brick
 
 // Directions in bins: three by three on each side of a cube.
 constexpr int kBins = 54;
@@ -61,12 +62,14 @@ const std::array<std::uint64_t, kBins>& across_table() {
   return table;
 }
 
-// A brick, and the directions of triangles in it.
+// A brick, the directions of triangles in it, and the area of those with their middle in it.
 struct Entry {
   std::uint64_t key;
   std::uint64_t bins;
+  double area;
   bool operator<(const Entry& other) const {
-    return key != other.key ? key < other.key : bins < other.bins;
+    if (key != other.key) return key < other.key;
+    return bins != other.bins ? bins < other.bins : area < other.area;
   }
 };
 
@@ -75,9 +78,13 @@ class Entries {
  public:
   void add(const Entry& entry) {
     const std::uint64_t hash = (entry.key ^ entry.bins) * 0x9E3779B97F4A7C15U;
-    Entry& recent = recent_[hash >> (64U - kBits)];
-    if (recent.key == entry.key && recent.bins == entry.bins) return;
-    recent = entry;
+    std::size_t& recent = recent_[hash >> (64U - kBits)];
+    if (recent < entries_.size() && entries_[recent].key == entry.key &&
+        entries_[recent].bins == entry.bins) {
+      entries_[recent].area += entry.area;
+      return;
+    }
+    recent = entries_.size();
     entries_.push_back(entry);
   }
   std::vector<Entry>* all() { return &entries_; }
@@ -85,7 +92,7 @@ class Entries {
  private:
   static constexpr unsigned kBits = 10;
   std::vector<Entry> entries_;
-  std::array<Entry, 1U << kBits> recent_{};
+  std::array<std::size_t, 1U << kBits> recent_{};
 };
 
 // Those of a piece of a triangle that is no larger than a brick.
@@ -94,8 +101,13 @@ void add_bricks(const std::array<Vector3, 3>& piece, double side, std::uint64_t 
   const Box box = triangle_box(piece);
   const std::uint64_t low = cube_key(box.low, side);
   const std::uint64_t high = cube_key(box.high, side);
-  entries->add({low, bin});
-  if (high == low) return;
+  const double area = triangle_area(piece);
+  if (high == low) {
+    entries->add({low, bin, area});
+    return;
+  }
+  entries->add({cube_key(triangle_middle(piece), side), bin, area});
+  entries->add({low, bin, 0.0});
   // Of each coordinate, those of both corners of the box that differ.
   constexpr std::uint64_t kCoordinate = (std::uint64_t{1} << 21U) - 1;
   std::array<std::uint64_t, 3> steps{};
@@ -111,7 +123,7 @@ void add_bricks(const std::array<Vector3, 3>& piece, double side, std::uint64_t 
       is_new = is_new && steps[a] != 0;
       key += steps[a];
     }
-    if (is_new) entries->add({key, bin});
+    if (is_new) entries->add({key, bin, 0.0});
   }
 }
 
@@ -122,6 +134,7 @@ void merge(std::vector<Entry>* entries) {
   for (const Entry& entry : *entries) {
     if (kept > 0 && (*entries)[kept - 1].key == entry.key) {
       (*entries)[kept - 1].bins |= entry.bins;
+      (*entries)[kept - 1].area += entry.area;
     } else {
       (*entries)[kept++] = entry;
     }
@@ -198,6 +211,7 @@ OpposedBricks::OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const
     for (std::uint64_t rest = directions[i].bins; rest != 0; rest &= rest - 1) {
       if ((across[static_cast<std::size_t>(std::countr_zero(rest))] & around[i]) == 0) continue;
       opposed_.insert(directions[i].key);
+      if (directions[i].area > kCrowded * side * side) crowded_.insert(directions[i].key);
       break;
     }
   }
@@ -206,6 +220,10 @@ OpposedBricks::OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const
 
 bool OpposedBricks::holds(const Vector3& point) const {
   return opposed_.contains(cube_key(point, side_));
+}
+
+bool OpposedBricks::is_crowded(const Vector3& point) const {
+  return !crowded_.empty() && crowded_.contains(cube_key(point, side_));
 }
 
 bool OpposedBricks::may_meet(const std::array<Vector3, 3>& corners) const {

@@ -33,6 +33,9 @@ class OpposedBricks {
   bool is_empty() const { return opposed_.empty(); }
   bool holds(const Vector3& point) const;
 
+  /// Whether so much passes the brick of a point that no shape is told apart.
+  bool is_crowded(const Vector3& point) const;
+
   /// Whether a triangle may reach into one, and into the box.
   bool may_meet(const std::array<Vector3, 3>& corners) const;
 
@@ -40,6 +43,7 @@ class OpposedBricks {
   double side_;
   Box bounds_;
   std::unordered_set<std::uint64_t> opposed_;
+  std::unordered_set<std::uint64_t> crowded_;
 };
 
 }  // namespace prefilter

@@ -160,6 +160,10 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
               });
             }
             if (!counts) return;
+            if (bricks.is_crowded(triangle_middle(piece))) {
+              found.push_back({piece, normal, {0.0, -1.0}, t});
+              return;
+            }
             balls.find_across(piece, normal, largest, &across);
             if (across.is_empty()) return;
             if (is_small(piece)) {
