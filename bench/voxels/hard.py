@@ -92,7 +92,6 @@ def outcome(mesh: HardMesh, cell: float, mends: bool) -> Outcome:
             "turned_parts",
             "thickened_parts",
             "filled_parts",
-            "lost_parts",
         )
         report = " ".join(
             f"{n.split('_')[0]}={getattr(solid, n)}" for n in names if getattr(solid, n)

@@ -75,7 +75,7 @@ py::tuple bound_as_solid(const py::array& positions, const py::array& triangles,
   return py::make_tuple(
       mesh, py::make_tuple(report.parts, report.welded_vertices, report.duplicate_faces,
                            report.turned_faces, report.turned_parts, report.thickened_parts,
-                           report.filled_parts, report.lost_parts));
+                           report.filled_parts));
 }
 
 // The vertices of edges, and the edge of each corner.
@@ -96,8 +96,10 @@ std::pair<Array<std::int32_t>, Array<std::int32_t>> bound_mesh_edges(const py::a
           to_array<std::int32_t>(std::move(edges.of_corners), {corners / 3, py::ssize_t{3}})};
 }
 
-// The numbers of parts and of borders, the genus, and the part of each triangle.
-std::tuple<std::size_t, std::size_t, std::optional<std::size_t>, Array<std::int32_t>>
+// The numbers of parts and of borders, the genus, the edges of borders, and the part of each
+// triangle.
+std::tuple<std::size_t, std::size_t, std::optional<std::size_t>, Array<std::int32_t>,
+           Array<std::int32_t>>
 bound_mesh_topology(const py::array& positions, const py::array& triangles, bool welds,
                     const py::object& callback, int threads) {
   const Progress progress = to_progress(callback);
@@ -108,7 +110,9 @@ bound_mesh_topology(const py::array& positions, const py::array& triangles, bool
     found = mesh_topology(mesh, welds, progress, threads);
   }
   const auto count = static_cast<py::ssize_t>(found.part_of.size());
+  const auto edges = static_cast<py::ssize_t>(found.border_edges.size());
   return {found.parts, found.borders, found.genus,
+          to_array<std::int32_t>(std::move(found.border_edges), {edges, py::ssize_t{2}}),
           to_array<std::int32_t>(std::move(found.part_of), {count})};
 }
 

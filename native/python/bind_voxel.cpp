@@ -111,6 +111,24 @@ Octree bound_make_octree(const std::vector<std::pair<Array<float>, Array<std::ui
   return make_octree(std::move(levels), root, to_box(bounds), depth);
 }
 
+// The numbers of triangles, what they are thick and what they became, and their areas.
+std::tuple<Array<std::int64_t>, Array<double>, Array<double>, Array<double>> bound_thin(
+    const Octree& octree) {
+  const auto count = static_cast<py::ssize_t>(octree.thin.size());
+  Array<std::int64_t> triangles(count);
+  Array<double> thickness(count);
+  Array<double> made(count);
+  Array<double> areas(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const ThinTriangle& one = octree.thin[static_cast<std::size_t>(i)];
+    triangles.mutable_at(i) = one.triangle;
+    thickness.mutable_at(i) = one.thickness;
+    made.mutable_at(i) = one.made;
+    areas.mutable_at(i) = one.area;
+  }
+  return {std::move(triangles), std::move(thickness), std::move(made), std::move(areas)};
+}
+
 std::size_t byte_count(const Octree& octree) {
   std::size_t bytes = sizeof(Octree);
   for (const TreeLevel& level : octree.cells.levels) {
@@ -157,6 +175,7 @@ void bind_voxel(py::module_& m) {
         return Corners{cube.low, cube.high};
       },
       py::arg("box"), py::arg("depth"));
+  m.def("thin_triangles", &bound_thin, py::arg("octree"));
   m.def("make_octree", &bound_make_octree, py::arg("levels"), py::arg("root"), py::arg("bounds"),
         py::arg("depth"));
 }

@@ -451,6 +451,7 @@ def test_every_function_is_there():
         "SvgWarning",
         "TableSection",
         "TexelFormat",
+        "ThinPlaces",
         "TracedContour",
     }
     # In test_normals_of_points, test_face_normals, test_scan_files, test_scan_failures,

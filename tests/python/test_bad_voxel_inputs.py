@@ -100,6 +100,16 @@ QUERY_ROWS = [
     ("dense", {"depth": -1}, ["depth: -1", "from 0 to 12"]),
     ("dense", {"depth": 2.5}, ["depth: 2.5", "from 0 to 12"]),
     ("coarsened", {"depth": 13}, ["depth: 13", "from 0 to 12"]),
+    (
+        "lost_parts",
+        {"positions": BOX.positions, "triangles": BOX.triangles, "part_of": np.zeros(11, int)},
+        ["part_of: found 11 for 12 triangles"],
+    ),
+    (
+        "lost_parts",
+        {"positions": BOX.positions, "triangles": BOX.triangles + 1, "part_of": np.zeros(12, int)},
+        ["triangles: vertices 1 to 8", "there are 8"],
+    ),
     ("values", {"points": np.zeros((2, 2))}, ["points: shape (2, 2)", "(points, 3)"]),
     ("values", {"points": np.full((2, 3), NAN)}, ["points: row 0", "nan", "finite"]),
     ("classify", {"points": np.zeros((1, 3)), "tolerance": 0.5}, ["tolerance: 0.5", "below 0.5"]),

@@ -21,6 +21,17 @@ def joined(*meshes):
     )
 
 
+def single_edges(triangles):
+    """Returns the edges that one triangle has, of those with three corners."""
+    counts = {}
+    for corners in triangles.tolist():
+        if len(set(corners)) == 3:
+            for k in range(3):
+                edge = tuple(sorted((corners[k], corners[k - 1])))
+                counts[edge] = counts.get(edge, 0) + 1
+    return sorted([a, b] for (a, b), count in counts.items() if count == 1)
+
+
 def shape(solid, shift=(0, 0, 0)):
     return solid.positions + np.array(shift, float), solid.triangles
 
@@ -109,6 +120,9 @@ def test_parts_are_what_a_walk_reaches(seed):
         found = prefilter.mesh_topology(*mesh[:2], weld=mesh[2], threads=threads)
         parts, part_of = walked_parts(named)
         assert found.parts == parts
+        name_of = dict(zip(mesh[1].ravel().tolist(), named.ravel().tolist(), strict=True))
+        edges = [frozenset((name_of[a], name_of[b])) for a, b in found.border_edges.tolist()]
+        assert sorted(map(sorted, edges)) == single_edges(named)
         np.testing.assert_array_equal(found.part_of, part_of)
 
 

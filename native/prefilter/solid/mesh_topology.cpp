@@ -183,18 +183,24 @@ Counts count_all(const NamedTriangles& mesh, const TrianglesAt& at, const Progre
   return all;
 }
 
-// How many loops edges make that fans join.
-std::size_t count_loops(const std::vector<std::array<std::uint64_t, 2>>& borders) {
+// The edges of borders, in order.
+std::vector<std::uint64_t> border_edges(const Counts& counts) {
   std::vector<std::uint64_t> edges;
-  for (const auto& [one, other] : borders) edges.push_back(other);
+  edges.reserve(counts.borders.size());
+  for (const auto& [one, other] : counts.borders) edges.push_back(other);
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+// How many loops edges make that fans join.
+std::size_t count_loops(const std::vector<std::uint64_t>& edges, const Counts& counts) {
   DisjointSets<std::uint32_t> loops(edges.size());
   const auto number = [&](std::uint64_t edge) {
     return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) -
                                       edges.begin());
   };
-  for (const auto& [one, other] : borders) loops.join(number(one), number(other));
+  for (const auto& [one, other] : counts.borders) loops.join(number(one), number(other));
   std::uint32_t count = 0;
   loops.numbers(&count);
   return count;
@@ -236,7 +242,12 @@ MeshTopology topology_of(const NamedTriangles& mesh, const Counts& counts,
         is_first ? static_cast<std::int32_t>(result.parts++) : result.part_of[roots[t]];
     ++faces;
   }
-  result.borders = count_loops(counts.borders);
+  const std::vector<std::uint64_t> edges = border_edges(counts);
+  result.borders = count_loops(edges, counts);
+  for (const std::uint64_t edge : edges) {
+    result.border_edges.push_back(
+        {static_cast<std::int32_t>(edge >> 32U), static_cast<std::int32_t>(edge & 0xFFFFFFFFU)});
+  }
   const std::int64_t euler = counts.fans - counts.edges + faces;
   const std::int64_t twice = 2 * static_cast<std::int64_t>(result.parts) -
                              static_cast<std::int64_t>(result.borders) - euler;

@@ -141,15 +141,10 @@ void append(const TriangleMesh& surface, WorkMesh* mesh) {
   mesh->origins.resize(mesh->triangles.size(), -1);
 }
 
-void count_fates(const Patches& patches, std::span<const PartFate> fates,
-                 std::span<const double> areas, std::span<const float> kept, SolidReport* report) {
-  const std::vector<PartAreas> sums = part_areas(patches, areas, kept, {});
-  for (std::size_t p = 0; p < fates.size(); ++p) {
-    const auto& [fate, is_thickened] = fates[p];
+void count_fates(std::span<const PartFate> fates, SolidReport* report) {
+  for (const auto& [fate, is_thickened] : fates) {
     if (fate == Fate::kSheet || is_thickened) ++report->thickened_parts;
     if (fate == Fate::kFilled) ++report->filled_parts;
-    const bool may_be_lost = fate != Fate::kBuried;
-    if (may_be_lost && sums[p].lost > patches.patches[p].area / 2.0) ++report->lost_parts;
   }
 }
 
@@ -232,17 +227,10 @@ bool mend_open_parts(const Patches& patches, const SolidOptions& options, const 
       add_faces(*mesh, patches, thin, &result);
     } else {
       add_shell(mesh->view(), mesh->origins, thin, thickness / 2.0, &result);
-      const Octree octree =
-          voxels_of(result, patches, cell, progress.part(0.9, 0.96), options.threads);
-      verdict.kept = kept_shares(mesh->view(), octree, progress.part(0.96, 1.0), options.threads);
     }
     std::swap(*mesh, result);
   }
-  // What is thin is thickened later, wherever it is.
-  if (options.sheets == SheetMethod::kFaces && thickness > 0.0) {
-    std::fill(verdict.kept.begin(), verdict.kept.end(), 1.0F);
-  }
-  count_fates(patches, verdict.fates, areas, verdict.kept, report);
+  count_fates(verdict.fates, report);
   progress.report(1.0);
   return !is_same || turned.any();
 }

@@ -152,12 +152,13 @@ TriangleMesh in_units(const RootTriangles& mesh, double count) {
   }
   result.triangles.reserve(mesh.mesh.triangles.size());
   for (const auto& [a, b, c] : mesh.mesh.triangles) {
-    if (is_far[static_cast<std::size_t>(a)] || is_far[static_cast<std::size_t>(b)] ||
-        is_far[static_cast<std::size_t>(c)]) {
-      continue;
-    }
-    result.triangles.push_back(
-        {static_cast<std::int32_t>(a), static_cast<std::int32_t>(b), static_cast<std::int32_t>(c)});
+    const bool is_left_out = is_far[static_cast<std::size_t>(a)] ||
+                             is_far[static_cast<std::size_t>(b)] ||
+                             is_far[static_cast<std::size_t>(c)];
+    // One without an area keeps the numbers of the others.
+    result.triangles.push_back({static_cast<std::int32_t>(a),
+                                static_cast<std::int32_t>(is_left_out ? a : b),
+                                static_cast<std::int32_t>(is_left_out ? a : c)});
   }
   return result;
 }
@@ -169,7 +170,6 @@ std::vector<ThickPiece> pieces_for(const RootTriangles& mesh, double thickness,
   const double unit = std::max(1.0, thickness / kUsualThickness);
   const double count = std::ldexp(1.0, octree.depth) / unit;
   const TriangleMesh scaled = in_units(mesh, count);
-  if (scaled.triangles.empty()) return {};
   const auto occupancy = [&](const Vector3& point) {
     LeafPlace place;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -185,8 +185,34 @@ std::vector<ThickPiece> pieces_for(const RootTriangles& mesh, double thickness,
     for (Vector3& middle : piece.middles) middle = unit * middle;
     piece.radius *= unit;
     piece.thickness *= unit;
+    piece.area *= unit * unit;
   }
   return pieces;
+}
+
+// The triangles above the pieces.
+std::vector<ThinTriangle> thin_triangles(const std::vector<ThickPiece>& pieces) {
+  std::vector<ThinTriangle> all;
+  all.reserve(pieces.size());
+  for (const ThickPiece& piece : pieces) {
+    all.push_back({piece.triangle, piece.thickness, 2.0 * piece.radius, piece.area});
+  }
+  std::stable_sort(all.begin(), all.end(), [](const ThinTriangle& a, const ThinTriangle& b) {
+    return a.triangle < b.triangle;
+  });
+  std::size_t count = 0;
+  for (const ThinTriangle& one : all) {
+    if (count == 0 || all[count - 1].triangle != one.triangle) {
+      all[count++] = one;
+      continue;
+    }
+    ThinTriangle& same = all[count - 1];
+    const double area = same.area + one.area;
+    if (one.thickness < same.thickness) same = one;
+    same.area = area;
+  }
+  all.resize(count);
+  return all;
 }
 
 }  // namespace
@@ -206,6 +232,7 @@ void thicken(const RootTriangles& mesh, double thickness, const Progress& progre
   added.cells = build_tree(rule.root(), octree->depth, rule, progress.part(0.6, 0.9), threads);
   *octree = combine(*octree, added, SetOperation::kUnion, progress.part(0.9, 1.0), threads);
   octree->thickened = std::move(added.cells);
+  octree->thin = thin_triangles(pieces);
 }
 
 }  // namespace prefilter

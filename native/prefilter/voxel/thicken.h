@@ -11,7 +11,7 @@ namespace prefilter {
 
 /// Makes a solid as thick as `thickness`, in cells of the octree's depth, wherever it is thinner.
 /// `mesh` is what the octree was made of. The finest cells that change are those of
-/// `octree->thickened`.
+/// `octree->thickened`; where the mesh is thin, `octree->thin` says.
 void thicken(const RootTriangles& mesh, double thickness, const Progress& progress, int threads,
              Octree* octree);
 

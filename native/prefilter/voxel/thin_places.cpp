@@ -248,7 +248,8 @@ std::vector<ThickPiece> thick_pieces(const MeshView<std::int32_t>& mesh, double 
     const Vector3 mean = (1.0 / around.area) * around.middles;
     const Vector3 moved = middle + rod_of(values) * across(mean - middle);
     const Vector3 from = triangle_middle(one.corners);
-    ThickPiece piece = {{}, radius, one.triangle, 2.0 * one.ball.radius};
+    ThickPiece piece = {
+        {}, radius, one.triangle, 2.0 * one.ball.radius, triangle_area(one.corners)};
     for (std::size_t i = 0; i < 3; ++i) {
       const Vector3 offset = one.corners[i] - from;
       piece.middles[i] = moved + offset - across(offset);

@@ -19,6 +19,7 @@ struct ThickPiece {
   double radius;
   std::uint32_t triangle;  // of the mesh, that it is below
   double thickness;        // of the solid there
+  double area;             // of the triangle, that it is below
 };
 
 /// Pieces that, added to a closed mesh, make it as thick as `thickness` where it is thinner and in

@@ -77,6 +77,7 @@ from .voxels.octree import QuadContour as QuadContour
 from .voxels.octree import TracedContour as TracedContour
 from .voxels.octree import cube_around as cube_around
 from .voxels.octree import voxelize as voxelize
+from .voxels.thin_places import ThinPlaces as ThinPlaces
 
 __version__: str
 __all__: list[str]

@@ -290,7 +290,7 @@ def mesh_topology(
     welds: bool,
     progress: ProgressCallback | None,
     threads: int,
-) -> tuple[int, int, int | None, npt.NDArray[np.int32]]: ...
+) -> tuple[int, int, int | None, npt.NDArray[np.int32], npt.NDArray[np.int32]]: ...
 def nearest_points(
     points: npt.NDArray[np.float64],
     positions: npt.NDArray[np.floating],
@@ -556,6 +556,14 @@ def voxelize(
 def cube_around(
     box: tuple[list[float], list[float]], depth: int
 ) -> tuple[list[float], list[float]]: ...
+def thin_triangles(
+    octree: Octree,
+) -> tuple[
+    npt.NDArray[np.int64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+    npt.NDArray[np.float64],
+]: ...
 
 class SolidOptions:
     def __init__(self) -> None: ...
@@ -573,7 +581,7 @@ def as_solid(
     progress: ProgressCallback | None,
 ) -> tuple[
     tuple[npt.NDArray[np.float64], npt.NDArray[np.int64], npt.NDArray[np.int64]] | None,
-    tuple[int, int, int, int, int, int, int, int],
+    tuple[int, int, int, int, int, int, int],
 ]: ...
 def close_holes(
     positions: npt.NDArray[np.floating],

@@ -42,7 +42,6 @@ struct SolidReport {
   std::size_t turned_parts = 0;     // as a whole
   std::size_t thickened_parts = 0;  // that had no inside, or too little of it for any cell
   std::size_t filled_parts = 0;     // whose inside is what the outside does not reach
-  std::size_t lost_parts = 0;       // that have no voxels all the same
 };
 
 struct Solid {

@@ -3,6 +3,7 @@
 // How many parts a mesh has, and how many handles and borders.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -19,6 +20,8 @@ struct MeshTopology {
   // Of all parts together: half of what 2 - borders of each is above its Euler characteristic. None
   // where more than two triangles share an edge, or a surface has one side.
   std::optional<std::size_t> genus;
+  // Edges with a single triangle, each from its vertex with the lower number.
+  std::vector<std::array<std::int32_t, 2>> border_edges;
   std::vector<std::int32_t> part_of;  // of each triangle; -1 where two corners are one vertex
 };
 

@@ -3,12 +3,22 @@
 // Occupancy octrees: how much of each cell of a box is inside of a shape, finely along its surface.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/wavelet/cell_tree.h"
 
 namespace prefilter {
+
+/// A triangle of a mesh below which the solid was thinner than asked for, where it is thinnest.
+/// Lengths are cells of the octree's depth.
+struct ThinTriangle {
+  std::uint32_t triangle;
+  double thickness;  // of the solid there: the diameter of the ball in it
+  double made;       // the diameter that it got
+  double area;       // of the triangle, as far as it is thin
+};
 
 /// The occupancies, in [0, 1], of the cells of a box. What is outside of the box is empty.
 struct Octree {
@@ -17,6 +27,8 @@ struct Octree {
   int depth = 0;  // 2^depth cells along each axis are the finest that there may be
   // Above 0 in the finest cells that are fuller than the mesh, as it is thin there.
   CellTree thickened;
+  // Of the mesh that it was made of, in ascending order.
+  std::vector<ThinTriangle> thin = {};
 
   /// The side of a cell of this depth.
   double cell_size(int axis, int at_depth) const;

@@ -45,7 +45,7 @@ class SolidMesh:
         turned_parts: Parts that were turned as a whole.
         thickened_parts: Sheets and parts that were too thin for any cell.
         filled_parts: Parts whose inside is what the outside does not reach.
-        lost_parts: Parts that have no voxels all the same.
+        turned: (n,) int64: the triangles of the mesh that face the other way now.
     """
 
     positions: npt.NDArray[np.floating]
@@ -58,7 +58,7 @@ class SolidMesh:
     turned_parts: int
     thickened_parts: int
     filled_parts: int
-    lost_parts: int
+    turned: npt.NDArray[np.int64]
 
     @property
     def is_unchanged(self) -> bool:
@@ -109,4 +109,26 @@ def as_solid(
     points, indices = as_mesh(positions, triangles)
     mesh, report = _native.as_solid(points, indices, options, as_progress(progress))
     found, corners, origins = mesh or (points, indices, None)
-    return SolidMesh(found, corners, origins, *report)
+    turned = np.empty(0, np.int64)
+    if origins is not None and report[3] + report[4]:
+        turned = _turned(points[indices], found[corners], origins)
+    return SolidMesh(found, corners, origins, *report, turned)
+
+
+def _turned(
+    before: npt.NDArray[np.floating],
+    after: npt.NDArray[np.floating],
+    origins: npt.NDArray[np.int64],
+) -> npt.NDArray[np.int64]:
+    """Returns the triangles all of whose successors face the other way."""
+    ways = np.zeros((2, len(before)), bool)
+    known = origins >= 0
+    own = (_normals(before)[origins[known]] * _normals(after[known])).sum(axis=1)
+    ways[0, origins[known][own > 0.0]] = True
+    ways[1, origins[known][own < 0.0]] = True
+    return np.flatnonzero(ways[1] & ~ways[0])
+
+
+def _normals(corners: npt.NDArray[np.floating]) -> npt.NDArray[np.float64]:
+    a, b, c = np.moveaxis(corners.astype(np.float64), 1, 0)
+    return np.cross(b - a, c - a)

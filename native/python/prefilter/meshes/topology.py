@@ -21,6 +21,8 @@ class MeshTopology:
         borders: Loops of edges with a single triangle.
         genus: The handles of all parts together: 0 for spheres and discs, 1 for a ring. None if
             more than two triangles share an edge, or a surface has one side.
+        border_edges: (edges, 2) int32: the edges with a single triangle, each from its vertex with
+            the lower number, in ascending order.
         part_of: (triangles,) int32: the part of each, numbered in order of their first triangles;
             -1 for a triangle of which two corners are one vertex.
     """
@@ -28,6 +30,7 @@ class MeshTopology:
     parts: int
     borders: int
     genus: int | None
+    border_edges: npt.NDArray[np.int32]
     part_of: npt.NDArray[np.int32]
 
 

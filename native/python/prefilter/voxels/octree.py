@@ -23,6 +23,8 @@ from .._border.arguments import (
 )
 from .._border.arrays import as_floats, as_labels, as_mesh, as_threads
 from .contours import CLEANUP_CHECKS
+from .lost_parts import find_lost_parts
+from .thin_places import ThinPlaces
 
 Corner = Sequence[float] | npt.NDArray[np.floating]
 Box = tuple[Corner, Corner]
@@ -70,6 +72,11 @@ class Octree(_native.Octree):
         if not isinstance(octree, _native.Octree):
             raise ValueError(f"octree: a {type(octree).__name__}; an Octree is needed")
         super().__init__(octree)
+
+    @property
+    def thin_places(self) -> ThinPlaces:
+        """Where the mesh was thinner than the `thickness` of `voxelize`, which made this octree."""
+        return ThinPlaces(*_native.thin_triangles(self))
 
     def dense(
         self,
@@ -275,6 +282,40 @@ class Octree(_native.Octree):
             self, _as_sources(sources), options, as_progress(progress)
         )
         return QuadContour(positions, quads, origins if len(origins) == len(quads) else None)
+
+    def lost_parts(
+        self,
+        positions: npt.ArrayLike,
+        triangles: npt.ArrayLike,
+        part_of: npt.ArrayLike,
+        *,
+        threads: int = 0,
+    ) -> npt.NDArray[np.int64]:
+        """The parts of a mesh of which nothing is left.
+
+        No triangle of theirs is inside of the shape, nor within a cell of its contour. Parts beyond
+        the bounds are not lost.
+
+        Args:
+            positions: (vertices, 3): of the mesh that the octree was made of.
+            triangles: (triangles, 3) integer indices of vertices.
+            part_of: (triangles,) whole numbers from 0 on: the part of each, as `mesh_topology` says
+                it; negative for none.
+            threads: 0 means all processors.
+
+        Returns:
+            (lost,) int64: their numbers, in ascending order.
+
+        Raises:
+            ValueError: A shape or type is wrong, or an index names no vertex.
+        """
+        points, indices = as_mesh(positions, triangles)
+        if len(indices) and not 0 <= indices.min() <= indices.max() < len(points):
+            raise ValueError(
+                f"triangles: vertices {indices.min()} to {indices.max()}; there are {len(points)}"
+            )
+        parts = as_labels("part_of", part_of, len(indices), "triangles")
+        return find_lost_parts(self, points, indices, parts, as_threads(threads))
 
     def coarsened(self, depth: int) -> "Octree":
         """The octree down to a depth of 0 to 12: means of what was finer."""
