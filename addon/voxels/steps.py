@@ -296,10 +296,6 @@ class Told:
         elif turned:
             text = "object '{}': {} of {} parts were inside out; their normals were flipped"
             self.warnings.append(Sentence(text, name, turned, solid.parts))
-        if solid.lost_parts:
-            lost = amount(solid.lost_parts, "part")
-            text = "object '{}': lost, as too small for a cell: {}"
-            self.warnings.append(Sentence(text, name, lost))
         rows = [
             (solid.thickened_parts, _THICKENED),
             (solid.filled_parts, _FILLED),
