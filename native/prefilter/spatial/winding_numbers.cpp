@@ -41,6 +41,36 @@ double solid_angle(const std::array<Vector3, 3>& triangle, const Vector3& point)
   return elementary::atan2(volume, rest) / (2.0 * std::numbers::pi);
 }
 
+// The sign of a number that is a sum of products of sizes `scale`; 0 below rounding.
+int sign_of(double value, double scale) {
+  constexpr double kRounding = 1e-9;
+  return value > kRounding * scale ? 1 : value < -kRounding * scale ? -1 : 0;
+}
+
+// 1 where the segment leaves through the triangle, -1 where it enters, 0 where it does neither;
+// nothing if that is in doubt.
+std::optional<int> passage(const std::array<Vector3, 3>& triangle, const Vector3& from,
+                           const Vector3& to) {
+  const auto& [a, b, c] = triangle;
+  const Vector3 normal = cross(b - a, c - a);
+  const double area = size_of(normal);
+  const double distance = size_of(from - a) + size_of(to - a);
+  const int before = sign_of(dot(normal, from - a), area * distance);
+  const int behind = sign_of(dot(normal, to - a), area * distance);
+  if (before * behind > 0) return 0;
+  const Vector3 way = to - from;
+  std::array<int, 3> sides;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3 start = triangle[i] - from;
+    const Vector3 side = triangle[(i + 1) % 3] - triangle[i];
+    sides[i] = sign_of(dot(way, cross(start, side)), size_of(way) * size_of(start) * size_of(side));
+  }
+  const auto [least, most] = std::minmax({sides[0], sides[1], sides[2]});
+  if (least * most < 0) return 0;
+  if (least * most == 0 || before * behind == 0) return std::nullopt;
+  return behind;
+}
+
 }  // namespace
 
 WindingNumbers::WindingNumbers(const InputMesh& mesh, const Progress& progress, int threads) {
@@ -133,6 +163,24 @@ double WindingNumbers::at(const Vector3& point, double far_radii) const {
     }
   }
   return winding;
+}
+
+std::optional<double> WindingNumbers::excess(const Vector3& from, const Vector3& to) const {
+  Box box = kEmptyBox;
+  box.include(from);
+  box.include(to);
+  int sum = 0;
+  bool is_sure = true;
+  tree_.for_overlapping(box, [&](std::size_t node) {
+    const BoxTree::Node& leaf = tree_.nodes()[node];
+    for (std::uint32_t item = leaf.begin; is_sure && item < leaf.end; ++item) {
+      const std::optional<int> one = passage(triangles_[item], from, to);
+      is_sure = one.has_value();
+      sum += one.value_or(0);
+    }
+  });
+  if (!is_sure) return std::nullopt;
+  return sum;
 }
 
 std::vector<double> WindingNumbers::find(std::span<const Vector3> points, const Progress& progress,

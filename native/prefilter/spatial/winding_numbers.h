@@ -3,6 +3,7 @@
 // How often a mesh winds around points, open or not.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,11 @@ class WindingNumbers {
 
   /// What is this many radii away is taken as one piece: 2 are enough to tell 0 from 1.
   double at(const Vector3& point, double far_radii = 4.0) const;
+
+  /// What the winding number at `from` is more than at `to`: one for each triangle that the segment
+  /// leaves through, less those that it enters through. Nothing where it all but meets the border
+  /// of one. Takes what the triangles near the segment take.
+  std::optional<double> excess(const Vector3& from, const Vector3& to) const;
 
  private:
   // What a node's triangles are from afar.

@@ -23,6 +23,7 @@ constexpr double kLargestPiece = 4.0;  // of one that is as thin everywhere
 constexpr double kLeastBrick = 2.0;    // in cells
 constexpr double kOpposite = -0.85;  // the cosine between normals of what is opposite: 148 degrees
 constexpr double kClear = 1.2;       // from a surface, in cells: what is empty there is outside
+constexpr std::array<double, 3> kFarther = {2.1, 3.0, 3.9};  // likewise, where it is not
 // How much thicker than a plate that cells hold together a rod and a speck have to be: the quarter
 // of a disc that cells have of a rod along their common edge, and the eighth of a ball at their
 // common corner, are half of a cell.
@@ -121,7 +122,18 @@ struct OuterSides {
   bool is_outer(const Vector3& point, const Vector3& normal) const {
     const float beyond = occupancy(point + kClear * normal);
     if (beyond <= 0.0F || beyond >= 1.0F) return beyond <= 0.0F;
-    return winding.at(point + kJustOutside * normal, kFarRadii) <= 0.5;
+    const Vector3 start = point + kJustOutside * normal;
+    for (const double far : kFarther) {
+      const Vector3 end = point + far * normal;
+      const float there = occupancy(end);
+      if (there > 0.0F && there < 1.0F) continue;
+      const std::optional<double> excess = winding.excess(start, end);
+      if (!excess) continue;
+      if (there <= 0.0F) return *excess <= 0.5;
+      // What is full is within one part, or several.
+      if (*excess >= 0.0) return false;
+    }
+    return winding.at(start, kFarRadii) <= 0.5;
   }
 };
 
@@ -148,8 +160,9 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
           const auto add = [&](const std::array<Vector3, 3>& piece) {
             const Vector3 middle = triangle_middle(piece);
             if (!may_count(middle)) return;
+            if (!outer.is_outer(middle, normal)) return;
             const std::optional<InnerBall> ball = balls.at(middle, normal, largest, across);
-            if (!ball || !outer.is_outer(middle, normal)) return;
+            if (!ball) return;
             found.push_back({piece, normal, *ball, t});
           };
           const auto add_large = [&](const std::array<Vector3, 3>& piece) {

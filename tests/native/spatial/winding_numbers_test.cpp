@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 
 #include "prefilter/base/error.h"
@@ -35,6 +36,38 @@ TEST(WindingNumbers, OfASphere) {
     if (std::abs(distance - 0.4) < 0.002) continue;
     EXPECT_NEAR(winding.at(point), distance < 0.4 ? 1.0 : 0.0, 0.02);
   }
+}
+
+// Along any segment the number changes by what is crossed.
+TEST(WindingNumbers, ExcessIsTheDifference) {
+  testing::Mesh mesh = testing::sphere_mesh({0.5, 0.5, 0.5}, 0.4, 60);
+  const testing::Mesh other = testing::sphere_mesh({0.6, 0.5, 0.5}, 0.3, 40);
+  Triangles triangles = triangles_of(mesh);
+  const auto first = static_cast<std::int64_t>(mesh.positions.size());
+  for (const auto& t : triangles_of(other)) {
+    triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
+  const WindingNumbers winding({mesh.positions, triangles}, Progress(), 2);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  int sure = 0;
+  std::array<int, 5> counts{};
+  for (int i = 0; i < 500; ++i) {
+    const Vector3 from = {uniform(random), uniform(random), uniform(random)};
+    const Vector3 to = {uniform(random), uniform(random), uniform(random)};
+    const std::optional<double> excess = winding.excess(from, to);
+    if (!excess) continue;
+    ++sure;
+    EXPECT_NEAR(*excess, winding.at(from) - winding.at(to), 0.05);
+    EXPECT_NEAR(winding.at(from, 2.0), winding.at(from), 0.1);
+    ++counts.at(static_cast<std::size_t>(*excess + 2.0));
+  }
+  EXPECT_GT(sure, 490);
+  for (const int count : counts) EXPECT_GT(count, 0);
+  const Vector3 corner = mesh.positions[0];
+  const Vector3 middle = {0.5, 0.5, 0.5};
+  EXPECT_FALSE(winding.excess(middle, 2.0 * corner - middle).has_value());
 }
 
 TEST(WindingNumbers, OfAnOpenBox) {
