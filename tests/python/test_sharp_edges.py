@@ -177,10 +177,10 @@ def share_off(positions, triangles, shape, degrees):
     return (best < np.cos(np.radians(degrees))).mean()
 
 
-def ball(rounds):
+def ball(rounds, turn=3):
     made = bench_solids.sphere(1.0, rounds)
     shape = sharp_shapes.Shape("ball", made.positions, made.triangles.astype(np.int64))
-    return shape.moved(sharp_shapes.rotation(3))
+    return shape.moved(sharp_shapes.rotation(turn))
 
 
 @pytest.mark.parametrize("how", [SHARP, CLEAN], ids=["sharp", "clean"])
@@ -196,6 +196,22 @@ def test_blunt_edges_between_wide_facets_are_straight(shape, how):
     assert share_off(positions, triangles, shape, 2) < 0.01
     assert share_off(*edges.contour(subject, 64, edges.Contour.named("plane"))[:2], shape, 2) > 0.1
     check_sound("facets", positions, triangles)
+
+
+@pytest.mark.parametrize("how", [SHARP, CLEAN], ids=["sharp", "clean"])
+def test_rims_that_run_into_edges_have_no_burr(how):
+    """Of a ball of facets that a cube is cut out of: all normals are those of either."""
+    first = ball(2, 2)
+    second = sharp_shapes.cube().moved(0.8 * sharp_shapes.rotation(4), [0.9, 0, 0])
+    subject = edges.Subject("", (first, second), "difference", first, edges.NO_EDGES)
+    positions, triangles, _ = edges.contour(subject, SIZE, how)
+    both = sharp_shapes.Shape(
+        "",
+        np.concatenate([first.positions, second.positions]),
+        np.concatenate([first.triangles, second.triangles[:, ::-1] + len(first.positions)]),
+    )
+    assert share_off(positions, triangles, both, 10) < edges.AREA
+    check_sound("rims", positions, triangles)
 
 
 def test_facets_that_are_small_beside_cells_have_no_edges():

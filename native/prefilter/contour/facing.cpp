@@ -11,6 +11,7 @@ namespace {
 constexpr double kLeastCosine = 0.05;
 constexpr double kLeastArea = 1e-12;              // twice a triangle's, of a cell's face
 constexpr double kAlong = 0.9396926207859084;     // 20 degrees
+constexpr double kBorderReach = 2.0;              // cells
 constexpr double kEdgeReach = 0.3;                // cells
 constexpr double kOpposed = -0.1736481776669303;  // 100 degrees
 
@@ -91,7 +92,14 @@ bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_
                  const std::array<std::uint32_t, 2>& triangles, const FeatureSurface& surface,
                  const VertexSamples& samples, const std::unordered_set<std::int32_t>& turned) {
   const SharedSide side = side_between(mesh, triangles);
-  if (!side.is_convex) return false;
+  const std::int32_t first = labels[triangles[0]];
+  const std::int32_t second = labels[triangles[1]];
+  // No crevice: but where two parts meet, which have no border, it is theirs.
+  if (!side.is_convex &&
+      (first == second ||
+       surface.nearest_border(side.middle, kBorderReach * surface.cell(), first, second))) {
+    return false;
+  }
   std::array<Vector3, 2> normals;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::int32_t label = labels[triangles[i]];

@@ -64,12 +64,45 @@ Feature FeaturePlaces::feature(const Vector3& start, Labels labels) const {
 }
 
 std::optional<Vector3> FeaturePlaces::place(const Vector3& start, const Labels& labels) const {
+  if (labels.size() < 3) return edge_near(start, labels);
+  std::optional<Vector3> found = corner_near(start, labels);
+  if (!found) found = meeting_of(start, labels);
+  if (found && length(*found - start) < kCornerReach * cell_) return found;
+  // Three regions run side by side here.
+  const std::optional<Vector3> edge = sharpest_edge_near(start, labels);
+  return edge ? edge : found;
+}
+
+std::optional<Vector3> FeaturePlaces::edge_near(const Vector3& start, const Labels& labels) const {
   std::optional<Vector3> found =
-      labels.size() > 2
-          ? corner_near(start, labels)
-          : surface_.nearest_border(start, kFeatureReach * cell_, labels.front(), labels.back());
+      surface_.nearest_border(start, kFeatureReach * cell_, labels.front(), labels.back());
   if (!found && labels.size() > 1) found = meeting_of(start, labels);
+  // Beyond the end of an edge that runs into another.
+  if (!found && labels.size() > 1) found = corner_near(start, labels);
   return found;
+}
+
+// Of the edges between two of these regions that are closer than a corner may be.
+std::optional<Vector3> FeaturePlaces::sharpest_edge_near(const Vector3& start,
+                                                         const Labels& labels) const {
+  std::vector<std::optional<SourcePoint>> nearest;
+  for (const std::int32_t label : labels) {
+    nearest.push_back(surface_.nearest(start, kRegionReach * cell_, label));
+  }
+  std::optional<Vector3> best;
+  double least = 1.0;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    for (std::size_t j = i + 1; j < labels.size(); ++j) {
+      if (!nearest[i] || !nearest[j]) continue;
+      const double blunt = std::abs(dot(nearest[i]->normal, nearest[j]->normal));
+      if (blunt >= least) continue;
+      const std::optional<Vector3> found = edge_near(start, {labels[i], labels[j]});
+      if (!found || length(*found - start) > kCornerReach * cell_) continue;
+      best = found;
+      least = blunt;
+    }
+  }
+  return best;
 }
 
 // The corner of these regions, or more, next to a point.

@@ -91,6 +91,10 @@ class FeaturePlaces {
   void claim_corners(std::vector<Feature>* features) const;
 
  private:
+  std::optional<Vector3> edge_near(const Vector3& start,
+                                   const std::vector<std::int32_t>& labels) const;
+  std::optional<Vector3> sharpest_edge_near(const Vector3& start,
+                                            const std::vector<std::int32_t>& labels) const;
   std::optional<Vector3> corner_near(const Vector3& start,
                                      const std::vector<std::int32_t>& labels) const;
   std::optional<Vector3> meeting_of(const Vector3& start,

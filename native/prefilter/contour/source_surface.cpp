@@ -107,7 +107,8 @@ SourceSurface::SourceSurface(std::span<const SourceMesh> sources, const RootFram
       brick_(kBrickCells * cell) {
   mark_borders(progress.part(0.6, 0.65));
   if (regions_.part_count > 1) mark_meetings(progress.part(0.65, 0.8));
-  build_trees(progress.part(0.8, 1.0), threads);
+  build_trees(progress.part(0.8, 0.95), threads);
+  if (has_meetings()) find_rim_corners(progress.part(0.95, 1.0));
 }
 
 void SourceSurface::mark_around(const Box& box) {
@@ -428,7 +429,35 @@ std::optional<Vector3> SourceSurface::nearest_border(const Vector3& point, doubl
   return found;
 }
 
+void SourceSurface::find_rim_corners(const Progress& progress) {
+  Pulse pulse(progress);
+  for (const RegionBorder& border : regions_.borders) {
+    pulse.step();
+    const std::int32_t part = regions_.parts[static_cast<std::size_t>(border.triangles[0])];
+    const Vector3 a = regions_.positions[static_cast<std::size_t>(border.ends[0])];
+    const Vector3 d = regions_.positions[static_cast<std::size_t>(border.ends[1])] - a;
+    const int steps = 1 + static_cast<int>(std::min(2.0 * length(d) / brick_, 1e5));
+    for (int i = 0; i < steps; ++i) {
+      const Vector3 from = a + (static_cast<double>(i) / steps) * d;
+      const Vector3 to = a + (static_cast<double>(i + 1) / steps) * d;
+      if (meeting_parts(from).empty() && meeting_parts(to).empty()) continue;
+      for_met(from, to, [&](std::int32_t triangle, double share) {
+        const auto t = static_cast<std::size_t>(triangle);
+        if (regions_.parts[t] == part) return;
+        std::vector<std::int32_t> labels = {border.labels[0], border.labels[1], regions_.labels[t]};
+        std::sort(labels.begin(), labels.end());
+        labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+        rim_corners_.push_back({from + share * (to - from), std::move(labels)});
+      });
+    }
+  }
+}
+
 FeatureCorner SourceSurface::corner(std::size_t index) const {
+  if (index >= regions_.corners.size()) {
+    const RimCorner& rim = rim_corners_[index - regions_.corners.size()];
+    return {rim.position, rim.labels};
+  }
   const RegionCorner& corner = regions_.corners[index];
   return {regions_.positions[static_cast<std::size_t>(corner.vertex)], corner.labels};
 }

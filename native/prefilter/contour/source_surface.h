@@ -80,13 +80,16 @@ class SourceSurface final : public FeatureSurface {
 
   std::optional<Vector3> nearest_border(const Vector3& point, double reach, std::int32_t label,
                                         std::int32_t other) const override;
-  std::size_t corner_count() const override { return regions_.corners.size(); }
+  std::size_t corner_count() const override {
+    return regions_.corners.size() + rim_corners_.size();
+  }
   FeatureCorner corner(std::size_t index) const override;
 
  private:
   void mark_borders(const Progress& progress);
   void mark_meetings(const Progress& progress);
   void mark_around(const Box& box);
+  void find_rim_corners(const Progress& progress);
   void build_trees(const Progress& progress, int threads);
   // Calls visit(triangle) for those of a node of the tree.
   template <typename Visit>
@@ -100,6 +103,11 @@ class SourceSurface final : public FeatureSurface {
     std::size_t count = 0;
     void add(std::int32_t part);
   };
+  // Where an edge of one part runs through the surface of another.
+  struct RimCorner {
+    Vector3 position;
+    std::vector<std::int32_t> labels;  // in order
+  };
   Vector3 low_of_brick(std::uint64_t key) const;
   std::uint64_t brick_of(const Vector3& point) const;
 
@@ -112,6 +120,7 @@ class SourceSurface final : public FeatureSurface {
   BoxTree triangle_tree_;
   std::vector<std::int32_t> borders_;
   BoxTree border_tree_;
+  std::vector<RimCorner> rim_corners_;
 };
 
 }  // namespace prefilter
