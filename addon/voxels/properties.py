@@ -29,6 +29,9 @@ class VoxelProperties(PartedSettings):
         self._draw_first(layout)
         layout.prop(self, "resolution")
         layout.prop(self, "depth" if self.resolution == "depth" else "voxel_size")
+        if bpy.context.mode == "SCULPT":
+            # The mesh of what is sculpted is replaced, by triangles as small as brushes need.
+            return
         if self._makes_mesh():
             layout.prop(self, "adaptivity")
         self._draw_last(layout)
@@ -94,7 +97,7 @@ class VoxelizeProperties(VoxelProperties):
         return values(self, VoxelizeSettings)
 
     def _makes_mesh(self) -> bool:
-        return self.output == "mesh"
+        return self.output == "mesh" or bpy.context.mode == "SCULPT"
 
     def _draw_last(self, layout: bpy.types.UILayout) -> None:
         from ..bridge.files import volumes

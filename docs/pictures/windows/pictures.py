@@ -52,7 +52,6 @@ CROPPED = {
     "voxelize": _panel("voxelize_sidebar"),
     "voxelize_unfolded": _panel("voxelize_sidebar", unfolded=True),
     "boolean": _panel("boolean_sidebar"),
-    "boolean_unfolded": _panel("boolean_sidebar", unfolded=True),
     "reconstruct": _panel("reconstruct", "points"),
     "reconstruct_unfolded": _panel("reconstruct", "points", unfolded=True),
     "rasterize": _panel("rasterize", "text"),
