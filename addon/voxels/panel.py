@@ -119,12 +119,15 @@ class PREFILTER_PT_voxel_result(Tab, bpy.types.Panel):
         """Draws the panel."""
         from .memory import made_of
 
+        result = made_of(context.active_object)
+        assert result is not None
         place = main_button(self.layout, context, PREFILTER_OT_update_voxels)
         if place:
             update = PREFILTER_OT_update_voxels.bl_idname
             place.operator(update, text="Update", icon="FILE_REFRESH")
-        result = made_of(context.active_object)
-        assert result is not None
+            is_source = result.prefilter_made_of.is_source_shown
+            icon = "LOOP_FORWARDS" if is_source else "LOOP_BACK"
+            place.operator("prefilter.switch_source", text="", icon=icon)
         if result != context.active_object:
             note(self.layout, context, f"'{result.name}'", "OBJECT_DATA")
         result.prefilter_voxels.draw_closed(self.layout)
