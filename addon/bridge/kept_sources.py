@@ -56,21 +56,19 @@ def original_of(result: bpy.types.Object) -> bpy.types.Object | None:
     return first if first is not None and first in sources_of(result) else None
 
 
-@contextmanager
-def evaluated(
-    result: bpy.types.Object, sources: Sequence[bpy.types.Object], context: bpy.types.Context
-) -> Iterator[bpy.types.Depsgraph]:
-    """Has Blender evaluate what an object was made of, hidden or not.
-
-    Args:
-        result: The object. A copy of what it was is where the object is, if that is shown.
-        sources: What is needed.
-        context: The context.
-    """
+def put_in_place(result: bpy.types.Object) -> None:
+    """Puts the copy of what an object was where the object is, unless the copy is shown."""
     copy = original_of(result)
     is_shown = result.prefilter_made_of.is_source_shown
     if copy is not None and _is_copy(copy, result) and not is_shown:
         _place(copy, result)
+
+
+@contextmanager
+def evaluated(
+    sources: Sequence[bpy.types.Object], context: bpy.types.Context
+) -> Iterator[bpy.types.Depsgraph]:
+    """Has Blender evaluate objects, hidden or not, and in no collection too."""
     root = context.scene.collection
     linked = [obj for obj in sources if not obj.visible_get() and obj.name not in root.objects]
     for obj in linked:

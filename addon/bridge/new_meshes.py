@@ -200,14 +200,18 @@ def show_contour(
 
 def show_again(obj: bpy.types.Object, contour: Contour) -> bpy.types.Object:
     """Has an object show another surface, with its modifiers, and returns it."""
-    old, name = obj.data, obj.data.name
-    obj.data = new_mesh(name, contour)
+    replace_data(obj, new_mesh(obj.data.name, contour))
     _add_groups(obj, contour)
+    return obj
+
+
+def replace_data(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
+    """Gives an object another mesh, by the name of its own unless others have that too."""
+    old, name = obj.data, obj.data.name
+    obj.data = mesh
     if old.users == 0 and old.library is None:
-        mesh = obj.data
         bpy.data.meshes.remove(old)
         mesh.name = name
-    return obj
 
 
 def new_object_beside(obj: bpy.types.Object, data: bpy.types.ID, suffix: str) -> bpy.types.Object:

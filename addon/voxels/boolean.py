@@ -83,6 +83,12 @@ class Boolean:
                 raise ValueError(Sentence("object {}: found no faces", listed([solid.name])))
         return cls(place, read, settings)
 
+    @property
+    def result(self) -> Result:
+        """What was computed."""
+        assert self._result is not None
+        return self._result
+
     def compute(self, progress: Progress) -> None:
         """Voxelizes the operands, combines them and contours the result.
 

@@ -2,6 +2,7 @@
 
 """How an object was made, which it remembers, so that it can be made again in place."""
 
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -9,7 +10,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..bridge import kept_sources
+from ..bridge import attributes, kept_sources
 from ..core.options import declared
 from ..core.wording import Sentence
 from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
@@ -59,6 +60,21 @@ def remember(
     kept.is_boolean = isinstance(settings, BooleanSettings)
     kept.cell = cell
     kept.is_made = True
+    remember_mesh(made)
+
+
+def remember_mesh(made: bpy.types.Object) -> None:
+    """Keeps with an object which mesh was made."""
+    made.prefilter_voxels.mesh = _checksum(made.data)
+
+
+def is_changed(made: bpy.types.Object) -> bool:
+    """Tells whether the mesh of an object has changed since that was made."""
+    return bool(made.prefilter_voxels.mesh != _checksum(made.data))
+
+
+def _checksum(mesh: bpy.types.Mesh) -> str:
+    return f"{len(mesh.vertices)}:{zlib.crc32(attributes.positions(mesh).tobytes())}"
 
 
 def cell_of(obj: bpy.types.Object | None) -> float:
@@ -88,14 +104,35 @@ def made_of(obj: bpy.types.Object | None) -> bpy.types.Object | None:
     if found is not None and found.prefilter_voxels.is_made and kept_sources.original_of(found):
         return found
     users = [
-        other
+        outermost
         for other in (bpy.data.objects if obj.prefilter_voxels.is_operand else ())
-        if other.prefilter_voxels.is_made
-        and any(one.obj == obj for one in other.prefilter_voxels.operands)
-        and not other.prefilter_made_of.is_copy
+        if any(one.obj == obj for one in other.prefilter_voxels.operands)
         and kept_sources.original_of(other) is not None
+        and (outermost := _outermost(other)) is not None
     ]
     return max(users, key=lambda other: other.session_uid, default=None)
+
+
+def chain(result: bpy.types.Object) -> list[bpy.types.Object]:
+    """Returns an object that was made, and those before it that it was made of likewise.
+
+    What was changed by hand since it was made is not made again, and nothing before it.
+    """
+    found = [result]
+    while True:
+        source = kept_sources.original_of(found[-1])
+        is_made = source is not None and source.prefilter_voxels.is_made
+        if not is_made or kept_sources.original_of(source) is None or is_changed(source):
+            return found
+        found.append(source)
+
+
+def _outermost(obj: bpy.types.Object | None) -> bpy.types.Object | None:
+    """Returns the object that was made last of a copy; an object that is no copy is its own."""
+    while obj is not None and obj.prefilter_made_of.is_copy:
+        users = (other for other in bpy.data.objects if kept_sources.original_of(other) == obj)
+        obj = next(users, None)
+    return obj if obj is not None and obj.prefilter_voxels.is_made else None
 
 
 def recall(result: bpy.types.Object) -> Request:

@@ -6,7 +6,13 @@ A scene has one set of what both have in common.
 """
 
 import bpy
-from bpy.props import BoolProperty, CollectionProperty, FloatProperty, PointerProperty
+from bpy.props import (
+    BoolProperty,
+    CollectionProperty,
+    FloatProperty,
+    PointerProperty,
+    StringProperty,
+)
 
 from ..core import preset_menu, presets
 from ..core.properties import properties, shared, values
@@ -162,6 +168,7 @@ class PREFILTER_PG_voxel_result(VoxelProperties, bpy.types.PropertyGroup):
         is_boolean: Whether by a boolean.
         is_operand: Whether something was combined with it.
         operands: With what it was combined.
+        mesh: Tells the mesh that was made from others.
         cell: The side of a cell in its own space: of a cube with the volume of the cell there.
     """
 
@@ -173,6 +180,7 @@ class PREFILTER_PG_voxel_result(VoxelProperties, bpy.types.PropertyGroup):
             "is_boolean": BoolProperty(),
             "is_operand": BoolProperty(),
             "operands": CollectionProperty(type=PREFILTER_PG_operand),
+            "mesh": StringProperty(),
             "cell": FloatProperty(),
         }
     )

@@ -85,6 +85,11 @@ class Voxelization:
             read._targets = _volume_files([place.name for place, _ in read._read], settings)
         return read
 
+    @property
+    def result(self) -> Result:
+        """What was computed of the only object."""
+        return self._results[0]
+
     def compute(self, progress: Progress) -> None:
         """Voxelizes and contours.
 

@@ -2,16 +2,19 @@
 
 """`prefilter.update_voxels`: a result made again of what it was made of, in place."""
 
+from collections.abc import Callable, Generator
 from typing import TYPE_CHECKING
 
 import bpy
 
-from ...core.doing import LONG_WORK
+from ...core.doing import LONG_WORK, Compute
 from ...core.operator import WorkOperator
 from ...core.translations import tr
+from ...core.wording import Sentence
 
 if TYPE_CHECKING:
     from ..boolean import Boolean
+    from ..updating import Update
     from ..voxelization import Voxelization
 
 
@@ -30,6 +33,9 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
 
     if TYPE_CHECKING:
         work: Voxelization | Boolean | None
+        _update: Update | None
+    else:
+        _update = None
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -52,30 +58,50 @@ class PREFILTER_OT_update_voxels(WorkOperator, bpy.types.Operator):
         """Draws nothing: the object has the settings."""
 
     def read_work(self, context: bpy.types.Context) -> "Voxelization | Boolean":
-        """Copies what the object was made of."""
-        from ...bridge.kept_sources import evaluated
+        """Copies what the first was made of that is made again."""
         from ...bridge.new_meshes import check_editable
-        from ..boolean import Boolean
-        from ..choices import BooleanSettings
-        from ..memory import made_of, recall
-        from ..voxelization import Voxelization
+        from ..memory import is_changed, made_of
+        from ..updating import Update
 
         result = made_of(context.active_object)
         if result is None:
             raise ValueError(tr("The active object does not know what it was made of"))
         check_editable(result)
-        request = recall(result)
-        self.warn(request.warnings)
-        source, operands, settings = request.source, request.operands, request.settings
-        with evaluated(result, [source, *operands], context) as depsgraph:
-            if isinstance(settings, BooleanSettings):
-                return Boolean.read(source, operands, settings, depsgraph, result.name)
-            return Voxelization.read([source], settings, depsgraph, result.name)
+        if is_changed(result):
+            text = "the mesh of '{}' was changed by hand, which is lost; undo brings it back"
+            self.warn([Sentence(text, result.name)])
+        self._update = Update(result)
+        work, warnings = self._update.read(context)
+        self.warn(warnings)
+        return work
+
+    def following(self, context: bpy.types.Context) -> Generator[float, None, Compute] | None:
+        """Returns what reads the next that was made of the one before."""
+        assert self._update is not None
+        return None if self._update.is_last else self._read_next(context)
+
+    def _read_next(self, context: bpy.types.Context) -> Generator[float, None, Compute]:
+        assert self.work is not None
+        assert self._update is not None
+        self._update.put_aside(self.work.result)
+        self.work, warnings = self._update.read(context)
+        self.warn(warnings)
+        return self.work.compute
+        yield
 
     def finish(self, context: bpy.types.Context, result: None) -> str:
-        """Writes the result."""
+        """Writes the results."""
         from ..showing import Way
 
         assert self.work is not None
+        assert self._update is not None
         self.work.way = Way.AGAIN
-        return super().finish(context, result)
+        said = super().finish(context, result)
+        self._update.commit()
+        return said
+
+    def releaser(self) -> Callable[[], None]:
+        """Removes what stands in for results, and returns what removes the rest."""
+        if self._update is not None:
+            self._update.discard()
+        return super().releaser()

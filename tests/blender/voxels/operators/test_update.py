@@ -123,6 +123,81 @@ def test_an_operand_in_a_collection_that_is_left_out():
     assert list(other.users_collection) == [kept]
 
 
+def cut_twice():
+    """Returns a cube without two halves of its sides, which leaves a quarter, and both others."""
+    cube, first = boolean(adaptivity=0.0)
+    second = bodies.cube("Second", location=(0, 1, 0))
+    cube.select_set(True)
+    bpy.context.view_layer.objects.active = cube
+    assert bpy.ops.prefilter.boolean() == DONE
+    assert bodies.volume(cube) == pytest.approx(2, rel=0.01)
+    return cube, first, second
+
+
+@pytest.mark.parametrize("is_cutter_active", [False, True])
+def test_one_boolean_after_the_other(is_cutter_active):
+    """Both are made again, and the first one's result is kept as it is then."""
+    cube, first, second = cut_twice()
+    first.location.x, second.location.y = 1.5, 1.5
+    if is_cutter_active:
+        first.hide_set(False)
+        bpy.context.view_layer.objects.active = first
+    count = len(bpy.data.objects)
+    update()
+    assert bodies.volume(cube) == pytest.approx(8 * 0.75 * 0.75, rel=0.01)
+    assert len(bpy.data.objects) == count
+    assert len(bpy.data.meshes) == 5
+    bpy.context.view_layer.objects.active = cube
+    assert bodies.volume(switch()) == pytest.approx(6, rel=0.01)
+
+
+def test_where_both_are_now():
+    """The object was moved together with what is hidden."""
+    cube, first, second = cut_twice()
+    for obj in (cube, first, second):
+        obj.location.z = 10
+    update()
+    assert bodies.volume(cube) == pytest.approx(2, rel=0.01)
+
+
+def test_what_was_changed_by_hand_in_between_stays(capfd):
+    cube, first, _ = cut_twice()
+    source = switch()
+    for vertex in source.data.vertices:
+        vertex.co.z *= 2
+    switch()
+    first.location.x = 1.5
+    update()
+    assert bodies.volume(cube) == pytest.approx(8 - 2, rel=0.01)
+    assert "by hand" not in capfd.readouterr().out
+    cube.data.vertices[0].co.z -= 1
+    update()
+    assert "Warning: the mesh of 'Cube' was changed by hand" in capfd.readouterr().out
+
+
+def test_a_failure_leaves_everything(addon, monkeypatch):
+    cube, first, _ = cut_twice()
+    source = cube.prefilter_made_of.sources[0].obj
+    before = {obj.name: obj.data for obj in bpy.data.objects}
+    meshes = {mesh.name: len(mesh.vertices) for mesh in bpy.data.meshes}
+    compute, runs = addon("voxels.boolean").Boolean.compute, []
+
+    def failing(self, progress):
+        runs.append(self)
+        if len(runs) > 1:
+            raise MemoryError("no room")
+        compute(self, progress)
+
+    monkeypatch.setattr(addon("voxels.boolean").Boolean, "compute", failing)
+    first.location.x = 1.5
+    with pytest.raises(RuntimeError, match="no room"):
+        bpy.ops.prefilter.update_voxels()
+    assert len(runs) == 2
+    assert {obj.name: obj.data for obj in bpy.data.objects} == before
+    assert {mesh.name: len(mesh.vertices) for mesh in bpy.data.meshes} == meshes
+    assert not source.users_collection
+
+
 def test_gone_operands(capfd):
     third = bodies.cube("Third", location=(0, 0, 1))
     cube, other = boolean(operands="keep")
