@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Triangles to Blender: meshes with materials and colors, and the objects that show them."""
+"""Surfaces to Blender: meshes with materials and colors, and the objects that show them."""
 
 import math
 from collections.abc import Generator, Sequence
@@ -29,7 +29,7 @@ class Contour:
 
     Attributes:
         positions: (n, 3) float32.
-        triangles: (m, 3) int32.
+        faces: (m, 3) int32, or (m, 4) for quads.
         materials: What the indices mean.
         face_materials: (m,) int32, or None where there is one material or none.
         layers: Its attributes; vertex groups are the object's, and normals come last.
@@ -42,7 +42,7 @@ class Contour:
     """
 
     positions: NDArray[np.float32]
-    triangles: NDArray[np.int32]
+    faces: NDArray[np.int32]
     materials: Sequence[MaterialKey | None] = ()
     face_materials: NDArray[np.int32] | None = None
     layers: Sequence[NewLayer] = ()
@@ -99,10 +99,10 @@ def forget_mesh(contour: Contour) -> None:
 
 
 def _filling(mesh: bpy.types.Mesh, contour: Contour) -> Generator[None, None, None]:
-    count = len(contour.triangles)
+    count, sides = contour.faces.shape
     mesh.vertices.add(len(contour.positions))
     yield
-    mesh.loops.add(3 * count)
+    mesh.loops.add(sides * count)
     yield
     mesh.polygons.add(count)
     yield
@@ -110,11 +110,11 @@ def _filling(mesh: bpy.types.Mesh, contour: Contour) -> Generator[None, None, No
         "vector", np.ascontiguousarray(contour.positions, np.float32).ravel()
     )
     yield
-    mesh.polygons.foreach_set("loop_start", np.arange(0, 3 * count, 3, dtype=np.int32))
+    mesh.polygons.foreach_set("loop_start", np.arange(0, sides * count, sides, dtype=np.int32))
     yield
     # Attributes take arrays as they are, a hundred times faster than loops and polygons do.
     mesh.attributes[".corner_vert"].data.foreach_set(
-        "value", np.ascontiguousarray(contour.triangles, np.int32).ravel()
+        "value", np.ascontiguousarray(contour.faces, np.int32).ravel()
     )
     yield
     for key in contour.materials:

@@ -57,11 +57,18 @@ class Place:
         return np.asarray(local / np.maximum(lengths, 1e-30), np.float32)
 
     def localize(
-        self, positions: NDArray[np.floating], triangles: NDArray[np.int32]
+        self, positions: NDArray[np.floating], faces: NDArray[np.int32]
     ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-        """Returns triangles in the object's space, right side out there too."""
+        """Returns triangles or quads in the object's space, right side out there too."""
         local = (positions.astype(np.float64) @ self.to_local.T).astype(np.float32)
-        return local, triangles[:, ::-1] if self.is_mirrored else triangles
+        return local, self.localize_corners(faces)
+
+    def localize_corners(self, corners: NDArray[np.int32]) -> NDArray[np.int32]:
+        """Returns what corners of triangles or quads have, in their order in the object's space.
+
+        Those that the diagonal of a quad is between stay first and third.
+        """
+        return corners[:, [2, 1, 0, 3][: corners.shape[1]]] if self.is_mirrored else corners
 
 
 def still_there(name: str) -> bpy.types.Object:

@@ -162,7 +162,7 @@ class Boolean:
                 bpy.data.objects.remove(obj)
         names = listed(self._names)
         return Outcome(
-            Sentence(_DONE[self._settings.operation], names, told(result)),
+            Sentence(_DONE[self._settings.operation], names, told(result, self._settings)),
             objects=[made.name],
             warnings=self._told.warnings,
             notes=self._told.notes,

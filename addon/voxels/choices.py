@@ -31,6 +31,14 @@ INTERPOLANTS = {
         "Linear", "Values interpolated between cells, as in marching cubes: shows ripples"
     ),
 }
+FACES = {
+    "triangles": Choice("Triangles", "Small at edges, and large where the surface allows"),
+    "quads": Choice(
+        "Quads",
+        "Quads alone, of the size of the cells, as for sculpting. Adaptivity and Clean Up do not "
+        "apply",
+    ),
+}
 OUTPUTS = {
     "mesh": Choice("Mesh", "Replace the object's mesh by the surface"),
     "volume": Choice(
@@ -87,6 +95,7 @@ class VoxelSettings:
         INTERPOLANTS,
         metavar="NAME",
     )
+    faces: str = one_of("triangles", "Faces", "What the surface is made of", FACES, metavar="NAME")
     adaptivity: float = number(
         0.05,
         "Adaptivity",
@@ -131,12 +140,12 @@ class VoxelSettings:
     use_materials: bool = switch(
         True,
         "Materials",
-        "Each triangle keeps the material of its source face",
+        "Each face keeps the material of its source face",
     )
     use_uv_maps: bool = switch(
         True,
         "UV Maps",
-        "Keep UV maps. No triangle crosses a seam",
+        "Keep UV maps. No face crosses a seam",
     )
     use_colors: bool = switch(
         True,

@@ -39,7 +39,10 @@ class VoxelProperties(PartedSettings):
             # The mesh of what is sculpted is replaced, by triangles as small as brushes need.
             return
         if self._makes_mesh():
-            layout.prop(self, "adaptivity")
+            layout.prop(self, "faces")
+            row = layout.row()
+            row.active = self.faces == "triangles"
+            row.prop(self, "adaptivity")
         self._draw_last(layout)
         if self._makes_mesh():
             self._draw_originals(layout)
@@ -72,7 +75,9 @@ class VoxelProperties(PartedSettings):
 
     def _draw_surface(self, layout: bpy.types.UILayout) -> None:
         layout.prop(self, "interpolant")
-        layout.prop(self, "use_cleanup")
+        row = layout.row()
+        row.active = self.faces == "triangles"
+        row.prop(self, "use_cleanup")
         row = layout.row(heading="Smooth Shading", align=True)
         row.prop(self, "use_smooth_shading", text="")
         part = row.row()

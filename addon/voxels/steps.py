@@ -20,6 +20,7 @@ from ..core.translations import marked
 from ..core.wording import Sentence, amount, counted, joined
 from .choices import VoxelSettings
 from .grid import Box, Grid, cells_crossed, choose_grid
+from .quads import face_edges
 from .shading import weighted_normals
 from .solid_meshes import SolidMesh, solid_mesh
 from .transfer import Source, Transfer, find_groups, find_labels, groups_of
@@ -29,6 +30,7 @@ _ALWAYS = 0.01
 _PER_TRIANGLE = 1e-6
 _VOXELIZING = 0.5e-6
 _CONTOURING = {"sharp": 6e-6, "plane": 4e-6, "occupancy": 2e-6, "linear": 2e-6}
+_QUADS = 4e-6
 _CLEANING = 12e-6
 _TRANSFERRING = 3e-6
 _WRITING = 1e-8
@@ -43,7 +45,7 @@ class Result:
     place: Place
     grid: Grid
     volume: float
-    triangles: int
+    faces: int
     contour: Contour | None = None
     staged: StagedFile | None = None
 
@@ -106,9 +108,11 @@ class Load:
         seconds = _ALWAYS + _PER_TRIANGLE * self.triangles + _VOXELIZING * crossed
         if getattr(settings, "output", "mesh") == "volume":
             return seconds + _WRITING * float(grid.cells) ** 3
-        per_cell = _CONTOURING[settings.interpolant]
-        if settings.use_cleanup:
-            per_cell += _CLEANING
+        per_cell = _QUADS
+        if settings.faces == "triangles":
+            per_cell = _CONTOURING[settings.interpolant]
+            if settings.use_cleanup:
+                per_cell += _CLEANING
         if self.transfers:
             per_cell += _TRANSFERRING
         return seconds + per_cell * crossed
@@ -158,7 +162,7 @@ def voxelized(
         origins = np.concatenate([own, np.full(added, -1, np.int64)])
         positions, triangles = closed.positions, closed.triangles
     told.tell(operand.name, solid, closed.open_edges)
-    if settings.adaptivity and _has_painted_colors(mesh):
+    if _adaptivity(settings) and _has_painted_colors(mesh):
         told.notes.append(Sentence(_SMALL, operand.name))
     tree = prefilter.voxelize(
         positions,
@@ -191,19 +195,19 @@ def contoured(
         ValueError: There is no surface.
     """
     middle = (_CONTOURED - VOXELIZED) / (1.0 - VOXELIZED)
-    positions, triangles, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
-    if len(triangles) == 0:
+    positions, faces, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
+    if len(faces) == 0:
         raise ValueError(
             Sentence(
                 "the result is empty: no cell is at least half full. Parts that are thinner "
                 "than a cell, or enclose nothing, disappear"
             )
         )
-    transfer = Transfer(sources, positions, triangles, origins, settings.threads)
+    transfer = Transfer(sources, positions, faces, origins, settings.threads)
     face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
     go_on(progress, 1.0)
-    local, turned = place.localize(positions, triangles)
-    edges = prefilter.mesh_edges(local, turned, threads=settings.threads)
+    local, turned = place.localize(positions, faces)
+    edges = face_edges(local, turned, settings.threads)
     contour = Contour(
         local,
         turned,
@@ -216,13 +220,22 @@ def contoured(
         edges,
         _shading(local, turned, edges, layers, settings),
     )
-    return Result(place, grid, tree.volume, len(triangles), contour)
+    return Result(place, grid, tree.volume, len(faces), contour)
 
 
 def _surface(
     tree: "prefilter.Octree", sources: list[Source], settings: VoxelSettings, progress: Progress
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64] | None]:
-    """Returns a surface, and the sources' triangles that its own come from where that is known."""
+    """Returns a surface, and the sources' triangles that its faces come from, where it is known."""
+    meshes = [source.for_contour for source in sources]
+    if settings.faces == "quads":
+        quads = tree.quad_contour(
+            interpolant=settings.interpolant,
+            sources=meshes if settings.interpolant == "sharp" else None,
+            progress=progress,
+            threads=settings.threads,
+        )
+        return quads.positions, quads.quads, quads.origins
     is_painted = any(_has_painted_colors(source.mesh) for source in sources)
     adaptivity = 0.0 if is_painted else settings.adaptivity
     if settings.interpolant != "sharp":
@@ -235,13 +248,17 @@ def _surface(
         )
         return (*found, None)
     traced = tree.traced_contour(
-        [source.for_contour for source in sources],
+        meshes,
         adaptivity=adaptivity,
         cleanup=settings.use_cleanup,
         progress=progress,
         threads=settings.threads,
     )
     return traced.positions, traced.triangles, traced.origins
+
+
+def _adaptivity(settings: VoxelSettings) -> float:
+    return settings.adaptivity if settings.faces == "triangles" else 0.0
 
 
 def _has_painted_colors(mesh: SolidMesh) -> bool:
@@ -260,7 +277,7 @@ def _shading(
     """Returns the normals that large triangles need, where the sources have none of their own."""
     is_closed = 2 * len(edges.vertices) == edges.corners.size and (edges.corners >= 0).all()
     has_normals = any(layer.kind == NORMALS for layer in layers)
-    if not (settings.adaptivity and settings.use_smooth_shading and is_closed) or has_normals:
+    if not (_adaptivity(settings) and settings.use_smooth_shading and is_closed) or has_normals:
         return None
     return weighted_normals(positions, triangles, edges, settings.smooth_angle)
 
@@ -312,11 +329,16 @@ class Told:
             self.notes.append(Sentence(text, name, edges))
 
 
-def told(result: Result) -> str:
+def faces_of(settings: VoxelSettings, count: int) -> Sentence:
+    """Returns how many faces there are, in words."""
+    return amount(count, "quad") if settings.faces == "quads" else amount(count, "triangle")
+
+
+def told(result: Result, settings: VoxelSettings) -> str:
     """Returns numbers about a result, in words."""
     size = length(result.grid.spacing)
     cells = Sentence("'{}' in {}³ cells of {}", result.place.name, result.grid.cells, size)
     if result.contour is None:
         return Sentence("{}: volume {}", cells, volume(result.volume))
-    triangles = amount(result.triangles, "triangle")
-    return Sentence("{}: {}, volume {}", cells, triangles, volume(result.volume))
+    faces = faces_of(settings, result.faces)
+    return Sentence("{}: {}, volume {}", cells, faces, volume(result.volume))

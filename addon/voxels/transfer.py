@@ -2,7 +2,7 @@
 
 """What a surface gets from the meshes that it was made of: materials, and values of their layers.
 
-Each triangle of the surface comes from one of a mesh. Values at its corners are those of the
+Each face of the surface comes from a triangle of a mesh. Values at its corners are those of the
 nearest points of triangles with the same label, so that none gets values of two objects, materials
 or charts of a UV map.
 """
@@ -18,6 +18,7 @@ from ..bridge.layers import COLOR, NORMALS, UV_MAP, VERTEX_GROUP, Layer, NewLaye
 from ..bridge.place import Place
 from ..bridge.solids import Positions
 from ..core.jobs import Progress, share
+from .quads import corners_of, each_half, halves
 from .solid_meshes import SolidMesh, join
 
 _LEAST_CHART = 4.0
@@ -106,37 +107,40 @@ class Transfer:
         self,
         sources: list[Source],
         positions: NDArray[np.float64],
-        triangles: NDArray[np.int32],
+        faces: NDArray[np.int32],
         origins: NDArray[np.int64] | None,
         threads: int,
     ) -> None:
-        """Keeps the surface; `origins` are of all sources' triangles, or None where not known."""
+        """Keeps the surface, of triangles or of quads.
+
+        `origins` are of all sources' triangles, or None where not known.
+        """
         self._mesh = join([source.mesh for source in sources])
         self._sources = sources
         self._positions = positions
-        self._triangles = triangles
+        self._faces = faces
         self._origins = origins
         self._threads = threads
 
     def run(
         self, place: Place, progress: Progress
     ) -> tuple[NDArray[np.int32] | None, list[NewLayer]]:
-        """Returns the materials of triangles, or None where there is one, and all layers.
+        """Returns the materials of faces, or None where there is one, and all layers.
 
         Layers are those of the surface in the object's own space.
         """
         mesh = self._mesh
         if not mesh.has_several_materials and not mesh.layers:
             material = int(mesh.materials[0])
-            return np.full(len(self._triangles), material, np.int32) if material else None, []
+            return np.full(len(self._faces), material, np.int32) if material else None, []
         origins = self._traced(share(progress, 0.0, 0.5))
         materials = mesh.material_of(origins) if mesh.has_several_materials else None
         if not mesh.layers:
             return materials, []
-        found = self._points(self._positions, self._triangles, origins, share(progress, 0.5, 0.9))
+        found = self._points(self._positions, self._faces, origins, share(progress, 0.5, 0.9))
         if any(layer.domain == "FACE" for layer in mesh.layers):
             # An origin is of the same label, and need not be near.
-            middles = self._positions[self._triangles].mean(axis=1)
+            middles = self._positions[self._faces].mean(axis=1)
             each = np.repeat(np.arange(len(middles), dtype=np.int32)[:, None], 3, axis=1)
             near = self._points(middles, each, origins, share(progress, 0.9, 1.0))
             origins = near.triangles.astype(np.int32)
@@ -145,24 +149,25 @@ class Transfer:
     def _points(
         self,
         positions: NDArray[np.float64],
-        triangles: NDArray[np.int32],
+        faces: NDArray[np.int32],
         origins: NDArray[np.int32],
         progress: Progress,
     ) -> "prefilter.CornerPoints":
-        return prefilter.corner_points(
+        found = prefilter.corner_points(
             positions,
-            triangles,
-            origins,
+            halves(faces),
+            each_half(origins, faces),
             self._mesh.positions,
             self._mesh.triangles,
             self._labels(),
             progress=progress,
             threads=self._threads,
         )
+        return replace(found, corners=corners_of(found.corners, faces))
 
     def _traced(self, progress: Progress) -> NDArray[np.int32]:
-        """Returns the triangle of the joined mesh that each one of the surface came from."""
-        count = len(self._triangles)
+        """Returns the triangle of the joined mesh that each face came from."""
+        count = len(self._faces)
         origins = np.full(count, -1, np.int64)
         if self._origins is not None:
             of_all, start = [], 0
@@ -176,7 +181,7 @@ class Transfer:
             origins = np.where(self._origins < 0, -1, joined[np.maximum(self._origins, 0)])
         lost = np.flatnonzero(origins < 0)
         if len(lost):
-            middles = self._positions[self._triangles[lost]].mean(axis=1)
+            middles = self._positions[self._faces[lost]].mean(axis=1)
             origins[lost] = prefilter.nearest_points(
                 middles,
                 self._mesh.positions,
@@ -210,7 +215,7 @@ class Transfer:
         has_rims = len(values) > len(self._positions)
         if _is_of_vertices(layer, has_rims=has_rims):
             return _new_layer(layer, "POINT", values[: len(self._positions)])
-        corners = found.corners[:, ::-1] if place.is_mirrored else found.corners
+        corners = place.localize_corners(found.corners)
         values = values[corners.ravel()]
         if layer.kind == NORMALS:
             values = place.localize_normals(self._facing(values))
@@ -218,8 +223,8 @@ class Transfer:
 
     def _facing(self, normals: NDArray[np.float32]) -> NDArray[np.float32]:
         """Returns normals of corners toward the outside: subtracted objects are inside out."""
-        a, b, c = np.moveaxis(self._positions[self._triangles], 1, 0)
-        outside = np.repeat(np.cross(b - a, c - a), 3, axis=0)
+        a, b, c = np.moveaxis(self._positions[self._faces[:, :3]], 1, 0)
+        outside = np.repeat(np.cross(b - a, c - a), self._faces.shape[1], axis=0)
         is_turned = np.einsum("ij,ij->i", outside, normals) < 0.0
         return np.where(is_turned[:, None], -normals, normals)
 

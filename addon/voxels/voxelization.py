@@ -17,11 +17,22 @@ from ..bridge.place import Place, naming, still_there
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
 from ..core.outcome import Outcome
-from ..core.wording import Sentence, amount, counted, listed
+from ..core.wording import Sentence, counted, listed
 from .choices import VoxelizeSettings
 from .grid import check_dense_memory, check_memory, choose_grid
 from .showing import Way, show
-from .steps import VOXELIZED, Load, Operand, Result, Told, contoured, told, voxelized, wanted
+from .steps import (
+    VOXELIZED,
+    Load,
+    Operand,
+    Result,
+    Told,
+    contoured,
+    faces_of,
+    told,
+    voxelized,
+    wanted,
+)
 
 
 class Voxelization:
@@ -123,15 +134,13 @@ class Voxelization:
         made = [
             self._show(obj, result).name for obj, result in zip(targets, self._results, strict=True)
         ]
-        lines = [told(result) for result in self._results]
+        lines = [told(result, self._settings) for result in self._results]
         notes = self._told.notes
         if len(lines) == 1:
             summary = Sentence("Voxelized {}", lines[0])
         else:
-            total = sum(result.triangles for result in self._results)
-            summary = Sentence(
-                "Voxelized {}: {}", counted(lines, "object"), amount(total, "triangle")
-            )
+            faces = faces_of(self._settings, sum(result.faces for result in self._results))
+            summary = Sentence("Voxelized {}: {}", counted(lines, "object"), faces)
             notes = [*lines, *notes]
         return Outcome(summary, objects=made, warnings=self._told.warnings, notes=notes)
 

@@ -7,6 +7,7 @@ settings = bpy.context.scene.prefilter_voxelize
 settings.resolution = "depth"
 settings.depth = 7
 settings.interpolant = "sharp"
+settings.faces = "triangles"
 settings.adaptivity = 0.5
 settings.use_close_holes = True
 settings.holes = "smooth"

@@ -7,5 +7,6 @@ settings = bpy.context.scene.prefilter_voxelize
 settings.resolution = "depth"
 settings.depth = 6
 settings.interpolant = "plane"
+settings.faces = "triangles"
 settings.adaptivity = 0.0
 settings.use_cleanup = False
