@@ -3,7 +3,7 @@
 """Surfaces to Blender: meshes with materials and colors, and the objects that show them."""
 
 import math
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Sequence, Set
 from dataclasses import dataclass, field
 
 import bpy
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ..core.wording import Sentence
 from . import kept_sources
 from .layers import COLOR, NORMALS, SHADED_KEY, UV_MAP, VERTEX_GROUP, NewLayer, write_layer
+from .marks import NewMarks, write_marks
 from .solids import SOLID_TYPES, MaterialKey
 
 _HAS_FREE_NORMALS = bpy.app.version >= (4, 5, 0)
@@ -38,6 +39,9 @@ class Contour:
         sharp_angle: Edges with a greater angle are sharp, in radians; None for flat faces.
         edges: Its edges; None has Blender find them, on the main thread.
         normals: (3 m, 3) float32 of corners, which follow from the triangles; None for Blender's.
+        marks: Of its edges and vertices, if `edges` are given.
+        locked_groups: The vertex groups whose weights are locked.
+        kept_modifiers: The modifiers that the object keeps.
         made: The mesh of it, while that is made and nothing shows it.
     """
 
@@ -51,6 +55,9 @@ class Contour:
     sharp_angle: float | None = None
     edges: "prefilter.MeshEdges | None" = None
     normals: NDArray[np.float32] | None = None
+    marks: Sequence[NewMarks] = ()
+    locked_groups: Set[str] = frozenset()
+    kept_modifiers: Set[str] = frozenset()
     made: list[bpy.types.Mesh] = field(default_factory=list)
 
 
@@ -168,6 +175,8 @@ def _add_edges(mesh: bpy.types.Mesh, contour: Contour) -> None:
     mesh.attributes[".edge_verts"].data.foreach_set("value", edges.vertices.ravel())
     mesh.attributes[".corner_edge"].data.foreach_set("value", edges.corners.ravel())
     mesh.update()
+    for marks in contour.marks:
+        write_marks(mesh, marks)
 
 
 def show_contour(
@@ -175,8 +184,8 @@ def show_contour(
 ) -> bpy.types.Object:
     """Has an object show a surface, and returns the object that does.
 
-    A mesh object gets a mesh of its own, and loses its modifiers and instances, which the surface
-    has in it. Any other object is hidden, and a new mesh object takes its place.
+    A mesh object gets a mesh of its own, and loses the modifiers and instances that the surface has
+    in it. Any other object is hidden, and a new mesh object takes its place.
 
     Args:
         obj: The object.
@@ -242,7 +251,9 @@ def _replace_mesh(obj: bpy.types.Object, contour: Contour, source: bpy.types.Obj
     """Gives an object a mesh, by the name of its own unless others have that too."""
     old = obj.data
     mesh = new_mesh(old.name, contour)
-    obj.modifiers.clear()
+    for modifier in list(obj.modifiers):
+        if modifier.name not in contour.kept_modifiers:
+            obj.modifiers.remove(modifier)
     obj.instance_type = "NONE"
     obj.data = mesh
     _add_groups(obj, contour)
@@ -273,6 +284,7 @@ def _add_groups(obj: bpy.types.Object, contour: Contour) -> None:
         if layer.kind != VERTEX_GROUP:
             continue
         group = obj.vertex_groups.new(name=layer.name)
+        group.lock_weight = layer.name in contour.locked_groups
         steps = np.round(np.clip(layer.values[:, 0], 0.0, 1.0) * _WEIGHT_STEPS).astype(np.int64)
         order = np.argsort(steps, kind="stable")
         found, starts = np.unique(steps[order], return_index=True)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from . import attributes
 from .layers import COLOR, UV_MAP, Layer, Triangles, Wanted, read_layers
+from .marks import Marks, read_marks
 
 FloatArray = NDArray[np.float64]
 Positions = NDArray[np.floating]
@@ -74,6 +75,9 @@ class Solid:
         materials: Those of the object's slots, in their order, then those of its instances.
         active: By kind, the names of the active color attribute and UV map.
         rendered: Likewise of those that renders use.
+        marks: Seams and weights of edges and vertices, in space.
+        locked_groups: The vertex groups whose weights are locked.
+        kept_modifiers: Those of its modifiers that it does not show.
     """
 
     name: str
@@ -81,6 +85,9 @@ class Solid:
     materials: list[MaterialKey | None] = field(default_factory=list)
     active: dict[str, str] = field(default_factory=dict)
     rendered: dict[str, str] = field(default_factory=dict)
+    marks: list[Marks] = field(default_factory=list)
+    locked_groups: set[str] = field(default_factory=set)
+    kept_modifiers: set[str] = field(default_factory=set)
 
 
 def frame_origin(obj: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> FloatArray:
@@ -112,10 +119,17 @@ def read_solids(
     }
     for obj, reader in readers.items():
         evaluated = obj.evaluated_get(depsgraph)
+        solid = reader.solid
+        solid.locked_groups.update(one.name for one in obj.vertex_groups if one.lock_weight)
+        # The details of Multires are the mesh's own.
+        solid.kept_modifiers.update(
+            one.name for one in obj.modifiers if not one.show_viewport and one.type != "MULTIRES"
+        )
         for slot in evaluated.material_slots:
-            reader.solid.materials.append(MaterialKey.of(slot.material))
+            solid.materials.append(MaterialKey.of(slot.material))
         if obj.type == "MESH" and (not obj.is_instancer or obj.show_instancer_for_viewport):
-            reader.read(evaluated, np.array(evaluated.matrix_world, np.float64))
+            matrix = np.array(evaluated.matrix_world, np.float64)
+            reader.read(evaluated, matrix, is_own=True)
     chosen = {obj for obj in objects if _is_seen_as_instances(obj)}
     for instance in depsgraph.object_instances if chosen else ():
         if not instance.is_instance or instance.object.type != "MESH":
@@ -149,6 +163,7 @@ class _LocalMesh:
     face_materials: NDArray[np.int32]
     slots: list[MaterialKey | None]
     layers: list[Layer]
+    marks: list[tuple[str, NDArray[np.int32], NDArray[np.float32]]]
 
 
 class _Reader:
@@ -162,13 +177,19 @@ class _Reader:
         self._known: dict[int, _LocalMesh] = {}
 
     def read(
-        self, shown: bpy.types.Object, matrix: FloatArray, *, is_made_up: bool = False
+        self,
+        shown: bpy.types.Object,
+        matrix: FloatArray,
+        *,
+        is_own: bool = False,
+        is_made_up: bool = False,
     ) -> None:
         """Adds the mesh that an evaluated object shows, at a matrix.
 
         Args:
             shown: The object.
             matrix: Where it is.
+            is_own: Whether it is that of the solid itself.
             is_made_up: Whether Blender made the object up for a mesh that no object has.
         """
         if len(shown.data.polygons) == 0:
@@ -184,7 +205,14 @@ class _Reader:
         if np.linalg.det(linear) < 0:
             triangles = triangles[:, ::-1]
             layers = [layer.turned() for layer in layers]
-        slots = np.array([self._slot(key) for key in local.slots] or [self._slot(None)], np.int32)
+        # An object's own slots are the first ones, as many as they are.
+        if is_own:
+            found = list(range(len(local.slots)))
+        else:
+            found = [self._slot(key) for key in local.slots]
+        slots = np.array(found or [self._slot(None)], np.int32)
+        for name, ends, values in local.marks:
+            self.solid.marks.append(Marks(name, positions[ends], values))
         self.solid.parts.append(Part(positions, triangles, slots[local.face_materials], layers))
 
     def _slot(self, key: MaterialKey | None) -> int:
@@ -214,8 +242,9 @@ class _Reader:
         elif faces is not None:
             materials = materials[faces]
         layers = list(read_layers(shown, mesh, Triangles(triangles, corners, faces), self._wanted))
+        marks = list(read_marks(mesh)) if self._wanted.attributes else []
         self._note_active(mesh)
-        return _LocalMesh(positions, triangles, materials, slots, layers)
+        return _LocalMesh(positions, triangles, materials, slots, layers, marks)
 
     def _check_finite(self, positions: NDArray[np.float32]) -> None:
         # Sums in double precision do not overflow, and hold no memory.

@@ -189,18 +189,30 @@ class Boolean:
 
     def _merged(self) -> solids.Solid:
         merged = solids.Solid(self._place.name, [], self._read[0].materials)
+        merged.kept_modifiers |= self._read[0].kept_modifiers
         for solid in reversed(self._read):
+            merged.marks += solid.marks
+            merged.locked_groups |= solid.locked_groups
             merged.active |= solid.active
             merged.rendered |= solid.rendered
         return merged
 
 
 def _sharing_materials(read: list[solids.Solid], operands: list[Operand]) -> list[Operand]:
-    """Returns the operands with materials numbered as the first one's, which gets the others'."""
+    """Returns the operands with materials numbered as the first one's, which gets the others'.
+
+    Slots with one material stay as many as they are in the operand that has the most.
+    """
     shared = read[0].materials
     numbers = []
     for solid in read:
-        shared.extend(key for key in dict.fromkeys(solid.materials) if key not in shared)
-        numbers.append(np.array([shared.index(key) for key in solid.materials], np.int32))
+        found: list[int] = []
+        for key in solid.materials:
+            free = [i for i, other in enumerate(shared) if other == key and i not in found]
+            if not free:
+                free = [len(shared)]
+                shared.append(key)
+            found.append(free[0])
+        numbers.append(np.array(found, np.int32))
     meshes = renumbered([one.mesh for one in operands], numbers)
     return [replace(one, mesh=mesh) for one, mesh in zip(operands, meshes, strict=True)]

@@ -19,6 +19,7 @@ from ..core.jobs import Progress, go_on, share
 from ..core.translations import marked
 from ..core.wording import Sentence, amount, counted, joined
 from .choices import VoxelSettings
+from .edge_marks import carried_marks
 from .grid import Box, Grid, cells_crossed, choose_grid
 from .quads import face_edges
 from .shading import weighted_normals
@@ -219,6 +220,9 @@ def contoured(
         settings.smooth_angle if settings.use_smooth_shading else None,
         edges,
         _shading(local, turned, edges, layers, settings),
+        carried_marks(solid.marks, positions, edges, grid.spacing, settings.threads),
+        solid.locked_groups,
+        solid.kept_modifiers,
     )
     return Result(place, grid, tree.volume, len(faces), contour)
 

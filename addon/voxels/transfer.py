@@ -236,7 +236,7 @@ def _is_of_vertices(layer: Layer, *, has_rims: bool) -> bool:
     if layer.kind == VERTEX_GROUP:
         return True
     if layer.kind == COLOR:
-        return not has_rims
+        return layer.domain == "POINT" and not has_rims
     return layer.domain == "POINT"
 
 

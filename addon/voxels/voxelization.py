@@ -12,6 +12,7 @@ import bpy
 from mathutils import Matrix
 
 from ..bridge import new_meshes, solids
+from ..bridge.armatures import at_rest
 from ..bridge.files import staging, volumes
 from ..bridge.place import Place, naming, still_there
 from ..core.jobs import Progress, go_on, parts, share
@@ -86,10 +87,13 @@ class Voxelization:
         if not is_volume:
             for obj in objects:
                 new_meshes.check_editable(obj)
-        places = [Place.of(obj, depsgraph, into) for obj in objects]
-        found = solids.read_solids(
-            objects, depsgraph, [place.origin for place in places], wanted(settings)
-        )
+        # They deform the result as long as that has weights.
+        rigged = objects if settings.use_attributes and not is_volume else []
+        with at_rest(rigged, depsgraph):
+            places = [Place.of(obj, depsgraph, into) for obj in objects]
+            found = solids.read_solids(
+                objects, depsgraph, [place.origin for place in places], wanted(settings)
+            )
         read = cls(list(zip(places, found, strict=True)), settings, [])
         read._leave_out_empty()
         if is_volume:

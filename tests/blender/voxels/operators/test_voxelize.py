@@ -274,9 +274,10 @@ def test_colors_are_interpolated():
         colors.data[i].color = ((x + 1) / 2, (y + 1) / 2, (z + 1) / 2, 1.0)
     assert voxelize() == {"FINISHED"}
     made = ball.data.color_attributes["Paint"]
-    assert made.domain == "POINT"
+    assert made.domain == "CORNER"
     found = np.array([entry.color[:3] for entry in made.data])
-    places = np.array([vertex.co.normalized() for vertex in ball.data.vertices])
+    vertices = [ball.data.vertices[loop.vertex_index] for loop in ball.data.loops]
+    places = np.array([vertex.co.normalized() for vertex in vertices])
     np.testing.assert_allclose(found, (places + 1) / 2, atol=0.03)
     assert ball.data.color_attributes.active_color.name == "Paint"
 
