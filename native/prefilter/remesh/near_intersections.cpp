@@ -42,12 +42,13 @@ class CubeSet {
     if (is_full_) return true;
     Cube low;
     Cube high;
-    if (!(find_range(corners, &low, &high) <= kMostCubes)) return true;
+    const double count = find_range(corners, &low, &high);
+    if (count == 1.0) return has(low[0], low[1], low[2]);
+    if (!(count <= kMostCubes)) return true;
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const std::uint64_t bit = bit_of(x, y, z);
-          if (((bits_[bit / 64] >> (bit % 64)) & 1U) != 0) return true;
+          if (has(x, y, z)) return true;
         }
       }
     }
@@ -65,13 +66,18 @@ class CubeSet {
     for (std::size_t a = 0; a < 3; ++a) {
       const double least = std::min({corners[0][a], corners[1][a], corners[2][a]});
       const double most = std::max({corners[0][a], corners[1][a], corners[2][a]});
-      const double from = std::clamp(std::floor(least * per_side_), -kMost, kMost);
-      const double to = std::clamp(std::floor(most * per_side_), -kMost, kMost);
-      (*low)[a] = static_cast<std::int64_t>(from);
-      (*high)[a] = static_cast<std::int64_t>(to);
+      const double from = std::floor(std::max(least * per_side_, -kMost));
+      const double to = std::floor(std::min(most * per_side_, kMost));
+      (*low)[a] = static_cast<std::int64_t>(std::min(from, kMost));
+      (*high)[a] = static_cast<std::int64_t>(std::max(to, -kMost));
       count *= to - from + 1.0;
     }
     return count;
+  }
+
+  bool has(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    const std::uint64_t bit = bit_of(x, y, z);
+    return ((bits_[bit / 64] >> (bit % 64)) & 1U) != 0;
   }
 
   std::uint64_t bit_of(std::int64_t x, std::int64_t y, std::int64_t z) const {
@@ -105,9 +111,13 @@ NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t fir
   for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
     if (mesh.triangles[t][0] < 0) continue;
     if (!is_any && is_suspect[t] == 0 && !cubes.meets(mesh.corners(t))) continue;
+    near.numbers.push_back(static_cast<std::uint32_t>(t));
+  }
+  near.triangles.reserve(near.numbers.size());
+  near.is_suspect.reserve(near.numbers.size());
+  for (const std::uint32_t t : near.numbers) {
     near.triangles.push_back(mesh.triangles[t]);
     near.is_suspect.push_back(is_suspect[t]);
-    near.numbers.push_back(static_cast<std::uint32_t>(t));
   }
   return near;
 }

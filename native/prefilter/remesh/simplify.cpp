@@ -16,6 +16,7 @@
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
 #include "prefilter/remesh/facets.h"
+#include "prefilter/remesh/folds.h"
 #include "prefilter/remesh/intersections.h"
 #include "prefilter/remesh/patch.h"
 #include "prefilter/remesh/patch_division.h"
@@ -135,7 +136,8 @@ void freeze(const std::vector<Triangle>& triangles, const PatchDivision& divisio
   }
 }
 
-// The patches whose new triangles meet others, or that these meet, and the vertices of both.
+// The patches whose new triangles meet others, or fold, or that these meet, and the vertices of
+// both.
 struct Meetings {
   std::vector<std::int64_t> patches;
   std::vector<std::uint8_t> is_bad;
@@ -146,7 +148,9 @@ Meetings find_meetings(const std::vector<Vector3>& positions, const std::vector<
   std::vector<Triangle> triangles;
   std::vector<std::uint8_t> is_suspect;
   std::vector<std::uint32_t> patches;
+  std::vector<std::int32_t> labels;
   for (std::size_t i = 0; i < parts.size(); ++i) {
+    labels.insert(labels.end(), parts[i].facets.labels.begin(), parts[i].facets.labels.end());
     const std::vector<Triangle>& some = parts[i].facets.triangles;
     triangles.insert(triangles.end(), some.begin(), some.end());
     patches.resize(triangles.size(), static_cast<std::uint32_t>(i));
@@ -154,7 +158,11 @@ Meetings find_meetings(const std::vector<Vector3>& positions, const std::vector<
   }
   Meetings found;
   if (std::find(is_suspect.begin(), is_suspect.end(), 1) == is_suspect.end()) return found;
-  const auto pairs = intersecting_triangles({positions, triangles}, is_suspect, progress, threads);
+  auto pairs = intersecting_triangles({positions, triangles}, is_suspect, progress, threads);
+  for (const auto& fold : folded_pairs({positions, triangles}, 0, is_suspect)) {
+    // Between regions there are edges of the shape, of any angle.
+    if (labels.empty() || labels[fold[0]] == labels[fold[1]]) pairs.push_back(fold);
+  }
   if (pairs.empty()) return found;
   found.is_bad.assign(positions.size(), 0);
   std::vector<std::uint8_t> is_again(parts.size(), 0);

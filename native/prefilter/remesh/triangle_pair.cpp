@@ -178,6 +178,19 @@ bool do_strangers_intersect(const Points& a, const Points& b) {
   return do_any_edges_meet(a, b, b_sides) || do_any_edges_meet(b, a, a_sides);
 }
 
+// Whether a plane along an edge of a triangle, but for a little, has the other one beyond it; both
+// have a corner at the origin.
+bool are_beside_an_edge(const Vector3& a1, const Vector3& a2, const Vector3& b1,
+                        const Vector3& b2) {
+  constexpr double kTilt = 1e-9;
+  const Vector3 normal = cross(a1, a2);
+  const auto is_beside = [&](const Vector3& outward, const Vector3& edge) {
+    const double tilt = kTilt * std::sqrt(dot(outward, outward) / dot(edge, edge));
+    return separates(outward - tilt * edge, a1, a2, b1, b2);
+  };
+  return is_beside(cross(a1, normal), a1) || is_beside(cross(normal, a2), a2);
+}
+
 // Of triangles that share a corner: what they have in common is convex, so that more than the
 // corner reaches the opposite edge of one of them.
 bool do_meet_at_a_corner(const Points& a, std::size_t a_place, const Points& b,
@@ -202,6 +215,8 @@ bool do_meet_at_a_corner(const Points& a, std::size_t a_place, const Points& b,
     direction[i] = other_middle[i] * scale - middle[i] * other_scale;
   }
   if (separates(direction, a1_out, a2_out, b1_out, b2_out)) return false;
+  if (are_beside_an_edge(a1_out, a2_out, b1_out, b2_out)) return false;
+  if (are_beside_an_edge(b1_out, b2_out, a1_out, a2_out)) return false;
   const int b1_side = plane_side(corner, a1, a2, b1);
   const int b2_side = plane_side(corner, a1, a2, b2);
   if (b1_side * b2_side > 0) return false;

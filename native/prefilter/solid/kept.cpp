@@ -18,6 +18,18 @@ constexpr double kMarginCells = 3.0;
 constexpr std::array<double, 5> kSteps = {0.0, -0.75, 0.75, -1.5, 1.5};
 constexpr double kSampleCells = 2.0;
 
+// Whether some of the leaves along a normal are inside, and some outside.
+bool has_both_sides(const Octree& octree, const Vector3& point, const Vector3& normal) {
+  bool is_any_inside = false;
+  bool is_any_outside = false;
+  for (const double step : kSteps) {
+    const bool is_inside = value_at(octree, point + step * normal) >= 0.5F;
+    (is_inside ? is_any_inside : is_any_outside) = true;
+    if (is_any_inside && is_any_outside) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Octree empty_tree_around(const Box& box, double cell) {
@@ -42,43 +54,25 @@ std::vector<float> kept_shares(const MeshView<std::int32_t>& mesh, const Octree&
                                const Progress& progress, int threads) {
   const double cell = octree.cell_size(0, octree.depth);
   std::vector<float> shares(mesh.triangles.size(), 0.0F);
-  parallel_ranges(
-      static_cast<std::int64_t>(shares.size()), kRowsPerTask, threads, progress,
-      [&](std::int64_t begin, std::int64_t end) {
-        std::vector<Vector3> points;
-        std::vector<std::size_t> starts;
-        for (std::int64_t t = begin; t < end; ++t) {
-          starts.push_back(points.size());
-          const std::array<Vector3, 3> corners = mesh.corners(static_cast<std::size_t>(t));
-          Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-          const double size = length(normal);
-          if (size > 0.0) {
-            for (double& x : normal) x *= cell / size;
-          }
-          for_samples(corners, kSampleCells * cell, [&](const Vector3& point) {
-            for (const double step : kSteps) {
-              points.push_back({point[0] + step * normal[0], point[1] + step * normal[1],
-                                point[2] + step * normal[2]});
-            }
-          });
-        }
-        starts.push_back(points.size());
-        const std::vector<float> values = values_at(octree, points, 1);
-        for (std::int64_t t = begin; t < end; ++t) {
-          const std::size_t first = starts[static_cast<std::size_t>(t - begin)];
-          const std::size_t last = starts[static_cast<std::size_t>(t - begin) + 1];
-          std::size_t kept = 0;
-          for (std::size_t i = first; i < last; i += kSteps.size()) {
-            const auto own = std::span(values).subspan(i, kSteps.size());
-            const auto is_inside = [](float value) { return value >= 0.5F; };
-            const auto inside = std::count_if(own.begin(), own.end(), is_inside);
-            if (inside > 0 && inside < static_cast<std::ptrdiff_t>(kSteps.size())) ++kept;
-          }
-          shares[static_cast<std::size_t>(t)] =
-              static_cast<float>(kept * kSteps.size()) /
-              static_cast<float>(std::max<std::size_t>(last - first, 1));
-        }
-      });
+  parallel_ranges(static_cast<std::int64_t>(shares.size()), kRowsPerTask, threads, progress,
+                  [&](std::int64_t begin, std::int64_t end) {
+                    for (auto t = static_cast<std::size_t>(begin);
+                         t < static_cast<std::size_t>(end); ++t) {
+                      const std::array<Vector3, 3> corners = mesh.corners(t);
+                      Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+                      const double size = length(normal);
+                      if (size > 0.0) {
+                        for (double& x : normal) x *= cell / size;
+                      }
+                      int count = 0;
+                      int kept = 0;
+                      for_samples(corners, kSampleCells * cell, [&](const Vector3& point) {
+                        ++count;
+                        if (has_both_sides(octree, point, normal)) ++kept;
+                      });
+                      shares[t] = static_cast<float>(kept) / static_cast<float>(std::max(count, 1));
+                    }
+                  });
   return shares;
 }
 

@@ -55,28 +55,6 @@ double integral(const CellTree& tree, std::size_t level, std::size_t block, cons
   return sum;
 }
 
-// The value of the leaf that holds a point.
-float value_at(const Octree& octree, const Vector3& point) {
-  constexpr int kCells = 1 << kMaxTreeDepth;
-  std::array<int, 3> cell{};
-  for (int a = 0; a < 3; ++a) {
-    const double x = (point[a] - octree.bounds.low[a]) / octree.bounds.size(a);
-    if (!(x >= 0.0 && x <= 1.0)) return 0.0F;
-    cell[a] = std::min(static_cast<int>(x * kCells), kCells - 1);
-  }
-  const CellTree& tree = octree.cells;
-  if (tree.levels.empty()) return tree.root;
-  std::size_t block = 0;
-  for (std::size_t k = 0;; ++k) {
-    const int bit = kMaxTreeDepth - 1 - static_cast<int>(k);
-    const int o =
-        ((cell[0] >> bit) & 1) | (((cell[1] >> bit) & 1) << 1) | (((cell[2] >> bit) & 1) << 2);
-    const TreeLevel& level = tree.levels[k];
-    if (!level.is_split(block, o)) return level.blocks[block][o];
-    block = level.child(block, o);
-  }
-}
-
 template <typename T, typename ValueOf>
 std::vector<T> for_points(std::span<const Vector3> points, int threads, const ValueOf& value_of) {
   std::vector<T> values(points.size());
@@ -130,6 +108,27 @@ class DenseCells {
   std::vector<float>& values_;
 };
 }  // namespace
+
+float value_at(const Octree& octree, const Vector3& point) {
+  constexpr int kCells = 1 << kMaxTreeDepth;
+  std::array<int, 3> cell{};
+  for (int a = 0; a < 3; ++a) {
+    const double x = (point[a] - octree.bounds.low[a]) / octree.bounds.size(a);
+    if (!(x >= 0.0 && x <= 1.0)) return 0.0F;
+    cell[a] = std::min(static_cast<int>(x * kCells), kCells - 1);
+  }
+  const CellTree& tree = octree.cells;
+  if (tree.levels.empty()) return tree.root;
+  std::size_t block = 0;
+  for (std::size_t k = 0;; ++k) {
+    const int bit = kMaxTreeDepth - 1 - static_cast<int>(k);
+    const int o =
+        ((cell[0] >> bit) & 1) | (((cell[1] >> bit) & 1) << 1) | (((cell[2] >> bit) & 1) << 2);
+    const TreeLevel& level = tree.levels[k];
+    if (!level.is_split(block, o)) return level.blocks[block][o];
+    block = level.child(block, o);
+  }
+}
 
 double volume(const Octree& octree) {
   // Summed in double: the root's mean is a float.

@@ -19,7 +19,10 @@ double volume(const Octree& octree);
 /// sides of the box must be positive; throws Error otherwise.
 double box_occupancy(const Octree& octree, const Box& box);
 
-/// The occupancies of the leaves that hold the points; 0 outside of the bounds.
+/// The occupancy of the leaf that holds a point; 0 outside of the bounds.
+float value_at(const Octree& octree, const Vector3& point);
+
+/// Those of several points.
 std::vector<float> values_at(const Octree& octree, std::span<const Vector3> points, int threads);
 
 /// Inside (1), outside (-1) or near the surface (0), as the occupancy of the leaf that holds a
