@@ -13,6 +13,8 @@ constexpr double kFeatureReach = 5.0;
 constexpr double kRegionReach = 5.0;
 constexpr double kOnSurface = 0.05;
 constexpr double kCornerReach = 1.0;
+constexpr double kEndReach = 1.5;
+constexpr double kFarCorner = 3.0;
 constexpr double kSettled = 1e-7;
 constexpr int kMostSteps = 12;
 
@@ -67,7 +69,7 @@ std::optional<Vector3> FeaturePlaces::place(const Vector3& start, const Labels& 
   if (labels.size() < 3) return edge_near(start, labels);
   std::optional<Vector3> found = corner_near(start, labels);
   if (!found) found = meeting_of(start, labels);
-  if (found && length(*found - start) < kCornerReach * cell_) return found;
+  if (found && length(*found - start) < kFarCorner * cell_) return found;
   // Three regions run side by side here.
   const std::optional<Vector3> edge = sharpest_edge_near(start, labels);
   return edge ? edge : found;
@@ -78,7 +80,10 @@ std::optional<Vector3> FeaturePlaces::edge_near(const Vector3& start, const Labe
       surface_.nearest_border(start, kFeatureReach * cell_, labels.front(), labels.back());
   if (!found && labels.size() > 1) found = meeting_of(start, labels);
   // Beyond the end of an edge that runs into another.
-  if (!found && labels.size() > 1) found = corner_near(start, labels);
+  if (!found && labels.size() > 1) {
+    found = corner_near(start, labels);
+    if (found && length(*found - start) > kEndReach * cell_) found.reset();
+  }
   return found;
 }
 
