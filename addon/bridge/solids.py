@@ -57,12 +57,16 @@ class Part:
         triangles: (m, 3) int32; counter-clockwise from outside, mirrored or not.
         materials: (m,) int32, indices in the materials of the solid; or (1,) for one of all.
         layers: Its attributes.
+        faces: (m,) int32, the face that each triangle is cut from; None if all are triangles.
+        is_own: Whether it is the mesh of the object itself, and no instance.
     """
 
     positions: Positions
     triangles: NDArray[np.int32]
     materials: NDArray[np.int32]
     layers: list[Layer]
+    faces: NDArray[np.int32] | None = None
+    is_own: bool = False
 
 
 @dataclass
@@ -164,6 +168,7 @@ class _LocalMesh:
     slots: list[MaterialKey | None]
     layers: list[Layer]
     marks: list[tuple[str, NDArray[np.int32], NDArray[np.float32]]]
+    faces: NDArray[np.int32] | None
 
 
 class _Reader:
@@ -213,7 +218,10 @@ class _Reader:
         slots = np.array(found or [self._slot(None)], np.int32)
         for name, ends, values in local.marks:
             self.solid.marks.append(Marks(name, positions[ends], values))
-        self.solid.parts.append(Part(positions, triangles, slots[local.face_materials], layers))
+        materials = slots[local.face_materials]
+        self.solid.parts.append(
+            Part(positions, triangles, materials, layers, local.faces if is_own else None, is_own)
+        )
 
     def _slot(self, key: MaterialKey | None) -> int:
         if key not in self.solid.materials:
@@ -244,7 +252,7 @@ class _Reader:
         layers = list(read_layers(shown, mesh, Triangles(triangles, corners, faces), self._wanted))
         marks = list(read_marks(mesh)) if self._wanted.attributes else []
         self._note_active(mesh)
-        return _LocalMesh(positions, triangles, materials, slots, layers, marks)
+        return _LocalMesh(positions, triangles, materials, slots, layers, marks, faces)
 
     def _check_finite(self, positions: NDArray[np.float32]) -> None:
         # Sums in double precision do not overflow, and hold no memory.

@@ -4,9 +4,14 @@
 
 from ..core.keys import Key
 from ..core.registration import registration
-from . import operators, panel, properties
+from . import operators, panel, properties, report_panel
 
-MANUAL = {"voxels": ("voxelize", "boolean", "update_voxels", "voxel_result", "operand")}
+MANUAL = {
+    "voxels": (
+        *("voxelize", "boolean", "update_voxels", "voxel_result", "operand"),
+        *("select_found", "found", "found_places"),
+    )
+}
 """The pages about its operators and settings; see `manual.Manual`."""
 KEYS = (
     Key("voxelize", "V", "Object Mode"),
@@ -15,4 +20,4 @@ KEYS = (
 )
 """What its operators have at first; see `keys.Keys`."""
 
-register, unregister = registration(properties, operators, panel)
+register, unregister = registration(properties, operators, panel, report_panel)

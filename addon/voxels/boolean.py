@@ -152,7 +152,8 @@ class Boolean:
         assert result.contour is not None
         active = still_there(result.place.name)
         others = [still_there(name) for name in self._names]
-        made = show(active, result, self._settings, others, self.way)
+        report = self._told.sum_up(result, self._told.findings, self._settings)
+        made = show(active, result, self._settings, others, report, self.way)
         for obj in others if self.way != Way.AGAIN else ():
             if self._settings.operands == "hide":
                 obj.hide_set(True)

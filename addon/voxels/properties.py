@@ -10,6 +10,8 @@ from bpy.props import (
     BoolProperty,
     CollectionProperty,
     FloatProperty,
+    IntProperty,
+    IntVectorProperty,
     PointerProperty,
     StringProperty,
 )
@@ -204,9 +206,44 @@ class PREFILTER_PG_voxel_result(VoxelProperties, bpy.types.PropertyGroup):
         """Draws nothing: it is kept."""
 
 
+class PREFILTER_PG_found_places(bpy.types.PropertyGroup):
+    """Places of one kind, on one mesh.
+
+    Attributes:
+        kind: As `findings` names it.
+        operand: The object; empty for what the result was.
+        count: How many faces or edges.
+        rows: Which.
+    """
+
+    kind: StringProperty()
+    operand: StringProperty()
+    count: IntProperty()
+    rows: StringProperty()
+
+
+class PREFILTER_PG_found(bpy.types.PropertyGroup):
+    """What an object keeps of the report on what it was made of; see `places`.
+
+    Attributes:
+        is_there: Whether the rest is.
+        parts: Before and after.
+        genus: Likewise; -1 if it is not known.
+        advice: Which depth keeps what is thin, in the language of the user.
+        places: Where.
+    """
+
+    is_there: BoolProperty()
+    parts: IntVectorProperty(size=2)
+    genus: IntVectorProperty(size=2)
+    advice: StringProperty()
+    places: CollectionProperty(type=PREFILTER_PG_found_places)
+
+
 register, unregister = registration(
     state(bpy.types.Scene, VOXELIZE.group, PREFILTER_PG_voxelize),
     state(bpy.types.Scene, BOOLEAN.group, PREFILTER_PG_boolean),
-    classes(preset_menu.panel(VOXELIZE), PREFILTER_PG_operand),
+    classes(preset_menu.panel(VOXELIZE), PREFILTER_PG_operand, PREFILTER_PG_found_places),
     state(bpy.types.Object, "prefilter_voxels", PREFILTER_PG_voxel_result),
+    state(bpy.types.Object, "prefilter_found", PREFILTER_PG_found),
 )

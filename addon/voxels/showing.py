@@ -9,8 +9,9 @@ import bpy
 import numpy as np
 
 from ..bridge import kept_sources, new_meshes
-from . import memory
+from . import memory, places
 from .choices import VoxelSettings
+from .findings import Report
 from .steps import Result
 
 
@@ -32,10 +33,12 @@ def show(
     result: Result,
     settings: VoxelSettings,
     operands: Sequence[bpy.types.Object],
+    report: Report,
     way: Way,
 ) -> bpy.types.Object:
     """Has an object show a surface, and returns the object that does."""
     assert result.contour is not None
+    assert result.topology is not None
     cell = result.grid.spacing * float(abs(np.linalg.det(result.place.to_local)) ** (1.0 / 3.0))
     if way == Way.AGAIN:
         made = new_meshes.show_again(obj, result.contour)
@@ -48,6 +51,8 @@ def show(
         made = new_meshes.show_contour(obj, result.contour, keeps_source=keeps)
     if way == Way.SCULPTED:
         made.prefilter_voxels.cell = cell
+        made.prefilter_found.is_there = False
     else:
+        places.keep(made, report, result.topology)
         memory.remember(made, settings, operands, cell)
     return made

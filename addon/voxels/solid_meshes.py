@@ -15,6 +15,26 @@ IntArray = NDArray[np.int32]
 
 
 @dataclass(frozen=True)
+class OwnMesh:
+    """The mesh of an object, and not of its instances, in a joined one.
+
+    Attributes:
+        vertices: How many there are.
+        triangles: Likewise.
+        faces: The face of each triangle; None if all are triangles.
+    """
+
+    vertices: int
+    triangles: int
+    faces: IntArray | None
+
+    def faces_of(self, triangles: NDArray[np.integer]) -> IntArray:
+        """Returns the faces of some triangles of the joined mesh, each once, in order."""
+        known = triangles[triangles < self.triangles]
+        return np.unique(known if self.faces is None else self.faces[known]).astype(np.int32)
+
+
+@dataclass(frozen=True)
 class SolidMesh:
     """The parts of solids as one mesh.
 
@@ -23,12 +43,14 @@ class SolidMesh:
         triangles: (m, 3) int32, counter-clockwise from outside.
         materials: (m,) int32, or (1,) for one of all.
         layers: Its attributes; parts that lack one are white there, or 0.
+        own: What comes first, if that is the mesh of an object itself.
     """
 
     positions: Positions
     triangles: IntArray
     materials: IntArray
     layers: list[Layer] = field(default_factory=list)
+    own: "OwnMesh | None" = None
 
     @property
     def has_several_materials(self) -> bool:
@@ -49,9 +71,14 @@ class SolidMesh:
 
 def solid_mesh(parts: list[Part]) -> SolidMesh:
     """Joins the parts of a solid."""
-    return join(
+    mesh = join(
         [SolidMesh(one.positions, one.triangles, one.materials, one.layers) for one in parts]
     )
+    first = parts[0]
+    if not first.is_own:
+        return mesh
+    own = OwnMesh(len(first.positions), len(first.triangles), first.faces)
+    return replace(mesh, own=own)
 
 
 def join(meshes: list[SolidMesh]) -> SolidMesh:

@@ -20,8 +20,9 @@ from ..core.translations import marked
 from ..core.wording import Sentence, amount, counted, joined
 from .choices import VoxelSettings
 from .edge_marks import carried_marks
+from .findings import Findings, Report, Walls, advice_on, find, line, walls_in
 from .grid import Box, Grid, cells_crossed, choose_grid
-from .quads import face_edges
+from .quads import face_edges, halves
 from .shading import weighted_normals
 from .solid_meshes import SolidMesh, solid_mesh
 from .transfer import Source, Transfer, find_groups, find_labels, groups_of
@@ -49,6 +50,10 @@ class Result:
     faces: int
     contour: Contour | None = None
     staged: StagedFile | None = None
+    topology: tuple[int, int | None] | None = None
+    """The parts of the surface, and its genus."""
+    walls: tuple[Walls | None, ...] = ()
+    """Those that fell apart."""
 
 
 @dataclass(frozen=True)
@@ -163,6 +168,7 @@ def voxelized(
         origins = np.concatenate([own, np.full(added, -1, np.int64)])
         positions, triangles = closed.positions, closed.triangles
     told.tell(operand.name, solid, closed.open_edges)
+    holes = closed.holes - closed.left_open if settings.use_close_holes else 0
     if _adaptivity(settings) and _has_painted_colors(mesh):
         told.notes.append(Sentence(_SMALL, operand.name))
     tree = prefilter.voxelize(
@@ -174,6 +180,7 @@ def voxelized(
         progress=share(progress, 0.3, 1.0),
         threads=settings.threads,
     )
+    told.findings.append(find(operand.name, mesh, solid, origins, tree, holes, settings.threads))
     if getattr(settings, "output", "mesh") == "volume":
         return tree, Source(mesh, positions, triangles, origins)
     labels = find_labels(mesh, settings.threads)
@@ -224,7 +231,31 @@ def contoured(
         solid.locked_groups,
         solid.kept_modifiers,
     )
-    return Result(place, grid, tree.volume, len(faces), contour)
+    topology = prefilter.mesh_topology(
+        positions, halves(faces), weld=False, threads=settings.threads
+    )
+    return Result(
+        place,
+        grid,
+        tree.volume,
+        len(faces),
+        contour,
+        topology=(topology.parts, topology.genus),
+        walls=_apart(tree, topology.parts, sources, settings),
+    )
+
+
+def _apart(
+    tree: "prefilter.Octree", parts: int, sources: list[Source], settings: VoxelSettings
+) -> tuple[Walls | None, ...]:
+    """Returns the walls of sources that fell apart as nothing was to thicken them."""
+    if settings.thickness or parts == 1:
+        return ()
+    meshes = [(source.positions, source.triangles) for source in sources]
+    before = (prefilter.mesh_topology(*mesh, threads=settings.threads).parts for mesh in meshes)
+    if parts <= sum(before):
+        return ()
+    return tuple(walls_in(tree, *mesh, settings.threads) for mesh in meshes)
 
 
 def _surface(
@@ -287,7 +318,6 @@ def _shading(
 
 
 _SMALL = marked("object '{}' has painted colors, for which triangles stay small")
-_THICKENED = marked("parts thinner than a cell that got the minimum thickness: {}")
 _FILLED = marked("parts filled where the outside does not reach: {}")
 _TURNED = marked("faces flipped to agree with their neighbors: {}")
 _WELDED = marked("vertices welded: {}")
@@ -301,6 +331,18 @@ class Told:
         """Starts with nothing."""
         self.warnings: list[str] = []
         self.notes: list[str] = []
+        self.findings: list[Findings] = []
+
+    def sum_up(
+        self, result: Result, findings: Sequence[Findings], settings: VoxelSettings
+    ) -> Report:
+        """Adds a line of what became of meshes: a warning if parts are lost."""
+        walls = [*(one.walls for one in findings), *result.walls]
+        by_depth = settings.resolution == "depth"
+        found = Report(findings, advice_on(walls, result.grid, length, by_depth=by_depth))
+        summed = line(result.place.name, found, result.topology)
+        (self.warnings if any(one.lost for one in findings) else self.notes).append(summed)
+        return found
 
     def tell(self, name: str, solid: "prefilter.SolidMesh", open_edges: int) -> None:
         """Adds what was found in a mesh.
@@ -318,7 +360,6 @@ class Told:
             text = "object '{}': {} of {} parts were inside out; their normals were flipped"
             self.warnings.append(Sentence(text, name, turned, solid.parts))
         rows = [
-            (solid.thickened_parts, _THICKENED),
             (solid.filled_parts, _FILLED),
             (solid.turned_faces, _TURNED),
             (solid.welded_vertices, _WELDED),

@@ -20,6 +20,7 @@ from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.wording import Sentence, counted, listed
 from .choices import VoxelizeSettings
+from .findings import Report
 from .grid import check_dense_memory, check_memory, choose_grid
 from .showing import Way, show
 from .steps import (
@@ -135,9 +136,10 @@ class Voxelization:
         """
         targets = [still_there(result.place.name) for result in self._results]
         staging.commit_all([result.staged for result in self._results if result.staged is not None])
-        made = [
-            self._show(obj, result).name for obj, result in zip(targets, self._results, strict=True)
-        ]
+        made = []
+        for obj, result, found in zip(targets, self._results, self._told.findings, strict=True):
+            report = self._told.sum_up(result, [found], self._settings)
+            made.append(self._show(obj, result, report).name)
         lines = [told(result, self._settings) for result in self._results]
         notes = self._told.notes
         if len(lines) == 1:
@@ -192,9 +194,9 @@ class Voxelization:
             tree, grid, [source], solid, place, self._settings, share(progress, VOXELIZED, 1.0)
         )
 
-    def _show(self, obj: bpy.types.Object, result: Result) -> bpy.types.Object:
+    def _show(self, obj: bpy.types.Object, result: Result, report: Report) -> bpy.types.Object:
         if result.contour is not None:
-            return show(obj, result, self._settings, (), self.way)
+            return show(obj, result, self._settings, (), report, self.way)
         assert result.staged is not None
         volume = volumes.new_volume(obj.name, result.staged.target)
         made = new_meshes.new_object_beside(obj, volume, ".volume")

@@ -30,7 +30,7 @@ SUBJECTS = {
 
 def of_the_tab():
     """Returns the panels of the tab that always are the same."""
-    names = ("nothing", "drawn", "voxel_result", "welcome", "before_after", "queue")
+    names = ("nothing", "drawn", "voxel_result", "welcome", "before_after", "queue", "voxel_report")
     names += ("queue_of_images",)
     others = {f"PREFILTER_PT_{name}" for name in names}
     return [

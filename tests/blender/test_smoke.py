@@ -234,6 +234,17 @@ def test_drop_points(tmp_path):
     assert "Torus" in bpy.data.objects
 
 
+def test_select_found():
+    assert not bpy.ops.prefilter.select_found.poll()
+    cube = bodies.cube()
+    bodies.without_faces(cube, 1)
+    assert bpy.ops.prefilter.voxelize(depth=4) == FINISHED
+    assert [place.kind for place in cube.prefilter_found.places] == ["OPEN"]
+    assert bpy.ops.prefilter.select_found(index=0) == FINISHED
+    assert bpy.context.mode == "EDIT_MESH"
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+
 def test_update_voxels():
     assert not bpy.ops.prefilter.update_voxels.poll()
     bodies.cube()

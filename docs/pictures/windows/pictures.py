@@ -73,6 +73,7 @@ WHOLE = {
     "voxelize": Photograph(
         ("PREFILTER_PT_voxelize_sidebar", "PREFILTER_PT_boolean_sidebar"), "voxels"
     ),
+    "report": Photograph(("PREFILTER_PT_voxel_report",), "report"),
     "rasterize": Photograph(("PREFILTER_PT_rasterize", "PREFILTER_PT_drawn"), "shapes"),
     "plane": Photograph(("PREFILTER_PT_plane",), "plane", opened=("PREFILTER_PT_plane",)),
     "on_model": Photograph(

@@ -341,6 +341,34 @@ def show_voxels(shown: Photograph) -> Iterator[float]:
     yield from open_tab(area)
 
 
+def show_report(shown: Photograph) -> Iterator[float]:
+    """A lamp whose thin wires are selected from the report, with the tab in the sidebar."""
+    del shown
+    bpy.ops.mesh.primitive_cylinder_add(vertices=48, radius=0.35, depth=0.5, location=(0, 0, -1.3))
+    base = bpy.context.object
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=12, ring_count=7)
+    guard = bpy.context.object
+    guard.name = "Lamp"
+    wires = guard.modifiers.new("Wires", "WIREFRAME")
+    wires.thickness = 0.05
+    bpy.ops.object.modifier_apply(modifier="Wires")
+    base.select_set(True)
+    bpy.ops.object.join()
+    bpy.ops.prefilter.voxelize(depth=6)
+    area = largest_area()
+    view = plain_view(area)
+    view.view_rotation = Euler((1.2, 0.0, 0.4)).to_quaternion()
+    view.view_location, view.view_distance = (0.5, 0.0, -0.25), 4.8
+    view.view_perspective = "ORTHO"
+    overlay = area.spaces.active.overlay
+    overlay.show_overlays, overlay.show_floor = True, False
+    overlay.show_axis_x = overlay.show_axis_y = overlay.show_cursor = False
+    overlay.show_object_origins = False
+    yield from open_tab(area)
+    with bpy.context.temp_override(area=area, region=area.regions[-1]):
+        bpy.ops.prefilter.select_found(index=0)
+
+
 def show_shapes(shown: Photograph) -> Iterator[float]:
     """A text and a ring with the tab in the sidebar, and their image beside it."""
     del shown

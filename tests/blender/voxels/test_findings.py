@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What the report says of meshes: each number against what the mesh was built with."""
+
+import importlib
+
+import bmesh
+import bodies
+import bpy
+import pytest
+
+DONE = {"FINISHED"}
+PACKAGE = "bl_ext.user_default.prefilter"
+
+
+def outcome(*objects, **options):
+    """Returns what voxelizing ends with."""
+    choices = importlib.import_module(f"{PACKAGE}.voxels.choices")
+    voxelization = importlib.import_module(f"{PACKAGE}.voxels.voxelization")
+    command = importlib.import_module(f"{PACKAGE}.core.command")
+    settings = choices.VoxelizeSettings(**{"depth": 6, **options})
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    return command.done(voxelization.Voxelization.read(list(objects), settings, depsgraph))
+
+
+def rows(line):
+    """Returns what follows the name of the object."""
+    return line.split(": ", 1)[1].split("; ")
+
+
+def the_line(found):
+    (line,) = [one for one in [*found.warnings, *found.notes] if "parts: " in one]
+    return rows(line)
+
+
+def cells_of(obj, depth):
+    """Returns the side of a cell: the grid leaves two cells on all sides."""
+    return max(obj.dimensions) / (2**depth - 4)
+
+
+def plate(thickness, depth=6):
+    """Returns a plate, so many cells thick."""
+    obj = bodies.cube("Plate", size=1.0)
+    side = 10.0
+    cell = side / (2**depth - 4)
+    for vertex in obj.data.vertices:
+        x, y, z = vertex.co
+        vertex.co = (side * x, side * y, thickness * cell * z)
+    bpy.context.view_layer.update()
+    assert cells_of(obj, depth) == pytest.approx(cell)
+    return obj
+
+
+def torus():
+    assert bpy.ops.mesh.primitive_torus_add() == DONE
+    return bpy.context.active_object
+
+
+def test_parts_and_genus_of_what_is_whole():
+    assert the_line(outcome(bodies.sphere())) == [
+        "parts: 1 before, 1 after",
+        "genus: 0 before, 0 after",
+    ]
+    assert the_line(outcome(torus())) == ["parts: 1 before, 1 after", "genus: 1 before, 1 after"]
+
+
+@pytest.mark.parametrize(("thickness", "depth"), [(1.0, 7), (0.5, 8), (0.3, 9)])
+def test_a_thin_plate(thickness, depth):
+    line = the_line(outcome(plate(thickness)))
+    assert line[:2] == ["parts: 1 before, 1 after", "genus: 0 before, 0 after"]
+    assert line[2] == "faces thickened: 2"
+    assert line[3] == f"walls of {thickness} cells: depth {depth} keeps them"
+    assert len(line) == 4
+    bpy.ops.object.select_all(action="DESELECT")
+    assert len(the_line(outcome(plate(thickness), depth=depth))) == 2
+
+
+def test_which_voxel_size_keeps_them():
+    obj = plate(1.0)
+    line = the_line(outcome(obj, resolution="size", voxel_size=0.16))
+    assert line[3].startswith("walls of 1.0 cells: voxel size 8 cm keeps")
+
+
+def test_sheets():
+    assert bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4) == DONE
+    line = the_line(outcome(bpy.context.active_object))
+    assert line == [
+        *("parts: 1 before, 1 after", "genus: 0 before, 0 after"),
+        *("faces thickened: 16", "sheets: no depth keeps them"),
+    ]
+
+
+def test_holes_and_lost_parts():
+    obj = bodies.sphere(subdivisions=4)
+
+    def change(bm):
+        bm.faces.ensure_lookup_table()
+        # Two of an icosphere's triangles have no vertex in common.
+        first = bm.faces[0]
+        other = next(f for f in bm.faces if not {*f.verts} & {*first.verts})
+        bmesh.ops.delete(bm, geom=[first, other], context="FACES_ONLY")
+        for k in range(3):
+            made = bmesh.ops.create_cube(bm, size=0.004)
+            bmesh.ops.translate(bm, verts=made["verts"], vec=(0.9, 0.9, 0.3 * k))
+
+    bodies.changed(obj, change)
+    line = the_line(outcome(obj))
+    assert "holes closed: 2" in line
+    assert "parts: 4 before, 4 after" in line
+    assert not any("lost" in row for row in line)
+    found = outcome(obj)  # The result of before, whole.
+    assert the_line(found)[0] == "parts: 4 before, 4 after"
+
+
+def test_parts_are_lost_without_a_thickness():
+    obj = bodies.sphere(subdivisions=3)
+
+    def change(bm):
+        for k in range(3):
+            made = bmesh.ops.create_cube(bm, size=0.01)
+            bmesh.ops.translate(bm, verts=made["verts"], vec=(0.9, 0.9, 0.3 * k))
+
+    bodies.changed(obj, change)
+    found = outcome(obj, thickness=0.0)
+    assert any("parts lost: 3" in one for one in found.warnings)
+    line = the_line(found)
+    assert line[0] == "parts: 4 before, 1 after"
+    assert line[-1].startswith("walls of 0.3 cells: depth ")
+
+
+def test_what_falls_apart():
+    line = the_line(outcome(plate(1.0), thickness=0.0, interpolant="plane"))
+    before, after = (int(word) for word in line[0].split() if word.isdigit())
+    if after > before:
+        assert line[-1] == "walls of 1.0 cells: depth 7 keeps them"
+
+
+def test_a_boolean_sums_up():
+    other = torus()
+    cube = bodies.cube(size=0.4)
+    other.select_set(True)
+    choices = importlib.import_module(f"{PACKAGE}.voxels.choices")
+    boolean = importlib.import_module(f"{PACKAGE}.voxels.boolean")
+    command = importlib.import_module(f"{PACKAGE}.core.command")
+    settings = choices.BooleanSettings(depth=6, operation="union")
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    found = command.done(boolean.Boolean.read(cube, [other], settings, depsgraph))
+    assert the_line(found) == ["parts: 2 before, 2 after", "genus: 1 before, 1 after"]
+
+
+def test_volumes_have_no_surface(tmp_path):
+    volumes = importlib.import_module(f"{PACKAGE}.bridge.files.volumes")
+    if not volumes.is_available():
+        pytest.skip("no module for OpenVDB")
+    found = outcome(plate(1.0), output="volume", filepath=str(tmp_path / "out.vdb"))
+    (line,) = [one for one in found.notes if "thickened" in one]
+    assert rows(line)[0] == "faces thickened: 2"
