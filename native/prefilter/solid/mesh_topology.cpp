@@ -206,7 +206,8 @@ std::size_t count_loops(const std::vector<std::uint64_t>& edges, const Counts& c
   return count;
 }
 
-// For each vertex the first of a border that is at its place; itself for those of no border.
+// For each vertex the first of a border that is at its place; itself for those of no border. Empty
+// where that is so of all.
 std::vector<std::int32_t> welded_borders(const PositionView& positions, const Counts& counts,
                                          const Progress& progress, int threads) {
   std::vector<std::uint32_t> ends;
@@ -220,6 +221,11 @@ std::vector<std::int32_t> welded_borders(const PositionView& positions, const Co
   places.reserve(ends.size());
   for (const std::uint32_t v : ends) places.push_back(positions[v]);
   const std::vector<std::int32_t> firsts = first_at_each_place(places, progress, threads);
+  bool is_same = true;
+  for (std::size_t i = 0; i < firsts.size(); ++i) {
+    is_same = is_same && firsts[i] == static_cast<std::int32_t>(i);
+  }
+  if (is_same) return {};
   std::vector<std::int32_t> names(positions.size());
   std::iota(names.begin(), names.end(), 0);
   for (std::size_t i = 0; i < ends.size(); ++i) {
@@ -274,8 +280,10 @@ MeshTopology mesh_topology(const InputMesh& mesh, bool welds, const Progress& pr
   Counts counts = counted(&parts, progress.part(0.0, 0.5));
   if (welds && !counts.borders.empty()) {
     names = welded_borders(mesh.positions, counts, progress.part(0.5, 0.6), threads);
-    parts = DisjointSets<std::uint32_t>(count);
-    counts = counted(&parts, progress.part(0.6, 0.9));
+    if (!names.empty()) {
+      parts = DisjointSets<std::uint32_t>(count);
+      counts = counted(&parts, progress.part(0.6, 0.9));
+    }
   }
   MeshTopology result = topology_of({mesh.triangles, names}, counts, std::move(parts));
   progress.report(1.0);

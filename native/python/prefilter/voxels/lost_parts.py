@@ -27,10 +27,16 @@ def find_lost_parts(
     """Returns the parts that have no triangle within a cell of an octree's contour, or inside."""
     low, high = (np.array(corner) for corner in octree.bounds)
     cell = float(((high - low) / 2.0**octree.depth).max())
-    is_open = np.zeros(max(int(part_of.max(initial=-1)) + 1, 1), bool)  # Not known to be kept.
-    is_open[part_of[part_of >= 0]] = True
     # Most parts are decided by their first triangles.
-    first = np.flatnonzero(np.diff(np.maximum.accumulate(part_of), prepend=-1) > 0)
+    highest = np.maximum.accumulate(part_of)
+    first = np.flatnonzero(highest[1:] > highest[:-1]) + 1
+    if len(part_of) and part_of[0] >= 0:
+        first = np.insert(first, 0, 0)
+    count = int(highest[-1]) + 1 if len(highest) else 0
+    is_open = np.ones(max(count, 1), bool)  # Not known to be kept.
+    if len(first) < max(count, 1):
+        is_open[:] = False
+        is_open[part_of[part_of >= 0]] = True
     for is_first in (True, False):
         chosen = first if is_first else _triangles_of(is_open, part_of)
         corners = positions[triangles[chosen]].astype(np.float64)
