@@ -77,6 +77,8 @@ def test_blend_in_place(blend):
     result = run("voxelize", blend, blend, "--object", "Hole", "--voxel-size", 0.1)
     assert result.returncode == 0, result.stderr
     assert "'Hole' in 32³ cells of 10 cm" in result.stdout
+    line = "object 'Hole': parts: 1 before, 1 after; genus: 0 before, 0 after"
+    assert line in result.stdout
     objects = loaded(blend)
     assert len(objects["Body"].data.vertices) == 8
     assert bodies.is_closed(objects["Hole"])
