@@ -21,6 +21,12 @@ def joined(*meshes):
     )
 
 
+def merged(positions, triangles):
+    """Returns a mesh in which vertices at one place are one."""
+    places, names = np.unique(positions, axis=0, return_inverse=True)
+    return places, names.reshape(-1)[triangles]
+
+
 def single_edges(triangles):
     """Returns the edges that one triangle has, of those with three corners."""
     counts = {}
@@ -67,9 +73,8 @@ STRIP = [[i % 10, (i + 1) % 10, (i + 2) % 10] for i in range(10)]
 MOEBIUS = [[i % 9, (i + 1) % 9, (i + 2) % 9] for i in range(9)]
 
 
-TWO = joined(shape(BOX), shape(BOX, (1, 1, 0)))  # with an edge in common
-PLACES, NAMES = np.unique(TWO[0], axis=0, return_inverse=True)
-AT_EDGE = (PLACES, NAMES.reshape(-1)[TWO[1]])
+AT_VERTEX = merged(*joined(shape(BOX), shape(BOX, (1, 1, 1))))
+AT_EDGE = merged(*joined(shape(BOX), shape(BOX, (1, 1, 0))))
 
 
 @pytest.mark.parametrize(
@@ -80,7 +85,7 @@ AT_EDGE = (PLACES, NAMES.reshape(-1)[TWO[1]])
         (shape(grating(1.0).solid), 1, 16, 0),
         (shape(plate(1.0).solid), 1, 0, 0),
         (joined(shape(TORUS), shape(BOX, (9, 0, 0)), shape(TORUS, (20, 0, 0))), 3, 2, 0),
-        (joined(shape(BOX), shape(BOX, (1, 1, 1))), 2, 0, 0),  # touching at a vertex
+        (AT_VERTEX, 2, 0, 0),
         (AT_EDGE, 1, None, 0),
         ((BOX.positions, BOX.triangles[2:]), 1, 0, 1),
         ((TORUS.positions, TORUS.triangles[1:]), 1, 1, 1),
@@ -129,7 +134,7 @@ def test_parts_are_what_a_walk_reaches(seed):
 def test_vertices_where_surfaces_meet_are_several():
     # A ring of boxes, each of which touches the next at a vertex: no handle.
     boxes = [(0, 0, 0), (1, 1, 1), (2, 0, 2), (1, -1, 1)]
-    found = prefilter.mesh_topology(*joined(*(shape(BOX, at) for at in boxes)))
+    found = prefilter.mesh_topology(*merged(*joined(*(shape(BOX, at) for at in boxes))))
     assert (found.parts, found.genus, found.borders) == (4, 0, 0)
 
 
