@@ -13,13 +13,14 @@ import prefilter
 from ..bridge import new_meshes, solids
 from ..bridge.kept_sources import keep_more
 from ..bridge.place import Place, naming, still_there
+from ..bridge.units import length
 from ..core.jobs import Progress, go_on, parts, share
 from ..core.options import check
 from ..core.outcome import Outcome
 from ..core.translations import marked
 from ..core.wording import Sentence, listed
 from .choices import BooleanSettings
-from .grid import Box, check_memory, choose_grid
+from .grid import Box, Grid, check_memory, choose_grid
 from .showing import Way, show
 from .steps import VOXELIZED, Load, Operand, Result, Told, contoured, told, voxelized, wanted
 from .transfer import renumbered
@@ -105,7 +106,7 @@ class Boolean:
         with naming(self._place.name):
             box = self._box([one.measures.box for one in operands])
             self.loads = [Load.of(box, operands)]
-            grid = choose_grid(box, self._settings)
+            grid = self._grid(box)
             check_memory(grid, sum(one.measures.area for one in operands))
         trees, sources = [], []
         steps = parts(share(progress, 0.0, VOXELIZED), len(operands))
@@ -173,6 +174,18 @@ class Boolean:
         """Removes a mesh that nothing shows."""
         if self._result is not None and self._result.contour is not None:
             new_meshes.forget_mesh(self._result.contour)
+
+    def _grid(self, box: Box) -> Grid:
+        """Returns the cells: of a depth where those that were to be kept are too many."""
+        settings = self._settings
+        try:
+            return choose_grid(box, settings)
+        except ValueError:
+            if not (settings.use_keep_resolution and settings.resolution == "size"):
+                raise
+        cells = length(settings.voxel_size)
+        self._told.notes.append(Sentence("too many cells of {}: the depth counts", cells))
+        return choose_grid(box, replace(settings, resolution="depth"))
 
     def _box(self, boxes: list[Box]) -> Box:
         if self._settings.operation == "union":

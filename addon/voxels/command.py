@@ -3,6 +3,7 @@
 """The commands `voxelize` and `boolean`."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -127,6 +128,8 @@ def _boolean(options: argparse.Namespace) -> None:
     settings = _settings(options, BOOLEAN, BooleanSettings, operands="hide")
     if not (options.preset or given(options, BooleanSettings).keys() & set(_RESOLUTIONS)):
         settings = memory.as_before(operands[0], settings)
+    else:
+        settings = replace(settings, use_keep_resolution=False)
     work = Boolean.read(operands[0], operands[1:], settings, bpy.context.evaluated_depsgraph_get())
     outcome = command.done(work)
     scenes.save(target, outcome.objects)

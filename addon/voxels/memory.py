@@ -86,10 +86,13 @@ def cell_of(obj: bpy.types.Object | None) -> float:
 
 
 def as_before(obj: bpy.types.Object | None, settings: BooleanSettings) -> BooleanSettings:
-    """Returns settings with cells as large as those that an object was made in, if in any."""
+    """Returns settings with cells as large as those that an object was made in, if in any.
+
+    Where there would be too many, the other resolution counts.
+    """
     cell = cell_of(obj)
     if not (cell > 0.0 and settings.use_keep_resolution):
-        return settings
+        return replace(settings, use_keep_resolution=False)
     return replace(settings, resolution="size", voxel_size=cell)
 
 

@@ -181,7 +181,7 @@ class PREFILTER_PG_voxel_result(VoxelProperties, bpy.types.PropertyGroup):
 
     __annotations__ = (
         properties(VoxelizeSettings, {"output", "filepath"})
-        | properties(BooleanSettings, {"operands", "use_keep_resolution"})
+        | properties(BooleanSettings, {"operands"})
         | {
             "is_made": BoolProperty(),
             "is_boolean": BoolProperty(),
@@ -195,7 +195,7 @@ class PREFILTER_PG_voxel_result(VoxelProperties, bpy.types.PropertyGroup):
     def to_settings(self) -> VoxelizeSettings | BooleanSettings:
         """Returns the settings."""
         if self.is_boolean:
-            return values(self, BooleanSettings, {"operands", "use_keep_resolution"})
+            return values(self, BooleanSettings, {"operands"})
         return values(self, VoxelizeSettings, {"output", "filepath"})
 
     def _draw_first(self, layout: bpy.types.UILayout) -> None:

@@ -76,6 +76,8 @@ class PREFILTER_OT_boolean(BooleanProperties, VoxelOperator, bpy.types.Operator)
 
         active = context.active_object
         others = [obj for obj in chosen_solids(context) if obj != active]
+        if self._is_resolution_said and not self.options.is_repeat:
+            self.use_keep_resolution = False
         settings = self.to_settings()
         if not self._is_resolution_said:
             settings = as_before(active, settings)

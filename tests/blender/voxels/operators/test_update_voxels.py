@@ -287,3 +287,17 @@ def test_a_boolean_keeps_the_cells_of_its_first_operand(capfd):
         bpy.ops.prefilter.boolean(operands="keep", **options)
         assert cells(capfd) != "50 cm"
         bpy.ops.prefilter.boolean(operands="keep", resolution="size", voxel_size=0.5)
+
+
+def test_too_many_cells_to_keep(capfd):
+    """Then the depth counts, also when it is made again; cells that are asked for are refused."""
+    cube = voxelized(resolution="size", voxel_size=0.125)
+    bodies.cube("Wide", size=600, location=(0, 0, 301))
+    cube.select_set(True)
+    bpy.context.view_layer.objects.active = cube
+    with pytest.raises(RuntimeError, match=r"Voxel Size: 0\.125 would need"):
+        bpy.ops.prefilter.boolean(operation="union", resolution="size", voxel_size=0.125)
+    assert bpy.ops.prefilter.boolean(operation="union") == DONE
+    assert "too many cells of 12.5 cm: the depth counts" in capfd.readouterr().out
+    update()
+    assert "too many cells of 12.5 cm: the depth counts" in capfd.readouterr().out
