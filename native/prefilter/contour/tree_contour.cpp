@@ -20,6 +20,7 @@
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/sharp_vertices.h"
 #include "prefilter/contour/sharpen.h"
+#include "prefilter/contour/smooth_stairs.h"
 #include "prefilter/contour/surface_vertices.h"
 #include "prefilter/contour/thickened_cells.h"
 #include "prefilter/contour/unfold.h"
@@ -314,6 +315,10 @@ FacetedMesh sharpened(LoopedMesh looped, const EdgeSource& edges, const Progress
   return mesh;
 }
 
+double least_cell(const RootFrame& frame, int depth) {
+  return std::min({frame.cell(0, depth), frame.cell(1, depth), frame.cell(2, depth)});
+}
+
 // The full contour, in the frame. With `sources_of_labels`, all triangles get labels, of each of
 // which that is a triangle.
 FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
@@ -336,16 +341,25 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
     edges.crossings.fitted = vertices.positions();
     edges.crossings.middle = halfway(tree, frame, vertices);
   }
+  const double cell = least_cell(frame, cells.depth());
   if (!is_sharp) {
     LoopedMesh looped = make_loops(tree, nullptr, progress.part(0.6, 0.85), threads, &vertices);
     if (fits) unfold({}, &edges.crossings, &looped);
-    return {std::move(looped.positions), std::move(looped.triangles), {}, {}};
+    FacetedMesh mesh = {std::move(looped.positions), std::move(looped.triangles), {}, {}};
+    if (fits && options.thickened != nullptr) {
+      const ThickenedCells thickened(options.thickened, frame);
+      const auto is_thickened = [&](const Vector3& p) { return thickened.holds(p); };
+      smooth_stairs(cell, is_thickened, progress.part(0.85, 1.0), threads, &mesh);
+    }
+    return mesh;
   }
   sample_edges(tree, frame, options.thickened, progress.part(0.5, 0.6), threads, &vertices, &edges);
   const Division division = {*edges.surface(), edges.samples};
   LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
   unfold(edges.samples, &edges.crossings, &looped);
-  FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 1.0), threads);
+  FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 0.97), threads);
+  const auto anywhere = [](const Vector3&) { return true; };
+  smooth_stairs(cell, anywhere, progress.part(0.97, 1.0), threads, &mesh);
   if (sources_of_labels != nullptr && edges.meshes) {
     *sources_of_labels = trace_labels(*edges.meshes, threads, &mesh);
   }
@@ -371,8 +385,7 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   std::vector<std::int64_t> sources_of_labels;
   FacetedMesh mesh = cut_tree(cells, frame, options, options.progress.part(0.0, cleaning),
                               origins != nullptr ? &sources_of_labels : nullptr);
-  double cell = frame.cell(0, cells.depth());
-  for (int a = 1; a < 3; ++a) cell = std::min(cell, frame.cell(a, cells.depth()));
+  double cell = least_cell(frame, cells.depth());
   // Where rounding may let triangles meet, what changes them has to see the positions that come
   // out.
   const bool places_first = frame.unit() > kSmallest && frame.unit() < 1.0 / kSmallest;
