@@ -10,6 +10,7 @@
 
 #include "prefilter/spatial/triangle_point.h"
 #include "prefilter/voxel/combine.h"
+#include "prefilter/voxel/pinholes.h"
 #include "prefilter/voxel/thin_places.h"
 #include "prefilter/wavelet/leaf_surface.h"
 #include "prefilter/wavelet/tree_builder.h"
@@ -230,7 +231,8 @@ void thicken(const RootTriangles& mesh, double thickness, const Progress& progre
   added.bounds = octree->bounds;
   added.depth = octree->depth;
   added.cells = build_tree(rule.root(), octree->depth, rule, progress.part(0.6, 0.9), threads);
-  *octree = combine(*octree, added, SetOperation::kUnion, progress.part(0.9, 1.0), threads);
+  *octree = combine(*octree, added, SetOperation::kUnion, progress.part(0.9, 0.99), threads);
+  fill_pinholes(added.cells, octree->depth, progress.part(0.99, 1.0), threads, &octree->cells);
   octree->thickened = std::move(added.cells);
   octree->thin = thin_triangles(pieces);
 }
