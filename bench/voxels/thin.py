@@ -16,8 +16,6 @@ from bench.report import Report, add_json_option
 from bench.voxels.measures import folds, topology
 from bench.voxels.thin_shapes import SHAPES, posed
 
-DEPTH = 6
-CELLS = 2**DEPTH
 THICKNESSES = (0.02, 0.3, 0.8, 1.0, 1.2, 1.4, 1.6, 2.0)
 LEAST = 1.5
 
@@ -38,13 +36,13 @@ def main() -> None:
             found = [0, 0, 0]
             volume = 0.0
             for seed in range(options.poses):
-                solid = posed(shape, seed, CELLS)
+                solid = posed(shape, seed, 2**shape.depth)
                 for k, least in enumerate((0.0, LEAST)):
                     tree = prefilter.voxelize(
                         solid.positions,
                         solid.triangles,
-                        depth=DEPTH,
-                        bounds=((0, 0, 0), (CELLS,) * 3),
+                        depth=shape.depth,
+                        bounds=((0, 0, 0), (2**shape.depth,) * 3),
                         thickness=least,
                     )
                     positions, triangles = tree.contour(
@@ -69,7 +67,7 @@ def main() -> None:
     )
     report.verdict(wrong == 0, f"parts and holes are the shape's: {wrong} of all are not")
     report.verdict(folded == 0, f"no edge turns by more than 120 degrees: {folded} do")
-    report.write(options.json)
+    report.finish(options.json)
 
 
 if __name__ == "__main__":
