@@ -14,15 +14,16 @@ from bench.voxels.thin_shapes import SHAPES, plate, posed, ring, rod
 DEPTH = 6
 CELLS = 2**DEPTH
 LEAST = 1.5
-BOUNDS = (np.zeros(3), np.full(3, float(CELLS)))
 
 
-def voxelized(solid: Solid, thickness: float = LEAST, **options) -> prefilter.Octree:
+def voxelized(
+    solid: Solid, thickness: float = LEAST, depth: int = DEPTH, **options
+) -> prefilter.Octree:
     return prefilter.voxelize(
         solid.positions,
         solid.triangles,
-        depth=DEPTH,
-        bounds=BOUNDS,
+        depth=depth,
+        bounds=(np.zeros(3), np.full(3, 2.0**depth)),
         thickness=thickness,
         **options,
     )
@@ -38,8 +39,8 @@ def surface(solid: Solid, tree: prefilter.Octree, **options):
 def test_parts_and_holes_are_those_of_the_shape(name, thickness):
     shape = SHAPES[name](thickness)
     for seed in range(3):
-        solid = posed(shape, seed, CELLS)
-        positions, triangles = surface(solid, voxelized(solid))
+        solid = posed(shape, seed, 2**shape.depth)
+        positions, triangles = surface(solid, voxelized(solid, depth=shape.depth))
         assert topology(triangles) == (shape.parts, shape.genus)
         assert surface_faults(positions, triangles).none
         assert folds(positions, triangles) == 0
