@@ -378,9 +378,10 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const
                    int threads) {
   const double cell = surface.cell();
   const MeshView<std::int32_t> view{layered.mesh.positions, layered.mesh.triangles};
-  Pairs pairs =
-      near_intersections(view, layered.near, may_intersect(layered, crossings, is_suspect),
-                         kCubeCells * cell, progress, threads);
+  const double side = kCubeCells * cell;
+  const Flags may_meet =
+      where_rough(view, layered.near, may_intersect(layered, crossings, is_suspect), side);
+  Pairs pairs = near_intersections(view, layered.near, may_meet, side, progress, threads);
   for (const auto& fold : folded_pairs(view, 0, is_suspect)) {
     if (are_at_edge(view, layered.mesh.labels, fold, surface, samples, turned)) continue;
     pairs.push_back(fold);

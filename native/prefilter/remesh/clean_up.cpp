@@ -261,8 +261,9 @@ class CrossingSearch {
 
   std::vector<std::uint32_t> find_among(const FacetedMesh& mesh, const Flags& is_suspect,
                                         const Progress& progress) const {
+    const MeshView<std::int32_t> all{mesh.positions, mesh.triangles};
     const NearTriangles near =
-        near_triangles({mesh.positions, mesh.triangles}, 0, is_suspect, side_);
+        near_triangles(all, 0, where_rough(all, 0, is_suspect, side_), side_);
     std::vector<std::uint32_t> crossing;
     const auto add = [&](const std::vector<std::array<std::uint32_t, 2>>& pairs) {
       for (const auto& pair : pairs) {

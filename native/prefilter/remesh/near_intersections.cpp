@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Cubes with suspects are bits by a hash: where two share one, only more triangles are looked at.
+//
+// Where all normals in a cube are within 60 degrees of one direction a mesh does not meet itself.
+// It came, piece by piece with the same borders, of one that does not: seen along that direction
+// each piece has all of its triangles one way around, so that none covers another. Two sheets that
+// face the same way have one between them that does not, which is in the cube, too.
 #include "prefilter/remesh/near_intersections.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 #include "prefilter/remesh/intersections.h"
 
@@ -15,40 +21,26 @@ namespace {
 using Cube = std::array<std::int64_t, 3>;
 using Corners = std::array<Vector3, 3>;
 
-class CubeSet {
+// Cubes of this side, by a hash of so many bits.
+class Cubes {
  public:
-  CubeSet(double side, std::size_t count)
-      : per_side_(1.0 / side),
-        shift_(64 - std::max(10, static_cast<int>(std::bit_width(count)) + kBitsPerTriangle)),
-        bits_((std::size_t{1} << (64 - shift_)) / 64, 0) {}
+  static constexpr double kMostCubes = 512.0;
 
-  void insert(const Corners& corners) {
+  Cubes(double side, int bits) : per_side_(1.0 / side), shift_(64 - bits) {}
+
+  // Calls visit(hash) for the cubes that a triangle's box overlaps, with a margin of so many sides,
+  // until that returns true. Returns whether it did, or there are too many.
+  template <typename Visit>
+  bool any_of(const Corners& corners, const Visit& visit, double margin = 0.0) const {
     Cube low;
     Cube high;
-    const double count = find_range(corners, &low, &high);
-    if (!(count <= kMostCubes)) is_full_ = true;
-    if (is_full_) return;
-    for (std::int64_t x = low[0]; x <= high[0]; ++x) {
-      for (std::int64_t y = low[1]; y <= high[1]; ++y) {
-        for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          const std::uint64_t bit = bit_of(x, y, z);
-          bits_[bit / 64] |= std::uint64_t{1} << (bit % 64);
-        }
-      }
-    }
-  }
-
-  bool meets(const Corners& corners) const {
-    if (is_full_) return true;
-    Cube low;
-    Cube high;
-    const double count = find_range(corners, &low, &high);
-    if (count == 1.0) return has(low[0], low[1], low[2]);
+    const double count = find_range(corners, margin, &low, &high);
+    if (count == 1.0) return visit(hash_of(low[0], low[1], low[2]));
     if (!(count <= kMostCubes)) return true;
     for (std::int64_t x = low[0]; x <= high[0]; ++x) {
       for (std::int64_t y = low[1]; y <= high[1]; ++y) {
         for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-          if (has(x, y, z)) return true;
+          if (visit(hash_of(x, y, z))) return true;
         }
       }
     }
@@ -56,18 +48,15 @@ class CubeSet {
   }
 
  private:
-  static constexpr int kBitsPerTriangle = 5;
-  static constexpr double kMostCubes = 512.0;
-
   // The cubes that a triangle's box overlaps, and their number.
-  double find_range(const Corners& corners, Cube* low, Cube* high) const {
+  double find_range(const Corners& corners, double margin, Cube* low, Cube* high) const {
     constexpr double kMost = 1e15;
     double count = 1.0;
     for (std::size_t a = 0; a < 3; ++a) {
       const double least = std::min({corners[0][a], corners[1][a], corners[2][a]});
       const double most = std::max({corners[0][a], corners[1][a], corners[2][a]});
-      const double from = std::floor(std::max(least * per_side_, -kMost));
-      const double to = std::floor(std::min(most * per_side_, kMost));
+      const double from = std::floor(std::max(least * per_side_ - margin, -kMost));
+      const double to = std::floor(std::min(most * per_side_ + margin, kMost));
       (*low)[a] = static_cast<std::int64_t>(std::min(from, kMost));
       (*high)[a] = static_cast<std::int64_t>(std::max(to, -kMost));
       count *= to - from + 1.0;
@@ -75,24 +64,124 @@ class CubeSet {
     return count;
   }
 
-  bool has(std::int64_t x, std::int64_t y, std::int64_t z) const {
-    const std::uint64_t bit = bit_of(x, y, z);
-    return ((bits_[bit / 64] >> (bit % 64)) & 1U) != 0;
-  }
-
-  std::uint64_t bit_of(std::int64_t x, std::int64_t y, std::int64_t z) const {
+  std::size_t hash_of(std::int64_t x, std::int64_t y, std::int64_t z) const {
     const std::uint64_t mixed = static_cast<std::uint64_t>(x) * 0x8DA6B343U +
                                 static_cast<std::uint64_t>(y) * 0xD8163841U +
                                 static_cast<std::uint64_t>(z) * 0xCB1AB31FU;
-    return (mixed * 0x9E3779B97F4A7C15U) >> static_cast<unsigned>(shift_);
+    return static_cast<std::size_t>((mixed * 0x9E3779B97F4A7C15U) >> static_cast<unsigned>(shift_));
   }
 
   double per_side_;
   int shift_;
+};
+
+int bits_for(std::size_t count, int more) {
+  return std::max(14, static_cast<int>(std::bit_width(count)) + more);
+}
+
+class CubeSet {
+ public:
+  CubeSet(double side, std::size_t count)
+      : cubes_(side, bits_for(count, kMoreBits)),
+        bits_((std::size_t{1} << bits_for(count, kMoreBits)) / 64, 0) {}
+
+  void insert(const Corners& corners) {
+    is_full_ = is_full_ || cubes_.any_of(corners, [&](std::size_t hash) {
+      bits_[hash / 64] |= std::uint64_t{1} << (hash % 64);
+      return false;
+    });
+  }
+
+  bool meets(const Corners& corners) const {
+    return is_full_ || cubes_.any_of(corners, [&](std::size_t hash) {
+      return ((bits_[hash / 64] >> (hash % 64)) & 1U) != 0;
+    });
+  }
+
+ private:
+  static constexpr int kMoreBits = 5;
+
+  Cubes cubes_;
   std::vector<std::uint64_t> bits_;
   bool is_full_ = false;
 };
+
+// Cubes, and whether the normals of what is in them are all close to one direction.
+class NormalCubes {
+ public:
+  NormalCubes(double side, std::size_t count)
+      : cubes_(side, bits_for(count, kMoreBits)),
+        sums_(std::size_t{1} << bits_for(count, kMoreBits)) {}
+
+  void add(const Corners& corners) {
+    const std::array<float, 3> normal = normal_of(corners);
+    has_large_ |= cubes_.any_of(corners, [&](std::size_t hash) {
+      for (std::size_t a = 0; a < 3; ++a) sums_[hash][a] += normal[a];
+      return false;
+    });
+  }
+
+  // Once all are added.
+  void compare(const Corners& corners) {
+    constexpr float kLeast = 0.26F;  // squared cosine
+    const std::array<float, 3> n = normal_of(corners);
+    cubes_.any_of(corners, [&](std::size_t hash) {
+      std::array<float, 3>& s = sums_[hash];
+      const float product = n[0] * s[0] + n[1] * s[1] + n[2] * s[2];
+      const float square = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+      if (!(product > 0.0F && product * product > kLeast * square)) s[0] = kRough;
+      return false;
+    });
+  }
+
+  // Once all are compared.
+  bool is_rough_at(const Corners& corners) const {
+    // As far as what was between two sheets may have moved since.
+    constexpr double kMargin = 0.25;
+    const auto is_rough = [&](std::size_t hash) { return sums_[hash][0] == kRough; };
+    return has_large_ || cubes_.any_of(corners, is_rough, kMargin);
+  }
+
+ private:
+  static constexpr int kMoreBits = 0;
+  static constexpr float kRough = std::numeric_limits<float>::infinity();
+
+  // Of length 1; 0 for what is none.
+  static std::array<float, 3> normal_of(const Corners& corners) {
+    const Vector3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double size = length(normal);
+    if (!(size > 0.0)) return {};
+    return {static_cast<float>(normal[0] / size), static_cast<float>(normal[1] / size),
+            static_cast<float>(normal[2] / size)};
+  }
+
+  Cubes cubes_;
+  std::vector<std::array<float, 3>> sums_;
+  bool has_large_ = false;
+};
 }  // namespace
+
+std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::size_t first,
+                                      std::vector<std::uint8_t> is_suspect, double side) {
+  // The rest takes about as long as a tenth of the suspects.
+  constexpr std::size_t kFew = 10;
+  const auto suspects = static_cast<std::size_t>(
+      std::count_if(is_suspect.begin() + static_cast<std::ptrdiff_t>(first), is_suspect.end(),
+                    [](std::uint8_t flag) { return flag != 0; }));
+  if (kFew * suspects < mesh.triangles.size() - first) return is_suspect;
+  NormalCubes cubes(side, mesh.triangles.size() - first);
+  const auto visit = [&](const auto& work) {
+    for (std::size_t t = first; t < mesh.triangles.size(); ++t) {
+      if (mesh.triangles[t][0] >= 0) work(t, mesh.corners(t));
+    }
+  };
+  visit([&](std::size_t, const Corners& corners) { cubes.add(corners); });
+  visit([&](std::size_t, const Corners& corners) { cubes.compare(corners); });
+  visit([&](std::size_t t, const Corners& corners) {
+    if (is_suspect[t] != 0 && !cubes.is_rough_at(corners)) is_suspect[t] = 0;
+  });
+  return is_suspect;
+}
 
 NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t first,
                              std::span<const std::uint8_t> is_suspect, double side) {

@@ -26,6 +26,11 @@ struct NearTriangles {
 NearTriangles near_triangles(const MeshView<std::int32_t>& mesh, std::size_t first,
                              std::span<const std::uint8_t> is_suspect, double side);
 
+/// Those of the suspects that may meet others, or fold: in a cube where normals are more than 60
+/// degrees off. For a mesh that did not meet itself before pieces of it were made anew.
+std::vector<std::uint8_t> where_rough(const MeshView<std::int32_t>& mesh, std::size_t first,
+                                      std::vector<std::uint8_t> is_suspect, double side);
+
 /// The pairs of intersecting_triangles, of all from `first` on, with one suspect at least. Only
 /// triangles are looked at that are in one cube with a suspect. Throws Error(kCancelled).
 std::vector<std::array<std::uint32_t, 2>> near_intersections(
