@@ -15,7 +15,8 @@ AT_ENABLING = re.compile(
     r"""
     | core(\..*)? | commands | preferences
     | bridge(\.(files|editors|previews|views|wipe|image_operator))?
-    | \w+ (\.(choices|properties|menus|panels?|operators?|remembered|importance|view|model)(\..*)?)?
+    | \w+ (\.(choices|properties|menus|(\w+_)?panels?|operators?|remembered)(\..*)?)?
+    | \w+ (\.(importance|view|model)(\..*)?)?
     """,
     re.VERBOSE,
 )
@@ -23,7 +24,8 @@ WORK = re.compile(r"\w+\.(view\.(errors|figure|canvas)|model\.\w+)")
 # Of the package: what options take their limits and choices from.
 OF_PACKAGE = re.compile(
     r"prefilter(\.(_native|_border(\..*)?|images(\.(mipmaps|color|pixel_filters))?|meshes(\.surface)?"
-    r"|points(\.scan_files)?|sampling(\.levels)?|voxels(\.(octree|contours))?))?"
+    r"|points(\.scan_files)?|sampling(\.levels)?"
+    r"|voxels(\.(octree|contours|thin_places|lost_parts))?))?"
 )
 SLOW = {"argparse", "concurrent.futures", "logging", "tempfile", "zipfile", "OpenImageIO"}
 PROGRAM = f"""
