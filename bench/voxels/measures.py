@@ -22,7 +22,6 @@ SPACING = 0.25  # Between samples of an edge.
 SAMPLES = 60_000  # Of a surface.
 SLACK = 0.01  # Faces that are that much farther than the nearest one are adjacent to the edge.
 WRONG_DEGREES = 10.0
-FOLD = 120.0  # Degrees.
 CHECKER = Path(__file__).resolve().parents[2] / "build/bench/self_intersections"
 
 
@@ -128,7 +127,7 @@ def sharp_edges(positions: Floats, triangles: Indices, degrees: float) -> Edges:
 def folds(
     positions: Floats,
     triangles: Indices,
-    degrees: float = FOLD,
+    degrees: float = 120.0,
     true_edges: Edges | None = None,
     reach: float = 0.0,
 ) -> int:
@@ -248,18 +247,9 @@ def surface_errors(
     samples: int = SAMPLES,
 ) -> SurfaceErrors:
     """Compares normals and vertices of a surface with the true one."""
-    points, faces = surface_samples(positions, triangles, samples)
-    normals, _ = facet_normals(positions, triangles)
-    true_normals, true_areas = facet_normals(true_positions, true_triangles)
-    sound = true_areas > 0
-    tree = Nearest(true_positions[true_triangles[sound]])
-    true_normals = true_normals[sound]
-    best = np.full(len(points), -1.0)
-    for first, pairs in tree.candidates(points, SLACK * cell):
-        queries = pairs.queries + first
-        cosines = (normals[faces[queries]] * true_normals[pairs.items]).sum(axis=1)
-        np.maximum.at(best, queries, cosines)
-    off = np.degrees(np.arccos(np.clip(best, -1, 1)))
+    points, off = _samples_off(positions, triangles, true_positions, true_triangles, cell, samples)
+    _, true_areas = facet_normals(true_positions, true_triangles)
+    tree = Nearest(true_positions[true_triangles[true_areas > 0]])
     used = positions[np.unique(triangles)]
     if len(used) > samples:
         used = used[:: -(-len(used) // samples)]
@@ -276,6 +266,40 @@ def surface_errors(
         float(np.sqrt((vertices**2).mean())),
         float(vertices.max()),
     )
+
+
+def degrees_off(
+    positions: Floats,
+    triangles: Indices,
+    true_positions: Floats,
+    true_triangles: Indices,
+    cell: float,
+    samples: int = SAMPLES,
+) -> Floats:
+    """Of samples of a surface, the angles between its normal and the true one that is nearest."""
+    return _samples_off(positions, triangles, true_positions, true_triangles, cell, samples)[1]
+
+
+def _samples_off(
+    positions: Floats,
+    triangles: Indices,
+    true_positions: Floats,
+    true_triangles: Indices,
+    cell: float,
+    samples: int,
+) -> tuple[Floats, Floats]:
+    points, faces = surface_samples(positions, triangles, samples)
+    normals, _ = facet_normals(positions, triangles)
+    true_normals, true_areas = facet_normals(true_positions, true_triangles)
+    sound = true_areas > 0
+    tree = Nearest(true_positions[true_triangles[sound]])
+    true_normals = true_normals[sound]
+    best = np.full(len(points), -1.0)
+    for first, pairs in tree.candidates(points, SLACK * cell):
+        queries = pairs.queries + first
+        cosines = (normals[faces[queries]] * true_normals[pairs.items]).sum(axis=1)
+        np.maximum.at(best, queries, cosines)
+    return points, np.degrees(np.arccos(np.clip(best, -1, 1)))
 
 
 def smallest_angles(positions: Floats, triangles: Indices) -> Floats:

@@ -165,16 +165,10 @@ def test_edges_of_wedges_are_no_folds(degrees, how):
 
 def share_off(positions, triangles, shape, degrees):
     """The share of the area whose normal is farther from the shape's where it is nearest."""
-    points, faces = measures.surface_samples(positions, triangles, 20_000)
-    normals, _ = measures.facet_normals(positions, triangles)
-    true_normals, _ = measures.facet_normals(shape.positions, shape.triangles)
-    best = np.full(len(points), -1.0)
-    tree = measures.Nearest(shape.positions[shape.triangles])
-    for first, pairs in tree.candidates(points, 1e-3):
-        queries = pairs.queries + first
-        cosines = (normals[faces[queries]] * true_normals[pairs.items]).sum(axis=1)
-        np.maximum.at(best, queries, cosines)
-    return (best < np.cos(np.radians(degrees))).mean()
+    off = measures.degrees_off(
+        positions, triangles, shape.positions, shape.triangles, 0.1, samples=20_000
+    )
+    return (off > degrees).mean()
 
 
 def ball(rounds, turn=3):

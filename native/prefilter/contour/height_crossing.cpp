@@ -13,6 +13,9 @@ namespace {
 constexpr float kSlack = 0.05F;
 // Of heights in cells: more is an edge.
 constexpr float kMostCurved = 0.5F;
+// The same of nine columns, and how far they may be off a quadratic.
+constexpr double kMostCurvedAround = 0.4;
+constexpr double kMostOffAround = 0.02;
 
 // `up` leads toward the empty end.
 std::optional<float> height_at(const float* cell, std::ptrdiff_t up) {
@@ -119,7 +122,7 @@ bool is_smooth_around(const float* cell, std::ptrdiff_t up,
     }
   }
   HeightPatch patch;
-  return fit_heights(heights, &patch);
+  return fit_heights(heights, &patch, kMostCurvedAround, kMostOffAround);
 }
 }  // namespace
 

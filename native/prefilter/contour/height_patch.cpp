@@ -7,14 +7,6 @@
 #include "prefilter/base/elementary.h"
 
 namespace prefilter {
-namespace {
-
-// In cells.
-constexpr double kMostCurved = 0.12;
-constexpr double kMostOff = 0.004;
-
-}  // namespace
-
 double HeightPatch::above(const Vector3& point, Vector3* gradient) const {
   const Vector3 offset = point - center;
   const int first = (axis + 1) % 3;
@@ -52,7 +44,8 @@ Vector3 HeightPatch::normal() const {
   return (1.0 / length(gradient)) * gradient;
 }
 
-bool fit_heights(const std::array<std::array<double, 3>, 3>& heights, HeightPatch* fitted) {
+bool fit_heights(const std::array<std::array<double, 3>, 3>& heights, HeightPatch* fitted,
+                 double most_curved, double most_off) {
   HeightPatch& patch = *fitted;
   // Least squares of nine heights.
   double sum = 0.0;
@@ -76,7 +69,7 @@ bool fit_heights(const std::array<std::array<double, 3>, 3>& heights, HeightPatc
   const double stretch = elementary::pow(
       1.0 + patch.slopes[0] * patch.slopes[0] + patch.slopes[1] * patch.slopes[1], 1.5);
   for (const double curvature : {patch.curvatures[0], patch.curvatures[1], patch.twist}) {
-    if (std::abs(curvature) > kMostCurved * stretch) return false;
+    if (std::abs(curvature) > most_curved * stretch) return false;
   }
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) {
@@ -85,7 +78,7 @@ bool fit_heights(const std::array<std::array<double, 3>, 3>& heights, HeightPatc
       const double expected = patch.height + patch.slopes[0] * s + patch.slopes[1] * t +
                               patch.twist * s * t + patch.curvatures[0] / 2.0 * s * s +
                               patch.curvatures[1] / 2.0 * t * t;
-      if (std::abs(heights[i][j] - expected) > kMostOff) return false;
+      if (std::abs(heights[i][j] - expected) > most_off) return false;
     }
   }
   return true;

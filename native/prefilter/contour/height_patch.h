@@ -28,7 +28,9 @@ struct HeightPatch {
 };
 
 /// The least squares of the mean heights of 3 x 3 columns, which those of the quadratic are then
-/// within 0.004 of; false where they are not, or where it is curved by more than 0.12.
-bool fit_heights(const std::array<std::array<double, 3>, 3>& heights, HeightPatch* patch);
+/// within `most_off` of; false where they are not, or where it is curved by more than
+/// `most_curved`.
+bool fit_heights(const std::array<std::array<double, 3>, 3>& heights, HeightPatch* patch,
+                 double most_curved = 0.12, double most_off = 0.004);
 
 }  // namespace prefilter
