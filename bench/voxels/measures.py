@@ -22,6 +22,7 @@ SPACING = 0.25  # Between samples of an edge.
 SAMPLES = 60_000  # Of a surface.
 SLACK = 0.01  # Faces that are that much farther than the nearest one are adjacent to the edge.
 WRONG_DEGREES = 10.0
+FOLD = 120.0  # Degrees.
 CHECKER = Path(__file__).resolve().parents[2] / "build/bench/self_intersections"
 
 
@@ -127,7 +128,7 @@ def sharp_edges(positions: Floats, triangles: Indices, degrees: float) -> Edges:
 def folds(
     positions: Floats,
     triangles: Indices,
-    degrees: float = 120.0,
+    degrees: float = FOLD,
     true_edges: Edges | None = None,
     reach: float = 0.0,
 ) -> int:
