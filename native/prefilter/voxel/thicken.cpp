@@ -165,8 +165,8 @@ TriangleMesh in_units(const RootTriangles& mesh, double count) {
 }
 
 // What is to be added to the octree, in cells of its depth.
-std::vector<ThickPiece> pieces_for(const RootTriangles& mesh, double thickness,
-                                   const Octree& octree, const Progress& progress, int threads) {
+ThickPieces pieces_for(const RootTriangles& mesh, double thickness, const Octree& octree,
+                       const Progress& progress, int threads) {
   // Of these the thickness is no more than usual, so that there are not very many pieces.
   const double unit = std::max(1.0, thickness / kUsualThickness);
   const double count = std::ldexp(1.0, octree.depth) / unit;
@@ -180,22 +180,23 @@ std::vector<ThickPiece> pieces_for(const RootTriangles& mesh, double thickness,
   };
   const Box bounds = {{-kMargin, -kMargin, -kMargin},
                       {count + kMargin, count + kMargin, count + kMargin}};
-  std::vector<ThickPiece> pieces = thick_pieces(
-      {scaled.positions, scaled.triangles}, thickness / unit, bounds, occupancy, progress, threads);
-  for (ThickPiece& piece : pieces) {
+  ThickPieces found = thick_pieces({scaled.positions, scaled.triangles}, thickness / unit, bounds,
+                                   occupancy, progress, threads);
+  for (ThickPiece& piece : found.pieces) {
     for (Vector3& middle : piece.middles) middle = unit * middle;
     piece.radius *= unit;
     piece.thickness *= unit;
     piece.area *= unit * unit;
   }
-  return pieces;
+  for (Represented& other : found.others) other.area *= unit * unit;
+  return found;
 }
 
 // The triangles above the pieces.
-std::vector<ThinTriangle> thin_triangles(const std::vector<ThickPiece>& pieces) {
+std::vector<ThinTriangle> thin_triangles(const ThickPieces& found) {
   std::vector<ThinTriangle> all;
-  all.reserve(pieces.size());
-  for (const ThickPiece& piece : pieces) {
+  all.reserve(found.pieces.size());
+  for (const ThickPiece& piece : found.pieces) {
     all.push_back({piece.triangle, piece.thickness, 2.0 * piece.radius, piece.area});
   }
   std::stable_sort(all.begin(), all.end(), [](const ThinTriangle& a, const ThinTriangle& b) {
@@ -213,6 +214,20 @@ std::vector<ThinTriangle> thin_triangles(const std::vector<ThickPiece>& pieces) 
     same.area = area;
   }
   all.resize(count);
+  const auto is_before = [](const ThinTriangle& a, const ThinTriangle& b) {
+    return a.triangle < b.triangle;
+  };
+  for (const Represented& other : found.others) {
+    const auto known = all.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto same = std::lower_bound(
+        all.begin(), known, ThinTriangle{other.representative, 0.0, 0.0, 0.0}, is_before);
+    if (same == known || same->triangle != other.representative) continue;
+    ThinTriangle one = *same;
+    one.triangle = other.triangle;
+    one.area = other.area;
+    all.push_back(one);
+  }
+  std::sort(all.begin(), all.end(), is_before);
   return all;
 }
 
@@ -220,13 +235,12 @@ std::vector<ThinTriangle> thin_triangles(const std::vector<ThickPiece>& pieces) 
 
 void thicken(const RootTriangles& mesh, double thickness, const Progress& progress, int threads,
              Octree* octree) {
-  const std::vector<ThickPiece> pieces =
-      pieces_for(mesh, thickness, *octree, progress.part(0.0, 0.6), threads);
-  if (pieces.empty()) {
+  const ThickPieces found = pieces_for(mesh, thickness, *octree, progress.part(0.0, 0.6), threads);
+  if (found.pieces.empty()) {
     progress.report(1.0);
     return;
   }
-  const PieceRule rule(pieces, *octree);
+  const PieceRule rule(found.pieces, *octree);
   Octree added;
   added.bounds = octree->bounds;
   added.depth = octree->depth;
@@ -234,7 +248,7 @@ void thicken(const RootTriangles& mesh, double thickness, const Progress& progre
   *octree = combine(*octree, added, SetOperation::kUnion, progress.part(0.9, 0.99), threads);
   fill_pinholes(added.cells, octree->depth, progress.part(0.99, 1.0), threads, &octree->cells);
   octree->thickened = std::move(added.cells);
-  octree->thin = thin_triangles(pieces);
+  octree->thin = thin_triangles(found);
 }
 
 }  // namespace prefilter

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/spatial/triangle_pieces.h"
@@ -97,6 +98,7 @@ struct Candidate {
   Vector3 normal;
   InnerBall ball;
   std::uint32_t triangle;
+  double share;  // of the area that it stands for, its own being 1
 
   Vector3 middle() const { return triangle_middle(corners) - ball.radius * normal; }
 };
@@ -139,11 +141,10 @@ struct OuterSides {
 
 std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
                                        std::span<const Vector3> normals,
-                                       std::span<const std::uint32_t> triangles,
-                                       const OpposedBricks& bricks, const InnerBalls& balls,
-                                       const OuterSides& outer, double largest,
-                                       const Progress& progress, int threads) {
-  const auto rows = static_cast<std::int64_t>(triangles.size());
+                                       const Representatives& chosen, const OpposedBricks& bricks,
+                                       const InnerBalls& balls, const OuterSides& outer,
+                                       double largest, const Progress& progress, int threads) {
+  const auto rows = static_cast<std::int64_t>(chosen.triangles.size());
   std::vector<std::vector<Candidate>> tasks(
       static_cast<std::size_t>(range_count(rows, kTrianglesPerTask)));
   parallel_ranges(
@@ -152,7 +153,7 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
         const auto may_meet = [&](const auto& corners) { return bricks.may_meet(corners); };
         InnerBalls::Across across;
         for (std::int64_t i = begin; i < end; ++i) {
-          const std::uint32_t t = triangles[static_cast<std::size_t>(i)];
+          const std::uint32_t t = chosen.triangles[static_cast<std::size_t>(i)];
           const Vector3& normal = normals[t];
           const auto may_count = [&](const Vector3& point) {
             return bricks.holds(point) && outer.may_be(point, normal);
@@ -163,7 +164,7 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
             if (!outer.is_outer(middle, normal)) return;
             const std::optional<InnerBall> ball = balls.at(middle, normal, largest, across);
             if (!ball) return;
-            found.push_back({piece, normal, *ball, t});
+            found.push_back({piece, normal, *ball, t, chosen.shares[static_cast<std::size_t>(i)]});
           };
           const auto add_large = [&](const std::array<Vector3, 3>& piece) {
             bool counts = may_count(triangle_middle(piece));
@@ -174,7 +175,8 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
             }
             if (!counts) return;
             if (bricks.is_crowded(triangle_middle(piece))) {
-              found.push_back({piece, normal, {0.0, -1.0}, t});
+              found.push_back(
+                  {piece, normal, {0.0, -1.0}, t, chosen.shares[static_cast<std::size_t>(i)]});
               return;
             }
             balls.find_across(piece, normal, largest, &across);
@@ -217,33 +219,33 @@ Place place_around(const std::unordered_map<std::uint64_t, Place>& places, const
 
 }  // namespace
 
-std::vector<ThickPiece> thick_pieces(const MeshView<std::int32_t>& mesh, double thickness,
-                                     const Box& bounds,
-                                     const std::function<float(const Vector3&)>& occupancy,
-                                     const Progress& progress, int threads) {
+ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, const Box& bounds,
+                         const std::function<float(const Vector3&)>& occupancy,
+                         const Progress& progress, int threads) {
   const double plate = thickness / 2.0;
   const double largest = plate * (1.0 + kRod + kSpeck);
   const std::vector<Vector3> normals = normals_of(mesh);
   const OpposedBricks bricks(mesh, normals, std::max(kLeastBrick, 2.0 * largest), bounds,
                              progress.part(0.0, 0.2), threads);
-  std::vector<ThickPiece> pieces;
-  if (bricks.is_empty()) return pieces;
+  ThickPieces result;
+  if (bricks.is_empty()) return result;
   std::vector<std::uint32_t> triangles;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (dot(normals[t], normals[t]) > 0.0 && bricks.may_meet(mesh.corners(t))) {
       triangles.push_back(static_cast<std::uint32_t>(t));
     }
   }
-  const InnerBalls balls(mesh, normals, triangles, progress.part(0.2, 0.4), threads);
+  Representatives chosen = find_representatives(mesh, normals, triangles);
+  const InnerBalls balls(mesh, normals, chosen.triangles, progress.part(0.2, 0.4), threads);
   const WindingNumbers winding({mesh.positions, mesh.triangles}, progress.part(0.4, 0.5), threads);
   const std::vector<Candidate> candidates =
-      find_candidates(mesh, normals, triangles, bricks, balls, {occupancy, winding}, largest,
+      find_candidates(mesh, normals, chosen, bricks, balls, {occupancy, winding}, largest,
                       progress.part(0.5, 0.95), threads);
   std::unordered_map<std::uint64_t, Place> places;
   for (const Candidate& one : candidates) {
     const auto add = [&](const std::array<Vector3, 3>& piece) {
       const Vector3 middle = triangle_middle(piece) - one.ball.radius * one.normal;
-      places[cube_key(middle, 1.0)].add(one.normal, middle, triangle_area(piece));
+      places[cube_key(middle, 1.0)].add(one.normal, middle, one.share * triangle_area(piece));
     };
     for_pieces(
         one.corners, kPiece, [](const auto&) { return true; }, add);
@@ -267,10 +269,11 @@ std::vector<ThickPiece> thick_pieces(const MeshView<std::int32_t>& mesh, double 
       const Vector3 offset = one.corners[i] - from;
       piece.middles[i] = moved + offset - across(offset);
     }
-    pieces.push_back(piece);
+    result.pieces.push_back(piece);
   }
+  result.others = std::move(chosen.others);
   progress.report(1.0);
-  return pieces;
+  return result;
 }
 
 }  // namespace prefilter

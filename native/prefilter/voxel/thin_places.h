@@ -10,6 +10,7 @@
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/voxel/representatives.h"
 
 namespace prefilter {
 
@@ -22,14 +23,19 @@ struct ThickPiece {
   double area;             // of the triangle, that it is below
 };
 
+/// The pieces, and the triangles that are as thin as others.
+struct ThickPieces {
+  std::vector<ThickPiece> pieces;
+  std::vector<Represented> others;
+};
+
 /// Pieces that, added to a closed mesh, make it as thick as `thickness` where it is thinner and in
 /// a box; lengths are cells. Rods and specks get more, by as much as cells need to hold them
 /// together. The medial balls of Ma, Bae, Choi, "3D medial point approximation using nearest
 /// neighbors and the normal field" (2012), that touch what faces the other way: what is rough, or
 /// an edge, is not thin. `occupancy(point)` is that of the cell that holds a point.
-std::vector<ThickPiece> thick_pieces(const MeshView<std::int32_t>& mesh, double thickness,
-                                     const Box& bounds,
-                                     const std::function<float(const Vector3&)>& occupancy,
-                                     const Progress& progress, int threads);
+ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, const Box& bounds,
+                         const std::function<float(const Vector3&)>& occupancy,
+                         const Progress& progress, int threads);
 
 }  // namespace prefilter

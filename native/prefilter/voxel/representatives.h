@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Few triangles for many small ones.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prefilter/base/geometry.h"
+
+namespace prefilter {
+
+/// A triangle that another one stands for.
+struct Represented {
+  std::uint32_t triangle;
+  std::uint32_t representative;
+  double area;
+};
+
+struct Representatives {
+  std::vector<std::uint32_t> triangles;
+  std::vector<double> shares;       // of each: the area that it stands for, its own being 1
+  std::vector<Represented> others;  // in order of the triangles
+};
+
+/// Of these triangles. What is smaller than a quarter of a cell has the first one that is in the
+/// same cube of that side and faces about the same way, so that there are no more than cells can
+/// tell apart, however fine a mesh is; lengths are cells.
+Representatives find_representatives(const MeshView<std::int32_t>& mesh,
+                                     std::span<const Vector3> normals,
+                                     std::span<const std::uint32_t> triangles);
+
+}  // namespace prefilter
