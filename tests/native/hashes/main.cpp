@@ -19,6 +19,7 @@
 #include "prefilter/blocks/compress_blocks.h"
 #include "prefilter/blocks/supercompress.h"
 #include "prefilter/color/transfer.h"
+#include "prefilter/contour/quad_contour.h"
 #include "prefilter/contour/tree_contour.h"
 #include "prefilter/exr/exr_tiles.h"
 #include "prefilter/mesh/mesh_sink.h"
@@ -152,6 +153,14 @@ void subdivisions(const Run& run) {
   }
 }
 
+void print_quads(const Run& run, const Octree& octree, const SourceMesh& source) {
+  ContourOptions options;
+  options.sources = std::span(&source, 1);
+  options.threads = run.threads;
+  const QuadMesh mesh = contour_quads(octree.cells, octree.bounds, options);
+  run.print("solid quads", Hash().add(mesh.positions).add(mesh.quads).add(mesh.origins));
+}
+
 void solids(const Run& run) {
   if (!run.wants("solid")) return;
   const Torus source = torus(60, 32, 0.2);
@@ -190,6 +199,7 @@ void solids(const Run& run) {
     run.print(std::string("solid simplified ") + name,
               Hash().add(contour_tree(octree.cells, octree.bounds, contour)));
   }
+  print_quads(run, octree, of_source);
   Torus open = source;
   open.triangles.erase(open.triangles.begin() + 200, open.triangles.begin() + 216);
   CloseHolesOptions holes;
