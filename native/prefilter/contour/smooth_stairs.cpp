@@ -15,7 +15,8 @@
 namespace prefilter {
 namespace {
 
-// The length of the mean of the unit normals around a vertex: the cosine of half of 30 degrees.
+// The length of the mean of the normals around a vertex, by area: the cosine of half of 30 degrees.
+// Slivers do not count, as their normals are by chance.
 constexpr double kRough = 0.966;
 constexpr int kRounds = 8;
 constexpr double kShrinking = 0.5;
@@ -33,21 +34,20 @@ std::span<const std::int32_t> corners_of(const FacetedMesh& mesh, std::size_t t)
 // Vertices around which normals differ much.
 Flags rough_vertices(const FacetedMesh& mesh) {
   std::vector<Vector3> sums(mesh.positions.size());
-  std::vector<float> counts(sums.size(), 0.0F);
+  std::vector<double> areas(sums.size(), 0.0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& [a, b, c] = mesh.triangles[t];
     const auto at = [&](std::int32_t v) { return mesh.positions[static_cast<std::size_t>(v)]; };
     const Vector3 normal = cross(at(b) - at(a), at(c) - at(a));
     const double size = length(normal);
-    if (!(size > 0.0)) continue;
     for (const std::int32_t v : corners_of(mesh, t)) {
-      sums[static_cast<std::size_t>(v)] = sums[static_cast<std::size_t>(v)] + (1.0 / size) * normal;
-      counts[static_cast<std::size_t>(v)] += 1.0F;
+      sums[static_cast<std::size_t>(v)] = sums[static_cast<std::size_t>(v)] + normal;
+      areas[static_cast<std::size_t>(v)] += size;
     }
   }
   Flags is_rough(sums.size(), 0);
   for (std::size_t v = 0; v < sums.size(); ++v) {
-    const double least = kRough * static_cast<double>(counts[v]);
+    const double least = kRough * areas[v];
     if (dot(sums[v], sums[v]) < least * least) is_rough[v] = 1;
   }
   return is_rough;
@@ -56,26 +56,24 @@ Flags rough_vertices(const FacetedMesh& mesh) {
 // The smoothing of the vertices that may move.
 class Stairs {
  public:
-  Stairs(double cell, const std::function<bool(const Vector3&)>& may_move, FacetedMesh* mesh)
+  Stairs(double cell, const std::function<bool(const Vector3&)>& is_free, bool only_free,
+         FacetedMesh* mesh)
       : cell_(cell), mesh_(*mesh) {
-    const auto moves = [&](std::size_t v) {
-      return (mesh_.kinds.empty() || mesh_.kinds[v] == VertexKind::kSurface) &&
-             may_move(mesh_.positions[v]);
-    };
-    Flags is_rough = rough_vertices(mesh_);
-    for (std::size_t v = 0; v < is_rough.size(); ++v) {
-      if (is_rough[v] != 0 && !moves(v)) is_rough[v] = 0;
+    const Flags is_rough = rough_vertices(mesh_);
+    Flags is_near = is_rough;
+    for (const auto& corners : mesh_.triangles) {
+      const bool has_rough = std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) {
+        return is_rough[static_cast<std::size_t>(v)] != 0;
+      });
+      if (!has_rough) continue;
+      for (const std::int32_t v : corners) is_near[static_cast<std::size_t>(v)] = 1;
     }
-    Flags is_chosen = is_rough;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      if (!has_any(t, is_rough)) continue;
-      for (const std::int32_t v : corners_of(mesh_, t)) {
-        is_chosen[static_cast<std::size_t>(v)] = 1;
+    places_.assign(is_near.size(), kNone);
+    for (std::size_t v = 0; v < is_near.size(); ++v) {
+      if (is_near[v] == 0 || (!mesh_.kinds.empty() && mesh_.kinds[v] != VertexKind::kSurface)) {
+        continue;
       }
-    }
-    places_.assign(is_chosen.size(), kNone);
-    for (std::size_t v = 0; v < is_chosen.size(); ++v) {
-      if (is_chosen[v] == 0 || !moves(v)) continue;
+      if ((only_free || is_rough[v] == 0) && !is_free(mesh_.positions[v])) continue;
       places_[v] = static_cast<std::uint32_t>(moved_.size());
       moved_.push_back(v);
       starts_.push_back(mesh_.positions[v]);
@@ -129,12 +127,6 @@ class Stairs {
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  bool has_any(std::size_t t, const Flags& flags) const {
-    const auto corners = corners_of(mesh_, t);
-    return std::any_of(corners.begin(), corners.end(),
-                       [&](std::int32_t v) { return flags[static_cast<std::size_t>(v)] != 0; });
-  }
-
   bool has_moved(std::size_t v) const {
     return places_[v] != kNone && mesh_.positions[v] != starts_[places_[v]];
   }
@@ -174,9 +166,9 @@ class Stairs {
 
 }  // namespace
 
-void smooth_stairs(double cell, const std::function<bool(const Vector3&)>& may_move,
+void smooth_stairs(double cell, const std::function<bool(const Vector3&)>& is_free, bool only_free,
                    const Progress& progress, int threads, FacetedMesh* mesh) {
-  Stairs stairs(cell, may_move, mesh);
+  Stairs stairs(cell, is_free, only_free, mesh);
   if (stairs.is_empty()) return;
   stairs.smooth();
   const MeshView<std::int32_t> view{mesh->positions, mesh->triangles};

@@ -342,14 +342,14 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
     edges.crossings.middle = halfway(tree, frame, vertices);
   }
   const double cell = least_cell(frame, cells.depth());
+  const ThickenedCells thickened(options.thickened, frame);
+  const auto is_thickened = [&](const Vector3& p) { return thickened.holds(p); };
   if (!is_sharp) {
     LoopedMesh looped = make_loops(tree, nullptr, progress.part(0.6, 0.85), threads, &vertices);
     if (fits) unfold({}, &edges.crossings, &looped);
     FacetedMesh mesh = {std::move(looped.positions), std::move(looped.triangles), {}, {}};
     if (fits && options.thickened != nullptr) {
-      const ThickenedCells thickened(options.thickened, frame);
-      const auto is_thickened = [&](const Vector3& p) { return thickened.holds(p); };
-      smooth_stairs(cell, is_thickened, progress.part(0.85, 1.0), threads, &mesh);
+      smooth_stairs(cell, is_thickened, true, progress.part(0.85, 1.0), threads, &mesh);
     }
     return mesh;
   }
@@ -358,8 +358,7 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
   LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
   unfold(edges.samples, &edges.crossings, &looped);
   FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 0.97), threads);
-  const auto anywhere = [](const Vector3&) { return true; };
-  smooth_stairs(cell, anywhere, progress.part(0.97, 1.0), threads, &mesh);
+  smooth_stairs(cell, is_thickened, false, progress.part(0.97, 1.0), threads, &mesh);
   if (sources_of_labels != nullptr && edges.meshes) {
     *sources_of_labels = trace_labels(*edges.meshes, threads, &mesh);
   }
