@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "prefilter/voxel/representatives.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <set>
+
+#include "prefilter/spatial/triangle_pieces.h"
+
+namespace prefilter {
+namespace {
+
+struct Sheet {
+  std::vector<Vector3> positions;
+  std::vector<std::array<std::int32_t, 3>> triangles;
+  std::vector<Vector3> normals;
+  std::vector<std::uint32_t> all;
+
+  MeshView<std::int32_t> view() const { return {positions, triangles}; }
+};
+
+// Two sheets of a side of 4 cells that face away from each other, in so many rows each.
+Sheet sheets(int rows) {
+  Sheet sheet;
+  for (const double z : {0.0, 0.1}) {
+    const auto first = static_cast<std::int32_t>(sheet.positions.size());
+    for (int y = 0; y <= rows; ++y) {
+      for (int x = 0; x <= rows; ++x)
+        sheet.positions.push_back({4.0 * x / rows, 4.0 * y / rows, z});
+    }
+    for (std::int32_t y = 0; y < rows; ++y) {
+      for (std::int32_t x = 0; x < rows; ++x) {
+        const std::int32_t a = first + y * (rows + 1) + x;
+        const std::int32_t b = a + rows + 1;
+        sheet.triangles.push_back({a, a + 1, b + 1});
+        sheet.triangles.push_back({a, b + 1, b});
+      }
+    }
+    const auto count = static_cast<std::size_t>(2 * rows * rows);
+    sheet.normals.insert(sheet.normals.end(), count, {0.0, 0.0, z > 0.0 ? 1.0 : -1.0});
+  }
+  sheet.all.resize(sheet.triangles.size());
+  std::iota(sheet.all.begin(), sheet.all.end(), 0U);
+  return sheet;
+}
+
+TEST(Representatives, OfSmallTrianglesThereAreNoMoreThanPlaces) {
+  for (const int rows : {40, 200}) {
+    const Sheet sheet = sheets(rows);
+    const Representatives found = find_representatives(sheet.view(), sheet.normals, sheet.all);
+    // A quarter of a cell is a place, and each sheet is one direction.
+    EXPECT_LE(found.triangles.size(), 2U * 16U * 16U);
+    EXPECT_EQ(found.triangles.size() + found.others.size(), sheet.all.size());
+    double area = 0.0;
+    for (std::size_t i = 0; i < found.triangles.size(); ++i) {
+      area += found.shares[i] * triangle_area(sheet.view().corners(found.triangles[i]));
+    }
+    EXPECT_NEAR(area, 32.0, 1e-9);
+    const std::set<std::uint32_t> chosen(found.triangles.begin(), found.triangles.end());
+    for (const Represented& other : found.others) {
+      EXPECT_TRUE(chosen.contains(other.representative));
+      EXPECT_EQ(sheet.normals[other.triangle], sheet.normals[other.representative]);
+      const Vector3 apart = triangle_middle(sheet.view().corners(other.triangle)) -
+                            triangle_middle(sheet.view().corners(other.representative));
+      for (const double x : apart) EXPECT_LE(std::abs(x), 0.25);
+    }
+  }
+}
+
+TEST(Representatives, LargeTrianglesAreTheirOwn) {
+  const Sheet sheet = sheets(8);
+  const Representatives found = find_representatives(sheet.view(), sheet.normals, sheet.all);
+  EXPECT_EQ(found.triangles, sheet.all);
+  EXPECT_EQ(found.shares, std::vector<double>(sheet.all.size(), 1.0));
+  EXPECT_TRUE(found.others.empty());
+}
+
+}  // namespace
+}  // namespace prefilter
