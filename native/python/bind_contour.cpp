@@ -57,35 +57,30 @@ std::vector<SourceMesh> sources_of(const std::vector<SourceArrays>& arrays) {
   return sources;
 }
 
-MeshArrays bound_contour_octree(const Octree& octree,
-                                const std::vector<SourceArrays>& source_arrays,
-                                ContourOptions options, const py::object& progress) {
+// What `make(cells, box, options)` gives of an octree and its sources.
+template <typename Make>
+auto contoured(const Octree& octree, const std::vector<SourceArrays>& source_arrays,
+               ContourOptions options, const py::object& progress, const Make& make) {
   options.progress = to_progress(progress);
   const std::vector<SourceMesh> sources = sources_of(source_arrays);
   options.sources = sources;
   options.thickened = &octree.thickened;
-  TriangleMesh mesh;
-  {
-    const py::gil_scoped_release unlocked;
-    mesh = contour_occupancies(octree.cells, octree.bounds, options);
-  }
-  return mesh_arrays(std::move(mesh));
+  const py::gil_scoped_release unlocked;
+  return make(octree.cells, octree.bounds, options);
+}
+
+MeshArrays bound_contour_octree(const Octree& octree,
+                                const std::vector<SourceArrays>& source_arrays,
+                                const ContourOptions& options, const py::object& progress) {
+  return mesh_arrays(contoured(octree, source_arrays, options, progress, contour_occupancies));
 }
 
 using TracedArrays = std::tuple<Array<double>, Array<std::int32_t>, Array<std::int64_t>>;
 
 TracedArrays bound_traced_contour(const Octree& octree,
                                   const std::vector<SourceArrays>& source_arrays,
-                                  ContourOptions options, const py::object& progress) {
-  options.progress = to_progress(progress);
-  const std::vector<SourceMesh> sources = sources_of(source_arrays);
-  options.sources = sources;
-  options.thickened = &octree.thickened;
-  TracedMesh traced;
-  {
-    const py::gil_scoped_release unlocked;
-    traced = contour_traced(octree.cells, octree.bounds, options);
-  }
+                                  const ContourOptions& options, const py::object& progress) {
+  TracedMesh traced = contoured(octree, source_arrays, options, progress, contour_traced);
   const auto count = static_cast<py::ssize_t>(traced.origins.size());
   auto [positions, triangles] = mesh_arrays(std::move(traced.mesh));
   return {std::move(positions), std::move(triangles),
@@ -94,16 +89,8 @@ TracedArrays bound_traced_contour(const Octree& octree,
 
 TracedArrays bound_contour_quads(const Octree& octree,
                                  const std::vector<SourceArrays>& source_arrays,
-                                 ContourOptions options, const py::object& progress) {
-  options.progress = to_progress(progress);
-  const std::vector<SourceMesh> sources = sources_of(source_arrays);
-  options.sources = sources;
-  options.thickened = &octree.thickened;
-  QuadMesh mesh;
-  {
-    const py::gil_scoped_release unlocked;
-    mesh = contour_quads(octree.cells, octree.bounds, options);
-  }
+                                 const ContourOptions& options, const py::object& progress) {
+  QuadMesh mesh = contoured(octree, source_arrays, options, progress, contour_quads);
   const auto vertices = static_cast<py::ssize_t>(mesh.positions.size());
   const auto quads = static_cast<py::ssize_t>(mesh.quads.size());
   const auto origins = static_cast<py::ssize_t>(mesh.origins.size());
