@@ -38,6 +38,8 @@ USES = {
         "contour": lambda octree: octree.contour(),
         "traced_contour": lambda octree: octree.traced_contour([(np.eye(3), [[0, 1, 2]])]),
         "quad_contour": lambda octree: octree.quad_contour(),
+        "thin_places": lambda octree: octree.thin_places,
+        "lost_parts": lambda octree: octree.lost_parts(np.eye(3), [[0, 1, 2]], [0]),
         "coarsened": lambda octree: octree.coarsened(1),
         "save": lambda octree: octree.save("never.npz"),
         "load": None,

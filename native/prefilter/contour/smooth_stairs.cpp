@@ -61,19 +61,25 @@ class Stairs {
       : cell_(cell), mesh_(*mesh) {
     const Flags is_rough = rough_vertices(mesh_);
     Flags is_near = is_rough;
+    Flags is_beside_edge(is_rough.size(), 0);
     for (const auto& corners : mesh_.triangles) {
-      const bool has_rough = std::any_of(corners.begin(), corners.end(), [&](std::int32_t v) {
-        return is_rough[static_cast<std::size_t>(v)] != 0;
-      });
+      const auto any = [&](const auto& holds) {
+        return std::any_of(corners.begin(), corners.end(),
+                           [&](std::int32_t v) { return holds(static_cast<std::size_t>(v)); });
+      };
+      const bool has_rough = any([&](std::size_t v) { return is_rough[v] != 0; });
       if (!has_rough) continue;
-      for (const std::int32_t v : corners) is_near[static_cast<std::size_t>(v)] = 1;
+      const bool has_placed = any([&](std::size_t v) { return !is_surface(v); });
+      for (const std::int32_t v : corners) {
+        is_near[static_cast<std::size_t>(v)] = 1;
+        if (has_placed) is_beside_edge[static_cast<std::size_t>(v)] = 1;
+      }
     }
     places_.assign(is_near.size(), kNone);
     for (std::size_t v = 0; v < is_near.size(); ++v) {
-      if (is_near[v] == 0 || (!mesh_.kinds.empty() && mesh_.kinds[v] != VertexKind::kSurface)) {
-        continue;
-      }
-      if ((only_free || is_rough[v] == 0) && !is_free(mesh_.positions[v])) continue;
+      if (is_near[v] == 0 || !is_surface(v)) continue;
+      const bool is_stair = is_rough[v] != 0 && is_beside_edge[v] == 0 && !only_free;
+      if (!is_stair && !is_free(mesh_.positions[v])) continue;
       places_[v] = static_cast<std::uint32_t>(moved_.size());
       moved_.push_back(v);
       starts_.push_back(mesh_.positions[v]);
@@ -126,6 +132,10 @@ class Stairs {
 
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  bool is_surface(std::size_t v) const {
+    return mesh_.kinds.empty() || mesh_.kinds[v] == VertexKind::kSurface;
+  }
 
   bool has_moved(std::size_t v) const {
     return places_[v] != kNone && mesh_.positions[v] != starts_[places_[v]];

@@ -29,7 +29,7 @@ struct SolidOptions {
   double gap = 2.0;    // in cells: gaps up to this width do not let the outside in
   double thickness = 1.5;  // in cells: what sheets and parts without an inside get
   SheetMethod sheets = SheetMethod::kShell;
-  int threads = 0;         // 0: all processors
+  int threads = 0;  // 0: all processors
   Progress progress;
 };
 

@@ -62,11 +62,18 @@ def _triangles_of(
     return np.flatnonzero((part_of >= 0) & is_chosen[part_of])
 
 
+def _lengths(vectors: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Returns how long vectors are, along the last axis."""
+    x, y, z = np.moveaxis(vectors, -1, 0)
+    lengths: npt.NDArray[np.float64] = np.sqrt(x * x + y * y + z * z)
+    return lengths
+
+
 def _probes(corners: npt.NDArray[np.float64], cell: float) -> npt.NDArray[np.float64]:
     """Returns points around the middles of triangles: (triangles, steps, 3)."""
     a, b, c = np.moveaxis(corners, 1, 0)
     normals = np.cross(b - a, c - a)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    lengths = _lengths(normals)[:, None]
     normals = normals / np.where(lengths > 0.0, lengths, 1.0) * cell
     middles = corners.mean(axis=1)
     return np.stack([middles + step * normals for step in _STEPS], axis=1)
@@ -84,15 +91,15 @@ def _nearest(
     if len(surface[1]) == 0:
         return np.full(len(corners), np.inf)
     tree = _native.NearestPoints(*surface, as_progress(None), threads)
-    longest = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2).max(axis=1)
+    longest = _lengths(corners - np.roll(corners, -1, axis=1)).max(axis=1)
     steps = np.clip(np.ceil(longest / (_SPACING * cell)), 1, _MOST_STEPS).astype(int)
     nearest = np.empty(len(corners))
     for step in np.unique(steps):
         chosen = np.flatnonzero(steps == step)
         i, j = np.meshgrid(np.arange(step + 1), np.arange(step + 1), indexing="ij")
         u, v = i[i + j <= step] / step, j[i + j <= step] / step
-        weights = np.stack([1.0 - u - v, u, v], axis=1)
-        points = np.einsum("pk,tkd->tpd", weights, corners[chosen]).reshape(-1, 3)
-        found = tree.find(points, as_progress(None), threads)[2]
+        a, b, c = (corners[chosen, k][:, None] for k in range(3))
+        points = (1.0 - u - v)[:, None] * a + u[:, None] * b + v[:, None] * c
+        found = tree.find(points.reshape(-1, 3), as_progress(None), threads)[2]
         nearest[chosen] = found.reshape(len(chosen), -1).min(axis=1)
     return nearest
