@@ -70,22 +70,10 @@ class Placer {
   std::optional<Feature> feature(std::size_t i) const {
     if (features_ == nullptr) return std::nullopt;
     const std::span<const std::int32_t> loop = loops_.loop(i);
-    Vector3 start{};
-    std::vector<std::int32_t> labels;
-    int divided = 0;
-    for (std::size_t k = 0; k < loop.size(); ++k) {
-      const std::int32_t a = loop[k];
-      const std::int32_t b = loop[(k + 1) % loop.size()];
-      if (const SourcePoint* sample = sample_of(a)) labels.push_back(sample->label);
-      if (!are_divided(*edges_.surface(), edges_.samples, a, b)) continue;
-      start = start + 0.5 * (positions_[static_cast<std::size_t>(a)] +
-                             positions_[static_cast<std::size_t>(b)]);
-      ++divided;
-    }
-    if (divided == 0) return std::nullopt;
-    std::sort(labels.begin(), labels.end());
-    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
-    return features_->feature((1.0 / divided) * start, std::move(labels));
+    const auto is_divided = [&](std::size_t k) {
+      return are_divided(*edges_.surface(), edges_.samples, loop[k], loop[(k + 1) % loop.size()]);
+    };
+    return features_->of_loop(loop, positions_, edges_.samples, is_divided);
   }
 
   // Where two of the regions of a corner meet, next to the start.

@@ -3,15 +3,19 @@
 // Where the vertices of a contour's edges and corners are.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/contour/feature_surface.h"
+#include "prefilter/contour/sharp_vertices.h"
 
 namespace prefilter {
 
@@ -82,6 +86,30 @@ class FeaturePlaces {
   /// The feature of a loop whose vertices are of these regions, in order; where nothing is found
   /// next to `start`, it is there.
   Feature feature(const Vector3& start, std::vector<std::int32_t> labels) const;
+
+  /// The feature of a loop of vertices, looked for in the middle of the sides that an edge of the
+  /// shape crosses by `is_divided(side)`; none where there is no such side.
+  template <typename IsDivided>
+  std::optional<Feature> of_loop(std::span<const std::int32_t> loop,
+                                 std::span<const Vector3> positions, const VertexSamples& samples,
+                                 const IsDivided& is_divided) const {
+    Vector3 start{};
+    std::vector<std::int32_t> labels;
+    int divided = 0;
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const std::int32_t from = loop[k];
+      const std::int32_t to = loop[(k + 1) % loop.size()];
+      if (const SourcePoint* sample = samples.of(from)) labels.push_back(sample->label);
+      if (!is_divided(k)) continue;
+      start = start + 0.5 * (positions[static_cast<std::size_t>(from)] +
+                             positions[static_cast<std::size_t>(to)]);
+      ++divided;
+    }
+    if (divided == 0) return std::nullopt;
+    std::sort(labels.begin(), labels.end());
+    labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
+    return feature((1.0 / divided) * start, std::move(labels));
+  }
 
   /// The point next to `start` where regions meet; of one, where it has a sharp edge.
   std::optional<Vector3> place(const Vector3& start, const std::vector<std::int32_t>& labels) const;

@@ -61,27 +61,6 @@ struct Changes {
 bool has_any(const Flags& flags) { return std::find(flags.begin(), flags.end(), 1) != flags.end(); }
 bool has_any(const Changes& changes) { return has_any(changes.loops) || has_any(changes.vertices); }
 
-Feature feature_of(const LinkedLoops& loops, std::size_t i, std::span<const Vector3> positions,
-                   const VertexSamples& samples, const FeaturePlaces& places) {
-  const SharpLoop& loop = loops.loops[i];
-  const auto at = [&](std::int32_t v) -> const Vector3& {
-    return positions[static_cast<std::size_t>(v)];
-  };
-  Vector3 start{};
-  Labels labels;
-  int divided = 0;
-  for (std::size_t k = 0; k < loops.side_count(i); ++k) {
-    if (const SourcePoint* sample = samples.of(loop.from(k))) labels.push_back(sample->label);
-    if (!loops.sides[i][k].is_divided) continue;
-    start = start + 0.5 * (at(loop.from(k)) + at(loop.to(k)));
-    ++divided;
-  }
-  start = (1.0 / divided) * start;
-  std::sort(labels.begin(), labels.end());
-  labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
-  return places.feature(start, std::move(labels));
-}
-
 LoopStates first_states(const LinkedLoops& loops, std::span<const Vector3> positions,
                         const VertexSamples& samples, const FeaturePlaces& places,
                         const Progress& progress, int threads) {
@@ -89,7 +68,10 @@ LoopStates first_states(const LinkedLoops& loops, std::span<const Vector3> posit
   states.features.resize(loops.size());
   const auto place_some = [&](std::int64_t begin, std::int64_t end) {
     for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-      states.features[i] = feature_of(loops, i, positions, samples, places);
+      const SharpLoop& loop = loops.loops[i];
+      const auto is_divided = [&](std::size_t k) { return loops.sides[i][k].is_divided; };
+      states.features[i] = *places.of_loop({loop.corners.data(), loops.side_count(i)}, positions,
+                                           samples, is_divided);
     }
   };
   parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, threads, progress,
@@ -381,7 +363,8 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const
   const double side = kCubeCells * cell;
   const Flags may_meet =
       where_rough(view, layered.near, may_intersect(layered, crossings, is_suspect), side);
-  Pairs pairs = near_intersections(view, layered.near, may_meet, side, progress, threads);
+  // Among all triangles: those far from edges stay, and are in the way of what leaves its lines.
+  Pairs pairs = near_intersections(view, 0, may_meet, side, progress, threads);
   for (const auto& fold : folded_pairs(view, 0, is_suspect)) {
     if (are_at_edge(view, layered.mesh.labels, fold, surface, samples, turned)) continue;
     pairs.push_back(fold);
