@@ -8,6 +8,7 @@ import pytest
 from octrees import octrees_are_same
 from solids import Solid, box, join, sheet, sphere, surface_faults
 
+from bench.solids import random_rotation
 from bench.voxels.measures import folds, topology
 from bench.voxels.thin_shapes import SHAPES, plate, posed, ring, rod
 
@@ -157,3 +158,23 @@ def test_nasty_meshes():
     twice = join(posed(plate(0.3), 1, CELLS), posed(plate(0.3), 1, CELLS))
     once = voxelized(posed(plate(0.3), 1, CELLS))
     assert voxelized(twice).volume == pytest.approx(once.volume, rel=1e-3)
+
+
+@pytest.mark.parametrize("seed", [1, 3])
+def test_sheets_beside_edges_are_not_met(seed):
+    """Boxes without lids, one in the other: the surface has edges beside what is thickened."""
+    outer, inner = box((-1, -1, -1), (1, 1, 1)), box((-0.8, -0.8, -0.8), (0.8, 0.8, 1.2))
+    both = join(*(Solid(one.positions, one.triangles[:-2]) for one in (outer, inner)))
+    solid = both.transformed(random_rotation(seed), np.zeros(3))
+    bounds = prefilter.cube_around(
+        (solid.positions.min(axis=0), solid.positions.max(axis=0)), depth=5
+    )
+    cell = float(bounds[1][0] - bounds[0][0]) / 2**5
+    made = prefilter.as_solid(
+        solid.positions, solid.triangles, cell=cell, gap=2.0, thickness=LEAST, sheets="faces"
+    )
+    mesh = (made.positions, made.triangles)
+    tree = prefilter.voxelize(*mesh, depth=5, bounds=bounds, thickness=LEAST)
+    for cleanup in (False, True):
+        found = tree.contour(interpolant="sharp", cleanup=cleanup, sources=[mesh])
+        assert surface_faults(*found).none
