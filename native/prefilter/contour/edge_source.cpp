@@ -30,11 +30,10 @@ void sample_edges(const ContourTree& tree, const RootFrame& frame, const CellTre
   edges->samples = edges->smooth_parts->sample_vertices(progress.part(0.5, 1.0), threads, vertices);
 }
 
-std::vector<std::int64_t> trace_labels(const SourceSurface& surface, int threads,
-                                       FacetedMesh* mesh) {
+std::vector<std::int64_t> trace_labels(const SourceSurface& surface, FacetedMesh* mesh) {
   std::vector<std::int64_t> triangles = surface.first_triangles();
   const auto known = static_cast<std::int32_t>(triangles.size());
-  const int added = spread_labels(mesh, known, Progress(), threads);
+  const int added = spread_labels(mesh, known, Progress());
   triangles.resize(triangles.size() + static_cast<std::size_t>(added), -1);
   // What has no edges close to it is of one region: one of its triangles tells.
   for (std::size_t t = 0; t < mesh->triangles.size() && added > 0; ++t) {

@@ -52,7 +52,6 @@ void sample_edges(const ContourTree& tree, const RootFrame& frame, const CellTre
                   EdgeSource* edges);
 
 /// Gives all triangles labels; returns a triangle of the sources for each of these.
-std::vector<std::int64_t> trace_labels(const SourceSurface& surface, int threads,
-                                       FacetedMesh* mesh);
+std::vector<std::int64_t> trace_labels(const SourceSurface& surface, FacetedMesh* mesh);
 
 }  // namespace prefilter

@@ -25,12 +25,12 @@ namespace {
 
 // A triangle of the sources for each quad; -1 in cells that are not theirs.
 std::vector<std::int64_t> origins_of(const QuadSurface& surface, const SourceSurface& meshes,
-                                     const ThickenedCells& thickened, int threads) {
+                                     const ThickenedCells& thickened) {
   FacetedMesh mesh;
   mesh.positions = surface.positions;
   mesh.triangles = surface.triangles();
   for (const std::int32_t label : surface.labels) mesh.labels.insert(mesh.labels.end(), 2, label);
-  const std::vector<std::int64_t> triangles = trace_labels(meshes, threads, &mesh);
+  const std::vector<std::int64_t> triangles = trace_labels(meshes, &mesh);
   std::vector<std::int64_t> origins;
   origins.reserve(surface.quads.size());
   for (std::size_t q = 0; q < surface.quads.size(); ++q) {
@@ -96,7 +96,7 @@ std::optional<QuadMesh> quads_of(const CellTree& cells, const Box& root, bool is
       settled_quads(loops, places, edges, on_edges, cell, progress.part(0.8, 0.95), threads);
   QuadMesh mesh;
   if (edges.meshes) {
-    mesh.origins = origins_of(surface, *edges.meshes, {options.thickened, frame}, threads);
+    mesh.origins = origins_of(surface, *edges.meshes, {options.thickened, frame});
   }
   frame.place(progress.part(0.95, 1.0), threads, &surface.positions);
   mesh.positions = std::move(surface.positions);

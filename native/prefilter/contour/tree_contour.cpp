@@ -360,7 +360,7 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
   FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 0.97), threads);
   smooth_stairs(cell, is_thickened, false, progress.part(0.97, 1.0), threads, &mesh);
   if (sources_of_labels != nullptr && edges.meshes) {
-    *sources_of_labels = trace_labels(*edges.meshes, threads, &mesh);
+    *sources_of_labels = trace_labels(*edges.meshes, &mesh);
   }
   return mesh;
 }

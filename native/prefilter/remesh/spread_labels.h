@@ -11,6 +11,6 @@ namespace prefilter {
 /// Gives triangles of kNoLabel the label of what they hang together with by edges that are no
 /// creases; parts of the mesh without any get new ones. Returns how many labels there are new,
 /// above `count`, the number of those that were there. Throws Error(kCancelled).
-int spread_labels(FacetedMesh* mesh, std::int32_t count, const Progress& progress, int threads);
+int spread_labels(FacetedMesh* mesh, std::int32_t count, const Progress& progress);
 
 }  // namespace prefilter
