@@ -56,12 +56,21 @@ def original_of(result: bpy.types.Object) -> bpy.types.Object | None:
     return first if first is not None and first in sources_of(result) else None
 
 
-def put_in_place(result: bpy.types.Object) -> None:
-    """Puts the copy of what an object was where the object is, unless the copy is shown."""
-    copy = original_of(result)
-    is_shown = result.prefilter_made_of.is_source_shown
-    if copy is not None and _is_copy(copy, result) and not is_shown:
-        _place(copy, result)
+def put_in_place(results: Sequence[bpy.types.Object]) -> None:
+    """Puts what objects were where they are, unless it is seen; each was made of the next."""
+    bpy.context.view_layer.update()
+    # What is in no collection has no place in the world that Blender knows.
+    world = results[0].matrix_world.copy()
+    for result in results:
+        original = original_of(result)
+        if original is None:
+            return
+        if result.prefilter_made_of.is_source_shown:
+            world = original.matrix_world.copy()
+        elif _is_copy(original, result):
+            _place(original, result)
+        elif not original.visible_get():
+            original.matrix_world = world
 
 
 @contextmanager
@@ -119,8 +128,13 @@ def show(
     sources = sources_of(result)
     shown, hidden = (sources, [result]) if source else ([result], sources)
     copy = next((obj for obj in sources if _is_copy(obj, result)), None)
+    original = original_of(result)
     if copy is not None:
         _place(*((copy, result) if source else (result, copy)))
+    elif original is not None:
+        context.view_layer.update()
+        moved, there = (original, result) if source else (result, original)
+        moved.matrix_world = there.matrix_world
     if source and copy is not None:
         for collection in result.users_collection:
             collection.objects.link(copy)
@@ -142,8 +156,9 @@ def show(
 def _hide(obj: bpy.types.Object, context: bpy.types.Context, *, hides: bool) -> None:
     obj.hide_render = hides
     if obj.name in context.view_layer.objects:
-        obj.select_set(not hides)
+        # What is hidden cannot be selected.
         obj.hide_set(hides)
+        obj.select_set(not hides)
 
 
 def forget(result: bpy.types.Object, context: bpy.types.Context) -> None:

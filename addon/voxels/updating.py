@@ -27,8 +27,7 @@ class Update:
     def __init__(self, result: bpy.types.Object) -> None:
         """Takes the object that is made again."""
         chain = memory.chain(result)
-        for obj in chain:
-            kept_sources.put_in_place(obj)
+        kept_sources.put_in_place(chain)
         self._names = [obj.name for obj in reversed(chain)]
         self._stand_ins: dict[str, str] = {}
 

@@ -42,6 +42,7 @@ def test_there_and_back():
     np.testing.assert_allclose(source.matrix_world, result.matrix_world, atol=1e-6)
     assert bpy.context.active_object == source
     assert switch() == result
+    assert result.select_get()
     assert seen() == {"Cube"}
     assert not source.users_collection
     assert len(result.data.vertices) == count
@@ -146,8 +147,27 @@ def test_a_text():
     assert seen() == {"Text.voxels"}
     assert switch() == text
     assert seen() == {"Text"}
+    assert text.select_get()
     assert switch().name == "Text.voxels"
+    assert not text.select_get()
     assert seen() == {"Text.voxels"}
+
+
+def test_a_text_and_its_result_are_in_one_place():
+    """Under a parent too, which the text has and the result has not."""
+    parent = bpy.data.objects.new("Parent", None)
+    bpy.context.collection.objects.link(parent)
+    parent.location.y = 2
+    text = outlines.text("Text")
+    text.data.extrude = 0.1
+    text.parent = parent
+    assert bpy.ops.prefilter.voxelize(depth=5) == {"FINISHED"}
+    result = bpy.context.active_object
+    result.location = (5, 6, 7)
+    assert tuple(switch().matrix_world.translation) == (5, 6, 7)
+    assert text.parent == parent
+    text.location.x += 3
+    assert tuple(switch().location) == (8, 6, 7)
 
 
 def test_points_and_their_surface():

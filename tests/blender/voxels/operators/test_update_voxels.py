@@ -223,6 +223,65 @@ def test_a_text():
     assert seen() == {made.name}
 
 
+def cut_text():
+    """Returns the result of a text of three bars without the first, the text, and its width."""
+    text = outlines.text("III")
+    text.data.extrude = 0.2
+    bpy.context.view_layer.update()
+    width = text.dimensions.x
+    bodies.cube("Cutter", location=(width / 2 - 1, 0, 0))
+    text.select_set(True)
+    bpy.context.view_layer.objects.active = text
+    assert bpy.ops.prefilter.boolean(depth=6) == DONE
+    return bpy.context.active_object, text, width
+
+
+def test_a_text_where_its_result_was_moved_to():
+    """Nothing is cut away where it has moved by its width."""
+    result, text, width = cut_text()
+    two_bars = bodies.volume(result)
+    result.location.x += width
+    update()
+    assert bodies.volume(result) == pytest.approx(1.5 * two_bars, rel=0.05)
+    np.testing.assert_allclose(text.matrix_world, result.matrix_world, atol=1e-6)
+
+
+def test_a_text_that_was_moved_while_it_was_shown():
+    """The result follows, and what is cut away with it."""
+    result, text, width = cut_text()
+    two_bars = bodies.volume(result)
+    assert switch() == text
+    text.location.x += width
+    update()
+    assert result.location.x == pytest.approx(width)
+    assert bodies.volume(result) == pytest.approx(1.5 * two_bars, rel=0.05)
+
+
+def test_a_text_before_two_booleans():
+    """The copy between is in no collection, and the text goes where the last result is."""
+    result, text, width = cut_text()
+    two_bars = bodies.volume(result)
+    bodies.cube("Other", location=(0, 5, 0))
+    result.select_set(True)
+    bpy.context.view_layer.objects.active = result
+    assert bpy.ops.prefilter.boolean() == DONE
+    result.location.x += width
+    update()
+    assert bodies.volume(result) == pytest.approx(1.5 * two_bars, rel=0.05)
+    assert text.location.x == pytest.approx(width)
+
+
+def test_a_text_that_is_seen_stays():
+    """Sources that are in use elsewhere count where they are."""
+    result, text, width = cut_text()
+    two_bars = bodies.volume(result)
+    text.hide_set(False)
+    result.location.x += width
+    update()
+    assert text.location.x == 0
+    assert bodies.volume(result) == pytest.approx(two_bars, rel=0.05)
+
+
 def test_after_opening_the_file_again(tmp_path):
     boolean()
     path = str(tmp_path / "cut.blend")
