@@ -20,6 +20,13 @@ from .solids import SOLID_TYPES, MaterialKey
 _HAS_FREE_NORMALS = bpy.app.version >= (4, 5, 0)
 _FEW_FACES = 200_000
 """So many get normals that turn with them within a second."""
+_KEPT = (
+    *(f"use_mirror_{name}" for name in ("x", "y", "z", "vertex_groups", "topology")),
+    *(f"remesh_{name}" for name in ("mode", "voxel_size", "voxel_adaptivity")),
+    *(f"use_remesh_{name}" for name in ("fix_poles", "preserve_volume", "preserve_attributes")),
+    *("use_auto_texspace", "texspace_location", "texspace_size"),
+)
+"""Settings of meshes that are the object's, such as those of symmetric sculpting."""
 _WEIGHT_STEPS = 65535
 """Of vertex groups: so many weights are told apart, and vertices with one are added together."""
 
@@ -217,6 +224,7 @@ def show_again(obj: bpy.types.Object, contour: Contour) -> bpy.types.Object:
 def replace_data(obj: bpy.types.Object, mesh: bpy.types.Mesh) -> None:
     """Gives an object another mesh, by the name of its own unless others have that too."""
     old, name = obj.data, obj.data.name
+    _keep_settings(old, mesh)
     obj.data = mesh
     if old.users == 0 and old.library is None:
         bpy.data.meshes.remove(old)
@@ -251,6 +259,7 @@ def _replace_mesh(obj: bpy.types.Object, contour: Contour, source: bpy.types.Obj
     """Gives an object a mesh, by the name of its own unless others have that too."""
     old = obj.data
     mesh = new_mesh(old.name, contour)
+    _keep_settings(old, mesh)
     for modifier in list(obj.modifiers):
         if modifier.name not in contour.kept_modifiers:
             obj.modifiers.remove(modifier)
@@ -265,6 +274,13 @@ def _replace_mesh(obj: bpy.types.Object, contour: Contour, source: bpy.types.Obj
         name = old.name
         bpy.data.meshes.remove(old)
         mesh.name = name
+
+
+def _keep_settings(old: bpy.types.Mesh, new: bpy.types.Mesh) -> None:
+    for name in _KEPT:
+        if old.use_auto_texspace and name.startswith("texspace"):
+            continue
+        setattr(new, name, getattr(old, name))
 
 
 def _choose_active(mesh: bpy.types.Mesh, contour: Contour) -> None:

@@ -33,10 +33,12 @@ class Walls:
     Attributes:
         thickness: In cells, of nine tenths of their area at least.
         refinement: How many times smaller cells keep as much of them; infinity for sheets.
+        are_few: Whether there is a greater area of sheets.
     """
 
     thickness: float
     refinement: float
+    are_few: bool = False
 
     @classmethod
     def of(cls, thin: "prefilter.ThinPlaces") -> "Walls | None":
@@ -52,7 +54,8 @@ class Walls:
             thin.made[is_wall],
             thin.areas[is_wall],
         )
-        return cls(walls.thickness_of(_SHARE), walls.refinement(_SHARE))
+        are_few = bool(thin.areas[is_wall].sum() < thin.areas[~is_wall].sum())
+        return cls(walls.thickness_of(_SHARE), walls.refinement(_SHARE), are_few)
 
     @property
     def levels(self) -> int | None:
@@ -234,12 +237,14 @@ def advice_on(
         return Sentence(_SHEETS)
     thinnest = max(solid, key=lambda one: one.refinement)
     assert thinnest.levels is not None
+    depth = grid.depth + thinnest.levels
+    if depth > prefilter.MAX_DEPTH and thinnest.are_few:
+        return Sentence(_SHEETS)  # Where these cross, the walls between them have no least width.
     number = f"{thinnest.thickness:.1f}"
     if thinnest.thickness < 0.1:
         number = f"{thinnest.thickness:.1g}"
     if not by_depth:
         return Sentence(_SIZE, number, length(grid.spacing / 2**thinnest.levels))
-    depth = grid.depth + thinnest.levels
     if depth > prefilter.MAX_DEPTH:
         return Sentence(_TOO_THIN, number)
     return Sentence(_DEPTH, number, depth)

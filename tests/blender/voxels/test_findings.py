@@ -90,6 +90,19 @@ def test_sheets():
     ]
 
 
+def test_walls_beside_sheets():
+    """The depth is that of the walls, though there is more of sheets."""
+    obj = plate(0.5)
+
+    def change(bm):
+        for k in range(4):
+            made = bmesh.ops.create_grid(bm, x_segments=1, y_segments=1, size=4.9)
+            bmesh.ops.translate(bm, verts=made["verts"], vec=(0.0, 0.0, k + 1.0))
+
+    bodies.changed(obj, change)
+    assert the_line(outcome(obj))[-1] == "walls of 0.5 cells: depth 8 keeps them"
+
+
 def test_holes_and_lost_parts():
     obj = bodies.sphere(subdivisions=4)
 
@@ -171,6 +184,13 @@ def test_a_monkey_loses_no_eyes(faces):
     assert line[1] == f"genus: 0 before, {genus} after"
     assert parts == 3
     assert not any("lost" in row for row in line)
+
+
+def test_sheets_that_cross_what_is_around_them():
+    """The monkey's eyes: there are walls of any thickness where they do, and few of them."""
+    assert bpy.ops.mesh.primitive_monkey_add() == DONE
+    line = the_line(outcome(bpy.context.active_object, depth=8))
+    assert line[-1] == "sheets: no depth keeps them"
 
 
 def test_a_boolean_sums_up():

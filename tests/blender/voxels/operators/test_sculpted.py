@@ -48,6 +48,21 @@ def test_masks_and_face_sets_are_kept():
     assert_kept(ball.data, 2 / 28)
 
 
+@pytest.mark.parametrize("mode", ["SCULPT", "OBJECT"])
+def test_symmetry_is_kept(mode):
+    """And what Voxel Remesh is set to, as both are settings of the mesh."""
+    ball = sculpted()
+    bpy.ops.object.mode_set(mode=mode)
+    ball.data.use_mirror_x, ball.data.use_mirror_z = True, True
+    ball.data.remesh_voxel_size = 0.0625
+    for run in (bpy.ops.prefilter.voxelize, bpy.ops.prefilter.update_voxels):
+        if run.poll():
+            assert run() == {"FINISHED"}
+        mesh = ball.data
+        assert (mesh.use_mirror_x, mesh.use_mirror_y, mesh.use_mirror_z) == (True, False, True)
+        assert mesh.remesh_voxel_size == 0.0625
+
+
 def test_triangles_are_small_and_nothing_is_kept():
     """Brushes need the triangles, and of each run a copy would be kept."""
     ball = sculpted()
