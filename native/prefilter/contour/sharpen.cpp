@@ -15,8 +15,12 @@
 #include "prefilter/contour/feature_places.h"
 #include "prefilter/contour/linked_loops.h"
 #include "prefilter/contour/loop_triangles.h"
+#include "prefilter/contour/mended_loops.h"
+#include "prefilter/contour/mending_zone.h"
 #include "prefilter/contour/merged_loops.h"
+#include "prefilter/contour/off_line_vertices.h"
 #include "prefilter/contour/relaxed_features.h"
+#include "prefilter/contour/second_try.h"
 #include "prefilter/remesh/folds.h"
 #include "prefilter/remesh/near_intersections.h"
 
@@ -32,34 +36,6 @@ using Triangle = std::array<std::int32_t, 3>;
 using Labels = std::vector<std::int32_t>;
 using Flags = std::vector<std::uint8_t>;
 using Pairs = std::vector<std::array<std::uint32_t, 2>>;
-
-// The mesh while it is made: the vertices of the contour and the triangles far from edges, near
-// them, and of sharp loops, in that order.
-struct LayeredMesh {
-  FacetedMesh mesh;
-  std::size_t contour_vertices;
-  std::size_t near;   // the first triangle near an edge
-  std::size_t loops;  // the first triangle of a loop
-};
-
-// Of each loop.
-struct LoopStates {
-  std::vector<Feature> features;
-  Flags is_sharp;
-  Flags is_single;  // not to be merged
-  std::vector<std::size_t> merged;
-  std::vector<std::uint8_t> attempts;
-  std::vector<std::uint8_t> halvings;
-};
-
-// Since intersections were looked for.
-struct Changes {
-  Flags loops;
-  Flags vertices;
-};
-
-bool has_any(const Flags& flags) { return std::find(flags.begin(), flags.end(), 1) != flags.end(); }
-bool has_any(const Changes& changes) { return has_any(changes.loops) || has_any(changes.vertices); }
 
 LoopStates first_states(const LinkedLoops& loops, std::span<const Vector3> positions,
                         const VertexSamples& samples, const FeaturePlaces& places,
@@ -133,7 +109,7 @@ LoopTriangles assemble(const LinkedLoops& loops, std::span<const Triangle> plain
 }
 
 // The triangles near edges that have changed.
-Flags suspects(const LayeredMesh& layered, const LoopTriangles& made, const Changes& changes) {
+Flags suspects(const LayeredMesh& layered, const LoopTriangles& made, const LoopChanges& changes) {
   const std::vector<Triangle>& triangles = layered.mesh.triangles;
   Flags is_suspect(triangles.size(), 0);
   for (std::size_t t = layered.near; t < triangles.size(); ++t) {
@@ -148,120 +124,6 @@ Flags suspects(const LayeredMesh& layered, const LoopTriangles& made, const Chan
   }
   return is_suspect;
 }
-
-// The sample of a vertex whose line misses the surface; -1 for others, and where it is on its line.
-std::int32_t off_line(std::int32_t vertex, const VertexSamples& samples,
-                      std::span<const Vector3> positions) {
-  const auto v = static_cast<std::size_t>(vertex);
-  if (v >= samples.index.size() || samples.index[v] < 0) return -1;
-  const auto sample = static_cast<std::size_t>(samples.index[v]);
-  const bool is_off = samples.samples[sample].position != samples.on_lines[sample];
-  return is_off && positions[v] != samples.on_lines[sample] ? samples.index[v] : -1;
-}
-
-// Moves sampled vertices that are off their lines along the surface: to where no triangle of theirs
-// is upside down, or between those around them. Where that does not do, they go to their lines,
-// which may be off the surface.
-class OffLineVertices {
- public:
-  OffLineVertices(const FeatureSurface& surface, const VertexSamples& samples,
-                  const std::unordered_set<std::int32_t>& turned)
-      : surface_(surface), samples_(samples), turned_(turned), moves_(samples.samples.size(), 0) {}
-
-  // Takes those of a triangle; returns whether there are any.
-  bool take(const Triangle& triangle, std::span<const Vector3> positions) {
-    bool is_any = false;
-    for (const std::int32_t corner : triangle) {
-      const std::int32_t sample = off_line(corner, samples_, positions);
-      if (sample < 0 || moves_[static_cast<std::size_t>(sample)] > kMostMoves) continue;
-      taken_.push_back(corner);
-      is_any = true;
-    }
-    return is_any;
-  }
-
-  // Flags those that have moved.
-  void move(std::span<const Triangle> triangles, Flags* is_moved, std::vector<Vector3>* positions) {
-    if (taken_.empty()) return;
-    std::sort(taken_.begin(), taken_.end());
-    taken_.erase(std::unique(taken_.begin(), taken_.end()), taken_.end());
-    const std::vector<Around> around = look_around(triangles, *positions);
-    for (std::size_t k = 0; k < taken_.size(); ++k) {
-      const auto v = static_cast<std::size_t>(taken_[k]);
-      (*positions)[v] = next_place((*positions)[v], around[k], samples_.index[v]);
-      (*is_moved)[v] = 1;
-    }
-    taken_.clear();
-  }
-
- private:
-  static constexpr std::uint8_t kMostMoves = 3;
-  static constexpr double kReachCells = 1.0;
-  static constexpr double kBeyondCells = 0.1;
-
-  // Of a vertex that is taken.
-  struct Around {
-    Vector3 mean{};    // of the vertices around it
-    Vector3 across{};  // the way over the far side of a triangle that is upside down
-  };
-
-  Vector3 next_place(const Vector3& from, const Around& around, std::int32_t index) {
-    const auto sample = static_cast<std::size_t>(index);
-    if (moves_[sample]++ < kMostMoves) {
-      const bool is_over = around.across != Vector3{};
-      const Vector3 way = is_over ? around.across : 0.5 * (around.mean - from);
-      const std::optional<SourcePoint> found = surface_.nearest(
-          from + way, kReachCells * surface_.cell(), samples_.samples[sample].label);
-      if (found) return found->position;
-    }
-    return samples_.on_lines[sample];
-  }
-
-  std::vector<Around> look_around(std::span<const Triangle> triangles,
-                                  std::span<const Vector3> positions) const {
-    std::vector<Around> around(taken_.size());
-    std::vector<double> counts(taken_.size(), 0.0);
-    const auto at = [&](std::int32_t v) -> const Vector3& {
-      return positions[static_cast<std::size_t>(v)];
-    };
-    for (const Triangle& triangle : triangles) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto found = std::lower_bound(taken_.begin(), taken_.end(), triangle[k]);
-        if (found == taken_.end() || *found != triangle[k]) continue;
-        const auto i = static_cast<std::size_t>(found - taken_.begin());
-        const Vector3& a = at(triangle[(k + 1) % 3]);
-        const Vector3& b = at(triangle[(k + 2) % 3]);
-        around[i].mean = around[i].mean + a + b;
-        counts[i] += 2.0;
-        const Vector3 way = way_across(triangle[k], at(triangle[k]), a, b);
-        if (dot(way, way) > dot(around[i].across, around[i].across)) around[i].across = way;
-      }
-    }
-    for (std::size_t i = 0; i < around.size(); ++i) {
-      around[i].mean = (1.0 / std::max(counts[i], 1.0)) * around[i].mean;
-    }
-    return around;
-  }
-
-  // From a vertex to beyond the line of two others, within the plane of its sample, where the
-  // triangle of the three is upside down; 0 where it is not.
-  Vector3 way_across(std::int32_t vertex, const Vector3& from, const Vector3& a,
-                     const Vector3& b) const {
-    const SourcePoint& sample = *samples_.of(vertex);
-    const Vector3 up = turned_.contains(sample.label) ? -1.0 * sample.normal : sample.normal;
-    const Vector3 inward = cross(up, b - a);
-    const double size = length(inward);
-    const double height = size > 0.0 ? dot(inward, from - a) / size : 0.0;
-    if (!(height < 0.0)) return {};
-    return ((kBeyondCells * surface_.cell() - height) / size) * inward;
-  }
-
-  const FeatureSurface& surface_;
-  const VertexSamples& samples_;
-  const std::unordered_set<std::int32_t>& turned_;
-  std::vector<std::uint8_t> moves_;
-  std::vector<std::int32_t> taken_;
-};
 
 // Of pairs of triangles: moves vertices that are off their lines; otherwise blames loops; otherwise
 // puts vertices where they were before they were sampled. Flags the vertices that have moved.
@@ -317,15 +179,6 @@ std::vector<std::size_t> take_attempts(std::vector<std::uint8_t>* attempts,
   return moving;
 }
 
-// Those beside a loop lose or gain a joint.
-void mark_around(std::size_t i, const LinkedLoops& loops, Flags* is_changed) {
-  (*is_changed)[i] = 1;
-  for (std::size_t k = 0; k < loops.side_count(i); ++k) {
-    const std::int32_t other = loops.sides[i][k].other;
-    if (other >= 0) (*is_changed)[static_cast<std::size_t>(other)] = 1;
-  }
-}
-
 // What cannot reach the edge gets as close to it as it can.
 void draw_back(std::size_t i, const LinkedLoops& loops, LoopStates* states, Flags* is_changed) {
   Feature& feature = states->features[i];
@@ -378,140 +231,168 @@ Pairs faulty_pairs(const LayeredMesh& layered, const Crossings& crossings, const
   return pairs;
 }
 
-// The loops that were drawn back, and the vertices that were moved, which may have their places
-// where what was in their way has moved since.
-class SecondTry {
+// Where loops are mended: everything, or a zone.
+struct Place {
+  const LinkedLoops& loops;
+  LoopStates& states;
+  LayeredMesh& layered;
+  LoopChanges& changes;
+  std::span<const std::size_t> numbers;     // of each loop, among all; none: they are all
+  std::span<const std::uint8_t> is_inside;  // of each loop; none: all are
+
+  std::size_t number_of(std::size_t loop) const { return numbers.empty() ? loop : numbers[loop]; }
+};
+
+struct Faults {
+  LoopTriangles made;
+  Pairs pairs;
+};
+
+// A contour whose loops are mended as long as there are faults.
+class Mending {
  public:
-  SecondTry(const LinkedLoops& loops, std::span<const Feature> wanted,
-            std::span<const Vector3> wanted_places, LoopStates* states,
-            std::vector<Vector3>* positions)
-      : loops_(loops),
-        states_(*states),
-        positions_(*positions),
-        settled_(*states),
-        settled_places_(positions->begin(),
-                        positions->begin() + static_cast<std::ptrdiff_t>(wanted_places.size())),
-        is_tried_(loops.size(), 0),
-        is_moved_(wanted_places.size(), 0) {
-    for (std::size_t i = 0; i < loops.size(); ++i) {
-      if (states->halvings[i] == 0) continue;
-      is_tried_[i] = 1;
-      states->features[i] = wanted[i];
-      states->is_sharp[i] = 1;
-    }
-    for (std::size_t v = 0; v < wanted_places.size(); ++v) {
-      if (positions_[v] == wanted_places[v]) continue;
-      is_moved_[v] = 1;
-      positions_[v] = wanted_places[v];
-    }
+  Mending(LinkedLoops loops, LoopedMesh looped, LoopStates states, const Crossings& crossings,
+          const FeatureSurface& surface, const VertexSamples& samples, const Progress& progress,
+          int threads)
+      : crossings_(crossings),
+        surface_(surface),
+        samples_(samples),
+        progress_(progress),
+        threads_(threads),
+        turned_(turned_labels(samples)),
+        off_lines_(surface, samples, turned_),
+        loops_(std::move(loops)),
+        plain_(std::move(looped.loop_triangles)),
+        states_(std::move(states)),
+        layered_(without_loops(std::move(looped.positions), std::move(looped.triangles), samples)) {
   }
 
-  Changes changed() const {
-    Changes changes{Flags(loops_.size(), 0), is_moved_};
-    for (std::size_t i = 0; i < loops_.size(); ++i) {
-      if (is_tried_[i] != 0) mark_around(i, loops_, &changes.loops);
+  FacetedMesh mend(const FeaturePlaces& places) {
+    const std::vector<Feature> wanted = states_.features;
+    std::vector<Vector3>& positions = layered_.mesh.positions;
+    const std::vector<Vector3>& fitted = crossings_.fitted;
+    const std::vector<Vector3> wanted_places(
+        positions.begin(), positions.begin() + static_cast<std::ptrdiff_t>(fitted.size()));
+    changes_ = {Flags(loops_.size(), 1), Flags(fitted.size(), 0)};
+    for (std::size_t v = 0; v < fitted.size(); ++v) {
+      if (positions[v] != fitted[v]) changes_.vertices[v] = 1;
     }
-    return changes;
-  }
-
-  // Puts those back that have a triangle of a pair, or all where none has; returns which changed.
-  Changes give_up(const Pairs& pairs, const LoopTriangles& made, const LayeredMesh& layered) {
-    Changes changes{Flags(loops_.size(), 0), Flags(is_moved_.size(), 0)};
-    states_.is_single = settled_.is_single;
-    for (const auto& pair : pairs) {
-      for (const std::uint32_t t : pair) {
-        for (const std::int32_t corner : layered.mesh.triangles[t]) {
-          put_vertex_back(static_cast<std::size_t>(corner), &changes.vertices);
-        }
-        if (t < layered.loops) continue;
-        for (const std::int32_t owner : made.owners[t - layered.loops]) {
-          if (owner >= 0) put_back(static_cast<std::size_t>(owner), &changes.loops);
-        }
-      }
+    do {
+      visit_changed([&](Place place) { give_way(places, &place); });
+    } while (changes_.is_any());
+    SecondTry again(loops_, wanted, wanted_places, &states_, &positions);
+    changes_ = again.changed();
+    while (changes_.is_any()) {
+      Faulty found;
+      visit_changed([&](Place place) { found = faulty(&place); });
+      if (!found.is_any) break;
+      changes_ = again.give_up(found.loops, found.vertices);
     }
-    if (has_any(changes)) return changes;
-    for (std::size_t i = 0; i < loops_.size(); ++i) put_back(i, &changes.loops);
-    for (std::size_t v = 0; v < is_moved_.size(); ++v) put_vertex_back(v, &changes.vertices);
-    return changes;
+    assemble(loops_, plain_, samples_, surface_.cell(), &states_, &changes_.loops, &layered_);
+    return std::move(layered_.mesh);
   }
 
  private:
-  void put_back(std::size_t i, Flags* is_changed) {
-    if (is_tried_[i] == 0) return;
-    is_tried_[i] = 0;
-    states_.features[i] = settled_.features[i];
-    states_.is_sharp[i] = settled_.is_sharp[i];
-    mark_around(i, loops_, is_changed);
+  // What has a triangle of a pair.
+  struct Faulty {
+    bool is_any = false;
+    std::vector<std::size_t> loops;
+    std::vector<std::size_t> vertices;
+  };
+
+  template <typename Work>
+  void visit_changed(const Work& work) {
+    if (ZoneFinder::is_wide(changes_)) {
+      work(Place{loops_, states_, layered_, changes_, {}, {}});
+      return;
+    }
+    if (!zones_) zones_.emplace(loops_, layered_, surface_.cell());
+    MendingZone zone = zones_->enter(loops_, states_, &changes_, &layered_);
+    work(Place{zone.loops, zone.states, zone.layered, zone.changes, zone.numbers, zone.is_inside});
+    ZoneFinder::leave(std::move(zone), &states_, &changes_, &layered_);
   }
 
-  void put_vertex_back(std::size_t v, Flags* is_changed) {
-    if (v >= is_moved_.size() || is_moved_[v] == 0) return;
-    is_moved_[v] = 0;
-    positions_[v] = settled_places_[v];
-    (*is_changed)[v] = 1;
+  // Forgets the changes.
+  Faults find_faults(Place* place) {
+    LoopChanges& changes = place->changes;
+    Faults faults;
+    faults.made = assemble(place->loops, plain_, samples_, surface_.cell(), &place->states,
+                           &changes.loops, &place->layered);
+    // Where a zone ends, loops miss those beyond.
+    for (std::size_t i = 0; i < place->is_inside.size(); ++i) {
+      if (place->is_inside[i] == 0) changes.loops[i] = 0;
+    }
+    const Flags is_suspect = suspects(place->layered, faults.made, changes);
+    faults.pairs = faulty_pairs(place->layered, crossings_, is_suspect, surface_, samples_, turned_,
+                                progress_, threads_);
+    changes = {Flags(changes.loops.size(), 0), Flags(changes.vertices.size(), 0)};
+    return faults;
   }
 
-  const LinkedLoops& loops_;
-  LoopStates& states_;
-  std::vector<Vector3>& positions_;
-  LoopStates settled_;
-  std::vector<Vector3> settled_places_;
-  Flags is_tried_;
-  Flags is_moved_;
+  void give_way(const FeaturePlaces& places, Place* place) {
+    const auto& [made, pairs] = find_faults(place);
+    LoopStates& states = place->states;
+    Flags& is_changed = place->changes.loops;
+    std::vector<BlamedLoop> blamed =
+        blame(pairs, made, states.is_sharp, states.attempts, crossings_, &off_lines_,
+              &place->changes.vertices, &place->layered);
+    for (const std::size_t i :
+         relax_features(take_attempts(&states.attempts, &blamed), place->loops, states.is_sharp,
+                        places, &states.features)) {
+      is_changed[i] = 1;
+    }
+    for (const std::size_t i : fewest_loops(std::move(blamed), pairs.size())) {
+      draw_back(i, place->loops, &states, &is_changed);
+    }
+  }
+
+  Faulty faulty(Place* place) {
+    const auto& [made, pairs] = find_faults(place);
+    Faulty found;
+    found.is_any = !pairs.empty();
+    const LayeredMesh& layered = place->layered;
+    for (const auto& pair : pairs) {
+      for (const std::uint32_t t : pair) {
+        for (const std::int32_t corner : layered.mesh.triangles[t]) {
+          found.vertices.push_back(static_cast<std::size_t>(corner));
+        }
+        if (t < layered.loops) continue;
+        for (const std::int32_t owner : made.owners[t - layered.loops]) {
+          if (owner < 0) continue;
+          found.loops.push_back(place->number_of(static_cast<std::size_t>(owner)));
+        }
+      }
+    }
+    return found;
+  }
+
+  const Crossings& crossings_;
+  const FeatureSurface& surface_;
+  const VertexSamples& samples_;
+  const Progress& progress_;
+  int threads_;
+  std::unordered_set<std::int32_t> turned_;
+  OffLineVertices off_lines_;
+  LinkedLoops loops_;
+  std::vector<Triangle> plain_;
+  LoopStates states_;
+  LayeredMesh layered_;
+  LoopChanges changes_;
+  std::optional<ZoneFinder> zones_;
 };
 }  // namespace
 
 FacetedMesh sharpen(LoopedMesh looped, const Crossings& crossings, const FeatureSurface& surface,
                     const VertexSamples& samples, const Progress& progress, int threads) {
-  const double cell = surface.cell();
-  const LinkedLoops loops =
+  LinkedLoops loops =
       link_loops(std::move(looped.loops), surface, samples, progress.part(0.0, 0.1), threads);
-  const std::unordered_set<std::int32_t> turned = turned_labels(samples);
   const FeaturePlaces places(surface);
   LoopStates states =
       first_states(loops, looped.positions, samples, places, progress.part(0.1, 0.5), threads);
-  const std::vector<Feature> wanted = states.features;
-  const std::vector<Vector3> wanted_places(
-      looped.positions.begin(),
-      looped.positions.begin() + static_cast<std::ptrdiff_t>(crossings.fitted.size()));
-  LayeredMesh layered =
-      without_loops(std::move(looped.positions), std::move(looped.triangles), samples);
-  const std::size_t vertices = crossings.fitted.size();
-  Changes changes{Flags(loops.size(), 1), Flags(vertices, 0)};
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if (layered.mesh.positions[v] != crossings.fitted[v]) changes.vertices[v] = 1;
-  }
-  OffLineVertices off_lines(surface, samples, turned);
-  const Progress checking = progress.part(0.6, 1.0);
-  do {
-    const LoopTriangles made =
-        assemble(loops, looped.loop_triangles, samples, cell, &states, &changes.loops, &layered);
-    const Flags is_suspect = suspects(layered, made, changes);
-    const Pairs pairs =
-        faulty_pairs(layered, crossings, is_suspect, surface, samples, turned, checking, threads);
-    changes = {Flags(loops.size(), 0), Flags(vertices, 0)};
-    std::vector<BlamedLoop> blamed = blame(pairs, made, states.is_sharp, states.attempts, crossings,
-                                           &off_lines, &changes.vertices, &layered);
-    for (const std::size_t i : relax_features(take_attempts(&states.attempts, &blamed), loops,
-                                              states.is_sharp, places, &states.features)) {
-      changes.loops[i] = 1;
-    }
-    for (const std::size_t i : fewest_loops(std::move(blamed), pairs.size())) {
-      draw_back(i, loops, &states, &changes.loops);
-    }
-  } while (has_any(changes));
-  SecondTry again(loops, wanted, wanted_places, &states, &layered.mesh.positions);
-  changes = again.changed();
-  while (has_any(changes)) {
-    const LoopTriangles made =
-        assemble(loops, looped.loop_triangles, samples, cell, &states, &changes.loops, &layered);
-    const Flags is_suspect = suspects(layered, made, changes);
-    const Pairs pairs =
-        faulty_pairs(layered, crossings, is_suspect, surface, samples, turned, checking, threads);
-    if (pairs.empty()) break;
-    changes = again.give_up(pairs, made, layered);
-  }
-  return std::move(layered.mesh);
+  const Progress mending = progress.part(0.6, 1.0);
+  Mending contour(std::move(loops), std::move(looped), std::move(states), crossings, surface,
+                  samples, mending, threads);
+  return contour.mend(places);
 }
 
 }  // namespace prefilter

@@ -19,6 +19,7 @@ namespace {
 constexpr std::int64_t kSidesPerSweep = 1 << 21;
 constexpr std::int64_t kMostSweeps = 16;
 constexpr double kPlaneCosine = 0.9998476951563913;  // 1 degree
+constexpr double kLeastTurn = 2.0 / 15.0;            // 7.6 degrees, in radians
 
 using Triangle = std::array<std::int32_t, 3>;
 
@@ -176,13 +177,16 @@ std::optional<SmoothRegions> try_to_join(const WeldedMeshes& welded, double leas
   found.parts = parts.numbers(&found.part_count);
   int facet_count = 0;
   const std::vector<std::int32_t> facet_of = facets.numbers(&facet_count);
-  const std::vector<std::uint8_t> is_wide =
-      of_wide_facets(welded, facet_of, facet_count, least_width);
-  if (is_wide.empty()) return found;
+  const std::vector<double> widths = wide_facets(welded, facet_of, facet_count, least_width);
+  if (widths.empty()) return found;
+  // What stands out where an edge is rounded off grows with the width of facets and with the angle.
   const auto is_beside_none = [&](const Neighbors& both) {
     const auto t = static_cast<std::size_t>(both.triangles[0]);
     const auto u = static_cast<std::size_t>(both.triangles[1]);
-    return both.is_smooth() && (facet_of[t] == facet_of[u] || (is_wide[t] == 0 && is_wide[u] == 0));
+    const double turn = std::sqrt(2.0 * std::max(0.0, 1.0 - both.cosine));
+    const double width = std::max(widths[t], widths[u]);
+    return both.is_smooth() &&
+           (facet_of[t] == facet_of[u] || width * turn < kLeastTurn * least_width);
   };
   join_regions(welded, is_beside_none, progress.part(0.6, 1.0), threads, &found);
   return found;

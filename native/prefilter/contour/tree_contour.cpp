@@ -377,30 +377,33 @@ Vector3 middle_of(const FacetedMesh& mesh, std::size_t triangle) {
 TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options,
                            std::vector<std::int64_t>* origins) {
   constexpr double kPlacing = 0.98;
-  constexpr double kSmallest = 1e-30;  // unit of length that may be multiplied
-  const double simplifying = options.adaptivity > 0.0 ? 0.4 : kPlacing;
-  const double cleaning = options.clean_up ? 0.3 * simplifying : simplifying;
+  constexpr double kSmallest = 1e-30;        // unit of length that may be multiplied
+  constexpr double kCreaseTolerance = 0.01;  // cells
+  constexpr double kCleaningShare = 0.2;     // of the adaptivity, which simplifying leaves
+  const double simplifying = options.clean_up ? 0.7 : kPlacing;
+  const double cutting = options.adaptivity > 0.0 ? 0.4 * simplifying : simplifying - 0.02;
   const RootFrame frame(root);
   std::vector<std::int64_t> sources_of_labels;
-  FacetedMesh mesh = cut_tree(cells, frame, options, options.progress.part(0.0, cleaning),
+  FacetedMesh mesh = cut_tree(cells, frame, options, options.progress.part(0.0, cutting),
                               origins != nullptr ? &sources_of_labels : nullptr);
   double cell = least_cell(frame, cells.depth());
   // Where rounding may let triangles meet, what changes them has to see the positions that come
   // out.
   const bool places_first = frame.unit() > kSmallest && frame.unit() < 1.0 / kSmallest;
-  const Progress placing = options.progress.part(cleaning, cleaning + 0.02);
+  const Progress placing = options.progress.part(cutting, cutting + 0.02);
   if (places_first) {
     frame.place(placing, options.threads, &mesh.positions);
     cell *= frame.unit();
   }
-  if (options.clean_up) {
-    constexpr double kCreaseTolerance = 0.01;  // cells
-    mesh = clean_up(std::move(mesh), kCreaseTolerance * cell,
-                    options.progress.part(cleaning + 0.02, simplifying), options.threads);
-  }
+  CleaningLimits limits{kCreaseTolerance * cell};
   if (options.adaptivity > 0.0) {
     mesh = simplify(std::move(mesh), options.adaptivity * cell,
-                    options.progress.part(simplifying, kPlacing), options.threads);
+                    options.progress.part(cutting + 0.02, simplifying), options.threads);
+    limits.height = kCleaningShare * options.adaptivity * cell;
+  }
+  if (options.clean_up) {
+    mesh = clean_up(std::move(mesh), limits, options.progress.part(simplifying, kPlacing),
+                    options.threads);
   }
   if (origins != nullptr) {
     const ThickenedCells thickened(options.thickened, frame);

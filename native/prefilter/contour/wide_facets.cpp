@@ -15,9 +15,8 @@ struct Facet {
 };
 }  // namespace
 
-std::vector<std::uint8_t> of_wide_facets(const WeldedMeshes& welded,
-                                         std::span<const std::int32_t> facets, int facet_count,
-                                         double least) {
+std::vector<double> wide_facets(const WeldedMeshes& welded, std::span<const std::int32_t> facets,
+                                int facet_count, double least) {
   // No facet is wider than the root of its area, or just as wide as long, so that most are out.
   std::vector<double> areas(static_cast<std::size_t>(facet_count), 0.0);
   for (std::size_t t = 0; t < facets.size(); ++t) {
@@ -37,18 +36,19 @@ std::vector<std::uint8_t> of_wide_facets(const WeldedMeshes& welded,
     facet.sum = facet.sum + welded.normal(t);
     for (const std::int32_t vertex : welded.triangle(t)) facet.box.include(welded.position(vertex));
   }
-  std::vector<std::uint8_t> is_wide(facets.size(), 0);
+  std::vector<double> widths(facets.size(), 0.0);
   bool is_any = false;
   for (std::size_t t = 0; t < facets.size(); ++t) {
     const auto f = static_cast<std::size_t>(facets[t]);
     if (numbers[f] < 0) continue;
     const Facet& facet = large[static_cast<std::size_t>(numbers[f])];
     if (0.5 * length(facet.sum) < kPlane * areas[f]) continue;
-    if (areas[f] < least * length(facet.box.high - facet.box.low)) continue;
-    is_wide[t] = 1;
+    const double width = areas[f] / length(facet.box.high - facet.box.low);
+    if (!(width >= least)) continue;
+    widths[t] = width;
     is_any = true;
   }
-  return is_any ? is_wide : std::vector<std::uint8_t>();
+  return is_any ? widths : std::vector<double>();
 }
 
 }  // namespace prefilter

@@ -11,11 +11,10 @@
 
 namespace prefilter {
 
-/// For each triangle whether it is of a facet that is plane, up to a quarter of a degree, and wider
-/// than `least`: its area over the diagonal of its box. `facets` are the numbers of the triangles'
-/// facets. Empty where none is.
-std::vector<std::uint8_t> of_wide_facets(const WeldedMeshes& welded,
-                                         std::span<const std::int32_t> facets, int facet_count,
-                                         double least);
+/// For each triangle the width of its facet, its area over the diagonal of its box, where that is
+/// plane, up to a quarter of a degree, and wider than `least`; 0 elsewhere. `facets` are the numbers
+/// of the triangles' facets. Empty where none is.
+std::vector<double> wide_facets(const WeldedMeshes& welded, std::span<const std::int32_t> facets,
+                                int facet_count, double least);
 
 }  // namespace prefilter

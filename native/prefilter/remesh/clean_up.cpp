@@ -58,10 +58,11 @@ struct Left {
   std::vector<std::uint32_t> places;  // among all
 };
 
-EditedMesh edited_mesh(FacetedMesh mesh, double crease_tolerance) {
+EditedMesh edited_mesh(FacetedMesh mesh, const CleaningLimits& limits) {
   EditedMesh edited;
   edited.mesh = std::move(mesh);
-  edited.crease_tolerance = crease_tolerance;
+  edited.crease_tolerance = limits.crease;
+  edited.most_height = limits.height;
   const std::size_t vertices = edited.mesh.positions.size();
   edited.owners.assign(vertices, EditedMesh::kNobody);
   edited.firsts.resize(vertices);
@@ -418,11 +419,11 @@ void drop_gone(const Progress& progress, int threads, FacetedMesh* result) {
 }
 }  // namespace
 
-FacetedMesh clean_up(FacetedMesh mesh, double crease_tolerance, const Progress& progress,
+FacetedMesh clean_up(FacetedMesh mesh, const CleaningLimits& limits, const Progress& progress,
                      int threads) {
   if (mesh.triangles.empty()) return {};
   const Snapshot original = {mesh.triangles, mesh.labels};
-  EditedMesh edited = edited_mesh(std::move(mesh), crease_tolerance);
+  EditedMesh edited = edited_mesh(std::move(mesh), limits);
   const TriangleParts patches = parts_along_vertices(
       original.triangles, edited.mesh.positions.size(), progress.part(0.0, 0.06), threads);
   find_owners(patches, original.triangles, progress.part(0.06, 0.1), threads, &edited.owners);

@@ -46,14 +46,22 @@ void for_corners(const MeshView<std::int32_t>& mesh, std::size_t first, const Fl
 Flags rough_vertices(const MeshView<std::int32_t>& mesh, std::size_t first,
                      const Flags& is_touched) {
   constexpr double kLeast = 0.2501;  // squared cosine
-  std::vector<Vector3> sums(mesh.positions.size());
-  for_corners(mesh, first, is_touched,
-              [&](const Vector3& normal, std::size_t v) { sums[v] = sums[v] + normal; });
+  std::vector<std::uint32_t> places(mesh.positions.size());
+  std::uint32_t count = 0;
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    places[v] = count;
+    count += is_touched[v];
+  }
+  std::vector<Vector3> sums(count);
+  for_corners(mesh, first, is_touched, [&](const Vector3& normal, std::size_t v) {
+    sums[places[v]] = sums[places[v]] + normal;
+  });
   Flags is_rough(mesh.positions.size(), 0);
   for_corners(mesh, first, is_touched, [&](const Vector3& normal, std::size_t v) {
-    const double product = dot(normal, sums[v]);
+    const Vector3& sum = sums[places[v]];
+    const double product = dot(normal, sum);
     const bool is_close =
-        product >= 0.0 && product * product >= kLeast * dot(normal, normal) * dot(sums[v], sums[v]);
+        product >= 0.0 && product * product >= kLeast * dot(normal, normal) * dot(sum, sum);
     if (!is_close) is_rough[v] = 1;
   });
   return is_rough;

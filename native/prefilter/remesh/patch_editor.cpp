@@ -347,8 +347,20 @@ void PatchEditor::find_removal(std::int32_t vertex, Change* change) const {
     volume += dot(normal_of(point(a), point(b), point(c)), point(a) - top) / 6.0;
   }
   change->depth = std::abs(volume) / (change->area * std::sqrt(change->area));
-  if (!(change->depth < kMostDepth)) return;
+  if (!(change->depth < kMostDepth) || !is_low(vertex, *change, made)) return;
   if (leaves_manifold(fan, *change, made)) change->count = made;
+}
+
+// Whether a vertex that is gone is close to the planes of what covers its place.
+bool PatchEditor::is_low(std::int32_t vertex, const Change& change, std::size_t made) const {
+  const double most = edited_.most_height;
+  for (std::size_t i = 0; i < made && most < std::numeric_limits<double>::infinity(); ++i) {
+    const auto& [a, b, c] = change.triangles[i];
+    const Vector3 normal = normal_of(point(a), point(b), point(c));
+    const double height = dot(normal, point(vertex) - point(a));
+    if (!(height * height <= most * most * squared(normal))) return false;
+  }
+  return true;
 }
 
 bool PatchEditor::is_crease(std::int32_t a, std::int32_t b, std::uint32_t left,
@@ -408,6 +420,11 @@ void PatchEditor::find_flip(std::int32_t a, std::int32_t b, Change* change) cons
   const double volume = dot(new_1, point(b) - point(a)) / 6.0;
   change->depth = std::abs(volume) / (area * std::sqrt(area));
   if (!(change->depth < kMostDepth)) return;
+  // The distance between the diagonals.
+  const double height = 6.0 * std::abs(volume);
+  if (height >
+      edited_.most_height * std::sqrt(squared(cross(point(b) - point(a), point(d) - point(c)))))
+    return;
   change->old_count = 2;
   change->labels.fill(label_of(left) != kNoLabel ? label_of(left) : label_of(right));
   change->triangles[0] = {a, d, c};

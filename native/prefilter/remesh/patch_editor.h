@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,6 +24,7 @@ struct EditedMesh {
 
   FacetedMesh mesh;  // a triangle that is gone has no vertices: kGone
   double crease_tolerance = 0.0;
+  double most_height = std::numeric_limits<double>::infinity();  // of a change over what was there
   std::vector<std::uint32_t> owners;  // of each vertex: the patch with all of its triangles
   std::vector<std::uint32_t> firsts;  // of the owner's triangles around it
   std::vector<std::uint32_t> counts;
@@ -113,6 +115,7 @@ class PatchEditor {
             Change* change) const;
   bool is_edge(std::int32_t a, std::int32_t b) const;
   bool is_crease(std::int32_t a, std::int32_t b, std::uint32_t left, std::uint32_t right) const;
+  bool is_low(std::int32_t vertex, const Change& change, std::size_t made) const;
   void apply(const Change& change);
   void leave(std::int32_t vertex, std::uint32_t triangle);
   void join(std::int32_t vertex, std::uint32_t triangle);

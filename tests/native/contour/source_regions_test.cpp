@@ -215,6 +215,17 @@ TEST(SmoothRegions, AreWideFacetsWhereEdgesAreBlunt) {
   EXPECT_EQ(borders[0].ends, (std::array<std::int32_t, 2>{2, 3}));
 }
 
+TEST(SmoothRegions, RoundOffEdgesThatHardlyStandOut) {
+  // Of 5.7 degrees between facets that are 2 wide, as a strip of triangles is, and of 11.3.
+  const auto regions_of = [](double rise) {
+    const Source source = ramp({{0, 0}, {2.2, 0}, {4.4, rise}});
+    WeldedMeshes welded = source.welded();
+    return join_smooth(1.5, Progress(), 1, &welded).region_count;
+  };
+  EXPECT_EQ(regions_of(0.1), 1);
+  EXPECT_EQ(regions_of(0.44), 2);
+}
+
 TEST(RegionBorders, GiveSmallRegionsToTheNeighborWithTheLongestWall) {
   // A step of three levels: the middle one is small. Walls to the higher one are longer.
   Source source;

@@ -15,12 +15,14 @@
 #include "prefilter/base/error.h"
 #include "prefilter/contour/grid_contour.h"
 #include "prefilter/remesh/intersections.h"
+#include "prefilter/spatial/triangle_point.h"
 
 namespace prefilter {
 namespace {
 
 using testing::fault_of;
 using testing::volume_of;
+using Triangle = std::array<std::int32_t, 3>;
 
 // The contour of a function that is 1 inside and 0 outside, on cells from 0 to `size`.
 template <typename Function>
@@ -74,7 +76,7 @@ bool are_some_of(const std::vector<Vector3>& some, const std::vector<Vector3>& a
 
 TEST(CleanUp, KeepsTheShapeAndWidensAngles) {
   const FacetedMesh before = sphere(24);
-  const FacetedMesh after = clean_up(before, 0.01, Progress(), 1);
+  const FacetedMesh after = clean_up(before, {0.01}, Progress(), 1);
   EXPECT_EQ(fault_of(plain(after)), "");
   EXPECT_NEAR(volume_of(plain(after)), volume_of(plain(before)), 0.005 * volume_of(plain(before)));
   EXPECT_GT(narrow_share(before), 0.1);
@@ -84,11 +86,11 @@ TEST(CleanUp, KeepsTheShapeAndWidensAngles) {
 
 TEST(CleanUp, IsTheSameForAnyNumberOfThreads) {
   const FacetedMesh before = sphere(150);  // several patches
-  const FacetedMesh after = clean_up(before, 0.01, Progress(), 1);
+  const FacetedMesh after = clean_up(before, {0.01}, Progress(), 1);
   EXPECT_LT(narrow_share(after), 0.001);
   EXPECT_EQ(fault_of(plain(after)), "");
   for (const int threads : {2, 3}) {
-    const FacetedMesh other = clean_up(before, 0.01, Progress(), threads);
+    const FacetedMesh other = clean_up(before, {0.01}, Progress(), threads);
     EXPECT_EQ(other.positions, after.positions);
     EXPECT_EQ(other.triangles, after.triangles);
   }
@@ -106,12 +108,12 @@ TEST(CleanUp, OfNoiseBringsInNoIntersections) {
     });
     ASSERT_TRUE(
         intersecting_triangles({before.positions, before.triangles}, {}, Progress(), 2).empty());
-    const FacetedMesh after = clean_up(before, 0.01, Progress(), 2);
+    const FacetedMesh after = clean_up(before, {0.01}, Progress(), 2);
     EXPECT_EQ(fault_of(plain(after)), "");
     EXPECT_LT(after.triangles.size(), before.triangles.size());
     EXPECT_TRUE(
         intersecting_triangles({after.positions, after.triangles}, {}, Progress(), 2).empty());
-    EXPECT_EQ(clean_up(before, 0.01, Progress(), 1).triangles, after.triangles);
+    EXPECT_EQ(clean_up(before, {0.01}, Progress(), 1).triangles, after.triangles);
   }
 }
 
@@ -119,17 +121,17 @@ TEST(CleanUp, LeavesATetrahedronAlone) {
   FacetedMesh thin;
   thin.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0.01, 0}, {0.5, 0, 1}};
   thin.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-  EXPECT_EQ(clean_up(thin, 0.01, Progress(), 1).triangles, thin.triangles);
-  EXPECT_TRUE(clean_up({}, 0.01, Progress(), 2).triangles.empty());
+  EXPECT_EQ(clean_up(thin, {0.01}, Progress(), 1).triangles, thin.triangles);
+  EXPECT_TRUE(clean_up({}, {0.01}, Progress(), 2).triangles.empty());
 }
 
 TEST(CleanUp, IsTheSameAtAnyScale) {
   const FacetedMesh before = sphere(20);
-  const FacetedMesh after = clean_up(before, 0.01, Progress(), 1);
+  const FacetedMesh after = clean_up(before, {0.01}, Progress(), 1);
   for (const double scale : {0x1p-200, 0x1p200}) {
     FacetedMesh scaled = before;
     for (Vector3& p : scaled.positions) p = {scale * p[0], scale * p[1], scale * p[2]};
-    EXPECT_EQ(clean_up(scaled, 0.01 * scale, Progress(), 1).triangles, after.triangles);
+    EXPECT_EQ(clean_up(scaled, {0.01 * scale}, Progress(), 1).triangles, after.triangles);
   }
 }
 
@@ -209,7 +211,7 @@ std::map<std::int32_t, double> areas_of(const FacetedMesh& mesh) {
 
 TEST(CleanUp, KeepsStraightCreasesAndLabels) {
   const Prism made = prism(uneven_heights(), 5, 0.0);
-  const FacetedMesh after = clean_up(made.mesh, 1e-6, Progress(), 2);
+  const FacetedMesh after = clean_up(made.mesh, {1e-6}, Progress(), 2);
   ASSERT_EQ(fault_of(plain(made.mesh)), "");
   EXPECT_EQ(fault_of(plain(after)), "");
   EXPECT_EQ(after.kinds.size(), after.positions.size());
@@ -233,8 +235,8 @@ TEST(CleanUp, MovesCreasesNoFartherThanAllowed) {
     return points;
   };
   // Every other point of the crease at angle 0 stands out by 0.01; the others are between two.
-  const FacetedMesh kept = clean_up(made.mesh, 1e-4, Progress(), 1);
-  const FacetedMesh moved = clean_up(made.mesh, 0.05, Progress(), 1);
+  const FacetedMesh kept = clean_up(made.mesh, {1e-4}, Progress(), 1);
+  const FacetedMesh moved = clean_up(made.mesh, {0.05}, Progress(), 1);
   const auto out = [&](const FacetedMesh& mesh) {
     const std::vector<Vector3> points = crease_points(mesh);
     return std::count_if(points.begin(), points.end(),
@@ -246,16 +248,54 @@ TEST(CleanUp, MovesCreasesNoFartherThanAllowed) {
   EXPECT_EQ(fault_of(plain(moved)), "");
 }
 
+// How far the middles of all edges of a mesh, and its vertices, are from another.
+double largest_distance(const FacetedMesh& mesh, const FacetedMesh& other) {
+  const MeshView<std::int32_t> view{other.positions, other.triangles};
+  double largest = 0.0;
+  for (const Triangle& triangle : mesh.triangles) {
+    const Vector3& a = mesh.positions[static_cast<std::size_t>(triangle[0])];
+    const Vector3& b = mesh.positions[static_cast<std::size_t>(triangle[1])];
+    for (const Vector3& p : {a, 0.5 * (a + b)}) {
+      double least = 1e30;
+      for (std::size_t t = 0; t < other.triangles.size(); ++t) {
+        const auto [u, v, w] = view.corners(t);
+        const Vector3 weights = nearest_weights(p, u, v, w);
+        const Vector3 off = p - (weights[0] * u + weights[1] * v + weights[2] * w);
+        least = std::min(least, dot(off, off));
+      }
+      largest = std::max(largest, least);
+    }
+  }
+  return std::sqrt(largest);
+}
+
+TEST(CleanUp, MovesTheSurfaceNoFartherThanAllowed) {
+  const FacetedMesh before = sphere(12);
+  const FacetedMesh free = clean_up(before, {0.01}, Progress(), 1);
+  EXPECT_GT(largest_distance(before, free), 0.05);
+  EXPECT_EQ(clean_up(before, {0.01, 0.0}, Progress(), 1).triangles, before.triangles);
+  double share = narrow_share(before);
+  for (const double height : {0.003, 0.01}) {
+    const FacetedMesh after = clean_up(before, {0.01, height}, Progress(), 1);
+    // Two changes may be at one place.
+    EXPECT_LT(largest_distance(before, after), 2.0 * height);
+    EXPECT_LT(largest_distance(after, before), 2.0 * height);
+    EXPECT_LT(narrow_share(after), share);
+    EXPECT_EQ(fault_of(plain(after)), "");
+    share = narrow_share(after);
+  }
+}
+
 TEST(CleanUp, LeavesCornersWhereTheyAre) {
   FacetedMesh before = sphere(24);
   before.kinds.assign(before.positions.size(), VertexKind::kCorner);
-  const FacetedMesh after = clean_up(before, 1.0, Progress(), 1);
+  const FacetedMesh after = clean_up(before, {1.0}, Progress(), 1);
   EXPECT_EQ(after.positions, before.positions);
 }
 
 TEST(CleanUp, CanBeCancelled) {
   const Progress progress([](double) { return false; });
-  EXPECT_THROW(clean_up(sphere(24), 0.01, progress, 2), Error);
+  EXPECT_THROW(clean_up(sphere(24), {0.01}, progress, 2), Error);
 }
 
 }  // namespace

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Loops and vertices that gave way to what has moved since.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prefilter/base/geometry.h"
+#include "prefilter/contour/linked_loops.h"
+#include "prefilter/contour/mended_loops.h"
+
+namespace prefilter {
+
+/// Those beside a loop lose or gain a joint.
+void mark_around(std::size_t loop, const LinkedLoops& loops, std::vector<std::uint8_t>* is_changed);
+
+/// The loops that were drawn back, and the vertices that were moved, which may have their places
+/// where what was in their way has moved since.
+class SecondTry {
+ public:
+  /// Puts all of them where they were to be. Keeps references to `loops`, `states` and `positions`.
+  SecondTry(const LinkedLoops& loops, std::span<const Feature> wanted,
+            std::span<const Vector3> wanted_places, LoopStates* states,
+            std::vector<Vector3>* positions);
+
+  LoopChanges changed() const;
+
+  /// Puts those of these back that are tried, or all where none is; returns what changed.
+  LoopChanges give_up(std::span<const std::size_t> loops, std::span<const std::size_t> vertices);
+
+ private:
+  void put_back(std::size_t i, std::vector<std::uint8_t>* is_changed);
+  void put_vertex_back(std::size_t v, std::vector<std::uint8_t>* is_changed);
+
+  const LinkedLoops& loops_;
+  LoopStates& states_;
+  std::vector<Vector3>& positions_;
+  LoopStates settled_;
+  std::vector<Vector3> settled_places_;
+  std::vector<std::uint8_t> is_tried_;
+  std::vector<std::uint8_t> is_moved_;
+};
+
+}  // namespace prefilter
