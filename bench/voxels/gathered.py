@@ -151,7 +151,8 @@ def of_another_process(path: Path, options: argparse.Namespace) -> dict[str, obj
         return f"not done in {options.limit:g} s"
     if done.returncode:
         return (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
-    return json.loads(done.stdout)
+    # Readers of files print, too.
+    return json.loads(done.stdout.splitlines()[-1])
 
 
 def row(name: str, found: dict[str, object]) -> list[str]:

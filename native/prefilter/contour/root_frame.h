@@ -35,6 +35,9 @@ class RootFrame {
   /// The side of a cell of a depth along an axis.
   double cell(int axis, int depth) const { return cell_[axis][depth]; }
 
+  /// The sides of a cell of a depth.
+  Vector3 cells(int depth) const { return {cell(0, depth), cell(1, depth), cell(2, depth)}; }
+
   /// A point of the space that the root is in.
   Vector3 from_space(const Vector3& point) const { return (1.0 / unit_) * (point - origin_); }
 

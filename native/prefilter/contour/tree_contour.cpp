@@ -342,11 +342,12 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
     edges.crossings.middle = halfway(tree, frame, vertices);
   }
   const double cell = least_cell(frame, cells.depth());
+  const Vector3 smallest = frame.cells(cells.depth());
   const ThickenedCells thickened(options.thickened, frame);
   const auto is_thickened = [&](const Vector3& p) { return thickened.holds(p); };
   if (!is_sharp) {
     LoopedMesh looped = make_loops(tree, nullptr, progress.part(0.6, 0.85), threads, &vertices);
-    if (fits) unfold({}, &edges.crossings, &looped);
+    if (fits) unfold({}, smallest, &edges.crossings, &looped);
     FacetedMesh mesh = {std::move(looped.positions), std::move(looped.triangles), {}, {}};
     if (fits && options.thickened != nullptr) {
       smooth_stairs(cell, is_thickened, true, progress.part(0.85, 1.0), threads, &mesh);
@@ -356,7 +357,7 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
   sample_edges(tree, frame, options.thickened, progress.part(0.5, 0.6), threads, &vertices, &edges);
   const Division division = {*edges.surface(), edges.samples};
   LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
-  unfold(edges.samples, &edges.crossings, &looped);
+  unfold(edges.samples, smallest, &edges.crossings, &looped);
   FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 0.97), threads);
   smooth_stairs(cell, is_thickened, false, progress.part(0.97, 1.0), threads, &mesh);
   if (sources_of_labels != nullptr && edges.meshes) {

@@ -5,10 +5,14 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <utility>
 
+#include "prefilter/contour/unfolded_loops.h"
 #include "prefilter/remesh/folds.h"
 
 namespace prefilter {
@@ -38,9 +42,14 @@ std::vector<Vector3> halfway(const ContourTree& tree, const RootFrame& frame,
 
 namespace {
 
-constexpr int kSmoothings = 4;
 constexpr int kMostRegions = 8;
 constexpr int kRings = 4;  // around folds
+constexpr int kSlidingRings = 3;
+constexpr int kMostRounds = 8;  // of sliding
+constexpr double kLeastGain = 1e-3;
+// How far vertices slide that fold where they are halfway, in cells: they remain the nearest to
+// these places.
+constexpr std::array<double, 4> kSlides = {0.12, -0.12, 0.24, -0.24};
 
 using Triangle = std::array<std::int32_t, 3>;
 using Flags = std::vector<std::uint8_t>;
@@ -50,6 +59,7 @@ using Pairs = std::vector<std::array<std::uint32_t, 2>>;
 struct Region {
   std::vector<Vector3> positions;
   std::vector<Triangle> triangles;
+  std::vector<std::size_t> numbers;   // of the contour's triangles
   std::vector<std::size_t> vertices;  // of the contour
   Flags is_inner;                     // of each vertex: all triangles around it are here
 
@@ -78,7 +88,8 @@ Region region_around(const Pairs& pairs, const LoopedMesh& looped) {
   }
   Region region;
   std::vector<std::int32_t> places(looped.positions.size(), -1);
-  for (const Triangle& triangle : looped.triangles) {
+  for (std::size_t t = 0; t < looped.triangles.size(); ++t) {
+    const Triangle& triangle = looped.triangles[t];
     if (!has_flagged(triangle, is_inner)) continue;
     Triangle own;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -92,6 +103,7 @@ Region region_around(const Pairs& pairs, const LoopedMesh& looped) {
       own[k] = places[v];
     }
     region.triangles.push_back(own);
+    region.numbers.push_back(t);
   }
   return region;
 }
@@ -133,23 +145,14 @@ class Folds {
   // Whether a vertex has moved that has triangles outside.
   bool reaches_out() const { return reaches_out_; }
 
-  // The mean of the vertices around each.
-  std::vector<Vector3> means() const {
-    std::vector<Vector3> sums(region_.positions.size());
-    std::vector<double> counts(sums.size(), 0.0);
-    for (const Triangle& corners : region_.triangles) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto v = static_cast<std::size_t>(corners[k]);
-        for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3}) {
-          sums[v] = sums[v] + region_.positions[static_cast<std::size_t>(corners[other])];
-        }
-        counts[v] += 2.0;
-      }
-    }
-    for (std::size_t v = 0; v < sums.size(); ++v) {
-      sums[v] = (1.0 / std::max(counts[v], 1.0)) * sums[v];
-    }
-    return sums;
+  // Whether all vertices of two triangles may be moved.
+  bool are_movable(const std::array<std::uint32_t, 2>& pair) const {
+    return std::all_of(pair.begin(), pair.end(), [&](std::uint32_t t) {
+      const Triangle& triangle = region_.triangles[t];
+      return std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
+        return is_movable_[static_cast<std::size_t>(v)] != 0;
+      });
+    });
   }
 
  private:
@@ -158,38 +161,167 @@ class Folds {
   bool reaches_out_ = false;
 };
 
+// Where a region's vertices are between cells.
+std::vector<GridPlace> places_of(const Region& region, const Vector3& cell,
+                                 const Crossings& crossings) {
+  std::vector<GridPlace> places(region.vertices.size(), kNoPlace);
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    if (region.vertices[v] >= crossings.middle.size()) continue;
+    const Vector3& middle = crossings.middle[region.vertices[v]];
+    for (std::size_t a = 0; a < 3; ++a) {
+      places[v][a] = static_cast<std::int32_t>(std::lround(2.0 * middle[a] / cell[a]));
+    }
+  }
+  return places;
+}
+
+// The numbers of a region's triangles that are around two of them.
+std::vector<std::size_t> triangles_around(const std::array<std::uint32_t, 2>& pair,
+                                          const Region& region) {
+  Flags is_near(region.positions.size(), 0);
+  std::vector<std::size_t> found = {pair[0], pair[1]};
+  for (int ring = 0; ring < kSlidingRings; ++ring) {
+    for (const std::size_t t : found) {
+      for (const std::int32_t v : region.triangles[t]) is_near[static_cast<std::size_t>(v)] = 1;
+    }
+    found.clear();
+    for (std::size_t t = 0; t < region.triangles.size(); ++t) {
+      if (has_flagged(region.triangles[t], is_near)) found.push_back(t);
+    }
+  }
+  return found;
+}
+
+// By how much triangles fold, beyond 120 degrees: the sum over their pairs, of cosines.
+double excess(const MeshView<std::int32_t>& mesh) {
+  const auto normal_of = [&](std::uint32_t t) {
+    const auto [a, b, c] = mesh.corners(t);
+    return cross(b - a, c - a);
+  };
+  double sum = 0.0;
+  for (const auto& pair : folded_pairs(mesh, 0, {})) {
+    const Vector3 a = normal_of(pair[0]);
+    const Vector3 b = normal_of(pair[1]);
+    sum += kFold - dot(a, b) / std::sqrt(dot(a, a) * dot(b, b));
+  }
+  return sum;
+}
+
+// A vertex that has slid, and the triangles around it since.
+struct Slide {
+  std::size_t vertex;
+  Vector3 position;
+  std::vector<Triangle> triangles;
+};
+
+// The slide of a vertex of two triangles after which what is around them folds the least. Each
+// vertex stays on its line between two cells, so that triangles stay in their cubes.
+std::optional<Slide> best_slide(const std::array<std::uint32_t, 2>& pair,
+                                std::span<const std::size_t> around,
+                                std::span<const GridPlace> places, const Vector3& cell,
+                                const Crossings& crossings, Region* region) {
+  std::vector<Triangle> before;
+  for (const std::size_t t : around) before.push_back(region->triangles[t]);
+  const auto folded = [&](const std::vector<Triangle>& triangles) {
+    return folded_pairs({region->positions, triangles}, 0, {});
+  };
+  double least = excess({region->positions, before}) - kLeastGain;
+  std::optional<Slide> best;
+  for (const std::uint32_t t : pair) {
+    for (const std::int32_t corner : region->triangles[t]) {
+      const auto v = static_cast<std::size_t>(corner);
+      const Vector3 from = region->positions[v];
+      for (const double share : kSlides) {
+        Vector3& position = region->positions[v];
+        position = crossings.middle[region->vertices[v]];
+        for (std::size_t a = 0; a < 3; ++a) {
+          if (places[v][a] % 2 == 0) position[a] = (0.5 * places[v][a] + share) * cell[a];
+        }
+        std::vector<Triangle> triangles = before;
+        while (unfold_loops(region->positions, places, folded(triangles), &triangles)) {
+        }
+        const double sum = excess({region->positions, triangles});
+        if (sum >= least) continue;
+        least = sum;
+        best = {v, position, std::move(triangles)};
+      }
+      region->positions[v] = from;
+    }
+  }
+  return best;
+}
+
+// Slides vertices of triangles that fold, as long as these fold less.
+void slide(std::span<const GridPlace> places, const Vector3& cell, const Folds& folds,
+           Crossings* crossings, Region* region) {
+  bool has_slid = true;
+  for (int round = 0; round < kMostRounds && has_slid; ++round) {
+    has_slid = false;
+    const Pairs pairs = folded_pairs(region->view(), 0, {});
+    double sum = excess(region->view());
+    for (const auto& pair : pairs) {
+      const std::array<Triangle, 2> both = {region->triangles[pair[0]], region->triangles[pair[1]]};
+      if (!folds.are_movable(pair) || folded_pairs({region->positions, both}, 0, {}).empty()) {
+        continue;
+      }
+      const std::vector<std::size_t> around = triangles_around(pair, *region);
+      const std::optional<Slide> best = best_slide(pair, around, places, cell, *crossings, region);
+      if (!best) continue;
+      const Vector3 position = std::exchange(region->positions[best->vertex], best->position);
+      std::vector<Triangle> triangles = region->triangles;
+      for (std::size_t i = 0; i < around.size(); ++i) triangles[around[i]] = best->triangles[i];
+      triangles.swap(region->triangles);
+      const double left = excess(region->view());
+      if (left >= sum) {
+        region->positions[best->vertex] = position;
+        triangles.swap(region->triangles);
+        continue;
+      }
+      sum = left;
+      crossings->middle[region->vertices[best->vertex]] = best->position;
+      has_slid = true;
+    }
+  }
+}
+
 // Returns whether what is around the region may fold since.
-bool unfold_region(const VertexSamples& samples, Crossings* crossings, Region* region) {
+bool unfold_region(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
+                   Region* region) {
+  const std::vector<GridPlace> places = places_of(*region, cell, *crossings);
+  const auto mend = [&] {
+    while (unfold_loops(region->positions, places, folded_pairs(region->view(), 0, {}),
+                        &region->triangles)) {
+    }
+  };
+  mend();
   Folds folds(samples, crossings->fitted.size(), region);
   const auto put_back = [&](std::size_t v) {
     return crossings->put_back(region->vertices[v], &region->positions[v]);
   };
-  while (folds.move_vertices(put_back)) {
-  }
+  while (folds.move_vertices(put_back)) mend();
   // Between three cells of a gap even these may fold.
-  for (int round = 0; round < kSmoothings; ++round) {
-    std::vector<Vector3> means;
-    const auto smooth = [&](std::size_t v) {
-      if (means.empty()) means = folds.means();
-      region->positions[v] = 0.5 * (region->positions[v] + means[v]);
-      crossings->middle[region->vertices[v]] = region->positions[v];
-      return true;
-    };
-    if (!folds.move_vertices(smooth)) break;
-  }
+  slide(places, cell, folds, crossings, region);
   return folds.reaches_out();
 }
 
 }  // namespace
 
-void unfold(const VertexSamples& samples, Crossings* crossings, LoopedMesh* looped) {
+void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
+            LoopedMesh* looped) {
   for (int i = 0; i < kMostRegions; ++i) {
     const Pairs pairs = folded_pairs({looped->positions, looped->triangles}, 0, {});
     if (pairs.empty()) return;
     Region region = region_around(pairs, *looped);
-    const bool goes_on = unfold_region(samples, crossings, &region);
+    const bool goes_on = unfold_region(samples, cell, crossings, &region);
     for (std::size_t v = 0; v < region.vertices.size(); ++v) {
       looped->positions[region.vertices[v]] = region.positions[v];
+    }
+    for (std::size_t t = 0; t < region.numbers.size(); ++t) {
+      Triangle& triangle = looped->triangles[region.numbers[t]];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto v = static_cast<std::size_t>(region.triangles[t][k]);
+        triangle[k] = static_cast<std::int32_t>(region.vertices[v]);
+      }
     }
     if (!goes_on) return;
   }

@@ -18,8 +18,10 @@ namespace prefilter {
 std::vector<Vector3> halfway(const ContourTree& tree, const RootFrame& frame,
                              const SurfaceVertices& vertices);
 
-/// Puts vertices of triangles that fold back, but for those that were sampled; where that does not
-/// do, moves them toward those around them.
-void unfold(const VertexSamples& samples, Crossings* crossings, LoopedMesh* looped);
+/// Triangulates loops that fold anew; where that does not do, puts their vertices back, but for
+/// those that were sampled, or moves them toward those around them. `cell` has the sides of the
+/// smallest cells.
+void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
+            LoopedMesh* looped);
 
 }  // namespace prefilter

@@ -259,6 +259,34 @@ TEST(ContourOccupancies, NeverCrossesItself) {
   }
 }
 
+// The most that two triangles with a side in common turn there, as a cosine.
+double least_cosine(const TriangleMesh& mesh) {
+  std::map<std::pair<std::int32_t, std::int32_t>, Vector3> normals;
+  for (const auto& t : mesh.triangles) {
+    const auto at = [&](std::size_t k) { return mesh.positions[static_cast<std::size_t>(t[k])]; };
+    const Vector3 normal = cross(at(1) - at(0), at(2) - at(0));
+    for (std::size_t k = 0; k < 3; ++k) normals[{t[k], t[(k + 1) % 3]}] = normal;
+  }
+  double least = 1.0;
+  for (const auto& [side, normal] : normals) {
+    const Vector3& other = normals.at({side.second, side.first});
+    least = std::min(least, dot(normal, other) / (length(normal) * length(other)));
+  }
+  return least;
+}
+
+// Between cells at random are all kinds of gaps.
+TEST(ContourOccupancies, NeverFolds) {
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    const CellTree tree = random_tree(seed, 2 + static_cast<int>(seed % 4));
+    const TriangleMesh mesh = contour_occupancies(tree, kUnitBox, options_of(Interpolant::kPlane));
+    EXPECT_EQ(fault_of(mesh), "");
+    EXPECT_GT(least_cosine(mesh), -0.5001) << seed;
+    EXPECT_TRUE(intersecting_triangles({mesh.positions, mesh.triangles}, {}, Progress(), 1).empty())
+        << seed;
+  }
+}
+
 TEST(ContourTree, HasNoZeroAreaFarFromTheOrigin) {
   const CellTree tree = random_tree(7, 5);
   const Box root{{1000.0, -2000.0, 500.0}, {1001.0, -1998.0, 500.5}};
