@@ -117,6 +117,17 @@ TEST(CleanUp, OfNoiseBringsInNoIntersections) {
   }
 }
 
+TEST(CleanUp, MakesNoSecondEdgeBetweenTwoVertices) {
+  // A low roof around vertex 0 over a rhombus; the best diagonal of that is an edge of the bottom.
+  FacetedMesh before;
+  before.positions = {{0, 0, 0.005}, {-1, 0, 0},    {0, -0.1, 0}, {1, 0, 0},
+                      {0, 0.1, 0},   {-0.4, 0, -3}, {0.4, 0, -3}};
+  before.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {2, 1, 5},
+                      {1, 4, 5}, {4, 2, 5}, {3, 2, 6}, {2, 4, 6}, {4, 3, 6}};
+  ASSERT_EQ(fault_of(plain(before)), "");
+  EXPECT_EQ(fault_of(plain(clean_up(before, {0.01}, Progress(), 1))), "");
+}
+
 TEST(CleanUp, LeavesATetrahedronAlone) {
   FacetedMesh thin;
   thin.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0.01, 0}, {0.5, 0, 1}};
