@@ -6,7 +6,6 @@ The package and the add-on write all files by this, but for those that the libra
 """
 
 import os
-import secrets
 import shutil
 import stat
 from collections.abc import Callable, Sequence
@@ -62,7 +61,7 @@ class StagedFolder:
 def beside(target: Path, suffix: str | None = None) -> Path:
     """Returns a name in the folder of a target that nobody else thinks of, with its suffix."""
     ending = target.suffix if suffix is None else suffix
-    return target.with_name(f".prefilter-{secrets.token_hex(4)}{ending}")
+    return target.with_name(f".prefilter-{os.urandom(4).hex()}{ending}")
 
 
 def stage_with(target: Path, write: Callable[[Path], object]) -> StagedFile:
