@@ -4,7 +4,7 @@
 
 The solid is a ball in a ring; its box has 64 cells along an axis.
 
-usage: blender --background --factory-startup --python contours.py -- TARGET.png
+usage: blender --background --python contours.py -- TARGET.png
 """
 
 import sys
@@ -30,7 +30,7 @@ PANELS = (
 
 def main(target: Path) -> None:
     """Makes the picture."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     bounds = (np.full(3, -1.1), np.full(3, 1.1))
     bpy.ops.mesh.primitive_uv_sphere_add(segments=256, ring_count=128, radius=0.55)
     ball = triangles_of(bpy.context.object)

@@ -2,7 +2,7 @@
 
 """Renders a ball with a hole, and what each method of close_holes makes of it, voxelized.
 
-usage: blender --background --factory-startup --python holes.py -- TARGET.png
+usage: blender --background --python holes.py -- TARGET.png
 """
 
 import sys
@@ -28,7 +28,7 @@ PANELS = (
 
 def main(target: Path) -> None:
     """Makes the picture."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     positions, triangles = open_ball()
     demo.set_up_render()
     bpy.context.scene.cycles.samples = SAMPLES

@@ -2,7 +2,7 @@
 
 """Draws where the surface of Blender's monkey spends its area: as a mesh, and as its limit surface.
 
-usage: blender --background --factory-startup --python limit.py -- TARGET.png
+usage: blender --background --python limit.py -- TARGET.png
 """
 
 import importlib
@@ -27,7 +27,7 @@ def main(target: str) -> None:
     """Writes both maps side by side."""
     assert addon_utils.enable(PACKAGE) is not None
     meshes = importlib.import_module(f"{PACKAGE}.bridge.meshes")
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     bpy.ops.mesh.primitive_monkey_add()
     monkey = bpy.context.object
     monkey.modifiers.new("Subdivision", "SUBSURF").levels = 0

@@ -6,7 +6,7 @@ A block that is turned against the axes, less a slanted cylinder: by Blender's E
 remeshed by Blender's Remesh in Sharp mode, and by octrees with their surface by occupancies alone
 and with the edges of the operands. All but the first have 64 cells along an axis.
 
-usage: blender --background --factory-startup --python rims.py -- TARGET.png
+usage: blender --background --python rims.py -- TARGET.png
 """
 
 import math
@@ -33,7 +33,7 @@ Mesh = tuple[np.ndarray, np.ndarray]
 
 def main(target: Path) -> None:
     """Makes the picture."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     block, cutter = operands()
     exact = modified(block, "BOOLEAN", {"solver": "EXACT", "object": cutter})
     scale = 1 - 4 / 2**DEPTH

@@ -2,7 +2,7 @@
 
 """Renders scans and their surface, a noisy cloud by each basis, and triangles as dense as points.
 
-usage: blender --background --factory-startup --python scans.py -- FOLDER [SHARED]
+usage: blender --background --python scans.py -- FOLDER [SHARED]
 
 Writes FOLDER/scans.png, noise.png and density.png. SHARED is the folder of the gathered data,
 ../shared/data beside the checkout unless it is given; without the bunny's scans there is no
@@ -105,7 +105,7 @@ UNEVEN_VIEWS = (
 
 def main(folder: Path, shared: Path) -> None:
     """Makes the pictures."""
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     set_up_render()
     with tempfile.TemporaryDirectory() as name:
         work = Path(name)
