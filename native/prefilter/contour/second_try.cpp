@@ -2,6 +2,8 @@
 
 #include "prefilter/contour/second_try.h"
 
+#include <utility>
+
 namespace prefilter {
 
 using Flags = std::vector<std::uint8_t>;
@@ -20,57 +22,54 @@ SecondTry::SecondTry(const LinkedLoops& loops, std::span<const Feature> wanted,
     : loops_(loops),
       states_(*states),
       positions_(*positions),
-      settled_(*states),
-      settled_places_(positions->begin(),
-                      positions->begin() + static_cast<std::ptrdiff_t>(wanted_places.size())),
-      is_tried_(loops.size(), 0),
-      is_moved_(wanted_places.size(), 0) {
+      vertices_(wanted_places.size()),
+      settled_single_(states->is_single) {
   for (std::size_t i = 0; i < loops.size(); ++i) {
     if (states->halvings[i] == 0) continue;
-    is_tried_[i] = 1;
+    settled_.emplace(i, Settled{states->features[i], states->is_sharp[i]});
     states->features[i] = wanted[i];
     states->is_sharp[i] = 1;
   }
-  for (std::size_t v = 0; v < wanted_places.size(); ++v) {
+  for (std::size_t v = 0; v < vertices_; ++v) {
     if (positions_[v] == wanted_places[v]) continue;
-    is_moved_[v] = 1;
+    settled_places_.emplace(v, positions_[v]);
     positions_[v] = wanted_places[v];
   }
 }
 
 LoopChanges SecondTry::changed() const {
-  LoopChanges changes{Flags(loops_.size(), 0), is_moved_};
-  for (std::size_t i = 0; i < loops_.size(); ++i) {
-    if (is_tried_[i] != 0) mark_around(i, loops_, &changes.loops);
-  }
+  LoopChanges changes{Flags(loops_.size(), 0), Flags(vertices_, 0)};
+  for (const auto& [i, settled] : settled_) mark_around(i, loops_, &changes.loops);
+  for (const auto& [v, place] : settled_places_) changes.vertices[v] = 1;
   return changes;
 }
 
 LoopChanges SecondTry::give_up(std::span<const std::size_t> loops,
                                std::span<const std::size_t> vertices) {
-  LoopChanges changes{Flags(loops_.size(), 0), Flags(is_moved_.size(), 0)};
-  states_.is_single = settled_.is_single;
-  for (const std::size_t i : loops) put_back(i, &changes.loops);
-  for (const std::size_t v : vertices) put_vertex_back(v, &changes.vertices);
+  LoopChanges changes{Flags(loops_.size(), 0), Flags(vertices_, 0)};
+  states_.is_single = settled_single_;
+  for (const std::size_t i : loops) put_back(settled_.find(i), &changes.loops);
+  for (const std::size_t v : vertices) put_vertex_back(settled_places_.find(v), &changes.vertices);
   if (changes.is_any()) return changes;
-  for (std::size_t i = 0; i < loops_.size(); ++i) put_back(i, &changes.loops);
-  for (std::size_t v = 0; v < is_moved_.size(); ++v) put_vertex_back(v, &changes.vertices);
+  while (!settled_.empty()) put_back(settled_.begin(), &changes.loops);
+  while (!settled_places_.empty()) put_vertex_back(settled_places_.begin(), &changes.vertices);
   return changes;
 }
 
-void SecondTry::put_back(std::size_t i, Flags* is_changed) {
-  if (is_tried_[i] == 0) return;
-  is_tried_[i] = 0;
-  states_.features[i] = settled_.features[i];
-  states_.is_sharp[i] = settled_.is_sharp[i];
+void SecondTry::put_back(Loops::iterator found, Flags* is_changed) {
+  if (found == settled_.end()) return;
+  const std::size_t i = found->first;
+  states_.features[i] = std::move(found->second.feature);
+  states_.is_sharp[i] = found->second.is_sharp;
+  settled_.erase(found);
   mark_around(i, loops_, is_changed);
 }
 
-void SecondTry::put_vertex_back(std::size_t v, Flags* is_changed) {
-  if (v >= is_moved_.size() || is_moved_[v] == 0) return;
-  is_moved_[v] = 0;
-  positions_[v] = settled_places_[v];
-  (*is_changed)[v] = 1;
+void SecondTry::put_vertex_back(Places::iterator found, Flags* is_changed) {
+  if (found == settled_places_.end()) return;
+  positions_[found->first] = found->second;
+  (*is_changed)[found->first] = 1;
+  settled_places_.erase(found);
 }
 
 }  // namespace prefilter

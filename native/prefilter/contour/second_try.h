@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
@@ -32,16 +33,24 @@ class SecondTry {
   LoopChanges give_up(std::span<const std::size_t> loops, std::span<const std::size_t> vertices);
 
  private:
-  void put_back(std::size_t i, std::vector<std::uint8_t>* is_changed);
-  void put_vertex_back(std::size_t v, std::vector<std::uint8_t>* is_changed);
+  // What a loop is to be again.
+  struct Settled {
+    Feature feature;
+    std::uint8_t is_sharp;
+  };
+  using Loops = std::unordered_map<std::size_t, Settled>;
+  using Places = std::unordered_map<std::size_t, Vector3>;
+
+  void put_back(Loops::iterator found, std::vector<std::uint8_t>* is_changed);
+  void put_vertex_back(Places::iterator found, std::vector<std::uint8_t>* is_changed);
 
   const LinkedLoops& loops_;
   LoopStates& states_;
   std::vector<Vector3>& positions_;
-  LoopStates settled_;
-  std::vector<Vector3> settled_places_;
-  std::vector<std::uint8_t> is_tried_;
-  std::vector<std::uint8_t> is_moved_;
+  std::size_t vertices_;  // that may be moved
+  Loops settled_;
+  Places settled_places_;
+  std::vector<std::uint8_t> settled_single_;
 };
 
 }  // namespace prefilter

@@ -60,8 +60,9 @@ LoopStates first_states(const LinkedLoops& loops, std::span<const Vector3> posit
   return states;
 }
 
-LayeredMesh without_loops(std::vector<Vector3> positions, std::vector<Triangle> triangles,
-                          const VertexSamples& samples) {
+// With place for all triangles that loops may get.
+LayeredMesh without_loops(const LinkedLoops& loops, std::vector<Vector3> positions,
+                          std::vector<Triangle> triangles, const VertexSamples& samples) {
   const auto is_far = [&](const Triangle& triangle) {
     return std::none_of(triangle.begin(), triangle.end(), [&](std::int32_t corner) {
       return static_cast<std::size_t>(corner) < samples.index.size() &&
@@ -76,6 +77,13 @@ LayeredMesh without_loops(std::vector<Vector3> positions, std::vector<Triangle> 
   FacetedMesh& mesh = made.mesh;
   mesh.positions = std::move(positions);
   mesh.triangles = std::move(triangles);
+  mesh.positions.reserve(mesh.positions.size() + loops.size());
+  std::size_t most = 0;
+  for (const SharpLoop& loop : loops.loops) {
+    most += std::max(static_cast<std::size_t>(loop.count), loop.end - loop.first);
+  }
+  mesh.triangles.reserve(made.loops + most);
+  mesh.labels.reserve(made.loops + most);
   for (const Triangle& triangle : mesh.triangles) {
     mesh.labels.push_back(label_of(samples, triangle));
   }
@@ -264,8 +272,8 @@ class Mending {
         loops_(std::move(loops)),
         plain_(std::move(looped.loop_triangles)),
         states_(std::move(states)),
-        layered_(without_loops(std::move(looped.positions), std::move(looped.triangles), samples)) {
-  }
+        layered_(without_loops(loops_, std::move(looped.positions), std::move(looped.triangles),
+                               samples)) {}
 
   FacetedMesh mend(const FeaturePlaces& places) {
     const std::vector<Feature> wanted = states_.features;

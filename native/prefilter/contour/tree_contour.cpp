@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "prefilter/base/error.h"
@@ -319,12 +320,31 @@ double least_cell(const RootFrame& frame, int depth) {
   return std::min({frame.cell(0, depth), frame.cell(1, depth), frame.cell(2, depth)});
 }
 
-// The full contour, in the frame. With `sources_of_labels`, all triangles get labels, of each of
-// which that is a triangle.
-FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const ContourOptions& options,
-                     const Progress& progress, std::vector<std::int64_t>* sources_of_labels) {
+// The cells that a contour is cut from. Their own ones may go once that is done: they and what is
+// made of them take as much memory as the contour.
+class ContourCells {
+ public:
+  explicit ContourCells(const CellTree& kept) : kept_(&kept) {}
+  explicit ContourCells(CellTree&& own) : own_(std::move(own)) {}
+
+  const CellTree& tree() const { return kept_ != nullptr ? *kept_ : own_; }
+  void drop() { own_ = {}; }
+
+ private:
+  const CellTree* kept_ = nullptr;
+  CellTree own_;
+};
+
+// The full contour, in the frame, which cells are dropped for. With `sources_of_labels`, all
+// triangles get labels, of each of which that is a triangle.
+FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options,
+                     const Progress& progress, ContourCells* own,
+                     std::vector<std::int64_t>* sources_of_labels) {
   const int threads = options.threads;
-  ContourTree tree(cells, options.isovalue, progress.part(0.0, 0.1), threads);
+  const CellTree& cells = own->tree();
+  std::optional<ContourTree> made(std::in_place, cells, options.isovalue, progress.part(0.0, 0.1),
+                                  threads);
+  ContourTree& tree = *made;
   const Interpolant interpolant = interpolant_of(options);
   const bool fits = options.isovalue == 0.5F &&
                     (interpolant == Interpolant::kPlane || interpolant == Interpolant::kSharp);
@@ -334,7 +354,9 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
   if (is_sharp && !options.sources.empty()) {
     read_sources(cells, frame, options, progress.part(0.2, 0.35), &tree, &edges);
   }
-  SurfaceVertices vertices(tree, frame, interpolant, progress.part(0.35, 0.45), threads);
+  std::optional<SurfaceVertices> cut(std::in_place, tree, frame, interpolant,
+                                     progress.part(0.35, 0.45), threads);
+  SurfaceVertices& vertices = *cut;
   if (fits) {
     edges.crossings.plain = vertices.positions();
     fit_vertices(tree, frame, progress.part(0.45, 0.5), threads, &vertices);
@@ -357,8 +379,15 @@ FacetedMesh cut_tree(const CellTree& cells, const RootFrame& frame, const Contou
   sample_edges(tree, frame, options.thickened, progress.part(0.5, 0.6), threads, &vertices, &edges);
   const Division division = {*edges.surface(), edges.samples};
   LoopedMesh looped = make_loops(tree, &division, progress.part(0.6, 0.85), threads, &vertices);
+  cut.reset();
+  if (!edges.smooth_parts) {
+    made.reset();
+    own->drop();
+  }
   unfold(edges.samples, smallest, &edges.crossings, &looped);
   FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 0.97), threads);
+  edges.crossings = {};
+  edges.samples = {};
   smooth_stairs(cell, is_thickened, false, progress.part(0.97, 1.0), threads, &mesh);
   if (sources_of_labels != nullptr && edges.meshes) {
     *sources_of_labels = trace_labels(*edges.meshes, &mesh);
@@ -375,7 +404,7 @@ Vector3 middle_of(const FacetedMesh& mesh, std::size_t triangle) {
 }
 
 // The contour of a tree whose root is split.
-TriangleMesh contour_split(const CellTree& cells, const Box& root, const ContourOptions& options,
+TriangleMesh contour_split(ContourCells cells, const Box& root, const ContourOptions& options,
                            std::vector<std::int64_t>* origins) {
   constexpr double kPlacing = 0.98;
   constexpr double kSmallest = 1e-30;        // unit of length that may be multiplied
@@ -385,9 +414,10 @@ TriangleMesh contour_split(const CellTree& cells, const Box& root, const Contour
   const double cutting = options.adaptivity > 0.0 ? 0.4 * simplifying : simplifying - 0.02;
   const RootFrame frame(root);
   std::vector<std::int64_t> sources_of_labels;
-  FacetedMesh mesh = cut_tree(cells, frame, options, options.progress.part(0.0, cutting),
+  double cell = least_cell(frame, cells.tree().depth());
+  FacetedMesh mesh = cut_tree(frame, options, options.progress.part(0.0, cutting), &cells,
                               origins != nullptr ? &sources_of_labels : nullptr);
-  double cell = least_cell(frame, cells.depth());
+  cells.drop();
   // Where rounding may let triangles meet, what changes them has to see the positions that come
   // out.
   const bool places_first = frame.unit() > kSmallest && frame.unit() < 1.0 / kSmallest;
@@ -449,15 +479,15 @@ ContourSlab contour_slab(const CellTree& cells, float isovalue, Interpolant inte
 
 namespace {
 
-TriangleMesh contour_any(const CellTree& cells, const Box& root, const ContourOptions& options,
+TriangleMesh contour_any(ContourCells cells, const Box& root, const ContourOptions& options,
                          std::vector<std::int64_t>* origins) {
   check_box(root, "bounds");
   if (!(options.adaptivity >= 0.0 && options.adaptivity <= kLargestAdaptivity)) {
     throw_invalid("adaptivity: found " + to_text(options.adaptivity) + "; allowed are 0 to " +
                   to_text(kLargestAdaptivity));
   }
-  if (!cells.levels.empty()) return contour_split(cells, root, options, origins);
-  return contour_split(split_root(cells.root), root, options, origins);
+  if (!cells.tree().levels.empty()) return contour_split(std::move(cells), root, options, origins);
+  return contour_split(ContourCells(split_root(cells.tree().root)), root, options, origins);
 }
 
 // As it is, or refined where the surface passes through cells of several sizes.
@@ -465,19 +495,19 @@ TriangleMesh contour_refined(const CellTree& cells, const Box& root, const Conto
                              std::vector<std::int64_t>* origins) {
   constexpr double kRefining = 0.3;
   if (options.isovalue != 0.5F || !has_coarse_surface(cells)) {
-    return contour_any(cells, root, options, origins);
+    return contour_any(ContourCells(cells), root, options, origins);
   }
   check_box(root, "bounds");
-  const CellTree fine =
-      refined(cells, cells.depth(), options.progress.part(0.0, kRefining), options.threads);
+  ContourCells fine(
+      refined(cells, cells.depth(), options.progress.part(0.0, kRefining), options.threads));
   ContourOptions rest = options;
   rest.progress = options.progress.part(kRefining, 1.0);
-  return contour_any(fine, root, rest, origins);
+  return contour_any(std::move(fine), root, rest, origins);
 }
 }  // namespace
 
 TriangleMesh contour_tree(const CellTree& cells, const Box& root, const ContourOptions& options) {
-  return contour_any(cells, root, options, nullptr);
+  return contour_any(ContourCells(cells), root, options, nullptr);
 }
 
 TriangleMesh contour_occupancies(const CellTree& cells, const Box& root,
