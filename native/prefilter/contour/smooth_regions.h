@@ -62,9 +62,9 @@ std::vector<std::int32_t> first_places(const FramedPositions& positions, const P
                                        int threads);
 
 /// Joins triangles that meet at an edge of less than 20 degrees and are of one group; but facets
-/// that are wider than `least_width` only where it is less than 1 degree, or less than an edge of 7.6
-/// degrees of this width stands out. Where some edges have one
-/// side alone, `welded` gets first places before that. Throws Error(kCancelled).
+/// that are wider than `least_width` only where it is less than 1 degree, or less than an edge
+/// of 7.6 degrees of this width stands out. Where some edges have one side alone, `welded` gets
+/// first places before that. Throws Error(kCancelled).
 SmoothRegions join_smooth(double least_width, const Progress& progress, int threads,
                           WeldedMeshes* welded);
 

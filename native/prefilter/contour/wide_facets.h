@@ -12,8 +12,8 @@
 namespace prefilter {
 
 /// For each triangle the width of its facet, its area over the diagonal of its box, where that is
-/// plane, up to a quarter of a degree, and wider than `least`; 0 elsewhere. `facets` are the numbers
-/// of the triangles' facets. Empty where none is.
+/// plane, up to a quarter of a degree, and wider than `least`; 0 elsewhere. `facets` are the
+/// numbers of the triangles' facets. Empty where none is.
 std::vector<double> wide_facets(const WeldedMeshes& welded, std::span<const std::int32_t> facets,
                                 int facet_count, double least);
 
