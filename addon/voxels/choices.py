@@ -161,11 +161,12 @@ class VoxelSettings:
     smooth_angle: float = number(
         math.radians(30.0),
         "Angle",
-        "Keep edges sharp where faces meet at a greater angle",
+        "Keep edges sharp where faces meet at this angle, or a greater one",
         low=0.0,
         high=math.pi,
         subtype="ANGLE",
-        flag_description="Keep edges sharp where faces meet at a greater angle; 0 shades flat",
+        flag_description="Keep edges sharp where faces meet at this angle, or a greater one; 0 "
+        "shades flat",
         metavar="DEGREES",
     )
     originals: str = one_of(

@@ -6,11 +6,24 @@ Blender weights the faces around a vertex by their angles there, so that a large
 round where it borders on a rounded edge. Weighted by their areas, it stays flat.
 """
 
+import math
+
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
 _HELD = 1e-30
+_SLACK = math.radians(0.1)
+"""By so much facets of results are off those of the source, at most."""
+
+
+def sharp_angle(angle: float) -> float:
+    """Returns the angle beyond which edges are sharp, so that those that turn by `angle` are too.
+
+    The sides of a prism of twelve sides meet at just 30 degrees: rounding would make some edges
+    smooth, and others sharp.
+    """
+    return angle if angle >= math.pi else max(angle - _SLACK, 0.0)
 
 
 def weighted_normals(

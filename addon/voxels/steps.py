@@ -23,7 +23,7 @@ from .edge_marks import carried_marks
 from .findings import Findings, Report, Walls, advice_on, find, line, walls_in
 from .grid import Box, Grid, cells_crossed, choose_grid
 from .quads import face_edges, halves
-from .shading import weighted_normals
+from .shading import sharp_angle, weighted_normals
 from .solid_meshes import SolidMesh, solid_mesh
 from .transfer import Source, Transfer, find_groups, find_labels, groups_of
 
@@ -224,7 +224,7 @@ def contoured(
         layers,
         solid.active,
         solid.rendered,
-        settings.smooth_angle if settings.use_smooth_shading else None,
+        sharp_angle(settings.smooth_angle) if settings.use_smooth_shading else None,
         edges,
         _shading(local, turned, edges, layers, settings),
         carried_marks(solid.marks, positions, edges, grid.spacing, settings.threads),
@@ -314,7 +314,7 @@ def _shading(
     has_normals = any(layer.kind == NORMALS for layer in layers)
     if not (_adaptivity(settings) and settings.use_smooth_shading and is_closed) or has_normals:
         return None
-    return weighted_normals(positions, triangles, edges, settings.smooth_angle)
+    return weighted_normals(positions, triangles, edges, sharp_angle(settings.smooth_angle))
 
 
 _SMALL = marked("object '{}' has painted colors, for which triangles stay small")

@@ -2,6 +2,8 @@
 
 """How results shade, whose triangles are large where the surface is flat."""
 
+import math
+
 import bodies
 import bpy
 import numpy as np
@@ -92,6 +94,19 @@ def test_normals_are_weighted_by_areas(addon):
             np.testing.assert_allclose(found[corner], total / np.linalg.norm(total), atol=1e-5)
             parted += len(fans[face]) < len(around)
     assert parted > 20
+
+
+@pytest.mark.parametrize("faces", ["triangles", "quads"])
+def test_creases_of_just_the_angle_are_sharp_all_along(faces):
+    """The sides of a prism of twelve meet at 30 degrees, but for rounding."""
+    for angle, is_sharp in ((30.0, True), (30.2, False)):
+        bpy.ops.mesh.primitive_cylinder_add(vertices=12, depth=3, rotation=(0.3, 0.2, 0.1))
+        prism = bpy.context.object
+        bpy.ops.prefilter.voxelize(depth=6, faces=faces, smooth_angle=math.radians(angle))
+        is_crease = np.abs(bodies.face_angles(prism) - 30.0) < 0.05
+        assert is_crease.sum() >= 12
+        assert (bodies.sharp_edges(prism)[is_crease] == is_sharp).all()
+        bpy.data.objects.remove(prism)
 
 
 def test_normals_are_made_anew():
