@@ -13,7 +13,9 @@ numbers. Lengths are in cells.
 
 The columns: triangles of the mesh; triangles of the result; open, crowded and pinched places; pairs
 of triangles that cut each other; edges that turn by over 120 degrees where none of the mesh's does
-so within a cell; how far samples of the
+so within a cell; strays, those of them with a triangle that does not lie along what is voxelized,
+by 0.1 of a cell and 20 degrees (where closed holes, or parts that cross, meet the mesh in a wedge or
+a crevice there is no edge of the mesh, but no fold either); how far samples of the
 result are from the mesh, 95th percentile and farthest; the share of the mesh, in percent, that is
 more than a cell from the result and outside of it; parts and genus of the result, and of the mesh
 where it is closed; processor seconds.
@@ -38,6 +40,7 @@ ENDINGS = (".stl", ".obj", ".ply", ".off", ".glb")
 SAMPLES = 20_000
 GAP, THICKNESS = 2.0, 1.5  # As the add-on has them.
 WEDGES_LESS = 20.0  # Degrees, as measures.folds allows.
+ALONG = 0.1  # Cells.
 MISSING = 1.0  # Of a cell: what is farther from the result, and outside of it, is missing.
 HEAD = (
     "mesh",
@@ -46,6 +49,7 @@ HEAD = (
     "unsound",
     "cuts",
     "folds",
+    "stray",
     "off 95 %",
     "farthest",
     "missing %",
@@ -70,8 +74,8 @@ def read(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 def voxelized(
     positions: np.ndarray, triangles: np.ndarray, depth: int, interpolant: str
-) -> tuple[np.ndarray, np.ndarray, float, float]:
-    """Returns the surface that the add-on makes, the cell, and processor seconds."""
+) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray], float, float]:
+    """Returns the surface that the add-on makes, and of what; the cell, and processor seconds."""
     import prefilter
 
     started = time.process_time()
@@ -87,7 +91,9 @@ def voxelized(
     )
     sources = {"sources": [(closed.positions, closed.triangles)]} if interpolant == "sharp" else {}
     made = tree.contour(interpolant=interpolant, cleanup=True, **sources)
-    return made[0], made[1].astype(np.int64), float(cell), time.process_time() - started
+    taken = time.process_time() - started
+    solid_mesh = closed.positions, closed.triangles
+    return made[0], made[1].astype(np.int64), solid_mesh, float(cell), taken
 
 
 def missing(
@@ -112,6 +118,29 @@ def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) 
     )
 
 
+def strays(
+    made: np.ndarray, pairs: np.ndarray, positions: np.ndarray, triangles: np.ndarray, cell: float
+) -> int:
+    """How many pairs (n, 2, 3) of triangles do not both lie along a mesh."""
+    import igl
+
+    if not len(pairs):
+        return 0
+    corners = made[pairs.reshape(-1, 3)]
+    middles = corners.mean(axis=1, keepdims=True)
+    points = np.concatenate([middles, (corners + middles) / 2], axis=1).reshape(-1, 3)
+    squares, nearest, _ = igl.point_mesh_squared_distance(
+        points, positions, triangles.astype(np.int64)
+    )
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+    own = measures.facet_normals(positions, triangles)[0][nearest].reshape(-1, 4, 3)
+    cosines = np.abs((own * normals[:, None]).sum(axis=2)).min(axis=1)
+    far = np.sqrt(squares).reshape(-1, 4).max(axis=1) / cell
+    is_along = (far < ALONG) & (cosines > np.cos(np.radians(WEDGES_LESS)))
+    return int((~is_along.reshape(-1, 2).all(axis=1)).sum())
+
+
 def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
     """What is found of one mesh."""
     positions, triangles = read(path)
@@ -119,13 +148,15 @@ def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
     used = positions[np.unique(triangles)]
     middle, size = (used.min(axis=0) + used.max(axis=0)) / 2, np.ptp(used, axis=0).max()
     positions = (positions - middle) * (2 / size)
-    made, faces, cell, found["seconds"] = voxelized(positions, triangles, depth, interpolant)
+    made, faces, solid, cell, found["seconds"] = voxelized(positions, triangles, depth, interpolant)
     found["result"] = len(faces)
     sound = measures.soundness(made, faces)
     found["unsound"] = sound.open_edges + sound.crowded_edges + sound.crowded_vertices
     found["cuts"] = sound.intersections
     wedges = measures.sharp_edges(positions, triangles, measures.FOLD - WEDGES_LESS)
-    found["folds"] = measures.folds(made, faces, measures.FOLD, wedges, cell)
+    folded = measures.folded_pairs(made, faces, measures.FOLD, wedges, cell)
+    found["folds"] = len(folded)
+    found["stray"] = strays(made, faces[folded], *solid, cell)
     own, _ = measures.surface_samples(made, faces, SAMPLES)
     off = distances(own, positions, triangles) / cell
     found["off"], found["farthest"] = float(np.quantile(off, 0.95)), float(off.max())
@@ -164,7 +195,7 @@ def row(name: str, found: dict[str, object]) -> list[str]:
 
     return [
         name,
-        *(str(found[key]) for key in ("triangles", "result", "unsound", "cuts", "folds")),
+        *(str(found[key]) for key in ("triangles", "result", "unsound", "cuts", "folds", "stray")),
         *(f"{found[key]:.2f}" for key in ("off", "farthest", "missing")),
         beside("parts"),
         beside("genus"),
@@ -210,6 +241,7 @@ def main() -> None:
         ("unsound", "are not closed and 2-manifold"),
         ("cuts", "cut themselves"),
         ("folds", "have an edge that turns by over 120 degrees"),
+        ("stray", "have such an edge with a triangle that does not lie along what is voxelized"),
     ):
         wrong = sum(1 for found in all_found if found[key])
         report.verdict(wrong == 0, f"of {len(all_found)} results {wrong} {text}")

@@ -132,19 +132,31 @@ def folds(
     true_edges: Edges | None = None,
     reach: float = 0.0,
 ) -> int:
-    """Counts the edges that turn by more than so many degrees.
+    """Counts the edges of `folded_pairs`."""
+    return len(folded_pairs(positions, triangles, degrees, true_edges, reach))
+
+
+def folded_pairs(
+    positions: Floats,
+    triangles: Indices,
+    degrees: float = FOLD,
+    true_edges: Edges | None = None,
+    reach: float = 0.0,
+) -> Indices:
+    """The pairs of triangles (n, 2) at edges that turn by more than so many degrees.
 
     With `true_edges`, without those that are at edges of the shape, within `reach`, that turn by at
     least so much less 20 degrees: a wedge is no fold.
     """
-    ends, _, turn = edges(positions, triangles)
-    folded = positions[ends[turn > degrees]]
-    if true_edges is None or not len(folded):
-        return len(folded)
+    ends, pairs, turn = edges(positions, triangles)
+    folded = turn > degrees
+    if true_edges is None or not folded.any():
+        return pairs[folded]
     wedges = true_edges.ends[true_edges.degrees > degrees - 20]
     if not len(wedges):
-        return len(folded)
-    return int((Nearest(wedges).distances(folded.mean(axis=1)) > reach).sum())
+        return pairs[folded]
+    middles = positions[ends[folded]].mean(axis=1)
+    return pairs[folded][Nearest(wedges).distances(middles) > reach]
 
 
 def topology(triangles: Indices) -> tuple[int, int]:

@@ -304,10 +304,12 @@ LoopedMesh make_loops(const ContourTree& tree, const Division* division, const P
   return join(progress.part(0.8, 1.0), vertices, &tasks);
 }
 
-FacetedMesh sharpened(LoopedMesh looped, const EdgeSource& edges, const Progress& progress,
-                      int threads) {
-  FacetedMesh mesh = sharpen(std::move(looped), edges.crossings, *edges.surface(), edges.samples,
-                             progress, threads);
+FacetedMesh sharpened(LoopedMesh looped, const Vector3& smallest, EdgeSource* edges,
+                      const Progress& progress, int threads) {
+  FacetedMesh mesh = sharpen(std::move(looped), edges->crossings, *edges->surface(), edges->samples,
+                             progress.part(0.0, 0.95), threads);
+  unfold_plain_loops(edges->samples, smallest, &edges->crossings, progress.part(0.95, 1.0), threads,
+                     &mesh);
   const std::vector<std::int32_t> used = leave_out_unused(&mesh);
   for (std::size_t i = 0; i < used.size() && !mesh.kinds.empty(); ++i) {
     mesh.kinds[i] = mesh.kinds[static_cast<std::size_t>(used[i])];
@@ -385,7 +387,8 @@ FacetedMesh cut_tree(const RootFrame& frame, const ContourOptions& options,
     own->drop();
   }
   unfold(edges.samples, smallest, &edges.crossings, &looped);
-  FacetedMesh mesh = sharpened(std::move(looped), edges, progress.part(0.85, 0.97), threads);
+  FacetedMesh mesh =
+      sharpened(std::move(looped), smallest, &edges, progress.part(0.85, 0.97), threads);
   edges.crossings = {};
   edges.samples = {};
   smooth_stairs(cell, is_thickened, false, progress.part(0.97, 1.0), threads, &mesh);

@@ -12,8 +12,10 @@
 #include <span>
 #include <utility>
 
+#include "prefilter/contour/loop_triangles.h"
 #include "prefilter/contour/unfolded_loops.h"
 #include "prefilter/remesh/folds.h"
+#include "prefilter/remesh/near_intersections.h"
 
 namespace prefilter {
 
@@ -43,6 +45,7 @@ std::vector<Vector3> halfway(const ContourTree& tree, const RootFrame& frame,
 namespace {
 
 constexpr int kMostRegions = 8;
+constexpr double kCubeCells = 2.0;
 constexpr int kRings = 4;  // around folds
 constexpr int kSlidingRings = 3;
 constexpr int kMostRounds = 8;  // of sliding
@@ -71,7 +74,7 @@ bool has_flagged(const Triangle& triangle, const Flags& flags) {
                      [&](std::int32_t v) { return flags[static_cast<std::size_t>(v)] != 0; });
 }
 
-Region region_around(const Pairs& pairs, const LoopedMesh& looped) {
+Region region_around(const Pairs& pairs, const MeshView<std::int32_t>& looped) {
   Flags is_inner(looped.positions.size(), 0);
   for (const auto& pair : pairs) {
     for (const std::uint32_t t : pair) {
@@ -111,16 +114,7 @@ Region region_around(const Pairs& pairs, const LoopedMesh& looped) {
 // Of a region's triangles, those that fold, by vertices that may be moved.
 class Folds {
  public:
-  // Vertices of the contour from `vertices` on stay where they are, as those do that are sampled.
-  Folds(const VertexSamples& samples, std::size_t vertices, Region* region)
-      : region_(*region), is_movable_(region->vertices.size(), 0) {
-    for (std::size_t v = 0; v < is_movable_.size(); ++v) {
-      const std::size_t vertex = region->vertices[v];
-      const bool is_sampled =
-          !samples.index.empty() && vertex < vertices && samples.index[vertex] >= 0;
-      if (vertex < vertices && !is_sampled) is_movable_[v] = 1;
-    }
-  }
+  Folds(Region* region, Flags is_movable) : region_(*region), is_movable_(std::move(is_movable)) {}
 
   // Calls move(vertex) for the vertices of folds, each once; it returns whether it has.
   template <typename Move>
@@ -284,24 +278,72 @@ void slide(std::span<const GridPlace> places, const Vector3& cell, const Folds& 
   }
 }
 
+// Vertices between cells move, but for those that are sampled.
+Flags movable_vertices(const VertexSamples& samples, const Crossings& crossings,
+                       const Region& region) {
+  Flags is_movable(region.vertices.size(), 0);
+  for (std::size_t v = 0; v < is_movable.size(); ++v) {
+    const std::size_t vertex = region.vertices[v];
+    if (vertex >= crossings.fitted.size()) continue;
+    is_movable[v] = samples.index.empty() || samples.index[vertex] < 0 ? 1 : 0;
+  }
+  return is_movable;
+}
+
+void unfold_all_loops(std::span<const GridPlace> places, Region* region) {
+  while (unfold_loops(region->positions, places, folded_pairs(region->view(), 0, {}),
+                      &region->triangles)) {
+  }
+}
+
 // Returns whether what is around the region may fold since.
 bool unfold_region(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
                    Region* region) {
   const std::vector<GridPlace> places = places_of(*region, cell, *crossings);
-  const auto mend = [&] {
-    while (unfold_loops(region->positions, places, folded_pairs(region->view(), 0, {}),
-                        &region->triangles)) {
-    }
-  };
-  mend();
-  Folds folds(samples, crossings->fitted.size(), region);
+  unfold_all_loops(places, region);
+  Folds folds(region, movable_vertices(samples, *crossings, *region));
   const auto put_back = [&](std::size_t v) {
     return crossings->put_back(region->vertices[v], &region->positions[v]);
   };
-  while (folds.move_vertices(put_back)) mend();
+  while (folds.move_vertices(put_back)) unfold_all_loops(places, region);
   // Between three cells of a gap even these may fold.
   slide(places, cell, folds, crossings, region);
   return folds.reaches_out();
+}
+
+// Puts a region's vertices and triangles into the mesh that it is of.
+void write_back(const Region& region, std::vector<Vector3>* positions,
+                std::vector<Triangle>* triangles) {
+  for (std::size_t v = 0; v < region.vertices.size(); ++v) {
+    (*positions)[region.vertices[v]] = region.positions[v];
+  }
+  for (std::size_t t = 0; t < region.numbers.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(region.triangles[t][k]);
+      (*triangles)[region.numbers[t]][k] = static_cast<std::int32_t>(region.vertices[v]);
+    }
+  }
+}
+
+// Whether a vertex is on the line between its two cells.
+bool is_on_line(std::size_t vertex, const Vector3& position, const Crossings& crossings) {
+  if (vertex >= crossings.middle.size()) return false;
+  const Vector3& middle = crossings.middle[vertex];
+  return (position[0] != middle[0]) + (position[1] != middle[1]) + (position[2] != middle[2]) <= 1;
+}
+
+// The triangles of a region that another one has changed, or a vertex of.
+Flags changed_triangles(const Region& before, const Region& after, std::size_t count) {
+  Flags is_changed(count, 0);
+  for (std::size_t t = 0; t < before.numbers.size(); ++t) {
+    const bool has_moved =
+        std::any_of(after.triangles[t].begin(), after.triangles[t].end(), [&](std::int32_t v) {
+          return after.positions[static_cast<std::size_t>(v)] !=
+                 before.positions[static_cast<std::size_t>(v)];
+        });
+    if (has_moved || after.triangles[t] != before.triangles[t]) is_changed[before.numbers[t]] = 1;
+  }
+  return is_changed;
 }
 
 }  // namespace
@@ -311,19 +353,63 @@ void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossi
   for (int i = 0; i < kMostRegions; ++i) {
     const Pairs pairs = folded_pairs({looped->positions, looped->triangles}, 0, {});
     if (pairs.empty()) return;
-    Region region = region_around(pairs, *looped);
+    Region region = region_around(pairs, {looped->positions, looped->triangles});
     const bool goes_on = unfold_region(samples, cell, crossings, &region);
-    for (std::size_t v = 0; v < region.vertices.size(); ++v) {
-      looped->positions[region.vertices[v]] = region.positions[v];
+    write_back(region, &looped->positions, &looped->triangles);
+    if (!goes_on) return;
+  }
+}
+
+void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
+                        const Progress& progress, int threads, FacetedMesh* mesh) {
+  const MeshView<std::int32_t> view{mesh->positions, mesh->triangles};
+  Pairs pairs = folded_pairs(view, 0, {});
+  std::erase_if(pairs, [&](const auto& pair) {
+    return std::any_of(pair.begin(), pair.end(), [&](std::uint32_t t) {
+      return std::any_of(view.triangles[t].begin(), view.triangles[t].end(), [&](std::int32_t v) {
+        const auto vertex = static_cast<std::size_t>(v);
+        return !is_on_line(vertex, view.positions[vertex], *crossings);
+      });
+    });
+  });
+  if (pairs.empty()) return;
+  const Region before = region_around(pairs, view);
+  std::vector<GridPlace> places = places_of(before, cell, *crossings);
+  Flags is_movable(places.size(), 0);
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    const std::size_t vertex = before.vertices[v];
+    if (!is_on_line(vertex, before.positions[v], *crossings)) {
+      places[v] = kNoPlace;
+    } else if (before.positions[v] == crossings->middle[vertex]) {
+      is_movable[v] = 1;
     }
-    for (std::size_t t = 0; t < region.numbers.size(); ++t) {
-      Triangle& triangle = looped->triangles[region.numbers[t]];
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto v = static_cast<std::size_t>(region.triangles[t][k]);
-        triangle[k] = static_cast<std::int32_t>(region.vertices[v]);
+  }
+  const double side = kCubeCells * std::min({cell[0], cell[1], cell[2]});
+  for (int i = 0; i < kMostRegions; ++i) {
+    Region region = before;
+    unfold_all_loops(places, &region);
+    slide(places, cell, Folds(&region, is_movable), crossings, &region);
+    write_back(region, &mesh->positions, &mesh->triangles);
+    const Flags is_changed = changed_triangles(before, region, mesh->triangles.size());
+    pairs = near_intersections(view, 0, is_changed, side, progress, threads);
+    if (pairs.empty()) {
+      for (const std::size_t t : region.numbers) {
+        if (is_changed[t] != 0) mesh->labels[t] = label_of(samples, mesh->triangles[t]);
+      }
+      return;
+    }
+    Flags stays(mesh->positions.size(), 0);
+    for (const auto& pair : pairs) {
+      for (const std::uint32_t t : pair) {
+        for (const std::int32_t v : mesh->triangles[t]) stays[static_cast<std::size_t>(v)] = 1;
       }
     }
-    if (!goes_on) return;
+    for (std::size_t v = 0; v < places.size(); ++v) {
+      if (stays[before.vertices[v]] == 0) continue;
+      places[v] = kNoPlace;
+      is_movable[v] = 0;
+    }
+    write_back(before, &mesh->positions, &mesh->triangles);
   }
 }
 

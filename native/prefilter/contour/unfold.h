@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "prefilter/base/geometry.h"
+#include "prefilter/base/progress.h"
 #include "prefilter/contour/contour_tree.h"
 #include "prefilter/contour/looped_mesh.h"
 #include "prefilter/contour/root_frame.h"
 #include "prefilter/contour/sharp_vertices.h"
 #include "prefilter/contour/surface_vertices.h"
+#include "prefilter/remesh/faceted_mesh.h"
 
 namespace prefilter {
 
@@ -23,5 +25,10 @@ std::vector<Vector3> halfway(const ContourTree& tree, const RootFrame& frame,
 /// smallest cells.
 void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
             LoopedMesh* looped);
+
+/// The same for loops without edges where a contour's other loops have them. What that would have
+/// intersect stays. Throws Error(kCancelled).
+void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
+                        const Progress& progress, int threads, FacetedMesh* mesh);
 
 }  // namespace prefilter
