@@ -3,25 +3,27 @@
 """Voxelizes every mesh of a folder as the add-on does, and lets others judge the results.
 
 Usage: scripts/run python3 bench/voxels/gathered.py FOLDER [--depth N] [--interpolant NAME]
-    [--only TEXT] [--limit SECONDS] [--json FILE]
+    [--only TEXT] [--limit SECONDS] [--jobs N] [--keep FOLDER] [--json FILE]
 
-Meshes are read by trimesh (PyPI): STL, OBJ, PLY, OFF and glTF, of any kind, sound or broken. Each
-is made a solid, voxelized with the minimum thickness, contoured and cleaned up with the add-on's
-defaults, in a process of its own that has --limit seconds. Judges are CGAL's exact predicates (the
-program of self_intersections.cpp) and libigl (PyPI): squared distances, and generalized winding
-numbers. Lengths are in cells.
+Meshes are read by trimesh (PyPI): STL, OBJ, PLY, OFF and glTF, of any kind, sound or broken; those
+of each folder in FOLDER are a kind. Each is made a solid, voxelized with the minimum thickness,
+contoured and cleaned up with the add-on's defaults, in a process of its own that has --limit
+seconds. Judges are CGAL's exact predicates (the program of self_intersections.cpp) and libigl
+(PyPI): squared distances, and generalized winding numbers. Lengths are in cells.
 
-The columns: triangles of the mesh; triangles of the result; open, crowded and pinched places; pairs
-of triangles that cut each other; edges that turn by over 120 degrees where none of the mesh's does
-so within a cell; strays, those of them with a triangle that does not lie along what is voxelized,
-by 0.1 of a cell and 20 degrees (where closed holes, or parts that cross, meet the mesh in a wedge or
-a crevice there is no edge of the mesh, but no fold either); how far samples of the
-result are from the mesh, 95th percentile and farthest; the share of the mesh, in percent, that is
-more than a cell from the result and outside of it; parts and genus of the result, and of the mesh
-where it is closed; processor seconds.
+The columns of a mesh: triangles of the mesh; triangles of the result; open, crowded and pinched
+places; pairs of triangles that cut each other; edges that turn by over 120 degrees where none of
+the mesh's does so within a cell; strays, those of them with a triangle that does not lie along what
+is voxelized, by 0.1 of a cell and 20 degrees (where closed holes, or parts that cross, meet the
+mesh in a wedge or a crevice there is no edge of the mesh, but no fold either); how far samples of
+the result are from the mesh, median, 95th percentile and farthest; the share of the mesh, in
+percent, that is more than a cell from the result and outside of it; parts and genus of the result,
+and of the mesh where it is closed; processor seconds. Totals count meshes; distances and seconds in
+them are medians over meshes, and the most seconds.
 """
 
 import argparse
+import concurrent.futures
 import importlib.util
 import json
 import os
@@ -50,12 +52,27 @@ HEAD = (
     "cuts",
     "folds",
     "stray",
+    "off",
     "off 95 %",
     "farthest",
     "missing %",
     "parts",
     "genus",
     "s",
+)
+TOTALS = (
+    "meshes",
+    "number",
+    "without a result",
+    "closed",
+    "2-manifold",
+    "cut themselves",
+    "fold",
+    "stray",
+    "off",
+    "off 95 %",
+    "s",
+    "s, most",
 )
 
 
@@ -151,6 +168,7 @@ def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
     made, faces, solid, cell, found["seconds"] = voxelized(positions, triangles, depth, interpolant)
     found["result"] = len(faces)
     sound = measures.soundness(made, faces)
+    found["open"] = sound.open_edges
     found["unsound"] = sound.open_edges + sound.crowded_edges + sound.crowded_vertices
     found["cuts"] = sound.intersections
     wedges = measures.sharp_edges(positions, triangles, measures.FOLD - WEDGES_LESS)
@@ -159,7 +177,8 @@ def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
     found["stray"] = strays(made, faces[folded], *solid, cell)
     own, _ = measures.surface_samples(made, faces, SAMPLES)
     off = distances(own, positions, triangles) / cell
-    found["off"], found["farthest"] = float(np.quantile(off, 0.95)), float(off.max())
+    found["off"], found["off 95 %"] = np.quantile(off, (0.5, 0.95)).tolist()
+    found["farthest"] = float(off.max())
     points, _ = measures.surface_samples(positions, triangles, SAMPLES)
     far = distances(points, made, faces) > MISSING * cell
     found["missing"] = 100 * missing(points, far, made, faces)
@@ -171,7 +190,10 @@ def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
 
 
 def of_another_process(path: Path, options: argparse.Namespace) -> dict[str, object] | str:
-    """What is found of one mesh, or why there is nothing."""
+    """What is found of one mesh, or was and is kept; or why there is nothing."""
+    kept = options.keep and options.keep / f"{path.parent.name} {path.name}.json"
+    if kept and kept.exists():
+        return json.loads(kept.read_text())
     command = [sys.executable, __file__, "--one", str(path)]
     command += ["--depth", str(options.depth), "--interpolant", options.interpolant]
     try:
@@ -183,7 +205,10 @@ def of_another_process(path: Path, options: argparse.Namespace) -> dict[str, obj
     if done.returncode:
         return (done.stderr.strip().splitlines() or [f"exit status {done.returncode}"])[-1]
     # Readers of files print, too.
-    return json.loads(done.stdout.splitlines()[-1])
+    line = done.stdout.splitlines()[-1]
+    if kept:
+        kept.write_text(line)
+    return json.loads(line)
 
 
 def row(name: str, found: dict[str, object]) -> list[str]:
@@ -196,11 +221,45 @@ def row(name: str, found: dict[str, object]) -> list[str]:
     return [
         name,
         *(str(found[key]) for key in ("triangles", "result", "unsound", "cuts", "folds", "stray")),
-        *(f"{found[key]:.2f}" for key in ("off", "farthest", "missing")),
+        *(f"{found[key]:.2f}" for key in ("off", "off 95 %", "farthest", "missing")),
         beside("parts"),
         beside("genus"),
         f"{found['seconds']:.1f}",
     ]
+
+
+def total(kind: str, all_found: list[dict[str, object]], refused: int) -> list[str]:
+    """A row of the totals."""
+
+    def count(key: str, *, is_zero: bool = False) -> str:
+        return str(sum((found[key] == 0) == is_zero for found in all_found))
+
+    def median(key: str) -> float:
+        return float(np.median([found[key] for found in all_found]))
+
+    return [
+        kind,
+        str(len(all_found) + refused),
+        str(refused),
+        count("open", is_zero=True),
+        count("unsound", is_zero=True),
+        *(count(key) for key in ("cuts", "folds", "stray")),
+        f"{median('off'):.3f}",
+        f"{median('off 95 %'):.3f}",
+        f"{median('seconds'):.2f}",
+        f"{max(found['seconds'] for found in all_found):.1f}",
+    ]
+
+
+def totals(kinds: list[str], results: list[dict[str, object] | str]) -> list[list[str]]:
+    """The rows of the totals: of each kind, and of all."""
+    rows = []
+    for kind in [*dict.fromkeys(kinds), "all"]:
+        own = [found for k, found in zip(kinds, results, strict=True) if kind in (k, "all")]
+        all_found = [found for found in own if isinstance(found, dict)]
+        if all_found:
+            rows.append(total(kind, all_found, len(own) - len(all_found)))
+    return rows
 
 
 def main() -> None:
@@ -211,6 +270,8 @@ def main() -> None:
     parser.add_argument("--interpolant", default="sharp")
     parser.add_argument("--only", default="", help="part of the names")
     parser.add_argument("--limit", type=float, default=120.0, help="seconds that a mesh has")
+    parser.add_argument("--jobs", type=int, default=1, help="meshes at a time")
+    parser.add_argument("--keep", type=Path, help="folder of what is found, for a run cut off")
     parser.add_argument("--one", type=Path, help=argparse.SUPPRESS)
     add_json_option(parser)
     options = parser.parse_args()
@@ -221,20 +282,38 @@ def main() -> None:
         if importlib.util.find_spec(module) is None:
             sys.exit(f"needs {module} (PyPI)")
     report = Report()
-    rows, all_found, refused = [], [], []
-    paths = [p for p in sorted(options.folder.iterdir()) if p.suffix.lower() in ENDINGS]
-    for path in paths:
-        if options.only not in path.name:
-            continue
-        found = of_another_process(path, options)
-        if isinstance(found, str):
-            refused.append((path.name, found))
-            print(f"{path.name}: {found}", flush=True)
-            continue
-        rows.append(row(path.name, found))
-        all_found.append(found)
-        print("  ".join(rows[-1]), flush=True)
-    report.table(f"{2**options.depth} cells along an axis", HEAD, rows, "meshes")
+    paths = [
+        p
+        for p in sorted(options.folder.rglob("*"))
+        if p.suffix.lower() in ENDINGS and options.only in p.name
+    ]
+    results = []
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        for path, found in zip(
+            paths, pool.map(lambda p: of_another_process(p, options), paths), strict=True
+        ):
+            results.append(found)
+            shown = [path.name, found] if isinstance(found, str) else row(path.name, found)
+            print("  ".join(shown), flush=True)
+    report_all(report, paths, results, options.depth)
+    report.finish(options.json)
+
+
+def report_all(
+    report: Report, paths: list[Path], results: list[dict[str, object] | str], depth: int
+) -> None:
+    """Adds the tables and verdicts."""
+    named = list(zip(paths, results, strict=True))
+    rows = [row(path.name, found) for path, found in named if isinstance(found, dict)]
+    refused = [(path.name, found) for path, found in named if isinstance(found, str)]
+    all_found = [found for found in results if isinstance(found, dict)]
+    is_over = [any(found[key] for key in ("unsound", "cuts", "folds")) for found in all_found]
+    over = [r for r, is_one in zip(rows, is_over, strict=True) if is_one]
+    cells = f"{2**depth} cells along an axis"
+    report.table(cells, TOTALS, totals([p.parent.name for p in paths], results), "totals")
+    report.table(f"{cells}, each", HEAD, rows, "meshes")
+    if over:
+        report.table(f"{cells}, unsound or folded", HEAD, over, "over")
     if refused:
         report.table("Without a result", ("mesh", "why"), refused, "refused")
     for key, text in (
@@ -245,7 +324,6 @@ def main() -> None:
     ):
         wrong = sum(1 for found in all_found if found[key])
         report.verdict(wrong == 0, f"of {len(all_found)} results {wrong} {text}")
-    report.finish(options.json)
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import prefilter
 import pytest
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -136,6 +137,24 @@ def test_the_rim_of_two_cubes_is_exact():
     check_sound("cubes", positions, triangles)
     inside = (1 - 0.777 + 1) * (1 - 0.613 + 1) * (1 - 0.521 + 1)
     assert corpus.volume(positions, triangles) == pytest.approx(16 - inside, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(1, 7))
+def test_slits_between_slabs_do_not_fold(seed):
+    """A slit of half a cell is bridged here and there; slabs turn by 90 degrees at their edges."""
+    cell, slit = 0.125, 0.07
+    slabs = bench_solids.join(
+        bench_solids.box((-1, -1, -1), (1, 1, -slit / 2)),
+        bench_solids.box((-1, -1, slit / 2), (1, 1, 1)),
+    )
+    turn = bench_solids.random_rotation(seed)
+    source = (slabs.positions @ turn.T, slabs.triangles)
+    bounds = (np.full(3, -16 * cell), np.full(3, 16 * cell))
+    tree = prefilter.voxelize(*source, depth=5, bounds=bounds)
+    positions, triangles = tree.contour(interpolant="sharp", sources=[source])
+    assert measures.folds(positions, triangles) == 0
+    check_sound("slabs", positions, triangles.astype(np.int64))
+    assert np.abs(positions @ turn).max() < 1 + 0.5 * cell
 
 
 def wedge(degrees):

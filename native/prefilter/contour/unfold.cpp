@@ -332,6 +332,35 @@ bool is_on_line(std::size_t vertex, const Vector3& position, const Crossings& cr
   return (position[0] != middle[0]) + (position[1] != middle[1]) + (position[2] != middle[2]) <= 1;
 }
 
+// The pairs of triangles that fold and have all vertices on their lines, some of them halfway:
+// folds at which others are have been mended.
+Pairs plain_folds(const MeshView<std::int32_t>& mesh, const Crossings& crossings) {
+  Flags is_halfway(mesh.positions.size(), 0);
+  for (std::size_t v = 0; v < crossings.middle.size(); ++v) {
+    is_halfway[v] = mesh.positions[v] == crossings.middle[v] ? 1 : 0;
+  }
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> numbers;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& triangle = mesh.triangles[t];
+    if (!has_flagged(triangle, is_halfway)) continue;
+    if (!std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t corner) {
+          const auto v = static_cast<std::size_t>(corner);
+          return is_on_line(v, mesh.positions[v], crossings);
+        })) {
+      continue;
+    }
+    triangles.push_back(triangle);
+    numbers.push_back(static_cast<std::uint32_t>(t));
+  }
+  Pairs pairs = folded_pairs({mesh.positions, triangles}, 0, {});
+  for (auto& [one, other] : pairs) {
+    one = numbers[one];
+    other = numbers[other];
+  }
+  return pairs;
+}
+
 // The triangles of a region that another one has changed, or a vertex of.
 Flags changed_triangles(const Region& before, const Region& after, std::size_t count) {
   Flags is_changed(count, 0);
@@ -363,15 +392,7 @@ void unfold(const VertexSamples& samples, const Vector3& cell, Crossings* crossi
 void unfold_plain_loops(const VertexSamples& samples, const Vector3& cell, Crossings* crossings,
                         const Progress& progress, int threads, FacetedMesh* mesh) {
   const MeshView<std::int32_t> view{mesh->positions, mesh->triangles};
-  Pairs pairs = folded_pairs(view, 0, {});
-  std::erase_if(pairs, [&](const auto& pair) {
-    return std::any_of(pair.begin(), pair.end(), [&](std::uint32_t t) {
-      return std::any_of(view.triangles[t].begin(), view.triangles[t].end(), [&](std::int32_t v) {
-        const auto vertex = static_cast<std::size_t>(v);
-        return !is_on_line(vertex, view.positions[vertex], *crossings);
-      });
-    });
-  });
+  Pairs pairs = plain_folds(view, *crossings);
   if (pairs.empty()) return;
   const Region before = region_around(pairs, view);
   std::vector<GridPlace> places = places_of(before, cell, *crossings);
