@@ -145,6 +145,29 @@ def test_origins_are_unknown_where_it_is_thickened():
     assert (traced.origins[~is_rod] >= len(solid.triangles) - 12).all()
 
 
+def distances(points, a, b, c):
+    """Returns how far points are from a triangle."""
+    normal = np.cross(b - a, c - a)
+    normal /= np.linalg.norm(normal)
+    heights = (points - a) @ normal
+    is_above = np.ones(len(points), bool)
+    least = np.full(len(points), np.inf)
+    for start, end in ((a, b), (b, c), (c, a)):
+        side = end - start
+        is_above &= (points - start) @ np.cross(normal, side) >= 0
+        along = np.clip((points - start) @ side / (side @ side), 0, 1)
+        least = np.minimum(least, np.linalg.norm(points - start - along[:, None] * side, axis=1))
+    return np.where(is_above, np.abs(heights), least)
+
+
+def solid_angle(a, b, c) -> float:
+    """Returns that of triangles seen from the origin, as a share of all directions."""
+    la, lb, lc = (np.linalg.norm(x, axis=1) for x in (a, b, c))
+    volume = (a * np.cross(b, c)).sum(axis=1)
+    rest = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
+    return float(np.arctan2(volume, rest).sum() / (2 * np.pi))
+
+
 def test_nasty_meshes():
     triangle = np.array([(10.0, 10, 10), (30, 10, 10), (10, 30, 10)])
     both = np.array([(0, 1, 2), (0, 2, 1)])
@@ -158,6 +181,26 @@ def test_nasty_meshes():
     twice = join(posed(plate(0.3), 1, CELLS), posed(plate(0.3), 1, CELLS))
     once = voxelized(posed(plate(0.3), 1, CELLS))
     assert voxelized(twice).volume == pytest.approx(once.volume, rel=1e-3)
+
+
+@pytest.mark.parametrize("count", [12, 400, 1500])
+def test_of_a_soup_what_is_near_is_inside(count):
+    """Triangles as large as everything: few in each cell, and very many."""
+    random = np.random.default_rng(count)
+    positions = random.uniform(4, 28, (3 * count, 3))
+    triangles = np.arange(3 * count).reshape(-1, 3)
+    tree = voxelized(Solid(positions, np.concatenate([triangles, triangles[:, ::-1]])), depth=5)
+    points, made = tree.contour(interpolant="occupancy", cleanup=False)
+    corners = positions[triangles]
+    samples = random.uniform(2, 30, (3000, 3))
+    gaps = np.min([distances(samples, *triangle) for triangle in corners], axis=0)
+    # The sign of the solid angle of all of the surface.
+    a, b, c = (points[made[:, k]] for k in range(3))
+    inside = np.array([solid_angle(a - x, b - x, c - x) for x in samples[:300]]) > 0.5
+    assert (inside | (gaps[:300] > 0.4)).all()
+    assert (~inside | (gaps[:300] < 2.2)).all()
+    # A half of a ball more at most than what is near.
+    assert tree.volume > (gaps < 0.6).mean() * 28**3
 
 
 @pytest.mark.parametrize("seed", [1, 3])

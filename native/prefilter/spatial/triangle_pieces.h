@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 #include "prefilter/base/geometry.h"
 
@@ -24,12 +25,9 @@ inline Box triangle_box(const std::array<Vector3, 3>& corners) {
   return box;
 }
 
-/// Calls visit(corners) for pieces of a triangle with no side longer than `size`, of those parts of
-/// it that are of interest by `may_be(corners)`.
-template <typename MayBe, typename Visit>
-void for_pieces(const std::array<Vector3, 3>& corners, double size, const MayBe& may_be,
-                const Visit& visit) {
-  if (!may_be(corners)) return;
+/// The halves of a triangle with a side that is longer than `size`: the longest one is cut.
+inline std::optional<std::array<std::array<Vector3, 3>, 2>> halves_of(
+    const std::array<Vector3, 3>& corners, double size) {
   std::size_t longest = 0;
   double most = 0.0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -39,16 +37,26 @@ void for_pieces(const std::array<Vector3, 3>& corners, double size, const MayBe&
       longest = i;
     }
   }
-  if (most <= size * size) {
-    visit(corners);
-    return;
-  }
+  if (most <= size * size) return std::nullopt;
   const Vector3& a = corners[longest];
   const Vector3& b = corners[(longest + 1) % 3];
   const Vector3& c = corners[(longest + 2) % 3];
   const Vector3 middle = 0.5 * (a + b);
-  for_pieces({a, middle, c}, size, may_be, visit);
-  for_pieces({middle, b, c}, size, may_be, visit);
+  return {{{{a, middle, c}, {middle, b, c}}}};
+}
+
+/// Calls visit(corners) for pieces of a triangle with no side longer than `size`, of those parts of
+/// it that are of interest by `may_be(corners)`.
+template <typename MayBe, typename Visit>
+void for_pieces(const std::array<Vector3, 3>& corners, double size, const MayBe& may_be,
+                const Visit& visit) {
+  if (!may_be(corners)) return;
+  const auto halves = halves_of(corners, size);
+  if (!halves) {
+    visit(corners);
+    return;
+  }
+  for (const auto& half : *halves) for_pieces(half, size, may_be, visit);
 }
 
 }  // namespace prefilter

@@ -47,6 +47,15 @@ int sign_of(double value, double scale) {
   return value > kRounding * scale ? 1 : value < -kRounding * scale ? -1 : 0;
 }
 
+bool may_meet(const std::array<Vector3, 3>& triangle, const Box& box) {
+  const auto& [a, b, c] = triangle;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (std::max({a[k], b[k], c[k]}) < box.low[k]) return false;
+    if (std::min({a[k], b[k], c[k]}) > box.high[k]) return false;
+  }
+  return true;
+}
+
 // 1 where the segment leaves through the triangle, -1 where it enters, 0 where it does neither;
 // nothing if that is in doubt.
 std::optional<int> passage(const std::array<Vector3, 3>& triangle, const Vector3& from,
@@ -174,6 +183,7 @@ std::optional<double> WindingNumbers::excess(const Vector3& from, const Vector3&
   tree_.for_overlapping(box, [&](std::size_t node) {
     const BoxTree::Node& leaf = tree_.nodes()[node];
     for (std::uint32_t item = leaf.begin; is_sure && item < leaf.end; ++item) {
+      if (!may_meet(triangles_[item], box)) continue;
       const std::optional<int> one = passage(triangles_[item], from, to);
       is_sure = one.has_value();
       sum += one.value_or(0);

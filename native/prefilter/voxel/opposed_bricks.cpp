@@ -210,8 +210,7 @@ OpposedBricks::OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const
   for (std::size_t i = 0; i < directions.size(); ++i) {
     for (std::uint64_t rest = directions[i].bins; rest != 0; rest &= rest - 1) {
       if ((across[static_cast<std::size_t>(std::countr_zero(rest))] & around[i]) == 0) continue;
-      opposed_.insert(directions[i].key);
-      if (directions[i].area > kCrowded * side * side) crowded_.insert(directions[i].key);
+      opposed_[directions[i].key].is_crowded = directions[i].area > kCrowded * side * side;
       break;
     }
   }
@@ -219,11 +218,12 @@ OpposedBricks::OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const
 }
 
 bool OpposedBricks::holds(const Vector3& point) const {
-  return opposed_.contains(cube_key(point, side_));
+  return opposed_.find(cube_key(point, side_)) != nullptr;
 }
 
 bool OpposedBricks::is_crowded(const Vector3& point) const {
-  return !crowded_.empty() && crowded_.contains(cube_key(point, side_));
+  const Brick* brick = opposed_.find(cube_key(point, side_));
+  return brick != nullptr && brick->is_crowded;
 }
 
 bool OpposedBricks::may_meet(const std::array<Vector3, 3>& corners) const {
@@ -239,13 +239,14 @@ bool OpposedBricks::may_meet(const std::array<Vector3, 3>& corners) const {
   }
   constexpr double kMany = 27.0;
   if (count > kMany) return true;
+  const std::uint64_t first = cube_key(box.low, side_);
   for (std::int64_t x = low[0]; x <= high[0]; ++x) {
     for (std::int64_t y = low[1]; y <= high[1]; ++y) {
       for (std::int64_t z = low[2]; z <= high[2]; ++z) {
-        const Vector3 at = {(static_cast<double>(x) + 0.5) * side_,
-                            (static_cast<double>(y) + 0.5) * side_,
-                            (static_cast<double>(z) + 0.5) * side_};
-        if (holds(at)) return true;
+        const std::uint64_t step = (static_cast<std::uint64_t>(x - low[0]) << 42U) +
+                                   (static_cast<std::uint64_t>(y - low[1]) << 21U) +
+                                   static_cast<std::uint64_t>(z - low[2]);
+        if (opposed_.find(first + step) != nullptr) return true;
       }
     }
   }

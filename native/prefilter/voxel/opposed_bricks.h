@@ -6,11 +6,11 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <unordered_set>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/voxel/cube_table.h"
 
 namespace prefilter {
 
@@ -30,7 +30,7 @@ class OpposedBricks {
   OpposedBricks(const MeshView<std::int32_t>& mesh, std::span<const Vector3> normals, double side,
                 const Box& bounds, const Progress& progress, int threads);
 
-  bool is_empty() const { return opposed_.empty(); }
+  bool is_empty() const { return opposed_.is_empty(); }
   bool holds(const Vector3& point) const;
 
   /// Whether so much passes the brick of a point that no shape is told apart.
@@ -42,8 +42,10 @@ class OpposedBricks {
  private:
   double side_;
   Box bounds_;
-  std::unordered_set<std::uint64_t> opposed_;
-  std::unordered_set<std::uint64_t> crowded_;
+  struct Brick {
+    bool is_crowded = false;
+  };
+  CubeTable<Brick> opposed_;
 };
 
 }  // namespace prefilter

@@ -16,17 +16,20 @@ struct Represented {
   std::uint32_t triangle;
   std::uint32_t representative;
   double area;
+  bool is_back;  // the other face of a sheet: what is thin of one is thin of both
 };
 
 struct Representatives {
   std::vector<std::uint32_t> triangles;
   std::vector<double> shares;       // of each: the area that it stands for, its own being 1
+  std::vector<bool> are_sheets;     // with another one as their back
   std::vector<Represented> others;  // in order of the triangles
 };
 
 /// Of these triangles. What is smaller than a quarter of a cell has the first one that is in the
 /// same cube of that side and faces about the same way, so that there are no more than cells can
-/// tell apart, however fine a mesh is; lengths are cells.
+/// tell apart, however fine a mesh is. What is larger stands for those on the same corners where
+/// some of these face the other way. Lengths are cells.
 Representatives find_representatives(const MeshView<std::int32_t>& mesh,
                                      std::span<const Vector3> normals,
                                      std::span<const std::uint32_t> triangles);

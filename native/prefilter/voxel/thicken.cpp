@@ -19,14 +19,30 @@ namespace prefilter {
 namespace {
 
 constexpr int kSamples = 2;  // along an axis of a cell
+constexpr int kAllSamples = kSamples * kSamples * kSamples;
+constexpr double kSide = 1.0 / kSamples;
 constexpr double kHalfDiagonal = 0.8660254037844386;
+constexpr double kRounding = 1e-6;  // in cells
+// Of a gap at a sample: what is around the sample is within the piece, whichever way it faces.
+constexpr double kSettled = -kSide * kHalfDiagonal - kRounding;
+// To a sample from the center of its cell, and from that of a cell of twice the side around it.
+constexpr double kToSample = (1.0 - kSide) * kHalfDiagonal + kRounding;
+constexpr double kFromAbove = kToSample + kHalfDiagonal;
+constexpr double kLeastArea = 1e-3;  // of a piece whose plane is looked at, in cells
 constexpr float kLeastAdded = 0.02F;
 constexpr double kUsualThickness = 1.5;
 constexpr double kMargin = 4.0;  // around the root, of what may reach into it
 
 struct PieceCell {
+  struct Near {
+    double gap;  // to the middle of the cell of a side of two; 0 above
+    std::uint32_t piece;
+    bool operator<(const Near& other) const {
+      return gap != other.gap ? gap < other.gap : piece < other.piece;
+    }
+  };
   LeafPlace at;  // in cells of its depth
-  std::vector<std::uint32_t> pieces;
+  std::vector<Near> pieces;
 };
 
 // The cells of the pieces, in cells of the finest depth.
@@ -43,12 +59,21 @@ class PieceRule {
         box.high[a] += piece.radius;
       }
       boxes_.push_back(box);
+      const auto& [a, b, c] = piece.middles;
+      const Vector3 normal = cross(b - a, c - a);
+      const double size = length(normal);
+      Plane plane = {{0.0, 0.0, 0.0}, 0.0, piece.radius + kRounding};
+      if (size > kLeastArea) {
+        plane.normal = (1.0 / size) * normal;
+        plane.offset = dot(plane.normal, a);
+      }
+      planes_.push_back(plane);
     }
   }
 
   PieceCell root() const {
     PieceCell cell{{0, 0, 0}, {}};
-    for (std::uint32_t i = 0; i < pieces_.size(); ++i) cell.pieces.push_back(i);
+    for (std::uint32_t i = 0; i < pieces_.size(); ++i) cell.pieces.push_back({0.0, i});
     return cell;
   }
 
@@ -65,9 +90,14 @@ class PieceRule {
       box.low[a] = result.at[a] * side;
       box.high[a] = box.low[a] + side;
     }
-    for (const std::uint32_t i : cell.pieces) {
-      if (boxes_[i].overlaps(box)) result.pieces.push_back(i);
+    const Vector3 center = 0.5 * (box.low + box.high);
+    for (const PieceCell::Near& near : cell.pieces) {
+      if (!boxes_[near.piece].overlaps(box)) continue;
+      // A piece that is large is far from most of its box.
+      if (least_gap(near.piece, center) > side * kHalfDiagonal) continue;
+      result.pieces.push_back(near);
     }
+    if (depth + 2 == octree_.depth) put_near_first(&result);
     return result;
   }
 
@@ -77,27 +107,13 @@ class PieceRule {
     if (depth < octree_.depth) return 1.0F;
     const float before = occupancy_at(octree_.cells, octree_.depth, cell.at);
     if (before >= 1.0F) return 0.0F;
-    Vector3 center;
-    for (int a = 0; a < 3; ++a) center[a] = cell.at[a] + 0.5;
-    std::vector<const ThickPiece*> near;
-    for (const std::uint32_t i : cell.pieces) {
-      if (gap(pieces_[i], center).size < kHalfDiagonal) near.push_back(&pieces_[i]);
-    }
-    if (near.empty()) return 0.0F;
+    std::array<Gap, kAllSamples> least;
+    if (!find_least(cell, &least)) return 0.0F;
     double sum = 0.0;
-    constexpr double kSide = 1.0 / kSamples;
-    for (int i = 0; i < kSamples * kSamples * kSamples; ++i) {
-      const std::array<int, 3> k = {i % kSamples, i / kSamples % kSamples, i / kSamples / kSamples};
-      Vector3 point;
-      for (std::size_t a = 0; a < 3; ++a) point[a] = cell.at[a] + (k[a] + 0.5) * kSide;
-      Gap least = {kHalfDiagonal * 2.0, {1.0, 0.0, 0.0}};
-      for (const ThickPiece* piece : near) {
-        const Gap one = gap(*piece, point);
-        if (one.size < least.size) least = one;
-      }
+    for (const Gap& one : least) {
       const double width =
-          kSide * (std::abs(least.away[0]) + std::abs(least.away[1]) + std::abs(least.away[2]));
-      sum += std::clamp(0.5 - least.size / width, 0.0, 1.0);
+          kSide * (std::abs(one.away[0]) + std::abs(one.away[1]) + std::abs(one.away[2]));
+      sum += std::clamp(0.5 - one.size / width, 0.0, 1.0);
     }
     const auto share = static_cast<float>(sum * kSide * kSide * kSide);
     return share > before + kLeastAdded ? share : 0.0F;
@@ -109,10 +125,26 @@ class PieceRule {
     const double side = std::ldexp(1.0, octree_.depth - depth);
     const Vector3 center = {(cell.at[0] + 0.5) * side, (cell.at[1] + 0.5) * side,
                             (cell.at[2] + 0.5) * side};
-    return std::any_of(cell.pieces.begin(), cell.pieces.end(), [&](std::uint32_t i) {
-      return pieces_[i].radius > side * kHalfDiagonal &&
-             gap(pieces_[i], center).size < -side * kHalfDiagonal;
+    return std::any_of(cell.pieces.begin(), cell.pieces.end(), [&](const PieceCell::Near& near) {
+      return pieces_[near.piece].radius > side * kHalfDiagonal &&
+             gap(pieces_[near.piece], center).size < -side * kHalfDiagonal;
     });
+  }
+
+  // The pieces that reach a cell of a side of two, by how near they are: few settle what is in it.
+  void put_near_first(PieceCell* cell) const {
+    const Vector3 center = {2.0 * cell->at[0] + 1.0, 2.0 * cell->at[1] + 1.0,
+                            2.0 * cell->at[2] + 1.0};
+    for (PieceCell::Near& near : cell->pieces) near.gap = gap(pieces_[near.piece], center).size;
+    std::erase_if(cell->pieces,
+                  [](const PieceCell::Near& near) { return near.gap >= 2.0 * kHalfDiagonal; });
+    std::sort(cell->pieces.begin(), cell->pieces.end());
+  }
+
+  // At least that between a piece and a point, by the piece's plane.
+  double least_gap(std::uint32_t piece, const Vector3& point) const {
+    const Plane& plane = planes_[piece];
+    return std::abs(dot(plane.normal, point) - plane.offset) - plane.reach;
   }
 
   // From a piece to a point: negative within.
@@ -130,9 +162,49 @@ class PieceRule {
     return {distance - piece.radius, (1.0 / distance) * d};
   }
 
+  // Of each sample of a cell, the least gap to a piece, or one that no other changes anything of;
+  // whether there are pieces that reach the cell.
+  bool find_least(const PieceCell& cell, std::array<Gap, kAllSamples>* least) const {
+    std::array<Vector3, kAllSamples> points;
+    for (int i = 0; i < kAllSamples; ++i) {
+      const std::array<int, 3> k = {i % kSamples, i / kSamples % kSamples, i / kSamples / kSamples};
+      for (std::size_t a = 0; a < 3; ++a) points[i][a] = cell.at[a] + (k[a] + 0.5) * kSide;
+    }
+    least->fill({kHalfDiagonal * 2.0, {1.0, 0.0, 0.0}});
+    const Vector3 center = {cell.at[0] + 0.5, cell.at[1] + 0.5, cell.at[2] + 0.5};
+    bool is_reached = false;
+    double most = least->front().size;
+    for (const PieceCell::Near& near : cell.pieces) {
+      // No gap changes by more than the way: of no piece that follows one is less.
+      if (near.gap - kFromAbove >= most) break;
+      if (least_gap(near.piece, center) - kToSample >= most) continue;
+      const ThickPiece& piece = pieces_[near.piece];
+      const double middle = gap(piece, center).size;
+      if (middle >= kHalfDiagonal) continue;
+      is_reached = true;
+      most = kSettled;
+      for (std::size_t k = 0; k < kAllSamples; ++k) {
+        Gap& best = (*least)[k];
+        if (best.size > kSettled && middle - kToSample < best.size) {
+          const Gap one = gap(piece, points[k]);
+          if (one.size < best.size) best = one;
+        }
+        most = std::max(most, best.size);
+      }
+      if (most <= kSettled) break;
+    }
+    return is_reached;
+  }
+
   const std::vector<ThickPiece>& pieces_;
   const Octree& octree_;
   std::vector<Box> boxes_;
+  struct Plane {
+    Vector3 normal;  // nothing of what has no area
+    double offset;
+    double reach;
+  };
+  std::vector<Plane> planes_;
 };
 
 // The mesh in units of which the root has so many along an axis, without what is very far away.
@@ -224,7 +296,7 @@ std::vector<ThinTriangle> thin_triangles(const ThickPieces& found) {
     if (same == known || same->triangle != other.representative) continue;
     ThinTriangle one = *same;
     one.triangle = other.triangle;
-    one.area = other.area;
+    if (!other.is_back) one.area = other.area;
     all.push_back(one);
   }
   std::sort(all.begin(), all.end(), is_before);

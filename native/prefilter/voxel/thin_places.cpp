@@ -6,15 +6,16 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <utility>
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/spatial/triangle_pieces.h"
 #include "prefilter/spatial/winding_numbers.h"
 #include "prefilter/voxel/cube_keys.h"
+#include "prefilter/voxel/cube_table.h"
 #include "prefilter/voxel/inner_balls.h"
 #include "prefilter/voxel/opposed_bricks.h"
+#include "prefilter/voxel/outer_sides.h"
 
 namespace prefilter {
 namespace {
@@ -23,14 +24,11 @@ constexpr double kPiece = 1.0;         // the longest side of a piece, in cells
 constexpr double kLargestPiece = 4.0;  // of one that is as thin everywhere
 constexpr double kLeastBrick = 2.0;    // in cells
 constexpr double kOpposite = -0.85;  // the cosine between normals of what is opposite: 148 degrees
-constexpr double kClear = 1.2;       // from a surface, in cells: what is empty there is outside
-constexpr std::array<double, 3> kFarther = {2.1, 3.0, 3.9};  // likewise, where it is not
 // How much thicker than a plate that cells hold together a rod and a speck have to be: the quarter
 // of a disc that cells have of a rod along their common edge, and the eighth of a ball at their
 // common corner, are half of a cell.
 constexpr double kRod = 0.23;
 constexpr double kSpeck = 0.17;
-constexpr double kFarRadii = 2.0;  // of winding numbers that are compared with a half
 constexpr std::int64_t kTrianglesPerTask = 1 << 6;
 
 bool is_small(const std::array<Vector3, 3>& p) {
@@ -98,7 +96,8 @@ struct Candidate {
   Vector3 normal;
   InnerBall ball;
   std::uint32_t triangle;
-  double share;  // of the area that it stands for, its own being 1
+  double share;   // of the area that it stands for, its own being 1
+  bool is_plate;  // whatever is around it
 
   Vector3 middle() const { return triangle_middle(corners) - ball.radius * normal; }
 };
@@ -112,31 +111,140 @@ double extra_of(const Vector3& values) {
   return kRod * rod_of(values) + kSpeck * speck;
 }
 
-// Whether points of the surface bound the solid, and are not within another part.
-struct OuterSides {
-  const std::function<float(const Vector3&)>& occupancy;
-  const WindingNumbers& winding;
+// What is thin of a triangle. It is cut only as far as its parts differ, as each piece is looked at
+// by every cell that it reaches.
+class CandidateFinder {
+ public:
+  CandidateFinder(const OpposedBricks& bricks, const InnerBalls& balls, const OuterSides& outer,
+                  double largest, std::vector<Candidate>* found)
+      : bricks_(bricks), balls_(balls), outer_(outer), largest_(largest), found_(found) {}
 
-  // Where a gap is narrower than kClear it is filled, whichever of its sides is moved.
-  bool may_be(const Vector3& point, const Vector3& normal) const {
-    return occupancy(point + kClear * normal) < 1.0F;
-  }
-  bool is_outer(const Vector3& point, const Vector3& normal) const {
-    const float beyond = occupancy(point + kClear * normal);
-    if (beyond <= 0.0F || beyond >= 1.0F) return beyond <= 0.0F;
-    const Vector3 start = point + kJustOutside * normal;
-    for (const double far : kFarther) {
-      const Vector3 end = point + far * normal;
-      const float there = occupancy(end);
-      if (there > 0.0F && there < 1.0F) continue;
-      const std::optional<double> excess = winding.excess(start, end);
-      if (!excess) continue;
-      if (there <= 0.0F) return *excess <= 0.5;
-      // What is full is within one part, or several.
-      if (*excess >= 0.0) return false;
+  /// One of the `chosen`, by its number among these.
+  void add(const std::array<Vector3, 3>& corners, const Vector3& normal,
+           const Representatives& chosen, std::size_t index) {
+    normal_ = normal;
+    is_sheet_ = chosen.are_sheets[index];
+    triangle_ = chosen.triangles[index];
+    share_ = chosen.shares[index];
+    if (is_sheet_) {
+      if (add_plates(corners)) push_plate(corners);
+    } else {
+      for_pieces(corners, kLargestPiece, may_meet_, [&](const auto& piece) { add_piece(piece); });
     }
-    return winding.at(start, kFarRadii) <= 0.5;
   }
+
+ private:
+  // Of a sheet. If all of it is a plate it says so and adds nothing: two halves that are can then
+  // be one plate, as large as the triangle if that is all in crowded bricks.
+  bool add_plates(const std::array<Vector3, 3>& piece) {
+    if (!bricks_.may_meet(piece)) return false;
+    const auto halves = halves_of(piece, kLargestPiece);
+    if (!halves) {
+      const Vector3 middle = triangle_middle(piece);
+      if (!is_small(piece) && bricks_.is_crowded(middle) &&
+          (may_count(middle) || has_counting(piece))) {
+        return true;
+      }
+      add_piece(piece);
+      return false;
+    }
+    const std::array<bool, 2> are_plates = {add_plates((*halves)[0]), add_plates((*halves)[1])};
+    if (are_plates[0] && are_plates[1]) return true;
+    for (std::size_t i = 0; i < 2; ++i) {
+      if (are_plates[i]) push_plate((*halves)[i]);
+    }
+    return false;
+  }
+
+  void push_plate(const std::array<Vector3, 3>& piece) {
+    found_->push_back({piece, normal_, kSheet, triangle_, share_, true});
+  }
+
+  // A sheet counts where one of its faces does.
+  bool may_count(const Vector3& point) const {
+    return bricks_.holds(point) &&
+           (outer_.may_be(point, normal_) || (is_sheet_ && outer_.may_be(point, -1.0 * normal_)));
+  }
+
+  bool is_outer(const Vector3& point) const {
+    return outer_.is_outer(point, normal_) || (is_sheet_ && outer_.is_outer(point, -1.0 * normal_));
+  }
+
+  void push(const std::array<Vector3, 3>& piece, const InnerBall& ball) {
+    found_->push_back({piece, normal_, ball, triangle_, share_, false});
+  }
+
+  // A piece whose middle may count, if that is thin; whether it is.
+  bool push_outer(const std::array<Vector3, 3>& piece) {
+    const Vector3 middle = triangle_middle(piece);
+    if (!is_outer(middle)) return false;
+    if (is_sheet_) {
+      push(piece, kSheet);
+      return true;
+    }
+    const std::optional<InnerBall> ball = balls_.at(middle, normal_, largest_, across_);
+    if (ball) push(piece, *ball);
+    return ball.has_value();
+  }
+
+  // One no larger than kLargestPiece.
+  void add_piece(const std::array<Vector3, 3>& piece) {
+    const Vector3 middle = triangle_middle(piece);
+    const bool counts = may_count(middle);
+    if (!counts && (is_small(piece) || !has_counting(piece))) return;
+    if (bricks_.is_crowded(middle)) {
+      push(piece, kSheet);
+      return;
+    }
+    if (is_small(piece)) {
+      // A list of what is across does not pay for a single ball.
+      across_.has_more = true;
+      push_outer(piece);
+      return;
+    }
+    if (!is_sheet_) {
+      balls_.find_across(piece, normal_, largest_, &across_);
+      if (across_.is_empty()) return;
+    }
+    // Whole if it is as thin everywhere.
+    if (counts && (is_sheet_ || balls_.are_alike(piece, normal_, largest_, across_)) &&
+        push_outer(piece)) {
+      return;
+    }
+    for_pieces(piece, kPiece, may_meet_, [&](const auto& small) {
+      if (may_count(triangle_middle(small))) push_outer(small);
+    });
+  }
+
+  // Whether the middle may not count, but others do.
+  bool has_counting(const std::array<Vector3, 3>& piece) const {
+    bool counts = false;
+    for_pieces(piece, kPiece, may_meet_,
+               [&](const auto& small) { counts = counts || may_count(triangle_middle(small)); });
+    return counts;
+  }
+
+  static constexpr InnerBall kSheet = {0.0, -1.0};  // what has no inside
+
+  struct MayMeet {
+    const OpposedBricks& bricks;
+    bool operator()(const std::array<Vector3, 3>& corners) const {
+      return bricks.may_meet(corners);
+    }
+  };
+
+  const OpposedBricks& bricks_;
+  MayMeet may_meet_{bricks_};
+  const InnerBalls& balls_;
+  const OuterSides& outer_;
+  double largest_;
+  std::vector<Candidate>* found_;
+  InnerBalls::Across across_;
+  // Of the triangle that is looked at.
+  Vector3 normal_{};
+  bool is_sheet_ = false;
+  std::uint32_t triangle_ = 0;
+  double share_ = 1.0;
 };
 
 std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
@@ -149,50 +257,11 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
       static_cast<std::size_t>(range_count(rows, kTrianglesPerTask)));
   parallel_ranges(
       rows, kTrianglesPerTask, threads, progress, [&](std::int64_t begin, std::int64_t end) {
-        std::vector<Candidate>& found = tasks[static_cast<std::size_t>(begin / kTrianglesPerTask)];
-        const auto may_meet = [&](const auto& corners) { return bricks.may_meet(corners); };
-        InnerBalls::Across across;
+        CandidateFinder finder(bricks, balls, outer, largest,
+                               &tasks[static_cast<std::size_t>(begin / kTrianglesPerTask)]);
         for (std::int64_t i = begin; i < end; ++i) {
           const std::uint32_t t = chosen.triangles[static_cast<std::size_t>(i)];
-          const Vector3& normal = normals[t];
-          const auto may_count = [&](const Vector3& point) {
-            return bricks.holds(point) && outer.may_be(point, normal);
-          };
-          const auto add = [&](const std::array<Vector3, 3>& piece) {
-            const Vector3 middle = triangle_middle(piece);
-            if (!may_count(middle)) return;
-            if (!outer.is_outer(middle, normal)) return;
-            const std::optional<InnerBall> ball = balls.at(middle, normal, largest, across);
-            if (!ball) return;
-            found.push_back({piece, normal, *ball, t, chosen.shares[static_cast<std::size_t>(i)]});
-          };
-          const auto add_large = [&](const std::array<Vector3, 3>& piece) {
-            bool counts = may_count(triangle_middle(piece));
-            if (!counts && !is_small(piece)) {
-              for_pieces(piece, kPiece, may_meet, [&](const auto& small) {
-                counts = counts || may_count(triangle_middle(small));
-              });
-            }
-            if (!counts) return;
-            if (bricks.is_crowded(triangle_middle(piece))) {
-              found.push_back(
-                  {piece, normal, {0.0, -1.0}, t, chosen.shares[static_cast<std::size_t>(i)]});
-              return;
-            }
-            balls.find_across(piece, normal, largest, &across);
-            if (across.is_empty()) return;
-            if (is_small(piece)) {
-              add(piece);
-              return;
-            }
-            if (balls.are_alike(piece, normal, largest, across)) {
-              const std::size_t before = found.size();
-              add(piece);
-              if (found.size() > before) return;
-            }
-            for_pieces(piece, kPiece, may_meet, add);
-          };
-          for_pieces(mesh.corners(t), kLargestPiece, may_meet, add_large);
+          finder.add(mesh.corners(t), normals[t], chosen, static_cast<std::size_t>(i));
         }
       });
   std::vector<Candidate> all;
@@ -202,17 +271,20 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
 }
 
 // What is within about a cell.
-Place place_around(const std::unordered_map<std::uint64_t, Place>& places, const Vector3& middle) {
+Place place_around(const CubeTable<Place>& places, const Vector3& middle) {
   constexpr double kReach = 1.5;
   Place around;
   const Vector3 low = {std::floor(middle[0]), std::floor(middle[1]), std::floor(middle[2])};
-  for (int i = 0; i < 27; ++i) {
-    const Vector3 at = {low[0] + i % 3 - 0.5, low[1] + i / 3 % 3 - 0.5, low[2] + i / 9 - 0.5};
-    const auto found = places.find(cube_key(at, 1.0));
-    if (found == places.end()) continue;
+  const std::uint64_t first = cube_key(low - Vector3{0.5, 0.5, 0.5}, 1.0);
+  for (std::uint64_t i = 0; i < 27; ++i) {
+    const std::array<std::uint64_t, 3> k = {i % 3, i / 3 % 3, i / 9};
+    const Place* found = places.find(first + (k[0] << 42U) + (k[1] << 21U) + k[2]);
+    if (found == nullptr) continue;
     double weight = 1.0;
-    for (std::size_t a = 0; a < 3; ++a) weight *= kReach - std::abs(at[a] - middle[a]);
-    if (weight > 0.0) around.add(found->second, weight);
+    for (std::size_t a = 0; a < 3; ++a) {
+      weight *= kReach - std::abs(low[a] + static_cast<double>(k[a]) - 0.5 - middle[a]);
+    }
+    if (weight > 0.0) around.add(*found, weight);
   }
   return around;
 }
@@ -236,13 +308,19 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
     }
   }
   Representatives chosen = find_representatives(mesh, normals, triangles);
-  const InnerBalls balls(mesh, normals, chosen.triangles, progress.part(0.2, 0.4), threads);
+  // What is across from others has its own direction: balls meet both faces of sheets.
+  std::vector<std::uint32_t> facing = chosen.triangles;
+  for (const Represented& other : chosen.others) {
+    if (other.is_back) facing.push_back(other.triangle);
+  }
+  const InnerBalls balls(mesh, normals, facing, progress.part(0.2, 0.4), threads);
   const WindingNumbers winding({mesh.positions, mesh.triangles}, progress.part(0.4, 0.5), threads);
-  const std::vector<Candidate> candidates =
-      find_candidates(mesh, normals, chosen, bricks, balls, {occupancy, winding}, largest,
-                      progress.part(0.5, 0.95), threads);
-  std::unordered_map<std::uint64_t, Place> places;
+  const OuterSides outer(occupancy, winding);
+  const std::vector<Candidate> candidates = find_candidates(
+      mesh, normals, chosen, bricks, balls, outer, largest, progress.part(0.5, 0.95), threads);
+  CubeTable<Place> places;
   for (const Candidate& one : candidates) {
+    if (one.is_plate) continue;
     const auto add = [&](const std::array<Vector3, 3>& piece) {
       const Vector3 middle = triangle_middle(piece) - one.ball.radius * one.normal;
       places[cube_key(middle, 1.0)].add(one.normal, middle, one.share * triangle_area(piece));
@@ -251,6 +329,10 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
         one.corners, kPiece, [](const auto&) { return true; }, add);
   }
   for (const Candidate& one : candidates) {
+    if (one.is_plate) {
+      result.pieces.push_back({one.corners, plate, one.triangle, 0.0, triangle_area(one.corners)});
+      continue;
+    }
     const Vector3 middle = one.middle();
     const Place around = place_around(places, middle);
     const Vector3 values = around.eigenvalues();

@@ -77,5 +77,44 @@ TEST(Representatives, LargeTrianglesAreTheirOwn) {
   EXPECT_TRUE(found.others.empty());
 }
 
+TEST(Representatives, OfBothFacesOfASheetThereIsOne) {
+  Sheet sheet = sheets(8);
+  const std::size_t count = sheet.triangles.size();
+  for (std::size_t t = 0; t < count / 2; ++t) {
+    const auto [a, b, c] = sheet.triangles[t];
+    sheet.triangles.push_back({c, b, a});
+    sheet.normals.push_back(-1.0 * sheet.normals[t]);
+  }
+  sheet.all.resize(sheet.triangles.size());
+  std::iota(sheet.all.begin(), sheet.all.end(), 0U);
+  const Representatives found = find_representatives(sheet.view(), sheet.normals, sheet.all);
+  ASSERT_EQ(found.triangles.size(), count);
+  ASSERT_EQ(found.others.size(), count / 2);
+  for (std::size_t t = 0; t < count; ++t) {
+    EXPECT_EQ(found.triangles[t], t);
+    EXPECT_EQ(found.are_sheets[t], t < count / 2);
+    EXPECT_EQ(found.shares[t], t < count / 2 ? 2.0 : 1.0);
+  }
+  for (std::size_t i = 0; i < count / 2; ++i) {
+    EXPECT_EQ(found.others[i].triangle, count + i);
+    EXPECT_EQ(found.others[i].representative, i);
+    EXPECT_TRUE(found.others[i].is_back);
+  }
+}
+
+TEST(Representatives, FacesThatAreThereTwiceAreNoSheets) {
+  Sheet sheet = sheets(8);
+  for (std::size_t t = 0; t < sheet.all.size(); ++t) {
+    const auto [a, b, c] = sheet.triangles[t];
+    sheet.triangles.push_back({b, c, a});
+    sheet.normals.push_back(sheet.normals[t]);
+  }
+  sheet.all.resize(sheet.triangles.size());
+  std::iota(sheet.all.begin(), sheet.all.end(), 0U);
+  const Representatives found = find_representatives(sheet.view(), sheet.normals, sheet.all);
+  EXPECT_EQ(found.triangles, sheet.all);
+  EXPECT_EQ(found.are_sheets, std::vector<bool>(sheet.all.size(), false));
+}
+
 }  // namespace
 }  // namespace prefilter
