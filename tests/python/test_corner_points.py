@@ -92,6 +92,54 @@ def test_charts_end_at_seams_of_any_map():
         assert len(set(charts[sides(BOX) == side])) == 1
 
 
+def tube(columns=24, rows=6, turns=0.0):
+    """The side of a cylinder with an unrolled UV map, slit along a line that may wind around it."""
+    around, up = np.meshgrid(np.arange(columns), np.arange(rows))
+    angles = np.arange(columns) / columns * 2 * np.pi
+    positions = np.array(
+        [(np.cos(a), np.sin(a), z / rows) for z in range(rows + 1) for a in angles], np.float32
+    )
+    slit = np.floor(up * turns / rows * columns).astype(int)
+    at, u = around.ravel(), (around - slit).ravel() % columns
+
+    def corner(right, above):
+        vertices = (at + right) % columns + (up.ravel() + above) * columns
+        return vertices, np.stack([(u + right) / columns, (up.ravel() + above) / rows], axis=1)
+
+    faces = ([(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)])
+    corners = [[corner(*one) for one in face] for face in faces]
+    triangles = np.concatenate([np.stack([v for v, _ in face], axis=1) for face in corners])
+    uvs = np.concatenate([np.stack([w for _, w in face], axis=1) for face in corners])
+    return positions, triangles, uvs.astype(np.float32)
+
+
+def assert_no_vertex_has_two_uvs(triangles, uvs, charts):
+    seen = {}
+    for triangle, corners, chart in zip(triangles, uvs, charts, strict=True):
+        for vertex, uv in zip(triangle, corners, strict=True):
+            np.testing.assert_allclose(seen.setdefault((chart, vertex), uv), uv, atol=1e-4)
+
+
+@pytest.mark.parametrize("turns", [0.0, 0.5])
+def test_charts_that_meet_themselves_are_cut(turns):
+    positions, triangles, uvs = tube(turns=turns)
+    charts = prefilter.uv_charts(positions, triangles, [uvs])
+    assert_no_vertex_has_two_uvs(triangles, uvs, charts)
+    if turns == 0.0:
+        assert sorted(np.bincount(charts)) == pytest.approx([144, 144], abs=12)
+        # Half way around from the slit, from column to column.
+        assert set(charts[uvs[..., 0].max(axis=1) < 0.4]) == {0}
+        assert len(set(charts[uvs[..., 0].min(axis=1) > 0.6])) == 1
+
+
+def test_charts_are_cut_where_each_face_has_all_of_an_image():
+    """As after Reset UVs: pieces hang together only where the squares fit."""
+    positions, triangles, uvs = tube()
+    uvs = uvs * (24, 6) - np.floor((uvs * (24, 6)).min(axis=1, keepdims=True) + 0.01)
+    charts = prefilter.uv_charts(positions, triangles, [uvs.astype(np.float32)])
+    assert_no_vertex_has_two_uvs(triangles, uvs, charts)
+
+
 def test_an_edge_of_three_faces_is_a_seam():
     positions = np.array([(0, 0, 0), (0, 0, 1), (1, 0, 0), (-1, 1, 0), (-1, -1, 0)], np.float32)
     triangles = np.array([(0, 1, 2), (1, 0, 3), (0, 1, 4)])

@@ -3,18 +3,16 @@
 #include "prefilter/surface/charts.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <string>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/sort.h"
+#include "prefilter/surface/cut_charts.h"
 
 namespace prefilter {
 namespace {
-
-constexpr float kSeam = 1e-4F;
 
 // A side of a triangle; `half` is three times the triangle plus the corner where it begins.
 struct Side {
@@ -76,10 +74,6 @@ class Sets {
   std::vector<std::uint32_t> above_;
 };
 
-bool are_near(const std::array<float, 2>& a, const std::array<float, 2>& b) {
-  return std::abs(a[0] - b[0]) <= kSeam && std::abs(a[1] - b[1]) <= kSeam;
-}
-
 }  // namespace
 
 std::vector<std::int32_t> find_charts(const InputMesh& mesh, std::span<const CornerUvs> maps,
@@ -102,9 +96,10 @@ std::vector<std::int32_t> find_charts(const InputMesh& mesh, std::span<const Cor
           {(static_cast<std::uint64_t>(low) << 32U) | high, static_cast<std::uint32_t>(3 * t + i)});
     }
   }
-  sort_in_parallel(&sides, progress.part(0.3, 0.9), threads);
+  sort_in_parallel(&sides, progress.part(0.3, 0.7), threads);
 
   Sets charts(mesh.triangles.size());
+  ChartLinks links{{mesh.triangles.size(), {-1, -1, -1}}, {}};
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
     end = i + 1;
     while (end < sides.size() && sides[end].ends == sides[i].ends) ++end;
@@ -119,13 +114,24 @@ std::vector<std::int32_t> find_charts(const InputMesh& mesh, std::span<const Cor
       return first[static_cast<std::size_t>(mesh.triangles[triangle][corner])];
     };
     if (place(t, from) != place(u, other_from)) std::swap(other_from, other_to);
-    const bool is_whole = std::all_of(maps.begin(), maps.end(), [&](const CornerUvs& map) {
-      return are_near(map[t][from], map[u][other_from]) && are_near(map[t][to], map[u][other_to]);
-    });
-    if (is_whole) charts.join(t, u);
+    const auto are_same = [&](std::uint32_t corner, std::uint32_t other) {
+      return std::all_of(maps.begin(), maps.end(), [&](const CornerUvs& map) {
+        return are_near_uvs(map[t][corner], map[u][other]);
+      });
+    };
+    const bool begins = are_same(from, other_from);
+    const bool ends = are_same(to, other_to);
+    if (begins && ends) {
+      charts.join(t, u);
+      links.beyond[t][sides[i].half % 3] = static_cast<std::int32_t>(u);
+      links.beyond[u][sides[i + 1].half % 3] = static_cast<std::int32_t>(t);
+    } else if (!begins && !ends) {
+      links.slits.push_back({t, u});
+    }
   }
-  progress.report(1.0);
-  return charts.numbers();
+  std::vector<std::int32_t> result = charts.numbers();
+  cut_charts(mesh, maps, first, links, progress.part(0.7, 1.0), &result);
+  return result;
 }
 
 }  // namespace prefilter

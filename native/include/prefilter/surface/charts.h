@@ -19,7 +19,9 @@ using CornerUvs = std::span<const std::array<std::array<float, 2>, 3>>;
 /// A number for each triangle, from 0 in order of their first triangles: the same for those that
 /// hang together by edges which are seams of none of the maps. An edge is a seam where its two
 /// triangles have UVs at an end that are more than 1e-4 apart; edges of one or three and more
-/// triangles part, too. Vertices at one place count as one.
+/// triangles part, too. Vertices at one place count as one. Where triangles of one number would
+/// have different UVs at a vertex, as on both sides of a slit, they get several: the border between
+/// these runs about half way between the sides.
 ///
 /// Throws Error for a mesh that is none, and a map that has not as many triangles;
 /// Error(kCancelled).

@@ -23,7 +23,8 @@ def uv_charts(
     """Which triangles hang together in all of several UV maps.
 
     Two triangles do at an edge of theirs alone, where they have the same UVs at both ends, within
-    1e-4. Vertices at one place count as one.
+    1e-4. Vertices at one place count as one. What meets itself at a seam, as the side of a tube, is
+    cut about half way around: triangles that hang together have the same UVs at a vertex.
 
     Args:
         positions: (vertices, 3).

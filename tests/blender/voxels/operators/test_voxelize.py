@@ -229,6 +229,24 @@ def test_materials_and_uvs_end_at_edges():
     assert area == pytest.approx(6.0, rel=1e-3)
 
 
+@pytest.mark.parametrize("adaptivity", [0.0, 0.05])
+@pytest.mark.parametrize("kind", ["uv_sphere", "cylinder", "torus"])
+def test_uvs_end_at_slits_of_charts(kind, adaptivity):
+    """The charts of Blender's round shapes meet themselves at a seam: no face reaches across."""
+    getattr(bpy.ops.mesh, f"primitive_{kind}_add")(rotation=(0.3, 0.2, 0.1))
+    obj = bpy.context.object
+    assert voxelize(depth=6, adaptivity=adaptivity) == {"FINISHED"}
+    uvs = np.empty((len(obj.data.loops), 2), np.float32)
+    obj.data.uv_layers.active.data.foreach_get("uv", uvs.ravel())
+    places = np.empty((len(obj.data.loops), 3), np.float32)
+    corners = [obj.data.vertices[loop.vertex_index].co for loop in obj.data.loops]
+    places[:] = [corner[:] for corner in corners]
+    extents = np.ptp(uvs.reshape(-1, 3, 2), axis=1).max(axis=1)
+    sizes = np.ptp(places.reshape(-1, 3, 3), axis=1).max(axis=1)
+    assert extents.max() < 0.55
+    assert (extents[sizes < 0.1] < 0.1).all()
+
+
 def test_vertex_groups_and_attributes():
     ball = bodies.sphere(subdivisions=4)
     group = ball.vertex_groups.new(name="Top")
