@@ -13,13 +13,13 @@ seconds. Judges are CGAL's exact predicates (the program of self_intersections.c
 
 The columns of a mesh: triangles of the mesh; triangles of the result; open, crowded and pinched
 places; pairs of triangles that cut each other; edges that turn by over 120 degrees where none of
-the mesh's does so within a cell; strays, those of them with a triangle that does not lie along what
-is voxelized, by 0.1 of a cell and 20 degrees (where closed holes, or parts that cross, meet the
-mesh in a wedge or a crevice there is no edge of the mesh, but no fold either); how far samples of
-the result are from the mesh, median, 95th percentile and farthest; the share of the mesh, in
-percent, that is more than a cell from the result and outside of it; parts and genus of the result,
-and of the mesh where it is closed; processor seconds. Totals count meshes; distances and seconds in
-them are medians over meshes, and the most seconds.
+the mesh's does so within a cell; those of them at caps of holes; strays, those with a triangle that
+does not lie along what is voxelized, by 0.1 of a cell and 20 degrees (where closed holes, or parts
+that cross, meet the mesh in a wedge or a crevice there is no edge of the mesh, but no fold either);
+how far samples of the result are from the mesh, median, 95th percentile and farthest; the share of
+the mesh, in percent, that is more than a cell from the result and outside of it; parts and genus of
+the result, and of the mesh where it is closed; processor seconds. Totals count meshes; distances
+and seconds in them are medians over meshes, and the most seconds.
 """
 
 import argparse
@@ -51,6 +51,7 @@ HEAD = (
     "unsound",
     "cuts",
     "folds",
+    "at caps",
     "stray",
     "off",
     "off 95 %",
@@ -91,8 +92,11 @@ def read(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 def voxelized(
     positions: np.ndarray, triangles: np.ndarray, depth: int, interpolant: str
-) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray], float, float]:
-    """Returns the surface that the add-on makes, and of what; the cell, and processor seconds."""
+) -> tuple[np.ndarray, np.ndarray, tuple[np.ndarray, np.ndarray, int], float, float]:
+    """Returns the surface that the add-on makes, the cell, and processor seconds.
+
+    Before the cell, of what: positions and triangles, and how many of these are no caps of holes.
+    """
     import prefilter
 
     started = time.process_time()
@@ -109,7 +113,7 @@ def voxelized(
     sources = {"sources": [(closed.positions, closed.triangles)]} if interpolant == "sharp" else {}
     made = tree.contour(interpolant=interpolant, cleanup=True, **sources)
     taken = time.process_time() - started
-    solid_mesh = closed.positions, closed.triangles
+    solid_mesh = closed.positions, closed.triangles, len(solid.triangles)
     return made[0], made[1].astype(np.int64), solid_mesh, float(cell), taken
 
 
@@ -133,6 +137,19 @@ def distances(points: np.ndarray, positions: np.ndarray, triangles: np.ndarray) 
     return np.sqrt(
         igl.point_mesh_squared_distance(points, positions, triangles.astype(np.int64))[0]
     )
+
+
+def at_caps(
+    made: np.ndarray, pairs: np.ndarray, positions: np.ndarray, triangles: np.ndarray, uncapped: int
+) -> int:
+    """How many pairs (n, 2, 3) of triangles have one that is nearest to a cap."""
+    import igl
+
+    if not len(pairs):
+        return 0
+    middles = made[pairs.reshape(-1, 3)].mean(axis=1)
+    _, nearest, _ = igl.point_mesh_squared_distance(middles, positions, triangles.astype(np.int64))
+    return int((nearest.reshape(-1, 2) >= uncapped).any(axis=1).sum())
 
 
 def strays(
@@ -174,7 +191,8 @@ def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
     wedges = measures.sharp_edges(positions, triangles, measures.FOLD - WEDGES_LESS)
     folded = measures.folded_pairs(made, faces, measures.FOLD, wedges, cell)
     found["folds"] = len(folded)
-    found["stray"] = strays(made, faces[folded], *solid, cell)
+    found["at caps"] = at_caps(made, faces[folded], *solid)
+    found["stray"] = strays(made, faces[folded], *solid[:2], cell)
     own, _ = measures.surface_samples(made, faces, SAMPLES)
     off = distances(own, positions, triangles) / cell
     found["off"], found["off 95 %"] = np.quantile(off, (0.5, 0.95)).tolist()
@@ -220,7 +238,8 @@ def row(name: str, found: dict[str, object]) -> list[str]:
 
     return [
         name,
-        *(str(found[key]) for key in ("triangles", "result", "unsound", "cuts", "folds", "stray")),
+        *(str(found[key]) for key in ("triangles", "result", "unsound", "cuts")),
+        *(str(found[key]) for key in ("folds", "at caps", "stray")),
         *(f"{found[key]:.2f}" for key in ("off", "off 95 %", "farthest", "missing")),
         beside("parts"),
         beside("genus"),
@@ -288,6 +307,7 @@ def main() -> None:
         if p.suffix.lower() in ENDINGS and options.only in p.name
     ]
     results = []
+    print("  ".join(HEAD))
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for path, found in zip(
             paths, pool.map(lambda p: of_another_process(p, options), paths), strict=True
@@ -311,7 +331,6 @@ def report_all(
     over = [r for r, is_one in zip(rows, is_over, strict=True) if is_one]
     cells = f"{2**depth} cells along an axis"
     report.table(cells, TOTALS, totals([p.parent.name for p in paths], results), "totals")
-    report.table(f"{cells}, each", HEAD, rows, "meshes")
     if over:
         report.table(f"{cells}, unsound or folded", HEAD, over, "over")
     if refused:
