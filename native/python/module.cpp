@@ -34,6 +34,7 @@ void bind_scan(py::module_& m);
 void bind_solid(py::module_& m);
 void bind_spatial(py::module_& m);
 void bind_surface(py::module_& m);
+void bind_views(py::module_& m);
 void bind_voxel(py::module_& m);
 
 ImageView view_of(const Array<float>& array) {
@@ -155,6 +156,7 @@ PYBIND11_MODULE(_native, m) {
   prefilter::python::bind_spatial(m);
   prefilter::python::bind_surface(m);
   prefilter::python::bind_mipmap(m);
+  prefilter::python::bind_views(m);
   prefilter::python::bind_voxel(m);
   prefilter::python::bind_contour(m);
   prefilter::python::bind_reconstruct(m);

@@ -39,6 +39,7 @@ FUNCTIONS = {
         {"levels": [IMAGE], "image": IMAGE, "surface": SURFACE, "mip_values": [0.0]},
     ),
     "seam_contrast": (prefilter.seam_contrast, {"levels": [IMAGE], "surface": SURFACE}),
+    "fit_to_views": (prefilter.fit_to_views, {"levels": [IMAGE], "surface": SURFACE}),
     "normal_mipmaps": (
         prefilter.normal_mipmaps,
         {"normals": np.full((8, 8, 3), 0.5), "surface": SURFACE},
@@ -168,6 +169,23 @@ ROWS = [
         ["levels: level 1 has 1 channels and level 0 3", "must have the same"],
     ),
     ("seam_contrast", {"surface": None}, ["surface: none was given", "at least one is needed"]),
+    ("fit_to_views", {"levels": []}, ["levels: none", "at least one is needed"]),
+    ("fit_to_views", {"levels": 3}, ["levels: a int", "a list of arrays is needed"]),
+    (
+        "fit_to_views",
+        {"levels": [IMAGE, IMAGE]},
+        ["levels: level 1 has 16 x 16 texels of 3 channels", "8 x 8 of 3 are needed"],
+    ),
+    (
+        "fit_to_views",
+        {"levels": [np.where(IMAGE > -1, NAN, IMAGE)]},
+        ["levels: level 0", "finite"],
+    ),
+    ("fit_to_views", {"surface": None}, ["surface: none", "at least one is needed"]),
+    ("fit_to_views", {"lookups": "nearest"}, ["lookups: 'nearest'", "trilinear", "both"]),
+    ("fit_to_views", {"steadiness": -1}, ["steadiness: -1", "0 or more"]),
+    ("fit_to_views", {"effort": 0}, ["effort: 0", "above 0 and up to 100"]),
+    ("fit_to_views", {"bounds": (2, 1)}, ["bounds", "above"]),
     (
         "normal_mipmaps",
         {"normals": IMAGE[..., :2]},

@@ -111,6 +111,12 @@ WORK = {
         IMAGE, SURFACE, seam_budget=0.01, threads=1, **options
     ),
     "seam_contrast": lambda **options: prefilter.seam_contrast([IMAGE], SURFACE, **options),
+    "fit_to_views": lambda **options: prefilter.fit_to_views(
+        [IMAGE, *(np.zeros((IMAGE.shape[0] >> k, IMAGE.shape[1] >> k, 3)) for k in (1, 2))],
+        SURFACE,
+        threads=1,
+        **options,
+    ),
     "normal_mipmaps": lambda **options: prefilter.normal_mipmaps(
         IMAGE, SURFACE, roughness=0.3, threads=1, **options
     ),

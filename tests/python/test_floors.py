@@ -32,7 +32,7 @@ FLOORS = (
     },
     {"mesh", "remesh", "scan", "tables", "texels", "wavelet"},
     {"contour", "mipmap", "normals", "raster", "resize", "sampling", "voxel"},
-    {"reconstruct", "solid"},
+    {"reconstruct", "solid", "views"},
 )
 FLOOR_OF = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 SOURCES = sorted([*INTERNAL.glob("*/*.*"), *PUBLIC.glob("*/*.*")])

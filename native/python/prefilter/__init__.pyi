@@ -20,6 +20,7 @@ from .images.resizing import resize as resize
 from .images.texture_use import fill_transparent as fill_transparent
 from .images.texture_use import fill_unused as fill_unused
 from .images.texture_use import texel_weights as texel_weights
+from .images.views import fit_to_views as fit_to_views
 from .meshes.charts import uv_charts as uv_charts
 from .meshes.edges import MeshEdges as MeshEdges
 from .meshes.edges import mesh_edges as mesh_edges

@@ -471,6 +471,23 @@ def fill_unused(
     threads: int,
 ) -> npt.NDArray[np.float32]: ...
 
+class ViewFitOptions:
+    def __init__(self) -> None: ...
+    lookups: str
+    wrap: tuple[str, str]
+    bounds: tuple[float | None, float | None]
+    premultiplied: bool
+    steadiness: float
+    effort: float
+    threads: int
+
+def fit_to_views(
+    levels: Sequence[npt.NDArray[np.float32]],
+    surfaces: Sequence[Surface],
+    options: ViewFitOptions,
+    progress: ProgressCallback | None,
+) -> list[npt.NDArray[np.float32]]: ...
+
 class NormalMipmapOptions:
     def __init__(self) -> None: ...
     filter: str

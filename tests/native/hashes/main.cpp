@@ -37,6 +37,7 @@
 #include "prefilter/solid/close_holes.h"
 #include "prefilter/surface/subdivision.h"
 #include "prefilter/tables/build_table.h"
+#include "prefilter/views/fit_to_views.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/voxelize.h"
 
@@ -115,6 +116,13 @@ void bakes(const Run& run) {
   options.seam_budget = 0.0;
   options.footprint = 1.0;
   run.print("bake footprint", Hash().add(mipmaps(image.view(), {&surface}, options)));
+  const std::vector<Image> levels = mipmaps(image.view(), {&surface}, options);
+  std::vector<ImageView> views;
+  for (const Image& level : levels) views.push_back(level.view());
+  ViewFitOptions of_views;
+  of_views.threads = run.threads;
+  of_views.effort = 0.1;
+  run.print("bake views", Hash().add(fit_to_views(views, {&surface}, of_views)));
   const Image roughness = picture(48, 32, 1);
   NormalMipmapOptions of_normals;
   of_normals.threads = run.threads;

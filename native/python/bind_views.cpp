@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "bind_options.h"
+#include "convert.h"
+#include "prefilter/surface/surface.h"
+#include "prefilter/views/fit_to_views.h"
+
+namespace py = pybind11;
+
+namespace prefilter::python {
+namespace {
+
+std::vector<Array<float>> bound_fit_to_views(const std::vector<Array<float>>& levels,
+                                             const std::vector<const Surface*>& surfaces,
+                                             ViewFitOptions options, const py::object& progress) {
+  options.progress = to_progress(progress);
+  const std::vector<ImageView> views = views_of(levels);
+  std::vector<Image> images;
+  {
+    const py::gil_scoped_release unlocked;
+    images = fit_to_views(views, surfaces, options);
+  }
+  return to_arrays(std::move(images));
+}
+
+}  // namespace
+
+void bind_views(py::module_& m) {
+  using Options = ViewFitOptions;
+  using Pair = std::pair<std::optional<float>, std::optional<float>>;
+  auto bound = bind_options<Options>(m, "ViewFitOptions");
+  bind_named(bound, "lookups", &Options::lookups, kLookups);
+  bound
+      .def_property(
+          "bounds", [](const Options& o) { return Pair(o.bounds.low, o.bounds.high); },
+          [](Options& o, const Pair& pair) {
+            o.bounds = {pair.first, pair.second};
+          })
+      .def_readwrite("steadiness", &Options::steadiness)
+      .def_readwrite("effort", &Options::effort);
+  m.def("fit_to_views", &bound_fit_to_views, py::arg("levels"), py::arg("surfaces"),
+        py::arg("options"), py::arg("progress"));
+}
+
+}  // namespace prefilter::python
