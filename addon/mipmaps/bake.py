@@ -262,7 +262,7 @@ def summary(source: Source, outputs: Outputs, names: Sequence[str]) -> str:
         if settings.use_frames:
             parts.append(Sentence("at {}", counted(frames.chosen(settings), "frame")))
     if source.footprint:
-        parts.append(lookups.described(source.footprint))
+        parts.append(lookups.described(source.footprint, fits=source.fits_views))
     results: list[str] = [counted(names, "level image")] if names else []
     results += map(textures.shown, outputs.targets)
     if not results:

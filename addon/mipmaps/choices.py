@@ -105,6 +105,12 @@ LOOKUPS = {
         "Games with anisotropic filtering, which reads finer levels: levels are fitted to the "
         "image averaged over a wider area",
     ),
+    "views": Choice(
+        "Fit to Views",
+        "Games: all levels are fitted to what pixels show of the model from all around, with and "
+        "without anisotropic filtering. Takes several times as long. For color and data of one "
+        "model; others get One Lookup a Pixel",
+    ),
 }
 
 CONTENTS = {

@@ -99,13 +99,19 @@ def _cutout(source: Source, progress: Progress, options: dict[str, Any]) -> Leve
 
 
 def _plain(source: Source, progress: Progress, options: dict[str, Any]) -> Levels:
+    fits = source.fits_views
     texels, encoding = images.light_or_bytes(source.picture, partial(go_on, progress, 0.0))
-    return contents.plain_levels(
+    made = contents.plain_levels(
         source.picture,
         texels,
         source.surfaces or None,
         source.bounds(texels),
-        progress,
+        share(progress, 0.0, 0.2) if fits else progress,
         encoding=encoding,
         **options,
     )
+    if not fits:
+        return made
+    linear = source.linear(share(progress, 0.2, 0.2))
+    bounds = source.bounds(texels)
+    return source.fitted_to_views([linear, *made], bounds, share(progress, 0.2, 1.0))[1:]

@@ -2,18 +2,20 @@
 
 """What the setting Lookups means: the footprint that levels are fitted for."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from ..bridge.files import engines
 from ..core.wording import Sentence
 from .choices import FITTED_FILTERS, Settings
 
-_FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0, "anisotropic": 1.5}
+_FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0, "anisotropic": 1.5, "views": 1.0}
 _WORDS = {
     0.0: Sentence(""),
     1.0: Sentence("for one lookup per pixel"),
     1.5: Sentence("for anisotropic lookups"),
 }
+_TO_VIEWS = Sentence("fitted to views")
 
 
 def resolved(settings: Settings) -> Settings:
@@ -37,6 +39,29 @@ def footprint(settings: Settings, filter: str, reader: str) -> float:
     return _FOOTPRINTS[resolved(settings).lookups]
 
 
-def described(footprint: float) -> Sentence:
-    """Returns what levels of such a footprint are for; empty for supersampled readers."""
-    return _WORDS[footprint]
+def fits_views(settings: Settings, content: str, reader: str, objects: Sequence[str]) -> bool:
+    """Tells whether levels are fitted to what pixels show of a model.
+
+    Args:
+        settings: Of the bake.
+        content: What the image holds.
+        reader: How the levels are looked up.
+        objects: That wear the image.
+    """
+    return (
+        settings.lookups == "views"
+        and content in {"color", "data"}
+        and reader == "linear"
+        and settings.filter in FITTED_FILTERS
+        and len(objects) > 0
+    )
+
+
+def described(footprint: float, *, fits: bool) -> Sentence:
+    """Returns what levels are for; empty for supersampled readers.
+
+    Args:
+        footprint: Of the levels.
+        fits: Whether they are fitted to views.
+    """
+    return _TO_VIEWS if fits else _WORDS[footprint]

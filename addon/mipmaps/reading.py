@@ -244,7 +244,7 @@ def odd_uses(request: Request, level_0: Level0, rough: Rough) -> list[str]:
         )
     if settings.reader != "linear":
         told.extend(_odd_readers(picture, level_0.targets))
-        if settings.lookups in {"one-lookup", "anisotropic"} and reads_encoded(picture):
+        if settings.lookups in {"one-lookup", "anisotropic", "views"} and reads_encoded(picture):
             told.append(
                 "Lookups: readers of encoded texels are always supersampled, so "
                 f"'{picture.name}' is baked for that"

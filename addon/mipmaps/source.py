@@ -13,7 +13,7 @@ import prefilter
 
 from ..bridge import images, materials, meshes
 from ..bridge.images import FloatArray, Picture
-from ..core.jobs import Progress, go_on
+from ..core.jobs import Progress, go_on, share
 from ..core.wording import listed
 from . import lookups
 from .choices import Settings
@@ -63,6 +63,11 @@ class Source:
         """The texels of a level that a pixel covers, as `prefilter.mipmaps` takes it."""
         return self.footprint_of(self.settings.filter)
 
+    @property
+    def fits_views(self) -> bool:
+        """Whether levels are fitted to what pixels show of the objects."""
+        return lookups.fits_views(self.settings, self.content, self.reader, self.objects)
+
     def footprint_of(self, filter: str) -> float:
         """Returns `footprint` for another filter."""
         return lookups.footprint(self.settings, filter, self.reader)
@@ -103,12 +108,13 @@ class Source:
             prefilter.Cancelled: `progress` returned False.
             ValueError: The library refuses the image or the surfaces.
         """
+        fits = self.fits_views and seam_budget is None and footprint is None
         if seam_budget is None:
             seam_budget = self.settings.seam_budget / 100.0
         if footprint is None:
             footprint = self.footprint_of(filter)
         with self.naming_objects():
-            return prefilter.mipmaps(
+            made = prefilter.mipmaps(
                 linear,
                 self.surfaces or None,
                 filter=filter,
@@ -119,6 +125,27 @@ class Source:
                 reader=self.reader,
                 seam_budget=seam_budget,
                 footprint=footprint,
+                progress=share(progress, 0.0, 0.2) if fits else progress,
+                threads=self.settings.threads,
+            )
+        if not fits or filter != self.settings.filter:
+            return made
+        return self.fitted_to_views(made, self.bounds(linear), share(progress, 0.2, 1.0))
+
+    def fitted_to_views(
+        self,
+        levels: list[FloatArray],
+        bounds: tuple[float | None, float | None] | None,
+        progress: Progress,
+    ) -> list[FloatArray]:
+        """Returns levels, with level 0, that go on from others; see `fits_views`."""
+        with self.naming_objects():
+            return prefilter.fit_to_views(
+                levels,
+                self.surfaces,
+                wrap=self.wrap,
+                bounds=bounds,
+                premultiplied=not self.picture.alpha_is_straight,
                 progress=progress,
                 threads=self.settings.threads,
             )

@@ -11,8 +11,9 @@ of the levels: one a pixel, 4 x 4 samples a pixel, and one with 16x anisotropy. 
 RMSE over the pixels that the model covers fully and the channels, in scene-linear values; flicker
 is the root mean square of the difference of consecutive frames less that of the reference.
 
-A filter is NAME, or NAME:KEY=VALUE:..., with arguments of `prefilter.mipmaps`; or "exact": the mean
-of the full image over the footprint of each pixel or sample, which no levels can do better than.
+A filter is NAME, or NAME:KEY=VALUE:..., with arguments of `prefilter.mipmaps`, and with
+views=LOOKUPS if `prefilter.fit_to_views` goes on from there; or "exact": the mean of the full image
+over the footprint of each pixel or sample, which no levels can do better than in one chart.
 """
 
 import argparse
@@ -30,6 +31,7 @@ from pathlib import Path
 import numpy as np
 import prefilter
 import prefilter.images.mipmaps
+import prefilter.images.views
 from numpy.typing import NDArray
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -164,7 +166,7 @@ def parse() -> argparse.Namespace:
 def settings(options: argparse.Namespace) -> str:
     """Returns what results depend on besides model and filter: the build, and what is drawn."""
     hashed = hashlib.sha256(Path(prefilter._native.__file__).read_bytes())
-    for module in (prefilter.images.mipmaps, opengl_renderer):
+    for module in (prefilter.images.mipmaps, prefilter.images.views, opengl_renderer):
         hashed.update(inspect.getsource(module).encode())
     hashed.update(repr((options.views, options.sizes, options.modes)).encode())
     return hashed.hexdigest()[:16]
@@ -288,13 +290,12 @@ def baked(model: Model, image: int, filter_: str) -> list[Texels]:
         model.corners[of_image].reshape(-1, 3), axis=0, return_inverse=True
     )
     surface = prefilter.Surface(vertices, triangles.reshape(-1, 3), model.uvs[of_image])
-    return prefilter.mipmaps(
-        model.images[image],
-        surface,
-        filter=name,
-        wrap=model.wraps[image],
-        **dict(map(argument, arguments)),
-    )
+    options = dict(map(argument, arguments))
+    views, wrap = options.pop("views", None), model.wraps[image]
+    levels = prefilter.mipmaps(model.images[image], surface, filter=name, wrap=wrap, **options)
+    if views is None:
+        return levels
+    return prefilter.fit_to_views(levels, surface, lookups=views, wrap=wrap)
 
 
 def argument(text: str) -> tuple[str, object]:

@@ -79,6 +79,27 @@ def test_other_filters_do_not(bake, paint, filter):
     assert "lookup" not in outcome.summary
 
 
+@pytest.mark.parametrize("content", ["color", "data"])
+def test_levels_are_fitted_to_views(bake, paint, content):
+    outcome = bake(paint, bpy.context.selected_objects, lookups="views", content=content, **OPTIONS)
+    values = scenes.noise(SIDE, SIDE)[..., :3]
+    start = prefilter.mipmaps(values, QUAD, footprint=1.0, levels=3)
+    expected = prefilter.fit_to_views(start, QUAD)
+    np.testing.assert_allclose(baked(), expected[2], atol=0.51 / 255)
+    assert np.abs(expected[2] - start[2]).max() > 2 / 255
+    assert "fitted to views" in outcome.summary
+
+
+def test_what_cannot_be_looked_at_is_for_one_lookup(bake, paint):
+    options = {"lookups": "views", "wrap": "clamp"}
+    outcome = bake(paint, filter="ls-bilinear", **options)
+    np.testing.assert_allclose(baked(), level(1.0, filter="ls-bilinear"), atol=0.51 / 255)
+    assert "for one lookup per pixel" in outcome.summary
+    bake(paint, bpy.context.selected_objects, content="normal", **options)
+    normals = prefilter.normal_mipmaps(scenes.noise(SIDE, SIDE)[..., :3], QUAD, footprint=1.0)
+    np.testing.assert_allclose(baked(), normals[2], atol=0.51 / 255)
+
+
 @pytest.mark.parametrize(("lookups", "count"), [("auto", 0), ("one-lookup", 1), ("anisotropic", 1)])
 def test_readers_of_encoded_texels_are_supersampled(bake, tmp_path, lookups, count):
     image = scenes.image("Paint", scenes.noise(SIDE, SIDE))
@@ -132,6 +153,12 @@ def test_the_preview_shows_what_the_file_gets(addon, paint, tmp_path):
         found = preview.find(paint)
         np.testing.assert_allclose(found.levels["pam-bilinear"][2], level(footprint), atol=1e-6)
         assert found.settings == preview.settings_for_preview(settings.to_settings())
+    settings.lookups = "views"
+    assert bpy.ops.prefilter.preview_levels(image="Paint") == {"FINISHED"}
+    start = prefilter.mipmaps(scenes.noise(SIDE, SIDE)[..., :3], QUAD, footprint=1.0)
+    expected = prefilter.fit_to_views(start, QUAD)[2]
+    found = preview.find(paint)
+    np.testing.assert_allclose(found.levels["pam-bilinear"][2], expected, atol=1e-5)
     settings.lookups = "auto"
     assert found.settings != preview.settings_for_preview(settings.to_settings())
 
