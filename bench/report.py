@@ -9,6 +9,7 @@ import os
 import platform
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -145,7 +146,12 @@ def machine() -> str:
 
 
 def commit() -> str | None:
-    """Returns the commit of the checkout, with a plus sign if files differ from it."""
+    """Returns the commit of the checkout, with a plus sign if files differ from it.
+
+    None where there is no Git: programs run where Blender's libraries are.
+    """
+    if shutil.which("git") is None:
+        return None
     found = subprocess.run(
         ["git", "-C", ROOT, "describe", "--always", "--dirty=+", "--exclude", "*"],
         capture_output=True,
