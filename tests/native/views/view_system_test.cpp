@@ -103,10 +103,10 @@ double objective(const Scene& scene, const std::array<double, 21>& texels, doubl
   return sum + steadiness * *changes;
 }
 
-class Lookups3 : public ::testing::TestWithParam<Lookups> {};
+class ViewSystemTest : public ::testing::TestWithParam<Lookups> {};
 
 // No texel can be moved either way to a lower objective.
-TEST_P(Lookups3, SolutionIsTheLeast) {
+TEST_P(ViewSystemTest, SolutionIsTheLeast) {
   const Scene scene = random_scene(7);
   std::vector<ImageView> levels;
   std::array<double, 21> start{};
@@ -162,7 +162,7 @@ TEST_P(Lookups3, SolutionIsTheLeast) {
 }
 
 // Texels stay in their range.
-TEST_P(Lookups3, SolutionIsWithinItsRange) {
+TEST_P(ViewSystemTest, SolutionIsWithinItsRange) {
   const Scene scene = random_scene(8);
   std::vector<ImageView> levels;
   for (const Image& level : scene.levels) levels.push_back(level.view());
@@ -181,7 +181,7 @@ TEST_P(Lookups3, SolutionIsWithinItsRange) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(ViewSystem, Lookups3,
+INSTANTIATE_TEST_SUITE_P(AllLookups, ViewSystemTest,
                          ::testing::Values(Lookups::kTrilinear, Lookups::kAnisotropic,
                                            Lookups::kBoth));
 
