@@ -5,12 +5,14 @@
 from ..core.keys import Key
 from ..core.registration import registration
 from . import choices, menus, operators, panels, properties, view
+from .gltf import properties as gltf_properties
 
 MANUAL = {
     "bake": (
         *("bake", "bake_mipmaps", "bake_model", "model", "remove_levels"),
         *("export_mipmaps", "export_model"),
     ),
+    "engines": ("gltf",),
     "view": (
         *("view", "preview_levels", "end_preview", "plot_error"),
         *("preview_on_model", "end_model_preview"),
@@ -27,4 +29,4 @@ KEYS = (
 )
 """What its operators have at first; see `keys.Keys`."""
 
-register, unregister = registration(properties, view, operators, panels, menus)
+register, unregister = registration(properties, gltf_properties, view, operators, panels, menus)

@@ -17,6 +17,7 @@ AT_ENABLING = re.compile(
     | bridge(\.(files|editors|previews|views|wipe|image_operator))?
     | \w+ (\.(choices|properties|menus|(\w+_)?panels?|operators?|remembered)(\..*)?)?
     | \w+ (\.(importance|view|model)(\..*)?)?
+    | mipmaps\.gltf(\.(choices|properties|panel|hooks))?
     """,
     re.VERBOSE,
 )

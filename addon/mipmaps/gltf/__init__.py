@@ -1,0 +1,3 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Fitted mipmaps in what Blender's own glTF exporter writes."""

@@ -1,0 +1,222 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The textures of a glTF export: read as the file has them, fitted, and put into their places."""
+
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import bpy
+import prefilter
+
+from ...bridge import images, meshes
+from ...bridge.files.staging import commit_all
+from ...core.outcome import FAILURES
+from .. import contents, lookups, source
+from ..bake import Bake, Outputs
+from ..choices import TEXTURE_SPACE_FILTERS, Settings
+from . import geometry, uses
+from .choices import GltfSettings
+from .geometry import Part
+from .uses import Use
+
+_EXTENSION = "KHR_texture_basisu"
+_WEBP = "EXT_texture_webp"
+_MIME_TYPE = "image/ktx2"
+_FILE = "texture.ktx2"
+_WRAPS: dict[Any, str] = {33071: "clamp", 33648: "clamp"}
+"""Of samplers; a mirrored image goes on with its edge, as far as a lookup can see."""
+
+
+@dataclass
+class _Picture:
+    """An image of the file: all textures that have the same bytes."""
+
+    image: Any
+    data: bytes
+    textures: list[Any] = field(default_factory=list)
+    shown: list[tuple[Use, Part]] = field(default_factory=list)
+
+
+class Export:
+    """The textures of one export."""
+
+    def __init__(self, settings: Settings, options: GltfSettings) -> None:
+        """Takes how levels are made, and how they are written."""
+        self._settings = settings
+        self._options = options
+        self._parts: list[Part] = []
+
+    @classmethod
+    def of(cls, scene: bpy.types.Scene) -> "Export":
+        """Returns the export that the settings of a scene ask for."""
+        bake, gltf = scene.prefilter_bake, scene.prefilter_gltf
+        options = GltfSettings(True, gltf.supercompression, gltf.fallback)
+        settings = Settings(
+            filter=bake.filter,
+            lookups=bake.lookups,
+            bounds=bake.bounds,
+            seam_budget=bake.seam_budget,
+            texture_format="uastc",
+            supercompression=options.supercompression,
+            use_images=False,
+            filepath=_FILE,
+        )
+        return cls(lookups.resolved(settings), options)
+
+    def add_scene(self, scene: Any) -> None:
+        """Copies the triangles of a scene."""
+        self._parts += geometry.parts(scene)
+
+    def replace_textures(self, export_settings: dict[str, Any]) -> None:
+        """Fits all images; one that cannot be fitted stays a picture, and the user is told."""
+        log, manager = export_settings["log"], bpy.context.window_manager
+        found = self._pictures()
+        manager.progress_begin(0, len(found))
+        try:
+            for number, picture in enumerate(found):
+                manager.progress_update(number)
+                try:
+                    made, told = self._fitted(picture)
+                except FAILURES as error:
+                    text = f"Prefilter: texture '{picture.image.name}' stays as it is: {error}"
+                    log.warning(text, popup=True)
+                    continue
+                for text in told:
+                    log.warning(f"Prefilter: {text}")
+                self._replace(picture, made, export_settings)
+        finally:
+            manager.progress_end()
+
+    def _pictures(self) -> list[_Picture]:
+        found: dict[bytes, _Picture] = {}
+        for part in self._parts:
+            for use in uses.uses(part.primitive):
+                image = _image(use.texture)
+                data = image and (image.buffer_view or image.uri)
+                if not hasattr(data, "data"):
+                    continue
+                picture = found.setdefault(data.data, _Picture(image, data.data))
+                if not any(use.texture is known for known in picture.textures):
+                    picture.textures.append(use.texture)
+                picture.shown.append((use, part))
+        return list(found.values())
+
+    def _fitted(self, picture: _Picture) -> tuple[bytes, list[str]]:
+        """Returns a KTX 2 file, and what a user should know about it."""
+        roles = {use.role for use, _ in picture.shown}
+        content: str = next(role for role in ("normal", "color", "data") if role in roles)
+        thresholds = [use.threshold for use, _ in picture.shown if use.threshold is not None]
+        with tempfile.TemporaryDirectory(prefix="prefilter-") as folder:
+            texels = _read(picture, Path(folder), is_data=content != "color")
+            if thresholds and content == "color" and texels.shape[2] == 4:
+                content = "cutout"
+            texels = contents.as_content(texels, content)
+            settings = self._settings_of(picture, content, thresholds)
+            surfaces = _surfaces(picture)
+            if not any(surface.area for surface in surfaces.surfaces):
+                surfaces = meshes.ImageSurfaces()
+                if settings.filter not in TEXTURE_SPACE_FILTERS:
+                    settings = replace(settings, filter="ls-bilinear")
+            target = Path(folder) / _FILE
+            bake = Bake(source.on_surfaces(texels, surfaces, settings, content), Outputs(target))
+            bake.compute(lambda _: True)
+            try:
+                commit_all(bake.staged_files)
+            finally:
+                bake.discard()
+            return target.read_bytes(), bake.warnings
+
+    def _settings_of(self, picture: _Picture, content: str, thresholds: list[float]) -> Settings:
+        sampler = picture.textures[0].sampler
+        return replace(
+            self._settings,
+            content=content,
+            threshold=thresholds[0] if thresholds else self._settings.threshold,
+            wrap=_WRAPS.get(getattr(sampler, "wrap_s", 0), "repeat"),
+            wrap_v=_WRAPS.get(getattr(sampler, "wrap_t", 0), "repeat"),
+        )
+
+    def _replace(self, picture: _Picture, made: bytes, export_settings: dict[str, Any]) -> None:
+        from io_scene_gltf2.io.com.gltf2_io_extensions import Extension
+
+        is_required = self._options.fallback == "none"
+        image = _ktx2_image(picture.image, made, export_settings)
+        for texture in picture.textures:
+            others = dict(texture.extensions or {})
+            others.pop(_WEBP, None)
+            extension = Extension(_EXTENSION, {"source": image}, is_required)
+            texture.extensions = {**others, _EXTENSION: extension}
+            if is_required:
+                texture.source = None
+
+
+def _image(texture: Any) -> Any:
+    """Returns the exporter's image of a texture."""
+    if texture.source is not None:
+        return texture.source
+    webp = (texture.extensions or {}).get(_WEBP)
+    return getattr(webp, "extension", {}).get("source")
+
+
+@contextmanager
+def _opened(path: Path, *, is_data: bool) -> Iterator[bpy.types.Image]:
+    """Loads an image for as long as the context lasts; its colors are straight."""
+    try:
+        image = bpy.data.images.load(str(path))
+    except RuntimeError as error:
+        raise OSError(str(error).strip()) from error
+    try:
+        image.alpha_mode = "CHANNEL_PACKED"
+        if is_data:
+            image.colorspace_settings.is_data = True
+        yield image
+    finally:
+        bpy.data.images.remove(image)
+
+
+def _read(picture: _Picture, folder: Path, *, is_data: bool) -> images.Picture:
+    path = folder / "picture"
+    path.write_bytes(picture.data)
+    with _opened(path, is_data=is_data) as image:
+        texels = images.read(image)
+    height, width, _ = texels.shape
+    if width % 4 or height % 4:
+        raise ValueError(f"found {width} x {height} texels; {_EXTENSION} needs multiples of 4")
+    name = picture.image.name or "Image"
+    covers = any(use.covers for use, _ in picture.shown)
+    return replace(texels, name=name, full_name=name, covers=covers)
+
+
+def _surfaces(picture: _Picture) -> meshes.ImageSurfaces:
+    """Returns what shows an image; what does so in several roles counts once."""
+    found = meshes.ImageSurfaces()
+    known: set[Any] = set()
+    for use, part in picture.shown:
+        key = (id(part), use.tex_coord, use.transform)
+        if key in known:
+            continue
+        known.add(key)
+        surface: prefilter.Surface | None = part.surface(use.tex_coord, use.transform)
+        if surface is not None:
+            found.surfaces.append(surface)
+            found.objects.append(part.name)
+    return found
+
+
+def _ktx2_image(image: Any, made: bytes, export_settings: dict[str, Any]) -> Any:
+    """Returns the exporter's image of a KTX 2 file: in the buffer, or a file by itself."""
+    held: dict[str, Any] = {"buffer_view": None, "uri": None}
+    if image.buffer_view is not None:
+        held["buffer_view"] = type(image.buffer_view)(made)
+    else:
+        kind = type("Ktx2Data", (type(image.uri),), {"file_extension": ".ktx2"})
+        held["uri"] = kind(made, _MIME_TYPE, image.uri.name)
+        if hasattr(held["uri"], "set_adjusted_name"):
+            from io_scene_gltf2.blender.exp.material.image import set_real_uri
+
+            set_real_uri(held["uri"], export_settings)
+    return type(image)(extensions=None, extras=None, mime_type=_MIME_TYPE, name=image.name, **held)

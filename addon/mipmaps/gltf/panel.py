@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The panel in the dialog of Blender's glTF exporter, which asks for it by name."""
+
+import bpy
+
+from .properties import GROUP
+
+
+def draw_export(context: bpy.types.Context, layout: bpy.types.UILayout) -> None:
+    """Draws the panel; the exporter goes on to ask for it after the add-on was disabled."""
+    settings = getattr(context.scene, GROUP, None)
+    if settings is None:
+        return
+    header, body = layout.panel("PREFILTER_gltf", default_closed=True)
+    header.use_property_split = False
+    header.prop(settings, "use_mipmaps")
+    if body:
+        body.active = settings.use_mipmaps
+        body.prop(context.scene.prefilter_bake, "filter")
+        body.prop(context.scene.prefilter_bake, "lookups")
+        body.prop(settings, "supercompression")
+        body.prop(settings, "fallback")
