@@ -7,6 +7,8 @@ zstandard.
 """
 
 import itertools
+import shutil
+import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -324,3 +326,18 @@ def test_canceling_writes_nothing(tmp_path, format):
     assert not list(tmp_path.iterdir())
     assert fractions == sorted(fractions)
     assert fractions[-1] < 0.9
+
+
+@pytest.mark.skipif(shutil.which("ktx") is None, reason="Khronos' ktx is not installed")
+@pytest.mark.parametrize("supercompression", ["none", "zstd"])
+@pytest.mark.parametrize("encoding", ["linear", "srgb"])
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_khronos_accepts_what_gltf_files_hold(tmp_path, channels, encoding, supercompression):
+    levels = [np.full((side, side, channels), 90, np.uint8) for side in (8, 4, 2, 1)]
+    path = tmp_path / "texture.ktx2"
+    prefilter.write_ktx2(
+        path, levels, format="uastc", encoding=encoding, supercompression=supercompression
+    )
+    command = ["ktx", "validate", "--gltf-basisu", "--warnings-as-errors", str(path)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
