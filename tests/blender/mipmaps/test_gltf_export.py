@@ -163,3 +163,45 @@ def test_sides_that_are_no_multiples_of_4_stay_pictures(tmp_path):
     file, _ = read_glb(tmp_path / "model.glb")
     assert [image["mimeType"] for image in file["images"]] == ["image/png"]
     assert "extensionsUsed" not in file
+
+
+def principled(tree):
+    return next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+
+
+def test_alpha_is_straight_and_uvs_are_under_a_transform(tmp_path):
+    """Colors are weighted by alpha, and the levels are those of the transformed UVs."""
+    cube = model(mask=True)
+    tree = cube.active_material.node_tree
+    nodes = [node for node in tree.nodes if node.type == "TEX_IMAGE"]
+    color = next(node for node in nodes if node.image.name == "Color")
+    tree.links.new(color.outputs["Alpha"], principled(tree).inputs["Alpha"])
+    mapping = tree.nodes.new("ShaderNodeMapping")
+    mapping.inputs["Rotation"].default_value[2] = 0.3
+    mapping.inputs["Scale"].default_value = (2.0, 3.0, 1.0)
+    tree.links.new(tree.nodes.new("ShaderNodeUVMap").outputs[0], mapping.inputs[0])
+    tree.links.new(mapping.outputs[0], color.inputs[0])
+    export(tmp_path / "model.glb", export_format="GLB")
+    file, buffer = read_glb(tmp_path / "model.glb")
+    info = file["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]
+    assert "KHR_texture_transform" in info["extensions"]
+    uvs = np.empty(2 * len(cube.data.loops), np.float32)
+    cube.data.uv_layers.active.data.foreach_get("uv", uvs)
+    u, v = uvs.reshape(-1, 2).T * np.array([[2.0], [3.0]])
+    cos, sin = np.cos(0.3), np.sin(0.3)
+    placed = np.stack([cos * u - sin * v, sin * u + cos * v], axis=1).reshape(-1, 4, 2)
+    corners = np.array([cube.data.vertices[loop.vertex_index].co for loop in cube.data.loops])
+    order = [0, 1, 2, 0, 2, 3]
+    surface = prefilter.Surface(
+        corners,
+        np.arange(24).reshape(-1, 4)[:, order].reshape(-1, 3),
+        placed[:, order].reshape(-1, 3, 2),
+    )
+    texels = np.rint(scenes.noise(32, 32, alpha=True) * 255).astype(np.uint8)
+    made = prefilter.mipmaps(
+        texels, [surface], encoding="srgb", footprint=1.0, wrap="repeat", premultiplied=False
+    )
+    path = tmp_path / "color.ktx2"
+    options = {"format": "uastc", "encoding": "srgb", "alpha": "straight"}
+    prefilter.write_ktx2(path, made, **options, supercompression="zstd")
+    assert ktx2_of(file, buffer, info) == path.read_bytes()
