@@ -132,6 +132,23 @@ def test_charts_that_meet_themselves_are_cut(turns):
         assert len(set(charts[uvs[..., 0].min(axis=1) > 0.6])) == 1
 
 
+def test_triangles_around_a_pole_with_uvs_of_their_own_are_parted():
+    """They hang together by the ring below, and each has its own UVs at the pole."""
+    positions, triangles, uvs = tube()
+    ring = np.arange(24) + 24 * 6
+    pole = len(positions)
+    fan = np.stack([ring, np.roll(ring, -1), np.full(24, pole)], axis=1)
+    u = np.arange(24) / 24
+    at = np.stack([u, u + 1 / 24, u + 1 / 48], axis=1)
+    corners = np.stack([at, np.broadcast_to([1.0, 1.0, 1.2], at.shape)], axis=2)
+    triangles = np.concatenate([triangles, fan])
+    uvs = np.concatenate([uvs, corners.astype(np.float32)])
+    positions = np.concatenate([positions, [(0, 0, 1.2)]]).astype(np.float32)
+    charts = prefilter.uv_charts(positions, triangles, [uvs])
+    assert_no_vertex_has_two_uvs(triangles, uvs, charts)
+    assert len(set(charts[-24:])) == 24
+
+
 def test_charts_are_cut_where_each_face_has_all_of_an_image():
     """As after Reset UVs: pieces hang together only where the squares fit."""
     positions, triangles, uvs = tube()
