@@ -10,6 +10,8 @@ from ..core.wording import Sentence
 from .choices import FITTED_FILTERS, Settings
 
 _FOOTPRINTS = {"supersampled": 0.0, "one-lookup": 1.0, "anisotropic": 1.5, "views": 1.0}
+BEFORE_VIEWS = 1.5
+"""The footprint of levels that are then fitted to views: among those it comes out best."""
 _WORDS = {
     0.0: Sentence(""),
     1.0: Sentence("for one lookup per pixel"),

@@ -70,6 +70,8 @@ class Source:
 
     def footprint_of(self, filter: str) -> float:
         """Returns `footprint` for another filter."""
+        if self.fits_views and filter == self.settings.filter:
+            return lookups.BEFORE_VIEWS
         return lookups.footprint(self.settings, filter, self.reader)
 
     def bounds(self, texels: images.Texels) -> tuple[float | None, float | None] | None:

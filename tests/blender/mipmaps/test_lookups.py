@@ -83,7 +83,7 @@ def test_other_filters_do_not(bake, paint, filter):
 def test_levels_are_fitted_to_views(bake, paint, content):
     outcome = bake(paint, bpy.context.selected_objects, lookups="views", content=content, **OPTIONS)
     values = scenes.noise(SIDE, SIDE)[..., :3]
-    start = prefilter.mipmaps(values, QUAD, footprint=1.0, levels=3)
+    start = prefilter.mipmaps(values, QUAD, footprint=1.5, levels=3)
     expected = prefilter.fit_to_views(start, QUAD)
     np.testing.assert_allclose(baked(), expected[2], atol=0.51 / 255)
     assert np.abs(expected[2] - start[2]).max() > 2 / 255
@@ -155,7 +155,7 @@ def test_the_preview_shows_what_the_file_gets(addon, paint, tmp_path):
         assert found.settings == preview.settings_for_preview(settings.to_settings())
     settings.lookups = "views"
     assert bpy.ops.prefilter.preview_levels(image="Paint") == {"FINISHED"}
-    start = prefilter.mipmaps(scenes.noise(SIDE, SIDE)[..., :3], QUAD, footprint=1.0)
+    start = prefilter.mipmaps(scenes.noise(SIDE, SIDE)[..., :3], QUAD, footprint=1.5)
     expected = prefilter.fit_to_views(start, QUAD)[2]
     found = preview.find(paint)
     np.testing.assert_allclose(found.levels["pam-bilinear"][2], expected, atol=1e-5)

@@ -62,8 +62,8 @@ def fit_to_views(
 
     Args:
         levels: The image, (height, width, 1 to 4 channels) or (height, width), scene-linear, and
-            its other levels, as `mipmaps` returns them with `footprint` 1: the search starts there,
-            and texels that hardly any view reads stay near them.
+            its other levels, as `mipmaps` returns them with `footprint` 1.5, or 1 for "trilinear":
+            the search starts there, and texels that hardly any view reads stay near them.
         surface: One surface, or several that share the image, each of which is seen by itself.
         lookups: How pixels look levels up: "trilinear", one lookup by the longer axis of the
             pixel's footprint; "anisotropic", a row of up to 16 along that axis; "both", half of the
