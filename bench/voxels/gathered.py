@@ -12,14 +12,15 @@ seconds. Judges are CGAL's exact predicates (the program of self_intersections.c
 (PyPI): squared distances, and generalized winding numbers. Lengths are in cells.
 
 The columns of a mesh: triangles of the mesh; triangles of the result; open, crowded and pinched
-places; pairs of triangles that cut each other; edges that turn by over 120 degrees where none of
-the mesh's does so within a cell; those of them at caps of holes; strays, those with a triangle that
-does not lie along what is voxelized, by 0.1 of a cell and 20 degrees (where closed holes, or parts
-that cross, meet the mesh in a wedge or a crevice there is no edge of the mesh, but no fold either);
-how far samples of the result are from the mesh, median, 95th percentile and farthest; the share of
-the mesh, in percent, that is more than a cell from the result and outside of it; parts and genus of
-the result, and of the mesh where it is closed; processor seconds. Totals count meshes; distances
-and seconds in them are medians over meshes, and the most seconds.
+places; pairs of triangles that cut each other; folds, edges that turn by over 120 degrees, but for
+wedges; strays, folds with a triangle that does not lie along what is voxelized, by 0.1 of a cell
+and 20 degrees; wedges, such edges within a quarter of a cell of one by which what is voxelized
+turns as far itself, to the same side, as where a cap or another part meets the mesh at an acute
+angle; those of them at caps of holes; how far samples of the result are from the mesh, median, 95th
+percentile and farthest; the share of the mesh, in percent, that is more than a cell from the result
+and outside of it; parts and genus of the result, and of the mesh where it is closed; processor
+seconds. Totals count meshes; distances and seconds in them are medians over meshes, and the most
+seconds.
 """
 
 import argparse
@@ -36,13 +37,13 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from bench.report import Report, add_json_option
-from bench.voxels import measures
+from bench.voxels import measures, wedges
 
 ENDINGS = (".stl", ".obj", ".ply", ".off", ".glb")
 SAMPLES = 20_000
 GAP, THICKNESS = 2.0, 1.5  # As the add-on has them.
-WEDGES_LESS = 20.0  # Degrees, as measures.folds allows.
-ALONG = 0.1  # Cells.
+ALONG = 0.1  # Cells,
+ALONG_DEGREES = 20.0  # and degrees.
 MISSING = 1.0  # Of a cell: what is farther from the result, and outside of it, is missing.
 HEAD = (
     "mesh",
@@ -51,8 +52,9 @@ HEAD = (
     "unsound",
     "cuts",
     "folds",
-    "at caps",
     "stray",
+    "wedges",
+    "at caps",
     "off",
     "off 95 %",
     "farthest",
@@ -171,7 +173,7 @@ def strays(
     own = measures.facet_normals(positions, triangles)[0][nearest].reshape(-1, 4, 3)
     cosines = np.abs((own * normals[:, None]).sum(axis=2)).min(axis=1)
     far = np.sqrt(squares).reshape(-1, 4).max(axis=1) / cell
-    is_along = (far < ALONG) & (cosines > np.cos(np.radians(WEDGES_LESS)))
+    is_along = (far < ALONG) & (cosines > np.cos(np.radians(ALONG_DEGREES)))
     return int((~is_along.reshape(-1, 2).all(axis=1)).sum())
 
 
@@ -188,11 +190,11 @@ def measured(path: Path, depth: int, interpolant: str) -> dict[str, object]:
     found["open"] = sound.open_edges
     found["unsound"] = sound.open_edges + sound.crowded_edges + sound.crowded_vertices
     found["cuts"] = sound.intersections
-    wedges = measures.sharp_edges(positions, triangles, measures.FOLD - WEDGES_LESS)
-    folded = measures.folded_pairs(made, faces, measures.FOLD, wedges, cell)
-    found["folds"] = len(folded)
-    found["at caps"] = at_caps(made, faces[folded], *solid)
-    found["stray"] = strays(made, faces[folded], *solid[:2], cell)
+    turned = measures.folded_pairs(made, faces)
+    is_wedge = wedges.are_wedges(made, faces, turned, solid[:2], cell)
+    found["folds"], found["wedges"] = int((~is_wedge).sum()), int(is_wedge.sum())
+    found["stray"] = strays(made, faces[turned[~is_wedge]], *solid[:2], cell)
+    found["at caps"] = at_caps(made, faces[turned[is_wedge]], *solid)
     own, _ = measures.surface_samples(made, faces, SAMPLES)
     off = distances(own, positions, triangles) / cell
     found["off"], found["off 95 %"] = np.quantile(off, (0.5, 0.95)).tolist()
@@ -239,7 +241,7 @@ def row(name: str, found: dict[str, object]) -> list[str]:
     return [
         name,
         *(str(found[key]) for key in ("triangles", "result", "unsound", "cuts")),
-        *(str(found[key]) for key in ("folds", "at caps", "stray")),
+        *(str(found[key]) for key in ("folds", "stray", "wedges", "at caps")),
         *(f"{found[key]:.2f}" for key in ("off", "off 95 %", "farthest", "missing")),
         beside("parts"),
         beside("genus"),

@@ -19,6 +19,8 @@ from solids import (
     torus,
 )
 
+from bench.voxels.measures import topology
+
 CELL = 2 / 128
 
 
@@ -207,6 +209,25 @@ def test_sheets_get_a_thickness(name):
     assert kept_share(sheet, positions, triangles, 3 * cell) == 1.0
 
 
+@pytest.mark.parametrize("height", [5, 8, 12])
+def test_shallow_domes_are_sheets_as_a_whole(height):
+    """Cells keep all but the rim of what is behind a cap; closing holes makes no cap of 3 %."""
+    dome = sheet(24, lambda x, y: height / 64 * (1 - (x * x + y * y) / 2))
+    dome = dome.transformed(random_rotation(1))
+    bounds = prefilter.cube_around(
+        (dome.positions.min(axis=0), dome.positions.max(axis=0)), depth=7
+    )
+    cell = (bounds[1][0] - bounds[0][0]) / 128
+    found = prefilter.as_solid(dome.positions, dome.triangles, cell=cell, sheets="faces")
+    closed = prefilter.close_holes(found.positions, found.triangles)
+    assert closed.left_open == 0
+    mesh = closed.positions, closed.triangles
+    tree = prefilter.voxelize(*mesh, depth=7, bounds=bounds, thickness=1.5)
+    positions, triangles = tree.contour()
+    assert topology(triangles) == (1, 0)
+    assert kept_share(dome, positions, triangles, cell) == 1.0
+
+
 def test_sheets_may_stay_sheets():
     plane = sheet(4, level)
     found = prefilter.as_solid(plane.positions, plane.triangles, cell=0.05, thickness=0)
@@ -328,3 +349,28 @@ def test_turned_faces_are_named():
     found = prefilter.as_solid(ball.positions, ball.triangles[:, ::-1], cell=0.05)
     assert found.turned.tolist() == list(range(len(ball.triangles)))
     assert len(prefilter.as_solid(ball.positions, ball.triangles, cell=0.05).turned) == 0
+
+
+def without_back(solid, depth):
+    """The solid without the triangles that reach below z = depth."""
+    corners = solid.positions[solid.triangles]
+    return Solid(solid.positions, solid.triangles[corners[..., 2].min(axis=1) >= depth])
+
+
+@pytest.mark.parametrize("sheets", ["faces", "shell"])
+@pytest.mark.parametrize("middle", [-0.15, -0.05, 0.0])
+def test_what_reaches_into_another_part_is_no_sheet(middle, sheets):
+    """An eye in its socket: open at the back, which the head covers, so that nothing is lost."""
+    head = box((-1, -1, -1), (1, 1, 0))
+    eye = without_back(sphere(0.5), -0.4)
+    moved = Solid(eye.positions + np.array([0, 0, middle]), eye.triangles)
+    mesh = join(head, moved)
+    found = prefilter.as_solid(mesh.positions, mesh.triangles, cell=CELL, sheets=sheets)
+    assert found.thickened_parts == 0
+    assert len(found.triangles) == len(mesh.triangles)
+    closed = prefilter.close_holes(found.positions, found.triangles)
+    tree = prefilter.voxelize(closed.positions, closed.triangles, depth=7, thickness=1.5)
+    # What is above the head: a ball's cap (Archimedes).
+    height = 0.5 + middle
+    cap = np.pi * height**2 * (0.5 - height / 3)
+    assert tree.volume == pytest.approx(4.0 + cap, rel=5e-3)

@@ -139,6 +139,50 @@ def test_the_rim_of_two_cubes_is_exact():
     assert corpus.volume(positions, triangles) == pytest.approx(16 - inside, rel=1e-6)
 
 
+def plane_through_block(degrees):
+    """A block, and one that covers what of it is below a plane at an angle to its top.
+
+    The plane meets the top at x = -0.6.
+    """
+    angle = np.radians(degrees)
+    block = bench_solids.box((-1, -1, -1), (1, 1, 0))
+    cover = bench_solids.box((-1.6, -1.6, -1.5), (2.2, 1.6, 0))
+    tilt = np.array(
+        [
+            [np.cos(angle), 0, np.sin(angle)],
+            [0, 1, 0],
+            [-np.sin(angle), 0, np.cos(angle)],
+        ]
+    )
+    shapes = [sharp_shapes.Shape("block", block.positions, block.triangles.astype(np.int64))]
+    moved = cover.positions @ tilt.T + [-0.6, 0, 0]
+    shapes.append(sharp_shapes.Shape("cover", moved, cover.triangles.astype(np.int64)))
+    return shapes
+
+
+@pytest.mark.parametrize(("degrees", "seed"), [(15, 1), (15, 3), (20, 1), (29, 3)])
+def test_acute_rims_have_no_teeth(degrees, seed):
+    """A block less what is below a plane that leaves its top: a wedge, whose tip is the rim."""
+    turn = sharp_shapes.rotation(seed)
+    block, cover = (s.moved(turn) for s in plane_through_block(degrees))
+
+    def tip(reach):
+        ends = np.array([[[-0.6, -reach, 0], [-0.6, reach, 0]]]) @ turn.T
+        return measures.Edges(ends, np.array([180.0 - degrees]))
+
+    subject = edges.Subject("", (block, cover), "difference", block, tip(1))
+    _, cell = edges.box_around(subject.sources, SIZE)
+    positions, triangles, _ = edges.contour(subject, SIZE, SHARP)
+    assert measures.topology(triangles) == (1, 0)
+    height = 1.6 * np.tan(np.radians(degrees))
+    assert corpus.volume(positions, triangles) == pytest.approx(1.6 * height, rel=0.002)
+    errors = measures.edge_errors(positions, triangles, tip(0.9), cell)
+    assert max(errors.surface_mean, errors.crease_mean) < edges.EDGE_MEAN, errors
+    assert max(errors.surface_95, errors.crease_95) < edges.EDGE_95, errors
+    assert measures.folds(positions, triangles, 120, tip(1), 3 * cell) == 0
+    check_sound(f"{degrees} {seed}", positions, triangles)
+
+
 @pytest.mark.parametrize("seed", range(1, 7))
 def test_slits_between_slabs_do_not_fold(seed):
     """A slit of half a cell is bridged here and there; slabs turn by 90 degrees at their edges."""

@@ -92,6 +92,18 @@ def test_parts_that_touch_or_overlap_are_no_sheets():
         assert voxelized(both).volume == pytest.approx(voxelized(both, 0.0).volume, rel=1e-4)
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2, 9])
+def test_slits_of_less_than_a_cell_stay_open(seed):
+    """Cells that are a little more than half full would leave handles across them."""
+    width, half = 0.9, 8
+    parts = [box((-half, -half, -half), (half, half, -width / 2))]
+    parts.append(box((-half, -half, width / 2), (half, half, half)))
+    parts.append(box((half / 2, -half, -width), (half, half, width)))
+    solid = join(*parts)
+    turned = Solid(solid.positions @ random_rotation(seed).T + 16, solid.triangles)
+    assert topology(voxelized(turned, depth=5).contour(interpolant="plane")[1]) == (1, 0)
+
+
 def test_it_ends_without_a_step():
     """A wedge of 6 degrees: its surface leaves that of the mesh where that is thick enough."""
     positions = np.array(

@@ -3,6 +3,7 @@
 #include "prefilter/contour/facing.h"
 
 #include <algorithm>
+#include <optional>
 #include <unordered_map>
 
 namespace prefilter {
@@ -13,6 +14,8 @@ constexpr double kLeastArea = 1e-12;              // twice a triangle's, of a ce
 constexpr double kAlong = 0.9396926207859084;     // 20 degrees
 constexpr double kBorderReach = 2.0;              // cells
 constexpr double kEdgeReach = 0.3;                // cells
+constexpr double kCrossingReach = 0.2;            // cells
+constexpr double kOnCrossing = 0.05;              // cells
 constexpr double kOpposed = -0.1736481776669303;  // 100 degrees
 
 // The side that two triangles have in common.
@@ -52,6 +55,28 @@ const SourcePoint* sample_along(const MeshView<std::int32_t>& mesh, std::size_t 
     if ((is_turned ? -height : height) >= kAlong * length(normal)) return sample;
   }
   return nullptr;
+}
+
+// The point next to one on the line in which the planes of two surface points meet.
+std::optional<Vector3> crossing_near(const Vector3& point, const SourcePoint& one,
+                                     const SourcePoint& other) {
+  const double cosine = dot(one.normal, other.normal);
+  const double rest = 1.0 - cosine * cosine;
+  if (!(rest > 0.0)) return std::nullopt;
+  const double height = dot(point - one.position, one.normal);
+  const double other_height = dot(point - other.position, other.normal);
+  return point - ((height - cosine * other_height) / rest) * one.normal -
+         ((other_height - cosine * height) / rest) * other.normal;
+}
+
+// Whether two regions have a line near a point in which they cross.
+bool cross_near(const Vector3& point, const SourcePoint& one, const SourcePoint& other,
+                const FeatureSurface& surface) {
+  const std::optional<Vector3> crossing = crossing_near(point, one, other);
+  if (!crossing || !(length(*crossing - point) < kCrossingReach * surface.cell())) return false;
+  const double reach = kOnCrossing * surface.cell();
+  return surface.nearest(*crossing, reach, one.label).has_value() &&
+         surface.nearest(*crossing, reach, other.label).has_value();
 }
 
 }  // namespace
@@ -101,16 +126,19 @@ bool are_at_edge(const MeshView<std::int32_t>& mesh, std::span<const std::int32_
     return false;
   }
   std::array<Vector3, 2> normals;
+  std::array<std::optional<SourcePoint>, 2> nearest;
   for (std::size_t i = 0; i < 2; ++i) {
     const std::int32_t label = labels[triangles[i]];
     const bool is_turned = turned.contains(label);
     const SourcePoint* sample = sample_along(mesh, triangles[i], label, samples, is_turned);
-    if (sample == nullptr || !surface.nearest(side.middle, kEdgeReach * surface.cell(), label)) {
-      return false;
-    }
+    if (sample == nullptr) return false;
+    nearest[i] = surface.nearest(side.middle, kEdgeReach * surface.cell(), label);
+    if (!nearest[i]) return false;
     normals[i] = is_turned ? -1.0 * sample->normal : sample->normal;
   }
-  return dot(normals[0], normals[1]) < kOpposed;
+  if (!(dot(normals[0], normals[1]) < kOpposed)) return false;
+  // Beside each other parts leave a slit, whose end is none of their edges.
+  return side.is_convex || cross_near(side.middle, *nearest[0], *nearest[1], surface);
 }
 
 }  // namespace prefilter

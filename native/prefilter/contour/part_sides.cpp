@@ -20,6 +20,12 @@ constexpr int kSamples = 3;
 constexpr int kShares = 4;  // samples of a leaf along an axis
 constexpr int kClose = 5;   // samples, from half of them, where the center decides
 constexpr std::int64_t kLeavesPerTask = 64;
+// Of wedges between two parts. They end where they are thinner than a share of what cells reach
+// over across them, if their tip is within reach of features.
+constexpr double kAcute = -0.6;  // 53 degrees
+constexpr double kThinnest = 0.55;
+constexpr double kTipCells = 4.0;
+constexpr double kThickestCells = 2.0;
 
 float value_at(const ContourTree& tree, const RootFrame& frame, const Vector3& point) {
   CellNode cell = tree.root();
@@ -94,9 +100,54 @@ std::optional<bool> PartSides::is_inside(const Parts& parts, unsigned inside) co
   return std::nullopt;
 }
 
+std::optional<std::array<Vector3, 2>> PartSides::wedge_normals(const Parts& parts) const {
+  if (parts.count != 2) return std::nullopt;
+  std::optional<unsigned> within;
+  for (unsigned inside = 0; inside < 4; ++inside) {
+    const std::optional<bool> side = is_inside(parts, inside);
+    if (!side || (*side && within)) return std::nullopt;
+    if (*side) within = inside;
+  }
+  if (!within) return std::nullopt;
+  std::array<Vector3, 2> outward;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vector3& normal = parts.planes[i].normal;
+    outward[i] = ((*within >> i) & 1U) != 0U ? normal : -1.0 * normal;
+  }
+  return outward;
+}
+
+std::optional<bool> PartSides::side_in_wedge(const Parts& parts, const Vector3& center,
+                                             const Vector3& size) const {
+  const std::optional<std::array<Vector3, 2>> outward = wedge_normals(parts);
+  if (!outward) return std::nullopt;
+  const auto& [first, second] = *outward;
+  const double cosine = dot(first, second);
+  if (cosine >= kAcute) return std::nullopt;
+  const double below_first = dot(first, parts.planes[0].position - center);
+  const double below_second = dot(second, parts.planes[1].position - center);
+  const double thickness = below_first + below_second;
+  if (thickness > kThickestCells * surface_.cell()) return std::nullopt;
+  const Vector3 across = first - second;
+  double reach = 0.0;
+  for (int a = 0; a < 3; ++a) reach += std::abs(across[a]) * size[a];
+  reach /= length(across);
+  if (thickness >= kThinnest * reach) {
+    const double from_middle = std::abs(below_first - below_second) / length(across);
+    return from_middle <= 0.5 * reach ? std::optional<bool>(true) : std::nullopt;
+  }
+  // Of half an angle: tan(a / 2)^2 = (1 - cos(a)) / (1 + cos(a)).
+  const double cosine_of_tip = std::min(1.0, -cosine);
+  const double slope = 2.0 * std::sqrt((1.0 - cosine_of_tip) / (1.0 + cosine_of_tip));
+  if (thickness > slope * kTipCells * surface_.cell()) return std::nullopt;
+  return false;
+}
+
 std::optional<bool> PartSides::is_mostly_inside(const Vector3& center, const Vector3& size) const {
   const std::optional<Parts> parts = parts_near(center);
   if (!parts) return std::nullopt;
+  const std::optional<bool> in_wedge = side_in_wedge(*parts, center, size);
+  if (in_wedge) return in_wedge;
   // Where but one part runs through, the occupancy tells.
   int passing = 0;
   for (std::size_t i = 0; i < parts->count; ++i) {

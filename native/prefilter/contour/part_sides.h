@@ -52,6 +52,14 @@ class PartSides {
     std::array<int, 1U << kMostParts> outside{};
   };
 
+  // The normals, outward, of the planes of two parts between which the shape is; none where it is
+  // elsewhere, too.
+  std::optional<std::array<Vector3, 2>> wedge_normals(const Parts& parts) const;
+  // The side of a leaf in the tip of a wedge, where the occupancies of single cells would leave
+  // teeth. All leaves are inside that its middle runs through, so that it has no holes, up to where
+  // it is too thin for that: from there on, the loops at its end reach to its tip.
+  std::optional<bool> side_in_wedge(const Parts& parts, const Vector3& center,
+                                    const Vector3& size) const;
   std::optional<bool> is_mostly_inside(const Vector3& center, const Vector3& size) const;
   std::optional<Parts> parts_near(const Vector3& point) const;
   std::optional<bool> is_inside(const Parts& parts, unsigned inside) const;

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kRings = 2;
 constexpr int kSmoothings = 4;
+constexpr int kTurnings = 8;
 
 void sort_unique(std::vector<std::size_t>* values) {
   std::sort(values->begin(), values->end());
@@ -19,7 +20,7 @@ void sort_unique(std::vector<std::size_t>* values) {
 
 std::vector<std::size_t> relax_features(std::vector<std::size_t> moving, const LinkedLoops& loops,
                                         std::span<const std::uint8_t> is_sharp,
-                                        const FeaturePlaces& places,
+                                        const FeaturePlaces& places, const FeatureTurning& turning,
                                         std::vector<Feature>* features) {
   for (int ring = 0; ring < kRings; ++ring) {
     std::vector<std::size_t> wider = moving;
@@ -44,6 +45,12 @@ std::vector<std::size_t> relax_features(std::vector<std::size_t> moving, const L
       if (found) moved[m] = *found;
     }
     for (std::size_t m = 0; m < moving.size(); ++m) (*features)[moving[m]].position = moved[m];
+  }
+  for (int step = 0; step < kTurnings; ++step) {
+    for (const std::size_t i : moving) {
+      const std::optional<Vector3> found = turning.place(i, *features);
+      if (found) (*features)[i].position = *found;
+    }
   }
   return moving;
 }

@@ -13,6 +13,7 @@
 #include "prefilter/contour/blamed_loops.h"
 #include "prefilter/contour/facing.h"
 #include "prefilter/contour/feature_places.h"
+#include "prefilter/contour/feature_turning.h"
 #include "prefilter/contour/linked_loops.h"
 #include "prefilter/contour/loop_triangles.h"
 #include "prefilter/contour/mended_loops.h"
@@ -344,9 +345,11 @@ class Mending {
     std::vector<BlamedLoop> blamed =
         blame(pairs, made, states.is_sharp, states.attempts, crossings_, &off_lines_,
               &place->changes.vertices, &place->layered);
+    const FeatureTurning turning(place->loops, states.is_sharp, place->layered.mesh.positions,
+                                 samples_, turned_, places, surface_.cell());
     for (const std::size_t i :
          relax_features(take_attempts(&states.attempts, &blamed), place->loops, states.is_sharp,
-                        places, &states.features)) {
+                        places, turning, &states.features)) {
       is_changed[i] = 1;
     }
     for (const std::size_t i : fewest_loops(std::move(blamed), pairs.size())) {

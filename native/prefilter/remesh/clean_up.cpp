@@ -6,7 +6,9 @@
 #include "prefilter/remesh/clean_up.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numeric>
@@ -14,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/base/elementary.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/remesh/folds.h"
 #include "prefilter/remesh/intersections.h"
@@ -25,6 +28,7 @@ namespace prefilter {
 namespace {
 
 constexpr std::int64_t kRowsPerTask = 1 << 15;
+constexpr float kWedgeSlack = 0.0873F;  // 5 degrees, by which wedges may become sharper
 
 using Triangle = std::array<std::int32_t, 3>;
 using Flags = std::vector<std::uint8_t>;
@@ -192,10 +196,22 @@ std::vector<std::int32_t> shared_vertices(const Triangle& a, const Triangle& b) 
   return shared;
 }
 
-// The ends of edges of the shape that are as sharp as a fold.
-Flags wedge_ends(const MeshView<std::int32_t>& mesh, const std::vector<VertexKind>& kinds) {
-  Flags is_end(mesh.positions.size(), 0);
-  if (kinds.empty()) return is_end;
+double angle_between(const MeshView<std::int32_t>& mesh,
+                     const std::array<std::uint32_t, 2>& triangles) {
+  std::array<Vector3, 2> normals;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto [a, b, c] = mesh.corners(triangles[i]);
+    normals[i] = cross(b - a, c - a);
+  }
+  return elementary::atan2(length(cross(normals[0], normals[1])), dot(normals[0], normals[1]));
+}
+
+// Of the ends of edges of the shape that are as sharp as a fold: by how much they turn; 0
+// elsewhere.
+std::vector<float> wedge_turns(const MeshView<std::int32_t>& mesh,
+                               const std::vector<VertexKind>& kinds) {
+  std::vector<float> turns(mesh.positions.size(), 0.0F);
+  if (kinds.empty()) return turns;
   Flags is_suspect(mesh.triangles.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     is_suspect[t] =
@@ -204,11 +220,13 @@ Flags wedge_ends(const MeshView<std::int32_t>& mesh, const std::vector<VertexKin
         }) > 1;
   }
   for (const auto& pair : folded_pairs(mesh, 0, is_suspect)) {
+    const auto turn = static_cast<float>(angle_between(mesh, pair));
     for (const std::int32_t v : shared_vertices(mesh.triangles[pair[0]], mesh.triangles[pair[1]])) {
-      is_end[static_cast<std::size_t>(v)] = 1;
+      float& most = turns[static_cast<std::size_t>(v)];
+      most = std::max(most, turn);
     }
   }
-  return is_end;
+  return turns;
 }
 
 // Looks for triangles that intersect others, or fold. Each search but the first looks only at what
@@ -220,7 +238,7 @@ class CrossingSearch {
       : original_(original),
         threads_(threads),
         side_(cube_side({mesh.positions, original})),
-        is_wedge_end_(wedge_ends({mesh.positions, original}, mesh.kinds)) {}
+        wedge_turns_(wedge_turns({mesh.positions, original}, mesh.kinds)) {}
 
   // The triangles of pairs that are not as they were before the mesh was edited.
   std::vector<std::uint32_t> find(const FacetedMesh& mesh, const Progress& progress) {
@@ -280,8 +298,9 @@ class CrossingSearch {
     std::erase_if(folds, [&](const auto& pair) {
       const std::vector<std::int32_t> side =
           shared_vertices(view.triangles[pair[0]], view.triangles[pair[1]]);
+      const auto turn = static_cast<float>(angle_between(view, pair)) - kWedgeSlack;
       return std::all_of(side.begin(), side.end(), [&](std::int32_t v) {
-        return is_wedge_end_[static_cast<std::size_t>(v)] != 0;
+        return turn <= wedge_turns_[static_cast<std::size_t>(v)];
       });
     });
     add(folds);
@@ -291,7 +310,7 @@ class CrossingSearch {
   const std::vector<Triangle>& original_;
   int threads_;
   double side_;
-  Flags is_wedge_end_;
+  std::vector<float> wedge_turns_;
   std::vector<Triangle> first_;
   std::vector<Triangle> last_;
   std::vector<std::uint32_t> found_;

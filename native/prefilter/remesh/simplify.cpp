@@ -18,6 +18,7 @@
 #include "prefilter/remesh/facets.h"
 #include "prefilter/remesh/folds.h"
 #include "prefilter/remesh/intersections.h"
+#include "prefilter/remesh/near_intersections.h"
 #include "prefilter/remesh/patch.h"
 #include "prefilter/remesh/patch_division.h"
 
@@ -32,12 +33,15 @@ constexpr double kMeasuredShare = 0.78;
 constexpr double kLeastRemoved = 0.002;
 // Then patches that still meet others go back to what they were.
 constexpr int kMostRepairs = 4;
+constexpr double kCubeEdges = 4.0;  // of cubes that tell what is near, in edges
 
 using Triangle = std::array<std::int32_t, 3>;
 
 struct Scale {
   double tolerance;
   double spacing;  // of vertices, in tolerances
+
+  double cube() const { return kCubeEdges * spacing * tolerance; }
 };
 
 // Of each vertex; each patch changes those that are its own.
@@ -137,13 +141,14 @@ void freeze(const std::vector<Triangle>& triangles, const PatchDivision& divisio
 }
 
 // The patches whose new triangles meet others, or fold, or that these meet, and the vertices of
-// both.
+// both. Others than those that are flagged are known to be good among themselves.
 struct Meetings {
   std::vector<std::int64_t> patches;
   std::vector<std::uint8_t> is_bad;
 };
 
 Meetings find_meetings(const std::vector<Vector3>& positions, const std::vector<Part>& parts,
+                       const std::vector<std::uint8_t>& is_unknown, double side,
                        const Progress& progress, int threads) {
   std::vector<Triangle> triangles;
   std::vector<std::uint8_t> is_suspect;
@@ -154,14 +159,21 @@ Meetings find_meetings(const std::vector<Vector3>& positions, const std::vector<
     const std::vector<Triangle>& some = parts[i].facets.triangles;
     triangles.insert(triangles.end(), some.begin(), some.end());
     patches.resize(triangles.size(), static_cast<std::uint32_t>(i));
-    is_suspect.insert(is_suspect.end(), parts[i].is_new.begin(), parts[i].is_new.end());
+    if (is_unknown[i] != 0) {
+      is_suspect.insert(is_suspect.end(), parts[i].is_new.begin(), parts[i].is_new.end());
+    }
+    is_suspect.resize(triangles.size(), 0);
   }
   Meetings found;
-  if (std::find(is_suspect.begin(), is_suspect.end(), 1) == is_suspect.end()) return found;
-  auto pairs = intersecting_triangles({positions, triangles}, is_suspect, progress, threads);
-  for (const auto& fold : folded_pairs({positions, triangles}, 0, is_suspect)) {
+  const NearTriangles near = near_triangles({positions, triangles}, 0, is_suspect, side);
+  if (near.triangles.empty()) return found;
+  const MeshView<std::int32_t> view{positions, near.triangles};
+  auto pairs = intersecting_triangles(view, near.is_suspect, progress, threads);
+  for (auto& pair : pairs) pair = {near.numbers[pair[0]], near.numbers[pair[1]]};
+  for (const auto& fold : folded_pairs(view, 0, near.is_suspect)) {
     // Between regions there are edges of the shape, of any angle.
-    if (labels.empty() || labels[fold[0]] == labels[fold[1]]) pairs.push_back(fold);
+    const std::array<std::uint32_t, 2> pair = {near.numbers[fold[0]], near.numbers[fold[1]]};
+    if (labels.empty() || labels[pair[0]] == labels[pair[1]]) pairs.push_back(pair);
   }
   if (pairs.empty()) return found;
   found.is_bad.assign(positions.size(), 0);
@@ -182,11 +194,15 @@ Meetings find_meetings(const std::vector<Vector3>& positions, const std::vector<
 void repair(const FacetedMesh& mesh, const Facets& facets, const PatchDivision& division,
             const Scale& scale, const Progress& progress, int threads, VertexStates* states,
             std::vector<Part>* parts) {
+  std::vector<std::uint8_t> is_unknown(parts->size(), 1);
   for (int round = 0;; ++round) {
     const double begin = 1.0 - std::ldexp(1.0, -round);
     const Progress step = progress.part(begin, 1.0 - std::ldexp(1.0, -round - 1));
-    const Meetings found = find_meetings(mesh.positions, *parts, step.part(0.0, 0.5), threads);
+    const Meetings found = find_meetings(mesh.positions, *parts, is_unknown, scale.cube(),
+                                         step.part(0.0, 0.5), threads);
     if (found.patches.empty()) return;
+    is_unknown.assign(parts->size(), 0);
+    for (const std::int64_t patch : found.patches) is_unknown[static_cast<std::size_t>(patch)] = 1;
     const auto rerun = [&](std::int64_t i) {
       const auto patch = static_cast<std::size_t>(found.patches[static_cast<std::size_t>(i)]);
       freeze(facets.triangles, division, patch, found.is_bad, round >= kMostRepairs, states);

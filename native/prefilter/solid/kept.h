@@ -22,6 +22,12 @@ Octree empty_tree_around(const Box& box, double cell);
 std::vector<float> kept_shares(const MeshView<std::int32_t>& mesh, const Octree& octree,
                                const Progress& progress, int threads);
 
+/// Adds to these shares those of the samples inside `others`, and inside the whole octree, as far
+/// along the normal: nothing is lost there, as other parts cover it. Of triangles that may be.
+void add_covered(const MeshView<std::int32_t>& mesh, const Octree& octree, const Octree& others,
+                 const std::vector<bool>& may_be_covered, const Progress& progress, int threads,
+                 std::span<float> shares);
+
 /// Calls visit(point) for points of a triangle that are about `distance` apart: its middle, or the
 /// middles of the parts it is cut into.
 template <typename Visit>

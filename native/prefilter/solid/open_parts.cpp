@@ -13,12 +13,15 @@
 #include <utility>
 #include <vector>
 
+#include "prefilter/solid/border_loops.h"
 #include "prefilter/solid/close_holes.h"
 #include "prefilter/solid/fill.h"
 #include "prefilter/solid/hollow_regions.h"
 #include "prefilter/solid/kept.h"
+#include "prefilter/solid/loop_caps.h"
 #include "prefilter/solid/part_fates.h"
 #include "prefilter/solid/reach.h"
+#include "prefilter/solid/sheets.h"
 #include "prefilter/solid/shell.h"
 #include "prefilter/solid/triangle_sides.h"
 #include "prefilter/solid/turn_parts.h"
@@ -30,6 +33,12 @@ namespace {
 constexpr int kRounds = 3;
 // Of a part that counts as closed: the square of the length of its border over its area.
 constexpr double kLargestHole = 0.02;
+
+using Edge = std::array<std::uint32_t, 2>;
+
+bool is_partly_thickened(const PartFate& part) {
+  return part.fate == Fate::kWound && part.is_thickened;
+}
 
 double area_of(const std::array<Vector3, 3>& p) {
   return length(cross(p[1] - p[0], p[2] - p[0])) / 2.0;
@@ -49,13 +58,16 @@ bool is_open(const FacePatch& patch, double cell) {
   return !patch.is_closed() && !is_nearly_closed;
 }
 
-// The triangles that stay, with what they were among all.
-WorkMesh wound_parts(const WorkMesh& mesh, const Patches& patches,
-                     std::span<const PartFate> fates) {
+// The triangles that stay, with what they were among all; without those of some parts.
+WorkMesh wound_parts(const WorkMesh& mesh, const Patches& patches, std::span<const PartFate> fates,
+                     std::span<const std::size_t> without = {}) {
+  std::vector<bool> is_wound(fates.size());
+  for (std::size_t p = 0; p < fates.size(); ++p) is_wound[p] = fates[p].fate == Fate::kWound;
+  for (const std::size_t p : without) is_wound[p] = false;
   WorkMesh result;
   result.positions = mesh.positions;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (fates[patches.patch_of[t]].fate != Fate::kWound) continue;
+    if (!is_wound[patches.patch_of[t]]) continue;
     result.triangles.push_back(mesh.triangles[t]);
     result.origins.push_back(mesh.origins[t]);
   }
@@ -132,6 +144,50 @@ void add_faces(const WorkMesh& mesh, const Patches& patches, std::span<const std
   }
 }
 
+// The edges of loops that stay open where a mesh's holes are closed, in order.
+std::vector<Edge> open_edges(const WorkMesh& mesh, const Progress& progress, int threads) {
+  const InputMesh input{mesh.positions, mesh.triangles};
+  const BorderLoops loops = border_loops(input, progress.part(0.0, 0.5), threads);
+  std::vector<unsigned char> is_kept(loops.size(), 1);
+  const std::vector<LoopCap> caps =
+      first_caps(input, loops, is_kept, HoleMethod::kFlat, progress.part(0.5, 0.9), threads);
+  leave_sheets(input, loops, caps, progress.part(0.9, 1.0), is_kept);
+  std::vector<Edge> edges;
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (is_kept[i] != 0) continue;
+    const auto loop = loops.loop(i);
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      const std::uint32_t next = loop[k + 1 < loop.size() ? k + 1 : 0];
+      edges.push_back({std::min(loop[k], next), std::max(loop[k], next)});
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+// Lets parts be sheets as a whole that are thickened in places, and whose borders stay open then,
+// as those of sheets do: winding numbers have them half inside. Returns whether there are any.
+bool become_sheets(const WorkMesh& mesh, const WorkMesh& result, const Patches& patches,
+                   const Progress& progress, int threads, std::span<PartFate> fates) {
+  if (std::none_of(fates.begin(), fates.end(), is_partly_thickened)) return false;
+  const std::vector<Edge> edges = open_edges(result, progress, threads);
+  bool has_changed = false;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::size_t p = patches.patch_of[t];
+    if (!is_partly_thickened(fates[p]) || patches.patches[p].is_closed()) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::uint32_t>(mesh.triangles[t][k]);
+      const auto b = static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
+      const Edge edge = {std::min(a, b), std::max(a, b)};
+      if (!std::binary_search(edges.begin(), edges.end(), edge)) continue;
+      fates[p].fate = Fate::kSheet;
+      has_changed = true;
+      break;
+    }
+  }
+  return has_changed;
+}
+
 void append(const TriangleMesh& surface, WorkMesh* mesh) {
   const auto first = static_cast<std::int32_t>(mesh->positions.size());
   mesh->positions.insert(mesh->positions.end(), surface.positions.begin(), surface.positions.end());
@@ -146,6 +202,21 @@ void count_fates(std::span<const PartFate> fates, SolidReport* report) {
     if (fate == Fate::kSheet || is_thickened) ++report->thickened_parts;
     if (fate == Fate::kFilled) ++report->filled_parts;
   }
+}
+
+// An eye in its socket: the back of an open part is inside of others, where there is no contour,
+// and nothing to be thickened.
+void keep_covered(const WorkMesh& mesh, const Patches& patches, std::span<const std::size_t> parts,
+                  std::span<const PartFate> fates, const Octree& octree, double cell,
+                  const Progress& progress, int threads, std::span<float> kept) {
+  const WorkMesh others = wound_parts(mesh, patches, fates, parts);
+  if (parts.empty() || others.triangles.empty()) return;
+  std::vector<bool> may_be_covered(mesh.triangles.size());
+  for (std::size_t t = 0; t < may_be_covered.size(); ++t) {
+    may_be_covered[t] = std::binary_search(parts.begin(), parts.end(), patches.patch_of[t]);
+  }
+  const Octree without = voxels_of(others, patches, cell, progress.part(0.0, 0.8), threads);
+  add_covered(mesh.view(), octree, without, may_be_covered, progress.part(0.8, 1.0), threads, kept);
 }
 
 // What becomes of the parts, and what of their triangles is kept in the cells.
@@ -172,16 +243,21 @@ Verdict judge(const WorkMesh& mesh, const Patches& patches, std::span<const doub
     const WorkMesh wound = wound_parts(mesh, patches, verdict.fates);
     if (wound.triangles.empty()) break;
     const Octree octree =
-        voxels_of(wound, patches, options.cell, part.part(0.0, 0.7), options.threads);
-    verdict.kept = kept_shares(mesh.view(), octree, part.part(0.7, 0.9), options.threads);
+        voxels_of(wound, patches, options.cell, part.part(0.0, 0.5), options.threads);
+    const double thickness = options.thickness * options.cell;
+    verdict.kept = kept_shares(mesh.view(), octree, part.part(0.5, 0.6), options.threads);
+    const std::vector<std::size_t> parts = parts_to_cover(
+        patches, part_areas(patches, areas, verdict.kept, sides), thickness, verdict.fates);
+    keep_covered(mesh, patches, parts, verdict.fates, octree, options.cell, part.part(0.6, 0.9),
+                 options.threads, verdict.kept);
     bool has_changed = false;
     if (round == 0 && grid != nullptr && options.gap > 0.0) {
       verdict.is_filled =
           fill_hollow(patches, areas, sides, *grid, octree, options.threads, verdict.fates);
       has_changed = !verdict.is_filled.empty();
     }
-    has_changed |= judge_parts(patches, part_areas(patches, areas, verdict.kept, sides),
-                               options.thickness * options.cell, verdict.fates);
+    has_changed |= judge_parts(patches, part_areas(patches, areas, verdict.kept, sides), thickness,
+                               verdict.fates);
     if (!has_changed) break;
   }
   return verdict;
@@ -213,20 +289,32 @@ bool mend_open_parts(const Patches& patches, const SolidOptions& options, const 
   }
   Verdict verdict = judge(*mesh, patches, areas, grid ? &*grid : nullptr, sides, options,
                           progress.part(0.3, 0.8));
-  const std::vector<std::uint32_t> thin = thin_triangles(
-      patches, verdict.kept, verdict.fates, options.sheets == SheetMethod::kFaces ? 0.5F : 1.0F);
-  const bool is_same = thin.empty() && verdict.is_wound();
-  if (!is_same) {
+  const auto thin_now = [&] {
+    return thin_triangles(patches, verdict.kept, verdict.fates,
+                          options.sheets == SheetMethod::kFaces ? 0.5F : 1.0F);
+  };
+  std::vector<std::uint32_t> thin = thin_now();
+  const auto make = [&](const Progress& part) {
     WorkMesh result = wound_parts(*mesh, patches, verdict.fates);
     if (!verdict.is_filled.empty()) {
-      append(filled_regions(mesh->view(), *grid, verdict.is_filled, progress.part(0.8, 0.9),
-                            options.threads),
+      append(filled_regions(mesh->view(), *grid, verdict.is_filled, part, options.threads),
              &result);
     }
     if (options.sheets == SheetMethod::kFaces) {
       add_faces(*mesh, patches, thin, &result);
     } else {
       add_shell(mesh->view(), mesh->origins, thin, thickness / 2.0, &result);
+    }
+    return result;
+  };
+  const bool is_same = thin.empty() && verdict.is_wound();
+  if (!is_same) {
+    WorkMesh result = make(progress.part(0.8, 0.9));
+    if (options.sheets == SheetMethod::kFaces &&
+        become_sheets(*mesh, result, patches, progress.part(0.9, 0.95), options.threads,
+                      verdict.fates)) {
+      thin = thin_now();
+      result = make(progress.part(0.95, 1.0));
     }
     std::swap(*mesh, result);
   }

@@ -12,6 +12,7 @@ namespace {
 constexpr double kLostOfSheet = 0.25;
 constexpr double kLostOfThin = 0.5;
 constexpr double kLostInPart = 0.005;
+constexpr double kLostOfCovered = 0.8;  // of an open part that reaches into others
 constexpr double kInnerOfBuried = 0.8;
 
 }  // namespace
@@ -33,6 +34,18 @@ std::vector<PartAreas> part_areas(const Patches& patches, std::span<const double
 
 bool is_thin(const FacePatch& patch, double thickness) {
   return patch.is_closed() && 2.0 * std::abs(patch.volume) < thickness * patch.area;
+}
+
+std::vector<std::size_t> parts_to_cover(const Patches& patches, std::span<const PartAreas> areas,
+                                        double thickness, std::span<const PartFate> fates) {
+  std::vector<std::size_t> found;
+  for (std::size_t p = 0; p < fates.size(); ++p) {
+    const FacePatch& patch = patches.patches[p];
+    const bool is_sheet = areas[p].lost > kLostOfSheet * patch.area && thickness > 0.0;
+    if (patch.is_closed() || fates[p].fate != Fate::kWound || !is_sheet) continue;
+    if (areas[p].lost < kLostOfCovered * patch.area) found.push_back(p);
+  }
+  return found;
 }
 
 bool judge_parts(const Patches& patches, std::span<const PartAreas> areas, double thickness,

@@ -41,6 +41,11 @@ std::vector<PartAreas> part_areas(const Patches& patches, std::span<const double
 /// Whether a closed part is thinner than `thickness` on average.
 bool is_thin(const FacePatch& patch, double thickness);
 
+/// The open parts that judge_parts would make sheets though some of their area is kept: others may
+/// cover what is lost.
+std::vector<std::size_t> parts_to_cover(const Patches& patches, std::span<const PartAreas> areas,
+                                        double thickness, std::span<const PartFate> fates);
+
 /// Decides on the parts that are wound: open ones are buried if most of what they lose is inside,
 /// and sheets if they lose much; closed ones that are thin, and others that lose a little, are
 /// thickened. Without a thickness there are no sheets. Returns whether any part is another one now.

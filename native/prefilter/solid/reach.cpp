@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <cstring>
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/pulse.h"
@@ -17,6 +18,14 @@ namespace {
 
 constexpr double kMostCells = 256.0;
 constexpr std::int64_t kRowsPerTask = 1 << 10;
+
+// Where a value is found first from one cell up to another, or that.
+std::size_t first_of(int value, const std::vector<std::uint8_t>& cells, std::size_t begin,
+                     std::size_t end) {
+  const void* found = std::memchr(cells.data() + begin, value, end - begin);
+  if (found == nullptr) return end;
+  return static_cast<std::size_t>(static_cast<const std::uint8_t*>(found) - cells.data());
+}
 
 // The cells within `radius` of those that are set, along each axis.
 std::vector<std::uint8_t> widened(std::vector<std::uint8_t> cells, const std::array<int, 3>& size,
@@ -95,13 +104,13 @@ ReachGrid::ReachGrid(const MeshView<std::int32_t>& mesh, double cell, double gap
 
   std::vector<std::uint8_t> is_met(labels_.size());
   for (std::size_t i = 0; i < labels_.size(); ++i) is_met[i] = labels_[i] == kMet ? 1 : 0;
-  const std::vector<std::uint8_t> is_blocked = widened(std::move(is_met), size_, radius, threads);
+  std::vector<std::uint8_t> is_free = widened(std::move(is_met), size_, radius, threads);
+  for (std::uint8_t& flag : is_free) flag ^= 1U;
   progress.report(0.6);
-  flood(0, kOutside, is_blocked);
+  flood(0, kOutside, &is_free);
   progress.report(0.8);
-  for (std::size_t i = 0; i < labels_.size(); ++i) {
-    if (labels_[i] != kUnset || is_blocked[i] != 0) continue;
-    flood(i, region_end_, is_blocked);
+  for (std::size_t i = 0; (i = first_of(1, is_free, i, is_free.size())) < is_free.size();) {
+    flood(i, region_end_, &is_free);
     if (region_end_ < kUnset - 1) ++region_end_;
   }
   grow(2 * radius);
@@ -134,38 +143,35 @@ void ReachGrid::mark_met(const MeshView<std::int32_t>& mesh, const Progress& pro
                   });
 }
 
-void ReachGrid::flood(std::size_t seed, Label label, const std::vector<std::uint8_t>& is_blocked) {
+void ReachGrid::flood(std::size_t seed, Label label, std::vector<std::uint8_t>* is_free) {
+  std::vector<std::uint8_t>& free = *is_free;
   const auto rows = static_cast<std::size_t>(size_[1]);
   const auto row = static_cast<std::size_t>(size_[2]);
   const std::size_t plane = rows * row;
-  const auto is_free = [&](std::size_t i) { return labels_[i] == kUnset && is_blocked[i] == 0; };
   // Run by run along z; of each run beside one, a cell is put on the stack.
   stack_.assign(1, seed);
   while (!stack_.empty()) {
     std::size_t begin = stack_.back();
     stack_.pop_back();
-    if (!is_free(begin)) continue;
+    if (free[begin] == 0) continue;
     const std::size_t first = begin / row * row;
-    std::size_t end = begin + 1;
-    while (begin > first && is_free(begin - 1)) --begin;
-    while (end < first + row && is_free(end)) ++end;
-    std::fill(labels_.begin() + static_cast<std::ptrdiff_t>(begin),
-              labels_.begin() + static_cast<std::ptrdiff_t>(end), label);
+    const std::size_t end = first_of(0, free, begin, first + row);
+    while (begin > first && free[begin - 1] != 0) --begin;
+    std::fill_n(labels_.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, label);
+    std::fill_n(free.begin() + static_cast<std::ptrdiff_t>(begin), end - begin, std::uint8_t{0});
     const std::size_t y = first / row % rows;
     const std::size_t x = first / plane;
-    const auto look_beside = [&](std::ptrdiff_t shift) {
-      bool was_free = false;
-      for (std::size_t i = begin; i < end; ++i) {
-        const std::size_t beside = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(i) + shift);
-        const bool is_open = is_free(beside);
-        if (is_open && !was_free) stack_.push_back(beside);
-        was_free = is_open;
+    const auto look_from = [&](std::size_t from) {
+      const std::size_t to = from + (end - begin);
+      while ((from = first_of(1, free, from, to)) < to) {
+        stack_.push_back(from);
+        from = first_of(0, free, from, to);
       }
     };
-    if (y > 0) look_beside(-static_cast<std::ptrdiff_t>(row));
-    if (y + 1 < rows) look_beside(static_cast<std::ptrdiff_t>(row));
-    if (x > 0) look_beside(-static_cast<std::ptrdiff_t>(plane));
-    if (x + 1 < static_cast<std::size_t>(size_[0])) look_beside(static_cast<std::ptrdiff_t>(plane));
+    if (y > 0) look_from(begin - row);
+    if (y + 1 < rows) look_from(begin + row);
+    if (x > 0) look_from(begin - plane);
+    if (x + 1 < static_cast<std::size_t>(size_[0])) look_from(begin + plane);
   }
 }
 

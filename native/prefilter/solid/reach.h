@@ -52,7 +52,8 @@ class ReachGrid {
   static constexpr Label kUnset = 0xFFFF;
 
   void mark_met(const MeshView<std::int32_t>& mesh, const Progress& progress, int threads);
-  void flood(std::size_t seed, Label label, const std::vector<std::uint8_t>& is_blocked);
+  // Of the cells that are free, those that hang together with one; they are so no more.
+  void flood(std::size_t seed, Label label, std::vector<std::uint8_t>* is_free);
   void grow(int steps);
   template <typename Visit>
   void for_neighbors(std::size_t cell, const Visit& visit) const;

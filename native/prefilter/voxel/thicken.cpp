@@ -11,6 +11,7 @@
 #include "prefilter/spatial/triangle_point.h"
 #include "prefilter/voxel/combine.h"
 #include "prefilter/voxel/pinholes.h"
+#include "prefilter/voxel/slits.h"
 #include "prefilter/voxel/thin_places.h"
 #include "prefilter/wavelet/leaf_surface.h"
 #include "prefilter/wavelet/tree_builder.h"
@@ -236,11 +237,13 @@ TriangleMesh in_units(const RootTriangles& mesh, double count) {
   return result;
 }
 
+// In cells: of these the thickness is no more than usual, so that there are not very many pieces.
+double thickness_unit(double thickness) { return std::max(1.0, thickness / kUsualThickness); }
+
 // What is to be added to the octree, in cells of its depth.
 ThickPieces pieces_for(const RootTriangles& mesh, double thickness, const Octree& octree,
                        const Progress& progress, int threads) {
-  // Of these the thickness is no more than usual, so that there are not very many pieces.
-  const double unit = std::max(1.0, thickness / kUsualThickness);
+  const double unit = thickness_unit(thickness);
   const double count = std::ldexp(1.0, octree.depth) / unit;
   const TriangleMesh scaled = in_units(mesh, count);
   const auto occupancy = [&](const Vector3& point) {
@@ -264,6 +267,25 @@ ThickPieces pieces_for(const RootTriangles& mesh, double thickness, const Octree
   return found;
 }
 
+bool is_before(const ThinTriangle& a, const ThinTriangle& b) { return a.triangle < b.triangle; }
+
+// In order, and one of each triangle: what is the thinnest of it, and the area of all.
+void merge(std::vector<ThinTriangle>* all) {
+  std::stable_sort(all->begin(), all->end(), is_before);
+  std::size_t count = 0;
+  for (const ThinTriangle& one : *all) {
+    if (count == 0 || (*all)[count - 1].triangle != one.triangle) {
+      (*all)[count++] = one;
+      continue;
+    }
+    ThinTriangle& same = (*all)[count - 1];
+    const double area = same.area + one.area;
+    if (one.thickness < same.thickness) same = one;
+    same.area = area;
+  }
+  all->resize(count);
+}
+
 // The triangles above the pieces.
 std::vector<ThinTriangle> thin_triangles(const ThickPieces& found) {
   std::vector<ThinTriangle> all;
@@ -271,26 +293,10 @@ std::vector<ThinTriangle> thin_triangles(const ThickPieces& found) {
   for (const ThickPiece& piece : found.pieces) {
     all.push_back({piece.triangle, piece.thickness, 2.0 * piece.radius, piece.area});
   }
-  std::stable_sort(all.begin(), all.end(), [](const ThinTriangle& a, const ThinTriangle& b) {
-    return a.triangle < b.triangle;
-  });
-  std::size_t count = 0;
-  for (const ThinTriangle& one : all) {
-    if (count == 0 || all[count - 1].triangle != one.triangle) {
-      all[count++] = one;
-      continue;
-    }
-    ThinTriangle& same = all[count - 1];
-    const double area = same.area + one.area;
-    if (one.thickness < same.thickness) same = one;
-    same.area = area;
-  }
-  all.resize(count);
-  const auto is_before = [](const ThinTriangle& a, const ThinTriangle& b) {
-    return a.triangle < b.triangle;
-  };
+  merge(&all);
+  const auto count = static_cast<std::ptrdiff_t>(all.size());
   for (const Represented& other : found.others) {
-    const auto known = all.begin() + static_cast<std::ptrdiff_t>(count);
+    const auto known = all.begin() + count;
     const auto same = std::lower_bound(
         all.begin(), known, ThinTriangle{other.representative, 0.0, 0.0, 0.0}, is_before);
     if (same == known || same->triangle != other.representative) continue;
@@ -299,7 +305,7 @@ std::vector<ThinTriangle> thin_triangles(const ThickPieces& found) {
     if (!other.is_back) one.area = other.area;
     all.push_back(one);
   }
-  std::sort(all.begin(), all.end(), is_before);
+  merge(&all);
   return all;
 }
 
@@ -308,19 +314,26 @@ std::vector<ThinTriangle> thin_triangles(const ThickPieces& found) {
 void thicken(const RootTriangles& mesh, double thickness, const Progress& progress, int threads,
              Octree* octree) {
   const ThickPieces found = pieces_for(mesh, thickness, *octree, progress.part(0.0, 0.6), threads);
-  if (found.pieces.empty()) {
-    progress.report(1.0);
-    return;
+  CellTree thickened;
+  if (!found.pieces.empty()) {
+    const PieceRule rule(found.pieces, *octree);
+    Octree added;
+    added.bounds = octree->bounds;
+    added.depth = octree->depth;
+    added.cells = build_tree(rule.root(), octree->depth, rule, progress.part(0.6, 0.9), threads);
+    *octree = combine(*octree, added, SetOperation::kUnion, progress.part(0.9, 0.97), threads);
+    thickened = std::move(added.cells);
+    fill_pinholes(thickened, octree->depth, progress.part(0.97, 0.98), threads, &octree->cells);
   }
-  const PieceRule rule(found.pieces, *octree);
-  Octree added;
-  added.bounds = octree->bounds;
-  added.depth = octree->depth;
-  added.cells = build_tree(rule.root(), octree->depth, rule, progress.part(0.6, 0.9), threads);
-  *octree = combine(*octree, added, SetOperation::kUnion, progress.part(0.9, 0.99), threads);
-  fill_pinholes(added.cells, octree->depth, progress.part(0.99, 1.0), threads, &octree->cells);
-  octree->thickened = std::move(added.cells);
-  octree->thin = thin_triangles(found);
+  if (found.winding) {
+    open_slits(*found.winding, thickness_unit(thickness), thickened, octree->depth,
+               progress.part(0.98, 1.0), threads, &octree->cells);
+  }
+  if (!found.pieces.empty()) {
+    octree->thickened = std::move(thickened);
+    octree->thin = thin_triangles(found);
+  }
+  progress.report(1.0);
 }
 
 }  // namespace prefilter

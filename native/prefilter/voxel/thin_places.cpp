@@ -10,7 +10,6 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/spatial/triangle_pieces.h"
-#include "prefilter/spatial/winding_numbers.h"
 #include "prefilter/voxel/cube_keys.h"
 #include "prefilter/voxel/cube_table.h"
 #include "prefilter/voxel/inner_balls.h"
@@ -261,7 +260,8 @@ std::vector<Candidate> find_candidates(const MeshView<std::int32_t>& mesh,
                                &tasks[static_cast<std::size_t>(begin / kTrianglesPerTask)]);
         for (std::int64_t i = begin; i < end; ++i) {
           const std::uint32_t t = chosen.triangles[static_cast<std::size_t>(i)];
-          finder.add(mesh.corners(t), normals[t], chosen, static_cast<std::size_t>(i));
+          finder.add(chosen.corners(mesh, static_cast<std::size_t>(i)), normals[t], chosen,
+                     static_cast<std::size_t>(i));
         }
       });
   std::vector<Candidate> all;
@@ -307,15 +307,18 @@ ThickPieces thick_pieces(const MeshView<std::int32_t>& mesh, double thickness, c
       triangles.push_back(static_cast<std::uint32_t>(t));
     }
   }
-  Representatives chosen = find_representatives(mesh, normals, triangles);
+  Representatives chosen = find_representatives(
+      mesh, normals, triangles, [&](const auto& corners) { return bricks.may_meet(corners); });
   // What is across from others has its own direction: balls meet both faces of sheets.
   std::vector<std::uint32_t> facing = chosen.triangles;
+  facing.erase(std::unique(facing.begin(), facing.end()), facing.end());
   for (const Represented& other : chosen.others) {
     if (other.is_back) facing.push_back(other.triangle);
   }
   const InnerBalls balls(mesh, normals, facing, progress.part(0.2, 0.4), threads);
-  const WindingNumbers winding({mesh.positions, mesh.triangles}, progress.part(0.4, 0.5), threads);
-  const OuterSides outer(occupancy, winding);
+  result.winding = std::make_unique<const WindingNumbers>(InputMesh{mesh.positions, mesh.triangles},
+                                                          progress.part(0.4, 0.5), threads);
+  const OuterSides outer(occupancy, *result.winding);
   const std::vector<Candidate> candidates = find_candidates(
       mesh, normals, chosen, bricks, balls, outer, largest, progress.part(0.5, 0.95), threads);
   CubeTable<Place> places;

@@ -6,10 +6,12 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <vector>
 
 #include "prefilter/base/geometry.h"
 #include "prefilter/base/progress.h"
+#include "prefilter/spatial/winding_numbers.h"
 #include "prefilter/voxel/representatives.h"
 
 namespace prefilter {
@@ -23,10 +25,12 @@ struct ThickPiece {
   double area;             // of the triangle, that it is below
 };
 
-/// The pieces, and the triangles that are as thin as others.
+/// The pieces, the triangles that are as thin as others, and the mesh's winding numbers; these are
+/// missing where nothing of it is across from anything.
 struct ThickPieces {
   std::vector<ThickPiece> pieces;
   std::vector<Represented> others;
+  std::unique_ptr<const WindingNumbers> winding;
 };
 
 /// Pieces that, added to a closed mesh, make it as thick as `thickness` where it is thinner and in

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <random>
@@ -16,6 +18,7 @@
 #include "contour/mesh_checks.h"
 #include "prefilter/contour/blamed_loops.h"
 #include "prefilter/contour/facing.h"
+#include "prefilter/contour/feature_turning.h"
 #include "prefilter/contour/linked_loops.h"
 #include "prefilter/contour/loop_triangles.h"
 #include "prefilter/contour/merged_loops.h"
@@ -376,36 +379,48 @@ TEST(Facing, IsThatOfTheSamples) {
   EXPECT_EQ(turned_labels(samples).count(7), 1U);
 }
 
-// Loops in a row along the y axis, each beside the next.
-LinkedLoops row_of(std::size_t count) {
+// Loops in a row along the y axis, each beside the next, in two planes that meet there.
+struct Row {
   std::vector<Vector3> positions;
-  std::vector<SharpLoop> loops;
-  for (std::size_t i = 0; i <= count; ++i) {
-    positions.push_back({-0.5, static_cast<double>(i) - 0.5, 0.0});
-    positions.push_back({0.0, static_cast<double>(i) - 0.5, -0.5});
+  VertexSamples samples;
+  LinkedLoops loops;
+
+  explicit Row(std::size_t count) {
+    std::vector<SharpLoop> corners;
+    for (std::size_t i = 0; i <= count; ++i) {
+      positions.push_back({-0.5, static_cast<double>(i) - 0.5, 0.0});
+      positions.push_back({0.0, static_cast<double>(i) - 0.5, -0.5});
+    }
+    samples = samples_of(positions);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto v = static_cast<std::int32_t>(2 * i);
+      corners.push_back(loop_of({v, v + 2, v + 3, v + 1}));
+    }
+    for (std::size_t v = 0; v < positions.size(); ++v) {
+      samples.samples[v].label = static_cast<std::int32_t>(v % 2);
+      samples.samples[v].normal = v % 2 == 0 ? Vector3{0.0, 0.0, -1.0} : Vector3{-1.0, 0.0, 0.0};
+    }
+    loops = link_loops(corners, Wedge(), samples, Progress(), 1);
   }
-  VertexSamples samples = samples_of(positions);
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto v = static_cast<std::int32_t>(2 * i);
-    loops.push_back(loop_of({v, v + 2, v + 3, v + 1}));
-  }
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    samples.samples[v].label = static_cast<std::int32_t>(v % 2);
-  }
-  return link_loops(loops, Wedge(), samples, Progress(), 1);
+};
+
+std::vector<Feature> features_at(std::initializer_list<double> ys) {
+  std::vector<Feature> features;
+  for (const double y : ys) features.push_back({{0.0, y, 0.0}, {-1.0, y, -1.0}, {0, 1}, false});
+  return features;
 }
 
 TEST(RelaxedFeatures, AreInOrderAgain) {
-  const LinkedLoops loops = row_of(9);
+  const Row row(9);
+  const LinkedLoops& loops = row.loops;
   const Wedge wedge;
   const FeaturePlaces places(wedge);
-  std::vector<Feature> features;
-  for (const double y : {0.0, 1.0, 2.0, 4.2, 4.0, 3.8, 6.0, 7.0, 8.0}) {
-    features.push_back({{0.0, y, 0.0}, {0.0, y, 0.0}, {0, 1}, false});
-  }
-  const std::vector<Feature> before = features;
+  const std::vector<Feature> before = features_at({0.0, 1.0, 2.0, 4.2, 4.0, 3.8, 6.0, 7.0, 8.0});
+  std::vector<Feature> features = before;
   const Flags all(9, 1);
-  EXPECT_EQ(relax_features({4}, loops, all, places, &features),
+  const std::unordered_set<std::int32_t> none;
+  const FeatureTurning turning(loops, all, row.positions, row.samples, none, places, 1.0);
+  EXPECT_EQ(relax_features({4}, loops, all, places, turning, &features),
             (std::vector<std::size_t>{2, 3, 4, 5, 6}));
   for (std::size_t i = 1; i < 9; ++i) {
     EXPECT_LT(features[i - 1].position[1], features[i].position[1]) << i;
@@ -415,13 +430,45 @@ TEST(RelaxedFeatures, AreInOrderAgain) {
   // Corners stay, and so does what has one neighbor.
   features = before;
   features[3].is_corner = true;
-  relax_features({4}, loops, all, places, &features);
+  relax_features({4}, loops, all, places, turning, &features);
   EXPECT_EQ(features[3].position, before[3].position);
   features = before;
-  EXPECT_EQ(relax_features({0}, loops, all, places, &features),
+  EXPECT_EQ(relax_features({0}, loops, all, places, turning, &features),
             (std::vector<std::size_t>{0, 1, 2}));
   EXPECT_EQ(features[0].position, before[0].position);
-  EXPECT_TRUE(relax_features({}, loops, all, places, &features).empty());
+  EXPECT_TRUE(relax_features({}, loops, all, places, turning, &features).empty());
+}
+
+// From above, the side from (-0.5, 3.5) to (-0.3, 3.6) faces the y axis below 3.75 only.
+TEST(FeatureTurning, PutsTrianglesUpright) {
+  Row row(9);
+  row.positions[10] = {-0.3, 3.6, 0.0};
+  const Wedge wedge;
+  const FeaturePlaces places(wedge);
+  const Flags all(9, 1);
+  const std::vector<Feature> before = features_at({0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0});
+  const std::unordered_set<std::int32_t> none;
+  const FeatureTurning turning(row.loops, all, row.positions, row.samples, none, places, 1.0);
+  const std::optional<Vector3> found = turning.place(4, before);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR((*found)[1], 3.75 - 0.05 * std::sqrt(5.0) / 2.0, 1e-6);
+  EXPECT_EQ((*found)[0], 0.0);
+  for (const std::size_t i : {0, 1, 3, 5, 8}) EXPECT_FALSE(turning.place(i, before)) << i;
+  std::vector<Feature> features = before;
+  features[4].is_corner = true;
+  EXPECT_FALSE(turning.place(4, features));
+  features = before;
+  features[4].start = {-0.5, 4.0, -0.5};  // close to the edge
+  EXPECT_FALSE(turning.place(4, features));
+  features = before;
+  relax_features({4}, row.loops, all, places, turning, &features);
+  EXPECT_NEAR(features[4].position[1], (*found)[1], 1e-6);
+  // Seen from below, all but this one are upside down, and stay so.
+  for (SourcePoint& sample : row.samples.samples) sample.normal = -1.0 * sample.normal;
+  EXPECT_FALSE(turning.place(4, before));
+  const std::unordered_set<std::int32_t> both = {0, 1};
+  const FeatureTurning turned(row.loops, all, row.positions, row.samples, both, places, 1.0);
+  EXPECT_TRUE(turned.place(4, before));
 }
 
 }  // namespace
