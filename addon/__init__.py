@@ -51,14 +51,24 @@ with _collector_paused():
     from .core.keys import Keys
     from .core.registration import registration
     from .manual import Manual
-    from .mipmaps.gltf.hooks import glTF2_pre_export_callback, glTF2ExportUserExtension
-    from .mipmaps.gltf.panel import draw_export
+    from .mipmaps.gltf.hooks import (
+        glTF2_pre_export_callback,
+        glTF2ExportUserExtension,
+        glTF2ImportUserExtension,
+    )
+    from .mipmaps.gltf.panel import draw_export, draw_import
     from .preferences import OfSubjects
 
     _packages = [import_module(f".{name}", __package__) for name in SUBJECTS]
 
-__all__ = ("draw_export", "glTF2ExportUserExtension", "glTF2_pre_export_callback")
-# Blender's glTF exporter looks these names up.
+__all__ = (
+    "draw_export",
+    "draw_import",
+    "glTF2ExportUserExtension",
+    "glTF2ImportUserExtension",
+    "glTF2_pre_export_callback",
+)
+# Blender's glTF exporter and importer look these names up.
 
 register, unregister = registration(
     translations,

@@ -18,7 +18,10 @@ from pathlib import Path
 import bpy
 
 PACKAGE = "bl_ext.user_default.prefilter"
-ADDON = Path(__file__).resolve().parents[1] / "addon"
+ROOT = Path(__file__).resolve().parents[1]
+ADDON = ROOT / "addon"
+SHARED = ROOT / "native/python/prefilter/_work"
+"""What the add-on does as the package's command does it."""
 LABEL, TIP, TEXT, BUTTON = "label", "tip", "text", "button"
 _BASES = (
     *(bpy.types.Operator, bpy.types.Panel, bpy.types.Menu, bpy.types.PropertyGroup),
@@ -118,8 +121,8 @@ def untranslated() -> Iterator[str]:
 
 def nodes() -> Iterator[tuple[ast.AST, str]]:
     """Yields what the code of the add-on consists of, and where it stands."""
-    for path in sorted(ADDON.rglob("*.py")):
-        place = path.relative_to(ADDON)
+    for path in (*sorted(ADDON.rglob("*.py")), *sorted(SHARED.rglob("*.py"))):
+        place = path.relative_to(ADDON if path.is_relative_to(ADDON) else SHARED.parent)
         if place.parts[0] == "presets":
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):

@@ -3,7 +3,8 @@
 """Writes the tables of options in docs/ anew, from where the options are declared.
 
 A table stands between `<!-- options: NAME -->` and `<!-- end of options -->`. NAME is a dataclass
-of settings in the add-on, such as `mipmaps.choices.Settings`, or `command` and a command's name.
+of settings in the add-on, such as `mipmaps.choices.Settings`, or `command` and the name of a
+command in Blender, or `program` and that of one of the package.
 
 usage: scripts/run blender --background --python-exit-code 1 --python scripts/option_tables.py
 """
@@ -27,16 +28,19 @@ def table(name: str) -> str:
     """Returns a table in Markdown."""
     kind, _, command = name.partition(" ")
     if kind == "command":
-        return command_table(command)
+        addon = importlib.import_module(PACKAGE)
+        return command_table(addon.Commands(addon.SUBJECTS).parser(), command)
+    if kind == "program":
+        return command_table(
+            importlib.import_module("prefilter._command.program").parser(), command
+        )
     module, _, settings = name.rpartition(".")
     options = importlib.import_module(f"{PACKAGE}.core.options")
     return options.table(getattr(importlib.import_module(f"{PACKAGE}.{module}"), settings))
 
 
-def command_table(name: str) -> str:
+def command_table(parser: argparse.ArgumentParser, name: str) -> str:
     """Returns the arguments of a command as a table."""
-    addon = importlib.import_module(PACKAGE)
-    parser = addon.Commands(addon.SUBJECTS).parser()
     (commands,) = (a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
     rows = ["| Argument | Meaning |", "|---|---|"]
     for action in commands.choices[name]._actions:

@@ -35,6 +35,7 @@ class Fault:
         new: What stands there instead.
         native: The filter of the C++ tests; empty for none.
         python: Arguments of pytest, for tests of the package; empty for none.
+        blender: The same for tests inside Blender, of the add-on; empty for none.
     """
 
     file: str
@@ -42,6 +43,12 @@ class Fault:
     new: str
     native: str = ""
     python: str = ""
+    blender: str = ""
+
+    @property
+    def tests(self) -> str:
+        """Those that are to see it, whatever runs them."""
+        return self.native or self.python or self.blender
 
 
 def read_faults(path: Path = LIST) -> list[Fault]:
@@ -52,8 +59,8 @@ def read_faults(path: Path = LIST) -> list[Fault]:
     """
     faults = [Fault(**one) for one in tomllib.loads(path.read_text(encoding="utf-8"))["fault"]]
     for fault in faults:
-        if bool(fault.native) == bool(fault.python):
-            raise ValueError(f"{fault.file}: '{fault.old}' needs either native or python")
+        if [fault.native, fault.python, fault.blender].count("") != 2:
+            raise ValueError(f"{fault.file}: '{fault.old}' needs native, python or blender")
         if "\n" in fault.old + fault.new or not fault.old.strip() or fault.old == fault.new:
             raise ValueError(f"{fault.file}: '{fault.old}' is not one line that changes")
     return faults
@@ -97,6 +104,12 @@ def _build(targets: str) -> bool:
 def _tests_pass(fault: Fault) -> bool:
     if fault.native:
         command = f"build/release/tests/native/prefilter_tests --gtest_filter='{fault.native}'"
+    elif fault.blender:
+        command = (
+            "ensure_extension; (exec_with_blender blender --background --factory-startup "
+            "--python-exit-code 1 --python tests/blender/run.py -- "
+            f"-qx {fault.blender})"
+        )
     else:
         command = (
             "ensure_decoders $blender_tag; "
@@ -108,7 +121,7 @@ def _tests_pass(fault: Fault) -> bool:
     except subprocess.TimeoutExpired:
         return False
     if re.search(r"\b0 tests from|no tests ran", ran.stdout):
-        raise ValueError(f"{fault.file}: '{fault.native or fault.python}' has no test")
+        raise ValueError(f"{fault.file}: '{fault.tests}' has no test")
     return ran.returncode == 0
 
 
@@ -140,9 +153,9 @@ def main() -> int:
         check=True,
     )
     broken = []
-    for key in {(fault.native, fault.python): fault for fault in faults}.values():
+    for key in {(fault.native, fault.tests): fault for fault in faults}.values():
         if not _tests_pass(key):
-            broken.append(key.native or key.python)
+            broken.append(key.tests)
     if broken:
         print("these fail without a fault:", *broken, sep="\n  ")
         return 1

@@ -168,10 +168,19 @@ def keep(source: Mapping[str, Any], unpacked: Path, target: Path) -> None:
     (target / "LICENSE.txt").write_text(text)
 
 
+def has_all(source: Mapping[str, Any], target: Path) -> bool:
+    """Returns whether a folder has what the table keeps; an earlier table may have kept less."""
+    return target.exists() and all(
+        any(target.joinpath(folder).glob(pattern.rpartition("/")[2]))
+        for folder, patterns in source["kept"].items()
+        for pattern in patterns
+    )
+
+
 def ensure(name: str, source: Mapping[str, Any], cache: Path, mirror: str) -> None:
     """Makes a source's folder in the cache, unless it is there."""
     target = cache / name
-    if target.exists():
+    if has_all(source, target):
         return
     origin = source.get("debian") or source.get("archive") or source["crate"]
     print(f"prefilter: fetching {origin}", file=sys.stderr, flush=True)
@@ -184,6 +193,7 @@ def ensure(name: str, source: Mapping[str, Any], cache: Path, mirror: str) -> No
         ("cmake", "-E", "tar", "xf", archive.resolve()), cwd=work / "unpacked", check=True
     )
     keep(source, work / "unpacked", work / "kept")
+    shutil.rmtree(target, ignore_errors=True)
     (work / "kept").rename(target)
     shutil.rmtree(work)
 

@@ -18,6 +18,7 @@ _SEPARATED = {"Red": "red", "Green": "green", "Blue": "blue", "R": "red", "G": "
 _SEPARATED |= {"X": "red", "Y": "green", "Z": "blue"}
 _SEPARATING = frozenset({"SEPARATE_COLOR", "SEPRGB", "SEPXYZ"})
 _COMBINING = frozenset({"COMBINE_COLOR", "COMBRGB", "COMBXYZ"})
+_MIXING = frozenset({"MIX", "MIX_RGB"})
 _ORDER = ("red", "green", "blue")
 _OF_OTHER_NODES = {
     "NORMAL_MAP": ("Color", "Normal Map", "normal"),
@@ -104,11 +105,6 @@ def roughness(material: bpy.types.Material) -> list[Roughness]:
     return list(found)
 
 
-def feeds_normal_map(material: bpy.types.Material, image: bpy.types.Image) -> bool:
-    """Tells whether a Normal Map node of a material gets its color from an image."""
-    return any(role.use == "normal" and not role.is_factor for role in _of(material, image))
-
-
 def has_base_color_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
     """Tells whether a shader of a material gets its base color from an image.
 
@@ -132,6 +128,31 @@ def has_alpha_of(material: bpy.types.Material, image: bpy.types.Image) -> bool:
         role.use == "coverage" and role.channel == "alpha" and not role.is_factor
         for role in _of(material, image)
     )
+
+
+def shows_as_color(material: bpy.types.Material, image: bpy.types.Image) -> bool:
+    """Tells whether a shader of a material has an image as a color, and no other image there.
+
+    It may be multiplied by what is no image; what a ramp or other nodes make of its values is
+    another color.
+    """
+    for socket, groups, _, use in _inputs(material):
+        if use == "color" and image in _unchanged(socket, groups):
+            sources = _sources(socket, groups)
+            if {found for found, asked in sources if not asked.is_factor} == {image}:
+                return True
+    return False
+
+
+def _unchanged(socket: bpy.types.NodeSocket, groups: Groups) -> Iterator[bpy.types.Image]:
+    """Yields the images whose colors lead to a socket as they are, or are mixed there."""
+    for node, source, around in _before(socket, groups):
+        if node.type == "TEX_IMAGE" and node.image is not None and source.name == "Color":
+            yield node.image
+        elif node.type in _MIXING:
+            for input_ in node.inputs:
+                if input_.enabled and input_.name not in _FACTORS:
+                    yield from _unchanged(input_, around)
 
 
 def _of(material: bpy.types.Material, image: bpy.types.Image) -> Iterator[Role]:

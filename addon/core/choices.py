@@ -1,17 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may choose for an option, and how it is presented."""
+"""What a user may choose for an option, as items of Blender's properties."""
 
 import zlib
 from collections.abc import Mapping
-from typing import NamedTuple
 
+from prefilter._options.choices import Choice
 
-class Choice(NamedTuple):
-    """One value of an option."""
-
-    label: str
-    description: str
+__all__ = ("Choice", "flag_items", "items", "number_of")
 
 
 def items(choices: Mapping[str, Choice]) -> list[tuple[str, str, str, str, int]]:

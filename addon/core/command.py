@@ -2,90 +2,13 @@
 
 """What the commands share: options, progress, messages."""
 
-import argparse
-import os
-import signal
-import sys
-from collections.abc import Iterable, Sequence
-from typing import Any
+from prefilter._command.telling import ProgressLine, add_command, check_ending, done, tell, warn
 
-from .jobs import Work
-from .outcome import Outcome
-
-
-def add_command(commands: Any, name: str, purpose: str, *notes: str) -> argparse.ArgumentParser:
-    """Adds a command whose help ends in notes, which keep their lines."""
-    return commands.add_parser(
-        name,
-        help=purpose,
-        description=f"{purpose[0].upper()}{purpose[1:]}.",
-        epilog="\n\n".join(notes),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-
-
-def check_ending(options: argparse.Namespace, name: str, path: str, allowed: Sequence[str]) -> str:
-    """Returns the extension of a file; ends the program unless it is allowed."""
-    extension = os.path.splitext(path)[1].lower()
-    if extension not in allowed:
-        options.usage_error(f"{name}: found '{path}'; allowed: {', '.join(allowed)}")
-    return extension
-
-
-def done(work: Work) -> Outcome:
-    """Computes and writes, with a line of progress."""
-    progress = ProgressLine()
-    try:
-        work.compute(progress)
-        return work.write()
-    finally:
-        work.discard()
-        progress.end()
-
-
-def tell(outcome: Outcome) -> None:
-    """Prints what was done, and on stderr what the user should look at."""
-    warn(outcome.warnings)
-    for note in outcome.notes:
-        print(note)
-    print(outcome.summary)
-
-
-def warn(warnings: Iterable[str]) -> None:
-    """Prints warnings on stderr."""
-    for warning in warnings:
-        print(f"prefilter: warning: {warning}", file=sys.stderr)
-
-
-class ProgressLine:
-    """Shows progress on stderr: one line that changes on a terminal, else a line each quarter.
-
-    Ctrl-C has the work stop at its next report; a second one ends the program. Blender by itself
-    waits for the second one.
-    """
-
-    def __init__(self) -> None:
-        """Shows nothing yet."""
-        self._step = 1 if sys.stderr.isatty() else 25
-        self._shown = -1
-        self._is_stopped = False
-        signal.signal(signal.SIGINT, self._stop)
-
-    def __call__(self, fraction: float) -> bool:
-        """Shows how much is done, and says whether to go on."""
-        percent = int(100 * fraction) // self._step * self._step
-        if percent > self._shown:
-            self._shown = percent
-            line = f"prefilter: {percent:3d} %"
-            print(line, end="\r" if self._step == 1 else "\n", file=sys.stderr, flush=True)
-        return not self._is_stopped
-
-    def end(self) -> None:
-        """Leaves the line."""
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        if self._step == 1 and self._shown >= 0:
-            print(file=sys.stderr)
-
-    def _stop(self, *_: object) -> None:
-        self._is_stopped = True
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
+__all__ = (
+    "ProgressLine",
+    "add_command",
+    "check_ending",
+    "done",
+    "tell",
+    "warn",
+)

@@ -6,44 +6,14 @@ import os
 import threading
 import time
 from collections.abc import Callable, Sequence
-from typing import Generic, Protocol, TypeVar, cast
+from typing import Generic, TypeVar, cast
 
 import prefilter
+from prefilter._work.progress import Progress, Work, go_on, parts, share
 
-from .outcome import Outcome
+__all__ = ("Job", "Progress", "Work", "at_once", "go_on", "parts", "share")
 
 T = TypeVar("T")
-Progress = Callable[[float], bool]
-"""Gets the fraction done, in [0, 1]; returns False once the work should stop."""
-
-
-class Work(Protocol):
-    """Work on what was read from Blender."""
-
-    def compute(self, progress: Progress) -> None:
-        """Computes everything, and writes nothing; may run in another thread."""
-
-    def write(self) -> Outcome:
-        """Writes the results."""
-
-    def discard(self) -> None:
-        """Removes what is left of results that were not written."""
-
-
-def go_on(progress: Progress, fraction: float) -> None:
-    """Tells how much is done; raises prefilter.Cancelled if that was to be the end."""
-    if not progress(fraction):
-        raise prefilter.Cancelled("cancelled")
-
-
-def share(progress: Progress, start: float, end: float) -> Progress:
-    """Returns what reports the progress of a part of the work, from one fraction to another."""
-    return lambda fraction: progress(start + (end - start) * fraction)
-
-
-def parts(progress: Progress, count: int) -> list[Progress]:
-    """Returns what reports the progress of each of several equal parts of the work."""
-    return [share(progress, i / count, (i + 1) / count) for i in range(count)]
 
 
 def at_once(works: Sequence[Callable[[Progress], None]], progress: Progress, threads: int) -> None:

@@ -24,6 +24,8 @@ from .wording import listed
 if TYPE_CHECKING:
     import argparse
 
+    from prefilter._command.host import Host
+
 Settings = TypeVar("Settings")
 
 _ROOM = "prefilter"
@@ -228,6 +230,28 @@ def settings_given(
     named = values_named(options, kind).items()
     found = {name: value for name, value in named if name in names}
     return flags.settings_given(options, settings, **found | flags.given(options, settings) | more)
+
+
+def host(kind: Kind, **more: Any) -> "Host":
+    """Returns what commands with presets of a kind know of Blender.
+
+    Args:
+        kind: That of the presets.
+        more: More of it, such as `read`.
+    """
+    from prefilter._command.host import Host
+
+    from .flags import PREFERRED
+
+    return Host(
+        add_preset=add_flag,
+        preset=lambda options: values_named(options, kind),
+        settings=lambda options, settings, **found: settings_given(
+            options, kind, settings, **found
+        ),
+        preferred=PREFERRED,
+        **more,
+    )
 
 
 def _plain(name: str) -> str:

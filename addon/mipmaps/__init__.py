@@ -12,7 +12,7 @@ MANUAL = {
         *("bake", "bake_mipmaps", "bake_model", "model", "remove_levels"),
         *("export_mipmaps", "export_model"),
     ),
-    "engines": ("gltf",),
+    "engines": ("gltf", "gltf_import"),
     "view": (
         *("view", "preview_levels", "end_preview", "plot_error"),
         *("preview_on_model", "end_model_preview"),

@@ -6,51 +6,24 @@ The operator and the command are two ways to call this.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
-from pathlib import Path
 from typing import Protocol
 
 import numpy as np
+from prefilter._work.mipmaps import levels, stretching
+from prefilter._work.mipmaps.outputs import Outputs, staged, summary
 
-from ..bridge import images
-from ..bridge.files import engines, textures
 from ..bridge.files.staging import StagedFile, commit_all
 from ..bridge.images import FloatArray, Picture
 from ..bridge.level_images import StagedLevels, level_name, stage_levels
 from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
-from ..core.wording import Sentence, counted, joined, listed, together
-from . import frames, levels, lookups
-from .choices import CONTENTS, FILTERS, Settings
-from .contents import Roughness
+from ..core.wording import Sentence, listed
+from . import frames
 from .source import Source, without_pixels
 
 _FILTERED = 0.9  # What the progress is once the levels are filtered.
-_FIRST_FILTERED = 0.6  # The same where they are then compared with others.
-
-
-@dataclass(frozen=True)
-class Outputs:
-    """What a bake makes beside level images.
-
-    Attributes:
-        target: The file of the levels; None for none.
-        roughness: The roughness whose levels are baked, too; None for none.
-        roughness_target: The file of its levels; None for none.
-        writes_image: Whether the image's own levels are written, and not only those of its
-            roughness.
-    """
-
-    target: Path | None
-    roughness: Roughness | None = None
-    roughness_target: Path | None = None
-    writes_image: bool = True
-
-    @property
-    def targets(self) -> list[Path]:
-        """The files."""
-        return [one for one in (self.target, self.roughness_target) if one is not None]
 
 
 class Bake:
@@ -87,6 +60,11 @@ class Bake:
         return self.source.objects
 
     @property
+    def notes(self) -> Sequence[str]:
+        """What is good to know of what was computed."""
+        return self._notes
+
+    @property
     def staged_files(self) -> Sequence[StagedFile]:
         """The finished files, beside their targets."""
         return self._staged
@@ -100,7 +78,15 @@ class Bake:
             OSError: The file cannot be written.
         """
         go_on(progress, 0.0)
-        made, rough = self._filtered(progress)
+        self._outputs, told = stretching.stretch(self.source, self._outputs, progress)
+        self._notes += told
+        made, rough, note = levels.filtered(
+            self.source,
+            self._outputs.roughness,
+            share(progress, 0.0, _FILTERED),
+            all_levels=bool(self._outputs.targets),
+        )
+        self._notes += [note] if note else []
         try:
             self._stage(made, rough, partial(go_on, progress, _FILTERED))
             go_on(progress, 1.0)
@@ -108,29 +94,12 @@ class Bake:
             self.discard()
             raise
 
-    def _filtered(self, progress: Progress) -> tuple[list[FloatArray], list[FloatArray]]:
-        """Returns the levels of the image and of its roughness; notes what heeding seams did."""
-        source, outputs = self.source, self._outputs
-        heeds_seams = levels.heeds_seams(source)
-        end = _FIRST_FILTERED if heeds_seams else _FILTERED
-        with source.naming_objects():
-            made, rough = levels.above_0(
-                source,
-                outputs.roughness,
-                share(progress, 0.0, end),
-                all_levels=bool(outputs.targets),
-            )
-            if heeds_seams:
-                note = levels.seam_note(source, made, share(progress, end, _FILTERED))
-                self._notes += [note] if note else []
-        return made, rough
-
     def _stage(
         self, made: list[FloatArray], rough: list[FloatArray], check: Callable[[], None]
     ) -> None:
         """Stages the files, and keeps the levels as level images hold them."""
         source, outputs = self.source, self._outputs
-        stage = partial(_staged, settings=source.settings, wrap=source.wrap, check=check)
+        stage = partial(staged, settings=source.settings, wrap=source.wrap, check=check)
         texture_format = source.settings.texture_format
         files, self._levels = stage(source.picture, made, outputs.target, texture_format)
         self._staged += files
@@ -170,16 +139,16 @@ class Bake:
     def finish(self) -> Outcome:
         """Puts the level images into place; the files are there already."""
         names: list[str] = []
-        for staged in self._staged_levels:
-            made = staged.commit()
+        for images in self._staged_levels:
+            made = images.commit()
             names += made
-            base = staged.picture.name
+            base = images.picture.name
             if any(name != level_name(base, i) for i, name in enumerate(made, start=1)):
                 self.warnings.append(Sentence("the level images are named {}", listed(made)))
         self._staged_levels.clear()
         self.discard()
         return Outcome(
-            summary(self.source, self._outputs, names),
+            summary(self.source, self._outputs, names, frames.averaged(self.source.settings)),
             images=names,
             files=[str(target) for target in self._outputs.targets],
             warnings=self.warnings,
@@ -200,74 +169,10 @@ class Bake:
         """Removes what was staged, if it was not put into place."""
         for file in self._staged:
             file.discard()
-        for staged in self._staged_levels:
-            staged.discard()
+        for images in self._staged_levels:
+            images.discard()
         self._staged.clear()
         self._staged_levels.clear()
-
-
-def _staged(
-    picture: Picture,
-    made: list[FloatArray],
-    target: Path | None,
-    texture_format: str,
-    *,
-    settings: Settings,
-    wrap: tuple[str, str],
-    check: Callable[[], None],
-) -> tuple[list[StagedFile], list[FloatArray]]:
-    """Stages a file of an image and its levels; returns these as level images hold them, too."""
-    stored: list[FloatArray] = []
-    if settings.use_images or (target is not None and textures.is_stored(target)):
-        stored = [images.encoded(picture, level, check) for level in made]
-    files: list[StagedFile] = []
-    threads = settings.threads
-    if target is not None and engines.is_for_engines(target):
-        linear = images.scene_linear(picture, check)
-        files += engines.stage(
-            target,
-            picture,
-            [linear, *made],
-            [picture.stored, *stored],
-            texture_format,
-            check,
-            supercompression=settings.supercompression,
-            threads=threads,
-        )
-    elif target is not None:
-        files.append(textures.stage(target, picture, made, stored, wrap, check, threads=threads))
-    return files, stored[: settings.levels - 1 if settings.levels else None]
-
-
-def summary(source: Source, outputs: Outputs, names: Sequence[str]) -> str:
-    """Returns a line that says what was baked, over what, and into which images and files.
-
-    Args:
-        source: The image.
-        outputs: What was to be made.
-        names: The level images that were made.
-    """
-    name, settings = source.image_name, source.settings
-    baked = Sentence("Baked '{}'", name)
-    if not outputs.writes_image:
-        assert outputs.roughness is not None
-        rough = outputs.roughness.picture.name
-        baked = Sentence("Baked '{}', the roughness of '{}',", rough, name)
-    elif source.content not in {"color", "data"}:
-        label = Sentence(CONTENTS[source.content].label)
-        baked = Sentence("Baked '{}' as {}", name, label)
-    parts = [Sentence("{} with {}", baked, Sentence(FILTERS[settings.filter].label))]
-    if source.objects:
-        parts.append(Sentence("over {}", counted(set(source.objects), "object")))
-        if settings.use_frames:
-            parts.append(Sentence("at {}", counted(frames.chosen(settings), "frame")))
-    if source.footprint:
-        parts.append(lookups.described(source.footprint, fits=source.fits_views))
-    results: list[str] = [counted(names, "level image")] if names else []
-    results += map(textures.shown, outputs.targets)
-    if not results:
-        return Sentence("{}; it has no further level", joined(" ", parts))
-    return joined(" ", [*parts, Sentence("into {}", together(results))])
 
 
 class Writable(Protocol):

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import bpy
+from prefilter._work.files import textures
 
 from ..bridge import images
-from ..bridge.files import textures
 from . import udim
 from .choices import FILE_FORMATS
 
@@ -99,7 +99,7 @@ def paths(
     """
     if not pattern.text:
         return [""] * len(chosen)
-    taken = {one for path in (*sources, *_files_of_images()) for one in _identities(path)}
+    taken = {one for path in (*sources, *source_files()) for one in _identities(path)}
     found: list[str] = []
     for image in chosen:
         name, number = name_of(image), 1
@@ -122,7 +122,8 @@ def _written(path: str, tiles: Sequence[int]) -> Iterator[Path]:
         yield from textures.written(Path(os.path.realpath(one)))
 
 
-def _files_of_images() -> Iterator[Path]:
+def source_files() -> Iterator[Path]:
+    """Yields the files that the images of this .blend file are read from."""
     for image in bpy.data.images:
         path = bpy.path.abspath(image.filepath, library=image.library)
         if image.source == "TILED":

@@ -48,6 +48,11 @@ def surfaces_over(
     return found
 
 
+def averaged(settings: Settings) -> Sequence[int]:
+    """Returns the frames that a bake is an average of; none where it is of the current one."""
+    return chosen(settings) if settings.use_frames else ()
+
+
 def chosen(settings: Settings) -> range:
     """Returns the frames to average over; raises ValueError if there are none."""
     if settings.frame_end < settings.frame_start:

@@ -22,7 +22,9 @@ from .choices import (
 from .importance import suggested_names
 
 _FRAMES = ("use_frames", "frame_start", "frame_end", "frame_step")
-_OF_FILES = ("texture_format", "supercompression")
+_OF_FILES = ("texture_format", "supercompression", "use_multiples_of_4")
+_OF_ANY_SIDES = ("rgba", "etc2", "eac", "astc")
+"""How the names of formats begin whose readers take any number of texels."""
 BAKE = presets.Kind("bake", "prefilter_bake", [(ResultSettings, ()), (Settings, _FRAMES)])
 MODEL = presets.Kind(
     "model", "prefilter_model", [(ModelSettings, ()), (Settings, {*NOT_OF_MODELS, *_FRAMES})]
@@ -184,11 +186,14 @@ def _draw_result(settings: Any, layout: bpy.types.UILayout) -> None:
 
 def _draw_compression(settings: Any, layout: bpy.types.UILayout) -> None:
     """Draws what some formats of files have a choice of."""
-    from ..bridge.files import engines
+    from prefilter._work.files import engines
 
     ending = f".{settings.file_format}"
     if engines.has_formats(ending):
         layout.prop(settings, "texture_format")
+        row = layout.row()
+        row.active = not settings.texture_format.startswith(_OF_ANY_SIDES)
+        row.prop(settings, "use_multiples_of_4")
     if engines.has_supercompression(ending):
         layout.prop(settings, "supercompression")
 

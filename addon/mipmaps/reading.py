@@ -7,18 +7,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
-import prefilter
+from prefilter._work.files import engines, textures
+from prefilter._work.mipmaps import checks, contents
+from prefilter._work.mipmaps.checks import Rough
+from prefilter._work.mipmaps.outputs import Outputs
 
 from ..bridge import image_roles, images, meshes
-from ..bridge.files import engines, textures
 from ..bridge.images import Picture
 from ..core.doing import read_at_once
 from ..core.options import check
 from ..core.wording import Sentence, listed
-from . import blocks, contents, frames, udim
-from .bake import Bake, Outputs
+from . import frames, udim
+from .bake import Bake
 from .choices import TEXTURE_SPACE_FILTERS, Settings
-from .source import on_surfaces, reads_encoded
+from .model import decisions, plan
+from .source import on_surfaces
 
 
 class NoSurfaceError(ValueError):
@@ -45,7 +48,7 @@ class Request:
         depsgraph: The evaluated dependency graph.
         all_faces: See `meshes.image_surfaces`.
         needs_surface: Whether a surface is needed for any filter.
-        roughness_texture_format: That of the file of the roughness; by default `roughness_format`.
+        roughness_texture_format: That of the file of the roughness; by default that of `checks`.
         may_lose_channels: See `engines.checked`.
         writes_image: Whether the image itself is baked; else only the roughness that it is the
             normal map of, for the surfaces of that.
@@ -71,27 +74,18 @@ class Level0:
         pictures: Of its tiles, or the one of an image without.
         targets: The files of the tiles, or of the image; none for no file.
         content: What it holds, a key of `choices.CONTENTS` and not "auto".
+        threshold: Of the alpha test of a cut-out.
         is_encoded: Whether the image is to be decoded, whatever it holds.
+        told: What a user should know of the content.
     """
 
     numbers: list[int]
     pictures: list[Picture]
     targets: list[Path]
     content: str
+    threshold: float
     is_encoded: bool
-
-
-@dataclass(frozen=True)
-class Rough:
-    """The roughness of a normal map.
-
-    Attributes:
-        roughness: What was read of it; None for none.
-        target: Its file; None for none.
-    """
-
-    roughness: contents.Roughness | None = None
-    target: Path | None = None
+    told: tuple[str, ...] = ()
 
 
 def read(request: Request) -> Bake | udim.TiledBake:
@@ -120,7 +114,7 @@ def reading(request: Request) -> Generator[float, None, Bake | udim.TiledBake]:
     level_0 = read_level_0(request)
     yield 0.0
     request = with_format(request, level_0)
-    told = told_of_files(request, level_0)
+    told = [*level_0.told, *told_of_files(request, level_0)]
     rough = read_roughness(request, level_0)
     told += told_of_roughness(request, rough)
     yield 0.0
@@ -141,10 +135,14 @@ def read_level_0(request: Request) -> Level0:
     for picture in pictures:
         _check_levels(picture, settings.levels)
     used_by = meshes.materials_of_objects(request.objects)
-    is_normal_map = any(image_roles.feeds_normal_map(material, image) for material in used_by)
     if any(image_roles.has_alpha_of(material, image) for material in used_by):
         pictures = [replace(picture, covers=True) for picture in pictures]
-    content = contents.resolved(settings.content, pictures[0], is_normal_map=is_normal_map)
+    content, threshold, told = settings.content, settings.threshold, list[str]()
+    if content == "auto":
+        item = plan.said_of(image, used_by)
+        decision = decisions.decided(item, pictures[0])
+        content, threshold = decision.content, item.threshold
+        told += [f"image '{image.name}' {decision.note}"] if decision.note else []
     is_encoded = pictures[0].encoding is not images.Encoding.NONE
     pictures = [contents.as_content(picture, content) for picture in pictures]
     if content == "cutout":
@@ -155,14 +153,14 @@ def read_level_0(request: Request) -> Level0:
             f"Roughness: '{settings.roughness}' cannot be used, because '{image.name}' has "
             "UDIM tiles"
         )
-    return Level0(numbers, pictures, targets, content, is_encoded)
+    return Level0(numbers, pictures, targets, content, threshold, is_encoded, tuple(told))
 
 
 def with_format(request: Request, level_0: Level0) -> Request:
     """Returns the request with a format of texels in the place of "blocks"."""
     if request.settings.texture_format != "blocks":
         return request
-    chosen = _blocks(level_0.pictures, level_0.content)
+    chosen = checks.suiting_blocks(level_0.pictures, level_0.content)
     settings = replace(request.settings, texture_format=chosen)
     return replace(request, settings=settings, may_lose_channels=True)
 
@@ -170,7 +168,7 @@ def with_format(request: Request, level_0: Level0) -> Request:
 def told_of_files(request: Request, level_0: Level0) -> list[str]:
     """Returns what the files cannot hold of the image; raises ValueError where that is too much."""
     settings = request.settings
-    threshold = settings.threshold if level_0.content == "cutout" else None
+    threshold = level_0.threshold if level_0.content == "cutout" else None
     return [
         note
         for picture, target in zip(level_0.pictures, level_0.targets, strict=False)
@@ -180,6 +178,7 @@ def told_of_files(request: Request, level_0: Level0) -> list[str]:
             settings.texture_format,
             threshold,
             may_lose_channels=request.may_lose_channels,
+            is_stretched=settings.use_multiples_of_4,
         )
     ]
 
@@ -193,6 +192,7 @@ def told_of_roughness(request: Request, rough: Rough) -> list[str]:
         rough.target,
         rough.roughness.texture_format,
         may_lose_channels=request.may_lose_channels,
+        is_stretched=request.settings.use_multiples_of_4,
     )
 
 
@@ -219,7 +219,8 @@ def bake_of(
     request: Request, level_0: Level0, rough: Rough, found: meshes.ImageSurfaces
 ) -> Bake | udim.TiledBake:
     """Returns the bake of what was read."""
-    settings, content, pictures = request.settings, level_0.content, level_0.pictures
+    content, pictures = level_0.content, level_0.pictures
+    settings = replace(request.settings, threshold=level_0.threshold)
     if level_0.numbers:
         tiles, warnings = udim.tiles(
             request.image.name, pictures, level_0.numbers, found, settings, level_0.targets
@@ -234,47 +235,29 @@ def bake_of(
     return Bake(on_surfaces(pictures[0], found, settings, content), outputs)
 
 
-def odd_uses(request: Request, level_0: Level0, rough: Rough) -> list[str]:
-    """Returns warnings of settings that do not go with the image, or with each other."""
-    settings, picture, told = request.settings, level_0.pictures[0], []
-    if level_0.content == "normal" and level_0.is_encoded:
-        told.append(
-            f"image '{request.image.name}' has the color space {picture.colorspace}; "
-            "shaders read normals correctly only in Non-Color"
-        )
-    if settings.reader != "linear":
-        told.extend(_odd_readers(picture, level_0.targets))
-        if settings.lookups in {"one-lookup", "anisotropic", "views"} and reads_encoded(picture):
-            told.append(
-                "Lookups: readers of encoded texels are always supersampled, so "
-                f"'{picture.name}' is baked for that"
-            )
-    if settings.roughness and rough.roughness is None:
-        told.append(
-            f"Roughness: '{settings.roughness}' is not used, because '{request.image.name}' "
-            "is not a normal map"
-        )
-    return told
-
-
-def _blocks(pictures: Sequence[Picture], content: str) -> str:
-    """Returns the format that suits an image; of several tiles, one that suits them all."""
-    return blocks.suiting_all(
-        blocks.suiting(one, content, reads_alpha=one.shape[2] == 4) for one in pictures
+def read_roughness(request: Request, level_0: Level0) -> Rough:
+    """Copies the roughness of a normal map, and checks what its settings say of it."""
+    settings = request.settings
+    return checks.roughness_of(
+        settings,
+        level_0.pictures[0],
+        level_0.content,
+        level_0.targets,
+        lambda: images.read(images.find(settings.roughness)),
+        request.roughness_texture_format,
     )
 
 
-def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:
-    """Returns warnings where nothing that is baked is read as encoded."""
-    if not reads_encoded(picture):
-        return [
-            f"Reader: '{picture.name}' is not an 8-bit sRGB image, so it is read as linear light"
-        ]
-    return [
-        f"Reader: '{target}' is read as linear light, but its levels are for encoded texels"
-        for target in targets
-        if target.suffix.lower() in {".exr", ".dds", ".ktx2"}
-    ]
+def odd_uses(request: Request, level_0: Level0, rough: Rough) -> list[str]:
+    """Returns warnings of settings that do not go with the image, or with each other."""
+    return checks.odd_uses(
+        request.settings,
+        level_0.pictures[0],
+        level_0.content,
+        level_0.targets,
+        rough,
+        is_encoded=level_0.is_encoded,
+    )
 
 
 def _check_levels(picture: Picture, levels: int) -> None:
@@ -282,48 +265,6 @@ def _check_levels(picture: Picture, levels: int) -> None:
     full = max(width, height).bit_length()
     if levels > full:
         raise ValueError(f"Levels: found {levels}; an image of {width} x {height} has 1 to {full}")
-
-
-def read_roughness(request: Request, level_0: Level0) -> Rough:
-    """Copies the roughness of a normal map, and checks what its settings say of it."""
-    settings = request.settings
-    if not settings.roughness:
-        if settings.roughness_filepath:
-            raise ValueError(Sentence("Roughness File: choose a Roughness image too"))
-        return Rough()
-    if level_0.content != "normal":
-        if settings.content == "auto":
-            return Rough()
-        raise ValueError(
-            f"Roughness: '{settings.roughness}' needs a normal map, and the content is "
-            f"'{level_0.content}'"
-        )
-    if not settings.use_images and not settings.roughness_filepath:
-        raise ValueError(
-            Sentence("nothing to write the roughness to: choose level images or a Roughness File")
-        )
-    target = None
-    if settings.roughness_filepath:
-        target = textures.check_target(settings.roughness_filepath)
-        if target in level_0.targets:
-            raise ValueError(f"Roughness File: '{target}' is the file of the normal map")
-    picture = images.read(images.find(settings.roughness))
-    contents.check_roughness(level_0.pictures[0], picture)
-    chosen = request.roughness_texture_format or roughness_format(settings, picture)
-    linear = images.scene_linear(picture)
-    return Rough(contents.Roughness(picture, linear, settings.roughness_channel, chosen), target)
-
-
-def roughness_format(settings: Settings, picture: Picture) -> str:
-    """Returns the format of the roughness file: that of the normal map, unless channels lack."""
-    chosen = prefilter.TEXEL_FORMATS.get(settings.texture_format)
-    if chosen is None or chosen.channels > 2:
-        return settings.texture_format
-    if settings.roughness_channel == "all":
-        return "bc4" if chosen.is_in_dds else "eac-r11"
-    if chosen.is_in_dds:
-        return "bc7"
-    return "etc2-rgba" if picture.stored.shape[2] == 4 else "etc2-rgb"
 
 
 def _no_surface(

@@ -1,169 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""An image on its surfaces, as it was read: what levels are computed of, on any thread."""
+"""An image on its surfaces in Blender: what levels are computed of, on any thread."""
 
-import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
-from functools import partial
+from collections.abc import Sequence
 
-import numpy as np
-import prefilter
+from prefilter._work.mipmaps.source import Source, reads_encoded, without_pixels
 
-from ..bridge import images, materials, meshes
-from ..bridge.images import FloatArray, Picture
-from ..core.jobs import Progress, go_on, share
-from ..core.wording import listed
-from . import lookups
+from ..bridge import materials, meshes
+from ..bridge.images import Picture
 from .choices import Settings
 
-_LIMITS = {"unit": (0.0, 1.0), "positive": (0.0, None), "none": None}
-
-
-@dataclass
-class Source:
-    """An image and the surfaces that it is mapped on; no Blender data.
-
-    Attributes:
-        picture: The pixels of the image.
-        surfaces: The surfaces.
-        objects: The name of the object that each surface comes from.
-        settings: What is to be made of it.
-        content: A key of `choices.CONTENTS`, and not "auto".
-        wrap: What lookups read outside of the image along u and v.
-        warnings: What a user should know about it.
-    """
-
-    picture: Picture
-    surfaces: list[prefilter.Surface]
-    objects: Sequence[str]
-    settings: Settings
-    content: str
-    wrap: tuple[str, str]
-    warnings: list[str] = field(default_factory=list)
-
-    @property
-    def image_name(self) -> str:
-        """The name of the image."""
-        return self.picture.name
-
-    @property
-    def threads(self) -> int:
-        """How many threads to use; 0 for all."""
-        return self.settings.threads
-
-    @property
-    def reader(self) -> str:
-        """How the levels are looked up, as `prefilter.mipmaps` names it."""
-        return self.settings.reader if reads_encoded(self.picture) else "linear"
-
-    @property
-    def footprint(self) -> float:
-        """The texels of a level that a pixel covers, as `prefilter.mipmaps` takes it."""
-        return self.footprint_of(self.settings.filter)
-
-    @property
-    def fits_views(self) -> bool:
-        """Whether levels are fitted to what pixels show of the objects."""
-        return lookups.fits_views(self.settings, self.content, self.reader, self.objects)
-
-    def footprint_of(self, filter: str) -> float:
-        """Returns `footprint` for another filter."""
-        if self.fits_views and filter == self.settings.filter:
-            return lookups.BEFORE_VIEWS
-        return lookups.footprint(self.settings, filter, self.reader)
-
-    def bounds(self, texels: images.Texels) -> tuple[float | None, float | None] | None:
-        """Returns the range of the levels of texels."""
-        if self.settings.bounds != "auto":
-            return _LIMITS[self.settings.bounds]
-        if texels.dtype == np.uint8:
-            return _LIMITS["unit"]
-        return images.automatic_bounds(texels, is_integer=self.picture.is_integer)
-
-    def linear(self, progress: Progress) -> FloatArray:
-        """Returns the image's scene-linear values; raises what `filtered` does."""
-        return images.scene_linear(self.picture, partial(go_on, progress, 0.0))
-
-    def filtered(
-        self,
-        linear: FloatArray,
-        filter: str,
-        progress: Progress,
-        *,
-        levels: int | None = None,
-        seam_budget: float | None = None,
-        footprint: float | None = None,
-    ) -> list[FloatArray]:
-        """Returns scene-linear levels with any filter.
-
-        Args:
-            linear: What `linear` returned.
-            filter: A key of `FILTERS`.
-            progress: Called with the fraction done.
-            levels: How many, the image itself included; None for all.
-            seam_budget: See `prefilter.mipmaps`; None for that of the settings.
-            footprint: See `prefilter.mipmaps`; None for that of the settings.
-
-        Raises:
-            prefilter.Cancelled: `progress` returned False.
-            ValueError: The library refuses the image or the surfaces.
-        """
-        fits = self.fits_views and seam_budget is None and footprint is None
-        if seam_budget is None:
-            seam_budget = self.settings.seam_budget / 100.0
-        if footprint is None:
-            footprint = self.footprint_of(filter)
-        with self.naming_objects():
-            made = prefilter.mipmaps(
-                linear,
-                self.surfaces or None,
-                filter=filter,
-                wrap=self.wrap,
-                bounds=self.bounds(linear),
-                levels=levels,
-                premultiplied=not self.picture.alpha_is_straight,
-                reader=self.reader,
-                seam_budget=seam_budget,
-                footprint=footprint,
-                progress=share(progress, 0.0, 0.2) if fits else progress,
-                threads=self.settings.threads,
-            )
-        if not fits or filter != self.settings.filter:
-            return made
-        return self.fitted_to_views(made, self.bounds(linear), share(progress, 0.2, 1.0))
-
-    def fitted_to_views(
-        self,
-        levels: list[FloatArray],
-        bounds: tuple[float | None, float | None] | None,
-        progress: Progress,
-    ) -> list[FloatArray]:
-        """Returns levels, with level 0, that go on from others; see `fits_views`."""
-        with self.naming_objects():
-            return prefilter.fit_to_views(
-                levels,
-                self.surfaces,
-                wrap=self.wrap,
-                bounds=bounds,
-                premultiplied=not self.picture.alpha_is_straight,
-                progress=progress,
-                threads=self.settings.threads,
-            )
-
-    @contextmanager
-    def naming_objects(self) -> Iterator[None]:
-        """Puts objects in the place of surfaces in the library's messages."""
-        try:
-            yield
-        except ValueError as error:
-            raise ValueError(_naming_objects(str(error), self.objects)) from error
-
-    def let_pixels_go(self) -> None:
-        """Frees the memory of the image and of the surfaces."""
-        self.picture = without_pixels(self.picture)
-        self.surfaces = []
+__all__ = ("Source", "chosen_wrap", "on_surfaces", "reads_encoded", "without_pixels")
 
 
 def on_surfaces(
@@ -191,25 +38,3 @@ def chosen_wrap(settings: Settings, extensions: Sequence[str]) -> tuple[tuple[st
                 f"filtered as '{wrap}'"
             )
     return (wrap, wrap if settings.wrap_v == "same" else settings.wrap_v), told
-
-
-def without_pixels(picture: Picture) -> Picture:
-    """Returns the picture without the memory of its pixels."""
-    return replace(picture, texels=np.empty((0, 0, 4), np.float32))
-
-
-def reads_encoded(picture: Picture) -> bool:
-    """Tells whether there are renderers that interpolate the picture's texels as encoded."""
-    return picture.encoding is images.Encoding.SRGB and not picture.is_float
-
-
-def _naming_objects(message: str, objects: Sequence[str]) -> str:
-    """Returns a message of the library, with objects in the place of its surfaces."""
-    one = re.match(r"surface (\d+)\b", message)
-    if one and int(one[1]) < len(objects):
-        return f"object '{objects[int(one[1])]}'{message[one.end() :]}"
-    if message.startswith("surface:") and objects:
-        names = list(dict.fromkeys(objects))
-        noun = "object" if len(names) == 1 else "objects"
-        return f"{noun} {listed(names)}: {message.removeprefix('surface:').lstrip()}"
-    return message

@@ -1,115 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""A new image of an old one: what was read is computed anywhere, then written to Blender or a file.
-
-Operators and commands are two ways to call this.
-"""
-
-from functools import partial
-from pathlib import Path
+"""Images that are made of others: what is read of Blender for that, and what becomes of it."""
 
 import bpy
-import numpy as np
-import prefilter
+from prefilter._work.resampling.new_picture import NewPicture
 
 from ..bridge import derived, images
-from ..bridge.files import pictures, staging
 from ..bridge.images import FloatArray, Picture
-from ..core import alpha
-from ..core.jobs import Progress, go_on, share
 from ..core.outcome import Outcome
 from ..core.wording import Sentence
-
-_DECODED, _FILTERED = 0.1, 0.9  # What the progress is once these steps are done.
-_BYTE, _SHORT = 255, 65535
-
-
-class NewPicture:
-    """One new image, which a subclass says how to filter.
-
-    `write` belongs on the main thread; `compute` touches no Blender data and runs on any thread.
-    """
-
-    def __init__(
-        self, picture: Picture, *, target: Path | None = None, in_place: bool = False
-    ) -> None:
-        """Keeps what was read.
-
-        Args:
-            picture: The image.
-            target: A file to write; None for a new image datablock.
-            in_place: Whether whatever uses the image then uses the new one.
-        """
-        height, width = picture.shape[:2]
-        self.old_size = (width, height)
-        self._picture = picture
-        self._target = target
-        self._in_place = in_place
-        self._stored: FloatArray | None = None
-        self._staged: staging.StagedFile | None = None
-
-    @property
-    def suffix(self) -> str:
-        """The end of the name of the new image."""
-        raise NotImplementedError
-
-    @property
-    def summary(self) -> str:
-        """What is done to the image, for the user."""
-        raise NotImplementedError
-
-    def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
-        """Returns the pixels of the new image.
-
-        Args:
-            linear: Those of the old one as light, with alpha as it is stored.
-            progress: Called with the fraction done.
-        """
-        raise NotImplementedError
-
-    def compute(self, progress: Progress) -> None:
-        """Decodes, filters and encodes the pixels, and stages the file.
-
-        Raises:
-            prefilter.Cancelled: `progress` returned False.
-            ValueError: The library refuses the image or the settings.
-            MemoryError: There is not enough memory.
-            OSError: The file cannot be written.
-        """
-        picture = self._picture
-        linear = images.scene_linear(picture, partial(go_on, progress, 0.0))
-        go_on(progress, _DECODED)
-        result = self.filtered(linear, share(progress, _DECODED, _FILTERED))
-        if picture.alpha_is_coverage:
-            np.clip(result[..., 3], 0.0, 1.0, out=result[..., 3])
-        check = partial(go_on, progress, _FILTERED)
-        if self._target is None:
-            self._stored = images.encoded(picture, result, check)
-        else:
-            check()
-            self._staged = _stage(self._target, picture, result)
-        go_on(progress, 1.0)
-
-    def write(self) -> Outcome:
-        """Makes the image, or puts the file into place.
-
-        Raises:
-            OSError: It cannot be.
-        """
-        if self._staged is not None:
-            self._staged.commit()
-            done = Sentence("{} into '{}'", self.summary, self._target)
-            return Outcome(done, files=[str(self._target)])
-        assert self._stored is not None
-        image = derived.write_picture(self._picture, self.suffix, self._stored, like_source=True)
-        if self._in_place:
-            images.find(self._picture.name).user_remap(image)
-        return Outcome(Sentence("{}: '{}'", self.summary, image.name), images=[image.name])
-
-    def discard(self) -> None:
-        """Removes the file that was staged, if it was not put into place."""
-        if self._staged is not None:
-            self._staged.discard()
 
 
 def read(image: bpy.types.Image) -> Picture:
@@ -118,15 +17,18 @@ def read(image: bpy.types.Image) -> Picture:
     return images.read(image)
 
 
-def _stage(target: Path, picture: Picture, linear: FloatArray) -> staging.StagedFile:
-    """Writes a file with the alpha, the encoding and the depth that its kind should have."""
-    covers, straight = picture.alpha_is_coverage, picture.alpha_is_straight
-    if target.suffix.lower() == ".exr":
-        pixels = alpha.associated(linear) if straight else linear
-        return pictures.stage(target, pixels, is_data=picture.is_data, is_half=not picture.is_float)
-    pixels = alpha.unassociated(linear) if covers and not straight else linear
-    if not picture.is_data:
-        pixels = prefilter.to_srgb(pixels)
-    most = _SHORT if picture.is_float else _BYTE
-    whole = np.rint(pixels.clip(0.0, 1.0) * most).astype(np.uint16 if most == _SHORT else np.uint8)
-    return pictures.stage(target, whole, is_data=picture.is_data, is_half=False)
+def keep(work: NewPicture, stored: FloatArray, *, in_place: bool = False) -> Outcome:
+    """Makes an image.
+
+    Args:
+        work: What has made the pixels.
+        stored: They, as the old image stores its own.
+        in_place: Whether whatever uses the old image then uses the new one.
+
+    Raises:
+        OSError: It cannot be made.
+    """
+    image = derived.write_picture(work.picture, work.suffix, stored, like_source=True)
+    if in_place:
+        images.find(work.picture.name).user_remap(image)
+    return Outcome(Sentence("{}: '{}'", work.summary, image.name), images=[image.name])

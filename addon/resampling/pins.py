@@ -9,9 +9,16 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from prefilter._work.resampling.placement import (
+    Matrix,
+    corners,
+    frame,
+    homography,
+    moved,
+    rectangle,
+)
 
 from .choices import CORNERS, ResampleSettings
-from .placement import Matrix, corners, frame, homography, moved, rectangle
 
 REACH = 14.0
 """How far from a corner a press takes it, in pixels of the region at a scale of 1."""

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import bpy
 import prefilter
+from prefilter._work.resampling.resampling import load
 
 from ..bridge.files import staging
 from ..core.jobs import Progress, go_on, share
@@ -21,25 +22,6 @@ ENDINGS = tuple(f".{language}" for language in LANGUAGES)
 
 _BUILT = 0.9  # What the progress is once there is a table.
 _TEXT_KEY = "prefilter_sampling_table"
-
-
-def load(label: str, path: str) -> "prefilter.SamplingTable":
-    """Loads a table.
-
-    Args:
-        label: What the path is called in messages.
-        path: The file.
-
-    Raises:
-        ValueError: No file is named, or it holds no table.
-        OSError: It cannot be read.
-    """
-    if not path:
-        raise ValueError(f"{label}: no file is named")
-    try:
-        return prefilter.SamplingTable.load(path)
-    except ValueError as error:
-        raise ValueError(f"{label}: {error}") from error
 
 
 class TableMaking:

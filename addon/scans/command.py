@@ -7,18 +7,20 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+from prefilter._command import reconstruct
+from prefilter._command.program import COMMANDS
+from prefilter._work.scans import STREAMED_TARGET, Streaming
 
 from ..bridge.files import scenes, staging
 from ..bridge.points import may_be_points
+from ..bridge.units import length
 from ..core import command, presets
-from ..core.flags import add_flags, given, tables
-from ..core.wording import either
+from ..core.flags import tables
 from .choices import ScanSettings
-from .files import SOURCES, STREAMED_TARGET, FilesReconstruction, Streaming
+from .files import SOURCES, FilesReconstruction
 from .properties import RECONSTRUCT
 from .reconstruction import Reconstruction
 
-_HELP = "make the surface of points that a scanner has measured"
 _BLEND = ".blend"
 _SOURCES = (*SOURCES, _BLEND)
 _WANTED = "visible object with points and no faces"
@@ -37,16 +39,9 @@ examples:
 
 def add(commands: Any) -> None:
     """Adds the command."""
-    parser = command.add_command(commands, "reconstruct", _HELP, *tables(ScanSettings), _NOTES)
-    parser.add_argument(
-        "sources",
-        metavar="SOURCE",
-        nargs="+",
-        help=f"a file of points: {either(_SOURCES)}; repeat for several",
-    )
-    parser.add_argument(
-        "target", metavar="TARGET", help=f"the file to write: {either(scenes.TARGETS)}"
-    )
+    notes = (*tables(ScanSettings), _NOTES)
+    parser = command.add_command(commands, "reconstruct", COMMANDS["reconstruct"], *notes)
+    reconstruct.add_files(parser, _SOURCES, scenes.TARGETS)
     parser.add_argument(
         "--object",
         metavar="NAME",
@@ -54,8 +49,7 @@ def add(commands: Any) -> None:
         default=[],
         help="an object of a .blend file; repeat for several (default: all that are visible)",
     )
-    presets.add_flag(parser)
-    add_flags(parser, ScanSettings, exclusive=("depth", "voxel_size"))
+    reconstruct.add_settings(parser, presets.host(RECONSTRUCT))
     parser.set_defaults(execute=_reconstruct, usage_error=parser.error)
 
 
@@ -68,13 +62,15 @@ def _reconstruct(options: argparse.Namespace) -> None:
     if options.object and not has_blend:
         options.usage_error("--object: only .blend files have objects")
     target = staging.check_output(options.target)
-    settings = _settings(options)
+    settings = reconstruct.settings_of(options, presets.host(RECONSTRUCT))
     if has_blend:
         _from_objects(options, target, settings)
         return
     sources = [Path(path) for path in options.sources]
-    work = Streaming if ending == STREAMED_TARGET else FilesReconstruction
-    command.tell(command.done(work(sources, target, settings)))
+    if ending == STREAMED_TARGET:
+        command.tell(command.done(Streaming(sources, target, settings, length)))
+        return
+    command.tell(command.done(FilesReconstruction(sources, target, settings)))
 
 
 def _from_objects(options: argparse.Namespace, target: Path, settings: ScanSettings) -> None:
@@ -88,14 +84,3 @@ def _from_objects(options: argparse.Namespace, target: Path, settings: ScanSetti
 
 def _is_wanted(obj: bpy.types.Object) -> bool:
     return may_be_points(obj) and obj.visible_get()
-
-
-def _settings(options: argparse.Namespace) -> ScanSettings:
-    """Returns the settings that were given, with what follows from them."""
-    found, more = given(options, ScanSettings), {}
-    for name, resolution in (("depth", "depth"), ("voxel_size", "size")):
-        if name in found:
-            more["resolution"] = resolution
-    if "custom_isovalue" in found:
-        more["isovalue"] = "custom"
-    return presets.settings_given(options, RECONSTRUCT, ScanSettings, **more)

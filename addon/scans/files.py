@@ -10,6 +10,7 @@ import numpy as np
 import prefilter
 from mathutils import Matrix
 from numpy.typing import NDArray
+from prefilter._work.scans import outcome
 
 from ..bridge.color_materials import show_attribute
 from ..bridge.files import scenes
@@ -17,50 +18,18 @@ from ..bridge.layers import ATTRIBUTE, COLOR, NewLayer
 from ..bridge.new_meshes import Contour, new_mesh
 from ..bridge.new_points import far_offset, layer_name
 from ..bridge.place import Place
+from ..bridge.units import length
 from ..core.jobs import Progress
 from ..core.outcome import Outcome
-from ..core.wording import Sentence, listed
 from .choices import ScanSettings
-from .surface import Look, Surface, contour, labeled, oddities, options, reconstructed, told
+from .surface import Look, Surface, contour, reconstructed
 
 SOURCES = prefilter.POINT_EXTENSIONS
-STREAMED_TARGET = ".ply"
 
 _COLOR = "Col"
 """What Blender's imports call the colors of points."""
 _CHANNELS = ("red", "green", "blue")
 _ALPHA = "alpha"
-
-
-class Streaming:
-    """Files of points to a file of their surface, without loading either."""
-
-    def __init__(self, sources: Sequence[Path], target: Path, settings: ScanSettings) -> None:
-        """Takes what to read, what to write, and how."""
-        self._sources = sources
-        self._target = target
-        self._settings = settings
-        self._report: prefilter.ReconstructionReport | None = None
-
-    def compute(self, progress: Progress) -> None:
-        """Writes the file.
-
-        Raises:
-            ValueError: A source is damaged, or has no surface.
-            OSError: A file cannot be read or written.
-        """
-        with labeled():
-            self._report = prefilter.reconstruct_file(
-                list(self._sources), self._target, progress=progress, **options(self._settings)
-            )
-
-    def write(self) -> Outcome:
-        """Returns what was done."""
-        assert self._report is not None
-        return _outcome(self._sources, self._target, self._report)
-
-    def discard(self) -> None:
-        """Does nothing: the library leaves nothing beside the target."""
 
 
 class FilesReconstruction:
@@ -107,26 +76,10 @@ class FilesReconstruction:
         bpy.context.scene.collection.objects.link(made)
         bpy.context.view_layer.update()
         scenes.save(self._target, [made.name])
-        return _outcome(self._sources, self._target, self._surface.report, [made.name])
+        return outcome(self._sources, self._target, self._surface.report, length, [made.name])
 
     def discard(self) -> None:
         """Does nothing: nothing is staged."""
-
-
-def _outcome(
-    sources: Sequence[Path],
-    target: Path,
-    report: "prefilter.ReconstructionReport",
-    objects: Sequence[str] = (),
-) -> Outcome:
-    several = len(sources) > 1
-    return Outcome(
-        Sentence("Reconstructed '{}' from {}", target.name, told(report)),
-        objects=list(objects),
-        files=[str(target)],
-        warnings=oddities(report),
-        notes=[f"read {listed(path.name for path in sources)}"] if several else [],
-    )
 
 
 def _look(surface: Surface) -> Look:

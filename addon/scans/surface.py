@@ -2,15 +2,16 @@
 
 """The surface of scans, and what Blender shows of it."""
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, TypeAlias, cast
+from typing import NamedTuple, TypeAlias, cast
 
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
+from prefilter._work import scans
+from prefilter._work.scans import labeled, oddities, options
 
 from ..bridge.layers import COLOR, NewLayer
 from ..bridge.new_meshes import Contour
@@ -21,12 +22,21 @@ from ..core.jobs import Progress
 from ..core.wording import Sentence, amount
 from .choices import ScanSettings
 
+__all__ = (
+    "Look",
+    "Surface",
+    "contour",
+    "labeled",
+    "oddities",
+    "options",
+    "reconstructed",
+    "told",
+)
+
 _Attributes: TypeAlias = dict[str, NDArray[np.uint8 | np.float32]]
 _MeshWithAttributes: TypeAlias = tuple[NDArray[np.float64], NDArray[np.int32], _Attributes]
 
 _MOST_CORNERS = 2**31 - 1
-_FEW = 1e-3
-"""The share of outliers that every scan may have."""
 
 
 @dataclass(frozen=True)
@@ -86,32 +96,6 @@ def reconstructed(
     return Surface(positions, triangles, attributes, report)
 
 
-@contextmanager
-def labeled() -> Iterator[None]:
-    """Calls the settings in messages what panels call them."""
-    try:
-        yield
-    except ValueError as error:
-        raise ValueError(str(error).replace("cell_size:", "Voxel Size:")) from error
-
-
-def options(settings: ScanSettings) -> dict[str, Any]:
-    """Returns the settings that the library has too."""
-    custom = settings.isovalue == "custom"
-    size = settings.voxel_size if settings.resolution == "size" else None
-    return {
-        "depth": settings.depth,
-        "cell_size": size,
-        "wavelet": settings.wavelet,
-        "smooth": settings.use_smooth,
-        "isovalue": settings.custom_isovalue if custom else settings.isovalue,
-        "fit": settings.use_fit,
-        "trim": settings.trim if settings.trim > 0.0 else None,
-        "memory_limit": settings.memory_limit or None,
-        "threads": settings.threads,
-    }
-
-
 def contour(surface: Surface, place: Place, look: Look, settings: ScanSettings) -> Contour:
     """Returns what becomes a mesh of an object.
 
@@ -137,25 +121,5 @@ def contour(surface: Surface, place: Place, look: Look, settings: ScanSettings) 
 
 
 def told(report: "prefilter.ReconstructionReport") -> str:
-    """Returns numbers about a surface, in words."""
-    points, triangles = amount(report.points, "point"), amount(report.triangles, "triangle")
-    return Sentence("{} in cells of {}: {}", points, length(report.cell), triangles)
-
-
-def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
-    """Returns what is odd about the points, as warnings."""
-    found: list[str] = []
-    if report.dropped:
-        dropped = amount(report.dropped, "point")
-        text = "left out, because they have no normal, no finite position or no weight: {}"
-        found.append(Sentence(text, dropped))
-    if report.outliers > _FEW:
-        outliers = f"{100.0 * report.outliers:.2g} %"
-        text = (
-            "left out as outliers, because they are sampled much more sparsely than the rest: "
-            "{} of the points"
-        )
-        found.append(Sentence(text, outliers))
-    if report.is_flipped:
-        found.append(Sentence("most normals point inward; all were flipped"))
-    return found
+    """Returns numbers about a surface, in words, in the units of the scene."""
+    return scans.told(report, length)

@@ -7,19 +7,21 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+from prefilter._command import rasterize
+from prefilter._command.program import COMMANDS
+from prefilter._work.files import pictures
 
 from ..bridge.curves import is_curve
-from ..bridge.files import pictures, scenes, staging
+from ..bridge.files import scenes, staging
 from ..bridge.uv_layouts import has_uv_map
 from ..core import command, presets
-from ..core.flags import add_flags, given, tables
+from ..core.flags import add_flags, tables
 from ..core.wording import either
 from .choices import RasterizeSettings
 from .memory import Request
 from .properties import RASTERIZE
 from .rasterization import Rasterization
 
-_HELP = "make an image of curves and texts, of an SVG file, or of a UV map"
 _SVG = ".svg"
 _SOURCES = (_SVG, *scenes.SOURCES)
 _CURVES = "visible curve or text"
@@ -39,7 +41,9 @@ examples:
 
 def add(commands: Any) -> None:
     """Adds the command."""
-    parser = command.add_command(commands, "rasterize", _HELP, *tables(RasterizeSettings), _NOTES)
+    parser = command.add_command(
+        commands, "rasterize", COMMANDS["rasterize"], *tables(RasterizeSettings), _NOTES
+    )
     parser.add_argument("source", metavar="INPUT", help=f"a file: {either(_SOURCES)}")
     parser.add_argument(
         "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
@@ -64,7 +68,7 @@ def _rasterize(options: argparse.Namespace) -> None:
     if ending == _SVG and (options.uv or options.object):
         options.usage_error("--object, --uv: an SVG file has neither objects nor a UV map")
     target = staging.check_output(options.target)
-    settings = _settings(options)
+    settings = rasterize.settings_of(options, presets.host(RASTERIZE))
     if ending == _SVG:
         request = Request("svg", filepath=str(Path(options.source).absolute()))
     elif options.uv:
@@ -86,20 +90,3 @@ def _mesh(options: argparse.Namespace) -> bpy.types.Object:
 
 def _is_wanted(is_kind: Any) -> Any:
     return lambda obj: is_kind(obj) and obj.visible_get()
-
-
-def _settings(options: argparse.Namespace) -> RasterizeSettings:
-    """Returns the settings that were given, with what follows from them."""
-    found = given(options, RasterizeSettings)
-    more = {}
-    ways = {"width": "size", "height": "size", "density": "density", "side": "side"}
-    chosen = {way: name for name, way in ways.items() if name in found}
-    if len(chosen) > 1:
-        options.usage_error("--side, --density, and --width with --height: only one of these")
-    if chosen:
-        (more["resolution"],) = chosen
-    if options.uv and "side" in found:
-        more["width"] = more["height"] = found["side"]
-    if "background_color" in found:
-        more["background"] = "color"
-    return presets.settings_given(options, RASTERIZE, RasterizeSettings, **more)

@@ -4,12 +4,11 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import bpy
-import numpy as np
-import prefilter
-from numpy.typing import NDArray
+from prefilter._work.shapes import rasterizing
+from prefilter._work.shapes.layers import Source
+from prefilter._work.shapes.pixels import stage
 
 from ..bridge import drawn_images
 from ..bridge.files import staging
@@ -22,13 +21,11 @@ from .choices import RasterizeSettings
 from .decal import refit
 from .framing import Place
 from .memory import Request, remember
-from .sources import Source, curves_source, svg_source, uv_source
+from .sources import curves_source, svg_source, uv_source
 
 # What a load takes in seconds, as measured once on two cores; ratios are what counts.
 _ALWAYS = 0.005
 _PER_PIXEL = 30e-9
-_READ, _DRAWN = 0.1, 0.6
-"""What the progress is once there are shapes, and once they are drawn."""
 
 
 @dataclass(frozen=True)
@@ -141,33 +138,15 @@ class Rasterization:
             prefilter.Cancelled: `progress` has said so.
         """
         settings = self._settings
-        drawn = self._source.drawn(settings, share(progress, 0.0, _READ))
-        self.warnings.extend(drawn.warnings)
-        if drawn.shapes:
-            raster: NDArray[Any] = prefilter.rasterize(
-                drawn.shapes,
-                drawn.width,
-                drawn.height,
-                filter=settings.filter,
-                overlap=settings.overlap,
-                progress=share(progress, _READ, _DRAWN),
-                threads=settings.threads,
-            )
-        else:
-            raster = np.zeros((drawn.height, drawn.width, 1), np.float32)
-        made = pixels.finished(
-            raster,
-            drawn.color if drawn.shapes else (1.0, 1.0, 1.0, 1.0),
-            settings,
-            is_straight=self._is_straight(),
-            progress=share(progress, _DRAWN, 0.9),
+        drawn, made = rasterizing.rasterized(
+            self._source, settings, share(progress, 0.0, 0.9), is_straight=self._is_straight()
         )
-        del raster
+        self.warnings.extend(drawn.warnings)
         go_on(progress, 0.9)
         if self._target is None:
             self._drawing = pixels.drawing(made, settings)
         else:
-            self._staged = pixels.stage(self._target, made, settings)
+            self._staged = stage(self._target, made, settings)
         self._size, self._place = (drawn.width, drawn.height), drawn.place
         self.load = Load(drawn.width * drawn.height, settings)
         go_on(progress, 1.0)
@@ -183,10 +162,7 @@ class Rasterization:
             self._staged.commit()
             target = str(self._staged.target)
             return Outcome(
-                Sentence(
-                    "Rasterized '{}' to '{}': {} x {} pixels",
-                    *(self._source.name, target, *self._size),
-                ),
+                rasterizing.told(self._source.name, target, self._size),
                 files=[target],
                 warnings=self.warnings,
             )
@@ -209,10 +185,10 @@ class Rasterization:
             self._staged.discard()
 
     def _is_straight(self) -> bool:
+        if self._target is not None:
+            return rasterizing.is_straight(self._target, self._settings)
         if self._settings.alpha != "auto":
             return self._settings.alpha == "straight"
-        if self._target is not None:
-            return self._target.suffix.lower() == ".png"
         return self._settings.pixel_type == "byte"
 
     def _found_image(self) -> bpy.types.Image:

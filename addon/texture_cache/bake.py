@@ -15,12 +15,12 @@ import bpy
 import numpy as np
 import prefilter
 
-from ..bridge import materials, meshes, openimageio, packed, rendered
+from ..bridge import materials, meshes, packed, rendered
 from ..bridge.files import tx
 from ..bridge.files.staging import StagedFile, commit_all
-from ..bridge.images import FloatArray, automatic_bounds
+from ..bridge.images import FloatArray, automatic_bounds, capped
 from ..bridge.tile_surfaces import TileSurfaces
-from ..core.alpha import associated, at_most_opaque, unassociated
+from ..core.alpha import associated, unassociated
 from ..core.jobs import Progress, at_once, go_on, share
 from ..core.outcome import Outcome
 from ..core.translations import marked
@@ -341,11 +341,9 @@ def _levels(
         if is_associated:
             levels = [associated(level) for level in levels]
     elif texture.is_float:
-        is_integer = openimageio.holds_integers(str(worn.source.path))
-        bounds = automatic_bounds(stored, is_integer=is_integer)
-        levels = fit(stored, bounds=bounds)
+        levels = fit(stored, bounds=automatic_bounds(stored, is_associated=is_associated))
         if is_associated:
-            levels = [at_most_opaque(level) for level in levels]
+            levels = [capped(level, stored) for level in levels]
         elif covers:
             for level in levels:
                 np.minimum(level[..., 3], 1, out=level[..., 3])

@@ -5,9 +5,12 @@
 import argparse
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import bpy
+from prefilter._command import voxelize
+from prefilter._command.program import COMMANDS
+from prefilter._command.voxelize import RESOLUTIONS
 
 from ..bridge.files import scenes, staging
 from ..bridge.new_meshes import is_solid
@@ -16,18 +19,14 @@ from ..core.flags import add_flags, given, tables
 from ..core.wording import either
 from . import memory
 from .boolean import Boolean
-from .choices import BooleanSettings, VoxelizeSettings, VoxelSettings
+from .choices import BooleanSettings, VoxelizeSettings
 from .properties import BOOLEAN, VOXELIZE
 from .voxelization import Voxelization
 
-Settings = TypeVar("Settings", bound=VoxelSettings)
-
-_VOXELIZE_HELP = "make closed surfaces, or volumes, of any meshes, through voxels"
 _BOOLEAN_HELP = "combine meshes by union, intersection or difference, through voxels"
 _WANTED = "visible object with a surface"
 _VOLUME = ".vdb"
 _TARGETS = (*scenes.TARGETS, _VOLUME)
-_RESOLUTIONS = ("depth", "voxel_size")
 _VOXELIZE_NOTES = """\
 Each object of FILE is voxelized by itself, with its modifiers and instances. Meshes may be open,
 leaky, and intersect themselves.
@@ -51,9 +50,8 @@ def add(commands: Any) -> None:
 
 
 def _add_voxelize(commands: Any) -> None:
-    parser = command.add_command(
-        commands, "voxelize", _VOXELIZE_HELP, *tables(VoxelizeSettings), _VOXELIZE_NOTES
-    )
+    notes = (*tables(VoxelizeSettings), _VOXELIZE_NOTES)
+    parser = command.add_command(commands, "voxelize", COMMANDS["voxelize"], *notes)
     parser.add_argument("file", metavar="FILE", help=f"a file: {either(scenes.SOURCES)}")
     parser.add_argument("output", metavar="OUTPUT", help=f"the file to write: {either(_TARGETS)}")
     parser.add_argument(
@@ -64,7 +62,7 @@ def _add_voxelize(commands: Any) -> None:
         help="an object to voxelize; repeat for several (default: all that are visible)",
     )
     presets.add_flag(parser)
-    add_flags(parser, VoxelizeSettings, exclusive=_RESOLUTIONS)
+    add_flags(parser, VoxelizeSettings, exclusive=RESOLUTIONS)
     parser.set_defaults(execute=_voxelize, usage_error=parser.error)
 
 
@@ -90,7 +88,7 @@ def _add_boolean(commands: Any) -> None:
         help="an operand; the first one gets the result (default: each file is one)",
     )
     presets.add_flag(parser)
-    add_flags(parser, BooleanSettings, exclusive=_RESOLUTIONS)
+    add_flags(parser, BooleanSettings, exclusive=RESOLUTIONS)
     parser.set_defaults(execute=_boolean, usage_error=parser.error)
 
 
@@ -102,7 +100,7 @@ def _voxelize(options: argparse.Namespace) -> None:
     more = {"output": "volume", "filepath": str(target)} if is_volume else {}
     work = Voxelization.read(
         scenes.chosen(objects, options.object, _WANTED),
-        _settings(options, VOXELIZE, VoxelizeSettings, **more),
+        voxelize.settings_of(options, presets.host(VOXELIZE), VoxelizeSettings, **more),
         bpy.context.evaluated_depsgraph_get(),
     )
     outcome = command.done(work)
@@ -125,8 +123,11 @@ def _boolean(options: argparse.Namespace) -> None:
     else:
         names = [Path(path).stem for path in options.files]
         operands = [scenes.as_one(name, group) for name, group in zip(names, groups, strict=True)]
-    settings = _settings(options, BOOLEAN, BooleanSettings, operands="hide")
-    if not (options.preset or given(options, BooleanSettings).keys() & set(_RESOLUTIONS)):
+    host = presets.host(BOOLEAN)
+    settings: BooleanSettings = voxelize.settings_of(
+        options, host, BooleanSettings, operands="hide"
+    )
+    if not (options.preset or given(options, BooleanSettings).keys() & set(RESOLUTIONS)):
         settings = memory.as_before(operands[0], settings)
     else:
         settings = replace(settings, use_keep_resolution=False)
@@ -138,16 +139,3 @@ def _boolean(options: argparse.Namespace) -> None:
 
 def _is_wanted(obj: bpy.types.Object) -> bool:
     return is_solid(obj) and obj.visible_get()
-
-
-def _settings(
-    options: argparse.Namespace, kind: presets.Kind, settings: type[Settings], **more: Any
-) -> Settings:
-    """Returns the settings that were given, with what follows from them."""
-    found = given(options, settings)
-    for name, resolution in (("depth", "depth"), ("voxel_size", "size")):
-        if name in found:
-            more["resolution"] = resolution
-    if "smooth_angle" in found:
-        more["use_smooth_shading"] = found["smooth_angle"] > 0.0
-    return presets.settings_given(options, kind, settings, **more)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
+from prefilter._work.voxels import surfaces
 
 from ..bridge import solids
 from ..bridge.files.staging import StagedFile
@@ -17,7 +18,7 @@ from ..bridge.place import Place
 from ..bridge.units import length, volume
 from ..core.jobs import Progress, go_on, share
 from ..core.translations import marked
-from ..core.wording import Sentence, amount, counted, joined
+from ..core.wording import Sentence, amount
 from .choices import VoxelSettings
 from .edge_marks import carried_marks
 from .findings import Findings, Report, Walls, advice_on, find, line, walls_in
@@ -144,43 +145,15 @@ def voxelized(
 ) -> tuple["prefilter.Octree", Source]:
     """Returns the occupancy of a mesh made a solid, and what it was made of."""
     mesh = operand.mesh
-    solid = prefilter.as_solid(
-        mesh.positions,
-        mesh.triangles,
-        cell=grid.spacing,
-        gap=settings.gap,
-        thickness=settings.thickness,
-        sheets="faces",
-        progress=share(progress, 0.0, 0.2),
-        threads=settings.threads,
-    )
-    positions, triangles, origins = solid.positions, solid.triangles, solid.origins
-    closed = prefilter.close_holes(
-        positions,
-        triangles,
-        method=settings.holes,
-        progress=share(progress, 0.2, 0.3),
-        threads=settings.threads,
-    )
-    added = len(closed.triangles) - len(triangles)
-    if settings.use_close_holes and added:
-        own = np.arange(len(triangles)) if origins is None else origins
-        origins = np.concatenate([own, np.full(added, -1, np.int64)])
-        positions, triangles = closed.positions, closed.triangles
-    told.tell(operand.name, solid, closed.open_edges)
-    holes = closed.holes - closed.left_open if settings.use_close_holes else 0
+    made = surfaces.occupancy(mesh.positions, mesh.triangles, grid, settings, progress)
+    positions, triangles, origins = made.positions, made.triangles, made.origins
+    told.tell(operand.name, made)
     if _adaptivity(settings) and _has_painted_colors(mesh):
         told.notes.append(Sentence(_SMALL, operand.name))
-    tree = prefilter.voxelize(
-        positions,
-        triangles,
-        depth=grid.depth,
-        bounds=grid.bounds,
-        thickness=settings.thickness,
-        progress=share(progress, 0.3, 1.0),
-        threads=settings.threads,
+    tree = made.tree
+    told.findings.append(
+        find(operand.name, mesh, made.solid, origins, tree, made.holes, settings.threads)
     )
-    told.findings.append(find(operand.name, mesh, solid, origins, tree, holes, settings.threads))
     if getattr(settings, "output", "mesh") == "volume":
         return tree, Source(mesh, positions, triangles, origins)
     labels = find_labels(mesh, settings.threads)
@@ -205,12 +178,7 @@ def contoured(
     middle = (_CONTOURED - VOXELIZED) / (1.0 - VOXELIZED)
     positions, faces, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
     if len(faces) == 0:
-        raise ValueError(
-            Sentence(
-                "the result is empty: no cell is at least half full. Parts that are thinner "
-                "than a cell, or enclose nothing, disappear"
-            )
-        )
+        raise ValueError(surfaces.empty())
     transfer = Transfer(sources, positions, faces, origins, settings.threads)
     face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
     go_on(progress, 1.0)
@@ -262,34 +230,14 @@ def _surface(
     tree: "prefilter.Octree", sources: list[Source], settings: VoxelSettings, progress: Progress
 ) -> tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.int64] | None]:
     """Returns a surface, and the sources' triangles that its faces come from, where it is known."""
-    meshes = [source.for_contour for source in sources]
-    if settings.faces == "quads":
-        quads = tree.quad_contour(
-            interpolant=settings.interpolant,
-            sources=meshes if settings.interpolant == "sharp" else None,
-            progress=progress,
-            threads=settings.threads,
-        )
-        return quads.positions, quads.quads, quads.origins
     is_painted = any(_has_painted_colors(source.mesh) for source in sources)
-    adaptivity = 0.0 if is_painted else settings.adaptivity
-    if settings.interpolant != "sharp":
-        found = tree.contour(
-            interpolant=settings.interpolant,
-            adaptivity=adaptivity,
-            cleanup=settings.use_cleanup,
-            progress=progress,
-            threads=settings.threads,
-        )
-        return (*found, None)
-    traced = tree.traced_contour(
-        meshes,
-        adaptivity=adaptivity,
-        cleanup=settings.use_cleanup,
-        progress=progress,
-        threads=settings.threads,
+    return surfaces.surface(
+        tree,
+        [source.for_contour for source in sources],
+        settings,
+        progress,
+        adaptivity=0.0 if is_painted else settings.adaptivity,
     )
-    return traced.positions, traced.triangles, traced.origins
 
 
 def _adaptivity(settings: VoxelSettings) -> float:
@@ -318,10 +266,6 @@ def _shading(
 
 
 _SMALL = marked("object '{}' has painted colors, for which triangles stay small")
-_FILLED = marked("parts filled where the outside does not reach: {}")
-_TURNED = marked("faces flipped to agree with their neighbors: {}")
-_WELDED = marked("vertices welded: {}")
-_DUPLICATE = marked("duplicate faces dropped: {}")
 
 
 class Told:
@@ -344,34 +288,11 @@ class Told:
         (self.warnings if any(one.lost for one in findings) else self.notes).append(summed)
         return found
 
-    def tell(self, name: str, solid: "prefilter.SolidMesh", open_edges: int) -> None:
-        """Adds what was found in a mesh.
-
-        Args:
-            name: Of its object.
-            solid: What was made of it.
-            open_edges: How many edges its faces left open.
-        """
-        turned = solid.turned_parts
-        if turned and turned >= solid.parts:
-            text = "object '{}' was inside out; its normals were flipped"
-            self.warnings.append(Sentence(text, name))
-        elif turned:
-            text = "object '{}': {} of {} parts were inside out; their normals were flipped"
-            self.warnings.append(Sentence(text, name, turned, solid.parts))
-        rows = [
-            (solid.filled_parts, _FILLED),
-            (solid.turned_faces, _TURNED),
-            (solid.welded_vertices, _WELDED),
-            (solid.duplicate_faces, _DUPLICATE),
-        ]
-        done = [Sentence(text, count) for count, text in rows if count]
-        if done:
-            self.notes.append(Sentence("object '{}': {}", name, joined(", ", done)))
-        if open_edges:
-            edges = counted(range(open_edges), "open edge")
-            text = "object '{}' has {}; the result is closed"
-            self.notes.append(Sentence(text, name, edges))
+    def tell(self, name: str, made: surfaces.Occupancy) -> None:
+        """Adds what was found in the mesh of an object."""
+        warnings, notes = surfaces.lines_of(name, made)
+        self.warnings += warnings
+        self.notes += notes
 
 
 def faces_of(settings: VoxelSettings, count: int) -> Sentence:

@@ -6,9 +6,9 @@ Usage: python3 bench/mipmaps/texture_formats.py [--astcenc PROGRAM] IMAGE...
 
 The package, OpenImageIO and what scripts/decoders.txt lists must be importable; the decoders are
 those of others. Images are read as bytes, and their alpha is left out; BC3, ETC2 RGBA and the
-others that hold alpha get an opaque one. Of larger images it is the
-middle, 1024 x 1024. Error is that of level 0, over red, green and blue. Times
-are of one thread, in processor time, best of three in turns, without zstd.
+others that hold alpha get an opaque one. Of larger images it is the middle, 1024 x 1024. Of ETC1S
+the whole file counts. Error is that of level 0, over red, green and blue. Times are of one thread,
+in processor time, best of three in turns, without zstd.
 
 A peer: Arm's program (Debian's package astcenc), at the same effort, `-medium`.
 """
@@ -113,12 +113,13 @@ def measured(image: Bytes, texture_format: str, folder: Path) -> tuple[float, fl
     )
     seconds = time.process_time() - began
     blocks = level_zero(path)
-    if texture_format == "uastc":
+    if TEXEL_FORMATS[texture_format].is_transcoded:
         found = opengl_basisu.open(path).transcode("rgba8").data.reshape(height, width, 4)
     else:
         found = texels(DECODERS[texture_format](blocks, width, height), width, height)
     decibels = signal_to_noise(found, image, CHANNELS.get(texture_format, 3))
-    return decibels, seconds, len(blocks)
+    is_shared = TEXEL_FORMATS[texture_format].is_shared
+    return decibels, seconds, path.stat().st_size if is_shared else len(blocks)
 
 
 def peer(program: str, image: Bytes, side: int, folder: Path) -> tuple[float, float, int]:
@@ -157,7 +158,7 @@ def main() -> None:
         count = image.shape[0] * image.shape[1]
         runs: dict[str, Callable[[Path], tuple[float, float, int]]] = {}
         for name in TEXEL_FORMATS:
-            if name in DECODERS or name == "uastc":
+            if name in DECODERS or TEXEL_FORMATS[name].is_transcoded:
                 runs[name] = partial(measured, image, name)
         if options.astcenc:
             for side in (4, 6, 8):
@@ -172,7 +173,7 @@ def main() -> None:
             packed = {
                 name: packed_size(image, name, Path(folder))
                 for name in runs
-                if name in TEXEL_FORMATS
+                if name in TEXEL_FORMATS and not TEXEL_FORMATS[name].is_shared
             }
         rows = []
         for name, (decibels, seconds, size) in best.items():

@@ -5,7 +5,6 @@
 #include <cstdlib>
 
 #include "encoder/basisu_enc.h"
-#include "encoder/basisu_opencl.h"
 #include "encoder/basisu_pvrtc1_4.h"
 #include "encoder/basisu_resampler.h"
 #include "encoder/jpgd.h"
@@ -16,8 +15,6 @@
 
 namespace basisu {
 void detect_sse41() { std::abort(); }
-bool opencl_init(bool) { std::abort(); }
-void opencl_deinit() { std::abort(); }
 std::uint32_t pvrtc4_swizzle_uv(std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t) {
   std::abort();
 }

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include <pybind11/stl.h>
+
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "convert.h"
 #include "prefilter/blocks/compress_blocks.h"
+#include "prefilter/blocks/compress_etc1s.h"
+#include "prefilter/blocks/decode_blocks.h"
 #include "prefilter/blocks/supercompress.h"
 
 namespace py = pybind11;
@@ -24,6 +31,79 @@ py::bytes compressed(const py::array& rgba, const BlockOptions& options, const P
                              static_cast<int>(texels.shape(0)), options, progress);
   }
   return {reinterpret_cast<const char*>(blocks.data()), blocks.size()};
+}
+
+std::span<const std::uint8_t> bytes_of(const py::bytes& bytes) {
+  const auto view = static_cast<std::string_view>(bytes);
+  return {reinterpret_cast<const std::uint8_t*>(view.data()), view.size()};
+}
+
+template <class Channel, class Decode>
+py::array decoded(const Decode& decode, const py::bytes& blocks, int width, int height,
+                  const DecodeOptions& options, const Progress& progress) {
+  std::vector<Channel> texels;
+  {
+    const auto view = bytes_of(blocks);
+    const py::gil_scoped_release unlocked;
+    texels = decode(view, width, height, options, progress);
+  }
+  return to_array<Channel>(std::move(texels), {height, width, 4});
+}
+
+// endpoint_count, selector_count, endpoints, selectors, tables
+using Codebooks = std::tuple<int, int, py::bytes, py::bytes, py::bytes>;
+// width, height, color, alpha
+using Level = std::tuple<int, int, py::bytes, py::bytes>;
+
+py::list decoded_etc1s(const Codebooks& given, const std::vector<Level>& levels,
+                       const py::object& callback) {
+  const auto& [endpoint_count, selector_count, endpoints, selectors, tables] = given;
+  const Etc1sCodebooks codebooks{endpoint_count, selector_count, bytes_of(endpoints),
+                                 bytes_of(selectors), bytes_of(tables)};
+  std::vector<Etc1sLevel> parts;
+  for (const auto& [width, height, color, alpha] : levels) {
+    parts.push_back({width, height, bytes_of(color), bytes_of(alpha)});
+  }
+  const Progress progress = to_progress(callback);
+  std::vector<std::vector<std::uint8_t>> images;
+  {
+    const py::gil_scoped_release unlocked;
+    images = decode_etc1s(codebooks, parts, progress);
+  }
+  py::list arrays;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    arrays.append(
+        to_array<std::uint8_t>(std::move(images[i]), {parts[i].height, parts[i].width, 4}));
+  }
+  return arrays;
+}
+
+py::bytes bytes_from(const std::vector<std::uint8_t>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// The codebooks and, of each level, color and alpha, as decode_etc1s takes them.
+py::tuple compressed_etc1s(const std::vector<Array<std::uint8_t>>& levels, int quality,
+                           bool has_alpha, bool is_color, const py::object& callback, int threads) {
+  std::vector<Etc1sImage> images;
+  for (const auto& level : levels) {
+    images.push_back(
+        {level.data(), static_cast<int>(level.shape(1)), static_cast<int>(level.shape(0))});
+  }
+  const Progress progress = to_progress(callback);
+  Etc1sTexture texture;
+  {
+    const py::gil_scoped_release unlocked;
+    texture = compress_etc1s(images, {quality, has_alpha, is_color, threads}, progress);
+  }
+  py::list parts;
+  for (const Etc1sTexture::Level& level : texture.levels) {
+    parts.append(py::make_tuple(bytes_from(level.color), bytes_from(level.alpha)));
+  }
+  return py::make_tuple(
+      py::make_tuple(texture.endpoint_count, texture.selector_count, bytes_from(texture.endpoints),
+                     bytes_from(texture.selectors), bytes_from(texture.tables)),
+      parts);
 }
 }  // namespace
 
@@ -61,6 +141,35 @@ void bind_blocks(py::module_& m) {
         return py::bytes(reinterpret_cast<const char*>(frame.data()), frame.size());
       },
       py::arg("data"), py::arg("progress"));
+  m.def(
+      "decompress",
+      [](const py::bytes& frames, std::size_t count) {
+        const auto view = bytes_of(frames);
+        std::vector<std::uint8_t> bytes;
+        {
+          const py::gil_scoped_release unlocked;
+          bytes = decompress(view, count);
+        }
+        return py::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+      },
+      py::arg("frames"), py::arg("count"));
+  m.def(
+      "decode_blocks",
+      [](const py::bytes& blocks, const std::string& format, bool srgb, int width, int height,
+         const py::object& callback, int threads) {
+        const BlockLayout& layout = layout_named(format);
+        const DecodeOptions options{layout.format, srgb, threads};
+        const Progress progress = to_progress(callback);
+        return layout.is_float
+                   ? decoded<HalfBits>(decode_half_blocks, blocks, width, height, options, progress)
+                   : decoded<std::uint8_t>(decode_blocks, blocks, width, height, options, progress);
+      },
+      py::arg("blocks"), py::arg("format"), py::arg("srgb"), py::arg("width"), py::arg("height"),
+      py::arg("progress"), py::arg("threads"));
+  m.def("compress_etc1s", &compressed_etc1s, py::arg("levels"), py::arg("quality"),
+        py::arg("has_alpha"), py::arg("is_color"), py::arg("progress"), py::arg("threads"));
+  m.def("decode_etc1s", &decoded_etc1s, py::arg("codebooks"), py::arg("levels"),
+        py::arg("progress"));
 }
 
 }  // namespace prefilter::python

@@ -29,18 +29,12 @@ using Surfaces = std::vector<const Surface*>;
 
 void bind_mipmap_options(py::module_& m) {
   using Options = MipmapOptions;
-  using Pair = std::pair<std::optional<float>, std::optional<float>>;
   auto bound = bind_options<Options>(m, "MipmapOptions");
   bind_named(bound, "reader", &Options::reader, kReaders);
   bound
       .def_property(
           "filter", [](const Options& o) { return name_of(o.filter); },
           [](Options& o, const std::string& name) { o.filter = mipmap_filter(name); })
-      .def_property(
-          "bounds", [](const Options& o) { return Pair(o.bounds.low, o.bounds.high); },
-          [](Options& o, const Pair& pair) {
-            o.bounds = {pair.first, pair.second};
-          })
       .def_readwrite("levels", &Options::levels)
       .def_readwrite("seam_budget", &Options::seam_budget)
       .def_readwrite("footprint", &Options::footprint);

@@ -6,6 +6,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,7 +18,7 @@
 namespace prefilter::python {
 
 /// A class of options, made with the library's defaults, that has those that most have: `wrap`,
-/// `premultiplied` and `threads`.
+/// `bounds`, `premultiplied` and `threads`.
 template <typename Options>
 pybind11::class_<Options> bind_options(pybind11::module_& m, const char* name) {
   pybind11::class_<Options> bound(m, name);
@@ -29,6 +30,14 @@ pybind11::class_<Options> bind_options(pybind11::module_& m, const char* name) {
           return WrapNames(name_in(kWraps, o.wrap.u), name_in(kWraps, o.wrap.v));
         },
         [](Options& o, const WrapNames& names) { o.wrap = wrap_modes(names); });
+  }
+  if constexpr (requires { &Options::bounds; }) {
+    using Pair = std::pair<std::optional<float>, std::optional<float>>;
+    bound.def_property(
+        "bounds", [](const Options& o) { return Pair(o.bounds.low, o.bounds.high); },
+        [](Options& o, const Pair& pair) {
+          o.bounds = {pair.first, pair.second};
+        });
   }
   if constexpr (requires { &Options::premultiplied; }) {
     bound.def_readwrite("premultiplied", &Options::premultiplied);

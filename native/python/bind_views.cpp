@@ -2,7 +2,6 @@
 
 #include <pybind11/stl.h>
 
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -33,17 +32,9 @@ std::vector<Array<float>> bound_fit_to_views(const std::vector<Array<float>>& le
 
 void bind_views(py::module_& m) {
   using Options = ViewFitOptions;
-  using Pair = std::pair<std::optional<float>, std::optional<float>>;
   auto bound = bind_options<Options>(m, "ViewFitOptions");
   bind_named(bound, "lookups", &Options::lookups, kLookups);
-  bound
-      .def_property(
-          "bounds", [](const Options& o) { return Pair(o.bounds.low, o.bounds.high); },
-          [](Options& o, const Pair& pair) {
-            o.bounds = {pair.first, pair.second};
-          })
-      .def_readwrite("steadiness", &Options::steadiness)
-      .def_readwrite("effort", &Options::effort);
+  bound.def_readwrite("steadiness", &Options::steadiness).def_readwrite("effort", &Options::effort);
   m.def("fit_to_views", &bound_fit_to_views, py::arg("levels"), py::arg("surfaces"),
         py::arg("options"), py::arg("progress"));
 }

@@ -59,8 +59,19 @@ def core_metadata(version: str, licenses: Iterable[str], source: Path = SOURCE) 
     lines += [f"Project-URL: {name}, {url}" for name, url in project.get("urls", {}).items()]
     lines.append(f"Requires-Python: {project['requires-python']}")
     lines += [f"Requires-Dist: {name}" for name in project["dependencies"]]
+    for extra, names in project.get("optional-dependencies", {}).items():
+        lines.append(f"Provides-Extra: {extra}")
+        lines += [f"Requires-Dist: {name}; extra == '{extra}'" for name in names]
     lines += ["Description-Content-Type: text/markdown", "", description(source)]
     return "\n".join(lines)
+
+
+def entry_points(source: Path = SOURCE) -> str:
+    """Returns entry_points.txt of a wheel: the commands that pyproject.toml names."""
+    project = tomllib.loads((source / "pyproject.toml").read_text())["project"]
+    return "\n".join(
+        ["[console_scripts]", *(f"{name} = {place}" for name, place in project["scripts"].items())]
+    )
 
 
 def files_in(folder: Path) -> list[Path]:

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from packager.modules import read_module
 from packager.platforms import Platform, here
-from packager.project import PackagingError, core_metadata, files_in
+from packager.project import PackagingError, core_metadata, entry_points, files_in
 
 WHEEL = """\
 Wheel-Version: 1.0
@@ -83,6 +83,7 @@ def make_wheel(
     files |= {f"{info}/licenses/{name}": path.read_bytes() for name, path in licenses.items()}
     files[f"{info}/WHEEL"] = WHEEL.format(name=package.name, tag=full_tag).encode()
     files[f"{info}/METADATA"] = core_metadata(version, licenses).encode()
+    files[f"{info}/entry_points.txt"] = f"{entry_points()}\n".encode()
     files[f"{info}/RECORD"] = record(files, f"{info}/RECORD").encode()
     wheel = target / f"{package.name}-{version}-{full_tag}.whl"
     with zipfile.ZipFile(wheel, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as archive:

@@ -7,6 +7,7 @@ argument's name first. The error is a ValueError, or an OSError where the disk i
 """
 
 import inspect
+from pathlib import Path
 
 import numpy as np
 import prefilter
@@ -51,6 +52,7 @@ FUNCTIONS = {
     "write_exr": (prefilter.write_exr, {"path": "out.exr", "levels": [IMAGE[:1, :1]]}),
     "write_dds": (prefilter.write_dds, {"path": "out.dds", "levels": [RGBA]}),
     "write_ktx2": (prefilter.write_ktx2, {"path": "out.ktx2", "levels": [RGBA]}),
+    "read_ktx2": (prefilter.read_ktx2, {"path": Path(__file__).parent / "ktx2/uastc-r.ktx2"}),
     "resize": (prefilter.resize, {"image": IMAGE, "width": 5, "height": 7}),
     "to_linear": (prefilter.to_linear, {"image": IMAGE}),
     "to_srgb": (prefilter.to_srgb, {"image": IMAGE}),
@@ -451,6 +453,7 @@ def test_every_function_is_there():
         "ClosedMesh",
         "CornerPoints",
         "FilteredLevels",
+        "Ktx2Info",
         "MeshEdges",
         "MipmapFilter",
         "MeshMeasures",

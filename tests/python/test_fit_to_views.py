@@ -155,6 +155,20 @@ def test_one_color_stays(start):
         )
 
 
+@pytest.mark.parametrize("bounds", [(0.4, 1.0), None])
+def test_colors_of_what_hardly_covers_stay_in_the_range_of_the_image(start, bounds):
+    _, surface = start
+    random = np.random.default_rng(4)
+    image = random.uniform(0.5, 0.6, (SIDE, SIDE, 4))
+    image[..., 3] = random.uniform(0, 1, (SIDE, SIDE)) ** 8
+    levels = prefilter.mipmaps(image, surface, footprint=1.0, bounds=bounds)
+    for level in prefilter.fit_to_views(levels, surface, bounds=bounds, effort=0.2)[1:]:
+        assert level[..., :3].min() >= 0.5 - 1e-5
+        assert level[..., :3].max() <= 0.6 + 1e-5
+        assert level[..., 3].min() >= 0
+        assert level[..., 3].max() <= 1
+
+
 def test_level_0_and_bounds_stay(start):
     levels, surface = start
     before = [level.copy() for level in levels]
@@ -179,8 +193,12 @@ def test_nasty_surfaces():
         (flat, 1e200 * inside),
         (1e-200 * flat, inside),
         (flat, 1e5 * inside),
+        (np.concatenate([flat, [(1e140, 0, 0), (0, -1e140, 0), (3, 4, 1)]]), inside),
     ):
-        surface = Surface(positions, [(0, 1, 2)], uvs)
+        # What has no place in the texture hides what is behind it all the same.
+        triangles = np.arange(len(positions)).reshape(-1, 3)
+        nowhere = np.zeros((len(triangles) - 1, 3, 2))
+        surface = Surface(positions, triangles, np.concatenate([uvs, nowhere]))
         for level, before in zip(
             prefilter.fit_to_views(levels, surface, wrap="repeat", effort=0.1), levels, strict=True
         ):

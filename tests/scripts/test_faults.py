@@ -28,8 +28,8 @@ def test_every_test_is_there():
     for fault in FAULTS:
         for name in filter(None, fault.native.split(":")):
             assert fnmatch.filter(suites, name.split(".")[0]), fault
-        if fault.python:
-            assert (ROOT / fault.python.split()[0]).exists(), fault
+        for tests in filter(None, (fault.python, fault.blender)):
+            assert (ROOT / tests.split()[0]).exists(), fault
 
 
 def test_at_least_fifty_over_all_rooms():
@@ -42,7 +42,8 @@ def test_at_least_fifty_over_all_rooms():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ('old = "a"\nnew = "b"', "needs either native or python"),
+        ('old = "a"\nnew = "b"', "needs native, python or blender"),
+        ('old = "a"\nnew = "b"\nnative = "A.*"\nblender = "b"', "needs native, python or"),
         ('old = "a"\nnew = "a"\nnative = "A.*"', "is not one line that changes"),
         ('old = "a\\nb"\nnew = ""\nnative = "A.*"', "is not one line that changes"),
     ],

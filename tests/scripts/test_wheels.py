@@ -69,13 +69,16 @@ def test_a_wheel_holds_subpackages_and_licenses(package: Path, tmp_path: Path) -
         names = set(archive.namelist())
         assert archive.read("prefilter/textures/dds.py") == b"# textures/dds.py\n"
         metadata = archive.read(f"{INFO}/METADATA").decode()
+        commands = archive.read(f"{INFO}/entry_points.txt").decode()
     assert names == {
         *(f"prefilter/{name}" for name in ("__init__.py", "py.typed", MODULE)),
         *(f"prefilter/textures/{name}" for name in ("__init__.py", "dds.py")),
-        *(f"{INFO}/{name}" for name in ("METADATA", "RECORD", "WHEEL")),
+        *(f"{INFO}/{name}" for name in ("METADATA", "RECORD", "WHEEL", "entry_points.txt")),
         *(f"{INFO}/licenses/{name}" for name in texts("gcc/copyright")),
     }
     assert metadata.count("\nLicense-File: ") == len(texts()) + 1
+    assert "\nProvides-Extra: command\nRequires-Dist: openimageio" in metadata
+    assert commands == "[console_scripts]\nprefilter = prefilter._command.program:main\n"
 
 
 def test_the_same_package_gives_the_same_bytes(package: Path, tmp_path: Path) -> None:

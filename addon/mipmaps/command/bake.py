@@ -10,24 +10,29 @@ from pathlib import Path
 from typing import Any
 
 import bpy
+from prefilter._work.files import engines, textures
 
 from ...bridge import images
-from ...bridge.files import engines, scenes, staging, textures
+from ...bridge.files import scenes, staging
 from ...core import command, presets
-from ...core.flags import add_flags, tables
+from ...core.flags import add_flags, given, tables
 from ...core.outcome import FAILURES
 from ...core.wording import listed
 from .. import reading, udim, unnamed
 from ..choices import ModelSettings, Settings
+from ..gltf.choices import GltfSettings
 from ..properties import BAKE, MODEL
 from . import source
 from .bake_all import bake_all
+from .bake_gltf import bake_gltf, is_gltf
 
 _HELP = "bake the mipmap levels of an image, weighted by the surface of the meshes that use it"
 _NOTES = """\
 With --all, the nodes of the materials tell what each image holds: color, normals, roughness and
 other data, cut-outs. In --output, {name} stands for the name of the image; the extension of a file
-takes precedence over --format. .dds and .ktx2 files get block formats by content.
+takes precedence over --format. .dds and .ktx2 files get block formats by content. With a .glb or
+.gltf file as --output, the model itself is exported, with KTX 2 textures (UASTC and Zstandard, or
+ETC1S) whose levels are fitted to what that file shows.
 
 Without --image, the base colors of the meshes' materials are baked, or all their images if none is
 a base color. If there are several, each gets a file: texture.exr becomes texture.NAME.exr. A
@@ -36,6 +41,7 @@ picture file that no material uses is treated as the texture of all faces, with 
 examples:
   prefilter bake helmet.gltf --all --list
   prefilter bake helmet.gltf --all --output textures/
+  prefilter bake helmet.blend --all --output helmet.glb
   prefilter bake scene.blend --image Wood --save
   prefilter bake spot.obj --image spot.png --output spot.exr
   prefilter bake helmet.gltf --object Visor --filter pam-box --output visor.tif
@@ -45,7 +51,13 @@ examples:
 def add(commands: Any) -> None:
     """Adds the command."""
     parser = command.add_command(
-        commands, "bake", _HELP, *tables(Settings), *tables(ModelSettings), _NOTES
+        commands,
+        "bake",
+        _HELP,
+        *tables(Settings),
+        *tables(ModelSettings),
+        *tables(GltfSettings),
+        _NOTES,
     )
     source.add_arguments(parser)
     presets.add_flag(parser)
@@ -65,9 +77,16 @@ def add(commands: Any) -> None:
         "--all",
         action="store_true",
         help="bake every image of the model, each according to its content, to separate files in "
-        "the folder that --output names",
+        "the folder that --output names, or into a .glb or .gltf file with that name",
     )
     add_flags(parser, ModelSettings)
+    add_flags(parser, GltfSettings)
+    parser.add_argument(
+        "--manifest",
+        metavar="FILE",
+        help="with --all, a .json file that says of each image its content, size and format, and "
+        "which file has it",
+    )
     parser.add_argument(
         "--list",
         action="store_true",
@@ -81,7 +100,11 @@ def _bake(options: argparse.Namespace) -> None:
     settings = _settings(options)
     if options.save and extension != ".blend":
         options.usage_error(f"--save: needs a .blend FILE, found '{options.file}'")
-    if options.all:
+    if given(options, GltfSettings) and not (options.all and is_gltf(settings.filepath)):
+        options.usage_error("--fallback: needs --all, and a .glb or .gltf file as --output")
+    if options.all and is_gltf(settings.filepath):
+        bake_gltf(options, settings)
+    elif options.all:
         bake_all(options, settings)
     else:
         _bake_some(options, settings)
@@ -89,7 +112,7 @@ def _bake(options: argparse.Namespace) -> None:
 
 def _bake_some(options: argparse.Namespace, settings: Settings) -> None:
     """Bakes one image, or the base colors."""
-    for name in ("list", "file_format", "material"):
+    for name in ("list", "file_format", "material", "manifest"):
         if getattr(options, name, None):
             flag = name.removeprefix("file_")
             options.usage_error(f"--{flag}: needs --all")

@@ -8,16 +8,17 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
+from prefilter._work.files import engines
 
 from ...bridge import meshes
-from ...bridge.files import engines, scenes, staging
+from ...bridge.files import scenes, staging
 from ...core import command, presets
 from ...core.doing import read_at_once
 from ...core.flags import given
 from ...core.wording import listed
 from .. import file_names
 from ..choices import NOT_OF_MODELS, ModelSettings, Settings
-from ..model import table
+from ..model import manifest, table
 from ..model.bake import Compute, ModelBake
 from ..model.plan import image_of, plan
 from ..properties import MODEL
@@ -42,10 +43,11 @@ def bake_all(options: argparse.Namespace, settings: Settings) -> None:
     paths = file_names.paths(pattern, images, [Path(path)])
     files = {image.name_full: file for image, file in zip(images, paths, strict=True)}
     settings = replace(settings, use_images=options.save, filepath="")
+    listing = manifest.check_target(options.manifest) if options.manifest else None
     if options.list:
         _list(ModelBake(planned, settings, files, is_rehearsal=True))
         return
-    model = ModelBake(planned, settings, files)
+    model = ModelBake(planned, settings, files, manifest=listing)
     try:
         _bake(model)
     finally:
@@ -79,6 +81,8 @@ def _check(options: argparse.Namespace, settings: Settings, pattern: file_names.
             options.usage_error(f"{flag}: not allowed with --all, which finds it for each image")
     if not (options.save or options.list or pattern.text):
         options.usage_error("nothing to write: give --output FOLDER, --save or --list")
+    if options.manifest and (options.list or not pattern.text):
+        options.usage_error("--manifest: needs --output FOLDER, and no --list")
     if pattern.text and not file_names.is_texture(pattern.text):
         options.usage_error(f"--output: '{pattern.text}' has no extension of a texture file")
     if settings.texture_format != "auto" and not engines.has_formats(pattern.text):

@@ -8,9 +8,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import bpy
+from prefilter._work.files import engines
 
 from ...bridge import images, meshes
-from ...bridge.files import engines, scenes
+from ...bridge.files import scenes
 from ...core.flags import given
 from ...core.wording import either
 from .. import unnamed, users

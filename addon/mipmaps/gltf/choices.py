@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user may set for the textures of a glTF export."""
+"""What a user may set for the textures of a glTF export, and of an import."""
 
 from dataclasses import dataclass
 
@@ -18,6 +18,12 @@ FALLBACKS = {
 }
 
 
+TEXTURE_FORMATS = {
+    "uastc": Choice("UASTC", "Close to the image"),
+    "etc1s": Choice("ETC1S", "Files several times smaller, coarser; normal maps stay UASTC"),
+}
+
+
 @dataclass(frozen=True)
 class GltfSettings:
     """How the textures of a glTF export are written."""
@@ -25,16 +31,41 @@ class GltfSettings:
     use_mipmaps: bool = switch(
         False,
         "Prefilter Mipmaps",
-        "Export textures as KTX 2 files (UASTC) with mipmaps fitted to the exported surfaces",
+        "Export textures as KTX 2 files with mipmaps fitted to the exported surfaces",
+        flag="",
+    )
+    texture_format: str = one_of(
+        "uastc",
+        "Format",
+        "Texel format of the KTX 2 files; loaders transcode it to one that the device supports",
+        TEXTURE_FORMATS,
         flag="",
     )
     supercompression: str = one_of(
         "zstd",
         "Compression",
-        "Supercompression: KTX 2 files are compressed once more, on top of the texture format",
+        "Supercompression: KTX 2 files in UASTC are compressed once more, on top of the format",
         SUPERCOMPRESSIONS,
         flag="",
     )
     fallback: str = one_of(
-        "none", "Fallback", "What other readers show in place of KTX 2 files", FALLBACKS, flag=""
+        "none",
+        "Fallback",
+        "What other readers show in place of KTX 2 files",
+        FALLBACKS,
+        metavar="KIND",
+        flag_description="With a .glb or .gltf file as --output, what other readers show in place "
+        "of KTX 2 files",
+    )
+
+
+@dataclass(frozen=True)
+class GltfImportSettings:
+    """What a glTF import makes of KTX 2 files."""
+
+    keep_levels: bool = switch(
+        False,
+        "Keep Levels",
+        "Import the mipmaps of KTX 2 textures as images too, to compare them with others",
+        flag="",
     )

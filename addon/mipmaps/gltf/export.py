@@ -11,12 +11,14 @@ from typing import Any
 
 import bpy
 import prefilter
+from prefilter._work.mipmaps import contents, lookups
+from prefilter._work.mipmaps.outputs import Outputs
 
 from ...bridge import images, meshes
 from ...bridge.files.staging import commit_all
 from ...core.outcome import FAILURES
-from .. import contents, lookups, source
-from ..bake import Bake, Outputs
+from .. import source
+from ..bake import Bake
 from ..choices import TEXTURE_SPACE_FILTERS, Settings
 from . import geometry, uses
 from .choices import GltfSettings
@@ -42,30 +44,49 @@ class _Picture:
 
 
 class Export:
-    """The textures of one export."""
+    """The textures of one export.
+
+    Attributes:
+        baked: The names of the images that got levels.
+        failed: Those of the others.
+        warnings: What a user should know about them.
+        notes: More that is good to know.
+    """
 
     def __init__(self, settings: Settings, options: GltfSettings) -> None:
-        """Takes how levels are made, and how they are written."""
-        self._settings = settings
+        """Takes how levels are made, of which what a file says itself is left out, and options."""
+        self.baked: list[str] = []
+        self.failed: list[str] = []
+        self.warnings: list[str] = []
+        self.notes: list[str] = []
         self._options = options
         self._parts: list[Part] = []
+        self._settings = lookups.resolved(
+            Settings(
+                filter=settings.filter,
+                lookups=settings.lookups,
+                bounds=settings.bounds,
+                seam_budget=settings.seam_budget,
+                texture_format=options.texture_format,
+                supercompression=options.supercompression,
+                use_images=False,
+                filepath=_FILE,
+                threads=settings.threads,
+            )
+        )
 
     @classmethod
     def of(cls, scene: bpy.types.Scene) -> "Export":
         """Returns the export that the settings of a scene ask for."""
         bake, gltf = scene.prefilter_bake, scene.prefilter_gltf
-        options = GltfSettings(True, gltf.supercompression, gltf.fallback)
         settings = Settings(
             filter=bake.filter,
             lookups=bake.lookups,
             bounds=bake.bounds,
             seam_budget=bake.seam_budget,
-            texture_format="uastc",
-            supercompression=options.supercompression,
-            use_images=False,
-            filepath=_FILE,
         )
-        return cls(lookups.resolved(settings), options)
+        options = GltfSettings(True, gltf.texture_format, gltf.supercompression, gltf.fallback)
+        return cls(settings, options)
 
     def add_scene(self, scene: Any) -> None:
         """Copies the triangles of a scene."""
@@ -80,13 +101,20 @@ class Export:
             for number, picture in enumerate(found):
                 manager.progress_update(number)
                 try:
-                    made, told = self._fitted(picture)
+                    made, bake = self._fitted(picture)
                 except FAILURES as error:
-                    text = f"Prefilter: texture '{picture.image.name}' stays as it is: {error}"
-                    log.warning(text, popup=True)
+                    text = f"texture '{picture.image.name}' stays as it is: {error}"
+                    log.warning(f"Prefilter: {text}", popup=True)
+                    self.failed.append(picture.image.name)
+                    self.warnings.append(text)
                     continue
-                for text in told:
+                for text in bake.warnings:
                     log.warning(f"Prefilter: {text}")
+                for text in bake.notes:
+                    log.info(f"Prefilter: {text}")
+                self.baked.append(picture.image.name)
+                self.warnings += bake.warnings
+                self.notes += bake.notes
                 self._replace(picture, made, export_settings)
         finally:
             manager.progress_end()
@@ -105,8 +133,8 @@ class Export:
                 picture.shown.append((use, part))
         return list(found.values())
 
-    def _fitted(self, picture: _Picture) -> tuple[bytes, list[str]]:
-        """Returns a KTX 2 file, and what a user should know about it."""
+    def _fitted(self, picture: _Picture) -> tuple[bytes, Bake]:
+        """Returns a KTX 2 file, and the bake that made it."""
         roles = {use.role for use, _ in picture.shown}
         content: str = next(role for role in ("normal", "color", "data") if role in roles)
         thresholds = [use.threshold for use, _ in picture.shown if use.threshold is not None]
@@ -128,12 +156,17 @@ class Export:
                 commit_all(bake.staged_files)
             finally:
                 bake.discard()
-            return target.read_bytes(), bake.warnings
+            return target.read_bytes(), bake
 
     def _settings_of(self, picture: _Picture, content: str, thresholds: list[float]) -> Settings:
         sampler = picture.textures[0].sampler
+        # Normals are no colors: what codebooks lose of them is seen as dents.
+        is_coarse = prefilter.TEXEL_FORMATS[self._settings.texture_format].is_coarse
         return replace(
             self._settings,
+            texture_format="uastc"
+            if is_coarse and content == "normal"
+            else self._settings.texture_format,
             content=content,
             threshold=thresholds[0] if thresholds else self._settings.threshold,
             wrap=_WRAPS.get(getattr(sampler, "wrap_s", 0), "repeat"),
@@ -183,9 +216,6 @@ def _read(picture: _Picture, folder: Path, *, is_data: bool) -> images.Picture:
     path.write_bytes(picture.data)
     with _opened(path, is_data=is_data) as image:
         texels = images.read(image)
-    height, width, _ = texels.shape
-    if width % 4 or height % 4:
-        raise ValueError(f"found {width} x {height} texels; {_EXTENSION} needs multiples of 4")
     name = picture.image.name or "Image"
     covers = any(use.covers for use, _ in picture.shown)
     return replace(texels, name=name, full_name=name, covers=covers)

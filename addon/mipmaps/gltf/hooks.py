@@ -1,26 +1,50 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What Blender's glTF exporter calls while it works."""
+"""What Blender's glTF exporter and importer call while they work."""
 
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
 
 import bpy
 
-from .properties import GROUP
+from .properties import GROUP, IMPORT_GROUP
+
+if TYPE_CHECKING:
+    from .export import Export
 
 _KEY = "prefilter"
+_given: "list[Export]" = []
+
+
+@contextmanager
+def exporting(export: "Export") -> Iterator[None]:
+    """Has exports use this one, whatever the scene says, for as long as the context lasts."""
+    _given.append(export)
+    try:
+        yield
+    finally:
+        _given.pop()
+
+
+def _of_scene(scene: bpy.types.Scene) -> "Export | None":
+    settings = getattr(scene, GROUP, None)
+    if settings is None or not settings.use_mipmaps:
+        return None
+    from .export import Export
+
+    return Export.of(scene)
 
 
 def glTF2_pre_export_callback(export_settings: dict[str, Any]) -> None:  # noqa: N802
     """Begins an export if the scene wants mipmaps; pictures are then to come without loss."""
-    settings = getattr(bpy.context.scene, GROUP, None)
-    if settings is None or not settings.use_mipmaps:
-        return
     if export_settings["gltf_image_format"] == "NONE":
         return
-    from .export import Export
-
-    export_settings[_KEY] = Export.of(bpy.context.scene)
+    export = _given[-1] if _given else _of_scene(bpy.context.scene)
+    if export is None:
+        return
+    export_settings[_KEY] = export
     export_settings["gltf_image_format"] = "AUTO"
     export_settings["gltf_add_webp"] = False
     export_settings["gltf_webp_fallback"] = True
@@ -28,7 +52,7 @@ def glTF2_pre_export_callback(export_settings: dict[str, Any]) -> None:  # noqa:
 
 
 class glTF2ExportUserExtension:
-    """Hooks; the exporter finds the class by its name."""
+    """Hooks of an export; the exporter finds the class by its name."""
 
     def gather_scene_hook(self, scene: Any, _: bpy.types.Scene, export_settings: Any) -> None:
         """Copies what the file shows of a scene, before the exporter compresses it."""
@@ -41,3 +65,32 @@ class glTF2ExportUserExtension:
         """Puts KTX 2 files in the place of pictures."""
         if _KEY in export_settings:
             export_settings[_KEY].replace_textures(export_settings)
+
+
+class glTF2ImportUserExtension:
+    """Hooks of an import; the importer finds the class by its name."""
+
+    def __init__(self) -> None:
+        """Tells the importer, which refuses files that require what it does not know."""
+        self.extensions = [SimpleNamespace(name="KHR_texture_basisu", required=True)]
+        self._import: Any = None
+
+    def gather_import_gltf_before_hook(self, gltf: Any) -> None:
+        """Begins an import."""
+        from .imports import Import, show_ktx2
+
+        settings = getattr(bpy.context.scene, IMPORT_GROUP, None)
+        self._import = Import(keep_levels=settings is not None and settings.keep_levels)
+        show_ktx2(gltf)
+
+    def gather_import_image_before_hook(self, image: Any, gltf: Any) -> None:
+        """Puts a PNG file in the place of a KTX 2 file."""
+        self._import.replace_image(image, gltf)
+
+    def gather_import_image_after_hook(self, image: Any, made: Any, _gltf: Any) -> None:
+        """Takes the image that was made."""
+        self._import.add_image(image, made)
+
+    def gather_import_scene_after_animation_hook(self, _gltf_scene: Any, _: Any, gltf: Any) -> None:
+        """Keeps levels, when materials have said what their images hold."""
+        self._import.keep_levels(gltf)

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""The settings of a glTF export as properties of the scene."""
+"""The settings of a glTF export and of an import as properties of the scene."""
 
 import bpy
 
 from ...core.properties import properties
 from ...core.registration import registration, state
-from .choices import GltfSettings
+from .choices import GltfImportSettings, GltfSettings
 
 GROUP = "prefilter_gltf"
+IMPORT_GROUP = "prefilter_gltf_import"
 
 
 class PREFILTER_PG_gltf(bpy.types.PropertyGroup):
@@ -17,4 +18,13 @@ class PREFILTER_PG_gltf(bpy.types.PropertyGroup):
     __annotations__ = properties(GltfSettings)
 
 
-register, unregister = registration(state(bpy.types.Scene, GROUP, PREFILTER_PG_gltf))
+class PREFILTER_PG_gltf_import(bpy.types.PropertyGroup):
+    """The same of an import."""
+
+    __annotations__ = properties(GltfImportSettings)
+
+
+register, unregister = registration(
+    state(bpy.types.Scene, GROUP, PREFILTER_PG_gltf),
+    state(bpy.types.Scene, IMPORT_GROUP, PREFILTER_PG_gltf_import),
+)

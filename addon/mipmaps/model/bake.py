@@ -13,14 +13,15 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
+from prefilter._work.files import engines
 
-from ...bridge.files import engines
 from ...core.jobs import Progress, go_on, share
 from ...core.outcome import FAILURES, Outcome
 from .. import reading, udim
 from ..bake import Bake, write_all
 from ..choices import Settings
 from . import decisions
+from .manifest import Manifest
 from .plan import Job, Plan
 from .preparing import Prepared, pair_of, parted, prepared
 from .results import Results, without_names
@@ -38,7 +39,13 @@ class ModelBake:
     """
 
     def __init__(
-        self, plan: Plan, settings: Settings, files: dict[str, str], *, is_rehearsal: bool = False
+        self,
+        plan: Plan,
+        settings: Settings,
+        files: dict[str, str],
+        *,
+        manifest: Path | None = None,
+        is_rehearsal: bool = False,
     ) -> None:
         """Takes what there is to do.
 
@@ -46,6 +53,7 @@ class ModelBake:
             plan: The images.
             settings: What to do with all of them.
             files: The path of each image, by its full name; empty for none.
+            manifest: What is written with the files to list them; None for nothing.
             is_rehearsal: Whether images are read to see what would be done: their folders need not
                 be there, and nothing is to be computed.
         """
@@ -54,6 +62,7 @@ class ModelBake:
         self.results = Results(list(plan.left_out))
         self._settings = settings
         self._files = files
+        self._manifest = manifest
         self._is_rehearsal = is_rehearsal
         self._jobs = plan.jobs()
         self._count = len(plan.items)
@@ -135,15 +144,32 @@ class ModelBake:
     def write(self) -> list[Outcome]:
         """Writes what is computed, the files of all images together or none of them."""
         computed, self._computed = self._computed, []
+        bakes = [bake for _, bake in computed]
         try:
-            written = write_all([bake for _, bake in computed])
+            listing = self._listing(computed)
+            written = write_all([*bakes, *listing])
         except FAILURES as error:
             for job, _ in computed:
                 self.results.fail(job.images, error)
             return []
         self.results.baked += [name for job, _ in computed for name in job.images]
-        self.results.outcomes += written
+        self.results.outcomes += written[: len(bakes)]
         return written
+
+    def _listing(self, computed: list[tuple[Job, AnyBake]]) -> list[Manifest]:
+        """Returns the manifest of what is computed, staged; none if it is not asked for."""
+        if self._manifest is None or not computed:
+            return []
+        names = {name for job, _ in computed for name in job.images}
+        written = [file.target for _, bake in computed for file in bake.staged_files]
+        rows = [row for row in self.rows if row.image in names]
+        try:
+            _make_folder(self._manifest, self._made_folders)
+            return [Manifest(self._manifest, rows, written)]
+        except BaseException:
+            for _, bake in computed:
+                bake.discard()
+            raise
 
     def discard(self) -> None:
         """Removes what was staged, if it was not put into place."""
@@ -172,7 +198,11 @@ class ModelBake:
         fits = self._settings.texture_format in decisions.BY_CONTENT
         if self._is_rehearsal:
             self.warnings += engines.checked(
-                made.picture, made.target, made.texture_format, may_lose_channels=fits
+                made.picture,
+                made.target,
+                made.texture_format,
+                may_lose_channels=fits,
+                is_stretched=settings.use_multiples_of_4,
             )
             settings = replace(
                 settings, filepath="", roughness_filepath="", texture_format="auto", use_images=True

@@ -5,11 +5,12 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...bridge.files import engines
+from prefilter._work.files import engines
+from prefilter._work.mipmaps import blocks
+from prefilter._work.mipmaps.blocks import is_gray
+
 from ...bridge.images import Picture
-from .. import blocks
-from ..blocks import is_gray
-from ..choices import CONTENTS, TEXTURE_FORMATS
+from ..choices import TEXTURE_FORMATS
 from .plan import Item
 
 BY_CONTENT = ("auto", "blocks")
@@ -82,8 +83,3 @@ def shown_format(picture: Picture, target: Path | None, chosen: str) -> str:
     if extension != ".exr" and not picture.is_float:
         return "8-Bit"
     return _OF_FILES.get(extension, "Float")
-
-
-def shown_content(content: str) -> str:
-    """Returns how to call a content."""
-    return CONTENTS[content].label

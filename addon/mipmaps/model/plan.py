@@ -179,6 +179,15 @@ def plan(
     return Plan(items, left_out)
 
 
+def said_of(image: bpy.types.Image, shown_by: Iterable[bpy.types.Material]) -> Item:
+    """Returns what materials say of an image, of whatever objects."""
+    known = _Found()
+    for material in shown_by:
+        known.shown_by[material] = None
+        known.roles.update(_roles(image, material))
+    return _item(image, known)
+
+
 def image_of(full_name: str) -> bpy.types.Image:
     """Returns the image of a full name.
 
@@ -212,7 +221,21 @@ def _add(known: _Found, image: bpy.types.Image, material: bpy.types.Material) ->
     known.shown_by[material] = None
     known.places[material] = frozenset(uses)
     known.problems.update(dict.fromkeys(problems))
-    known.roles.update((role, None) for role in image_roles.roles(material) if role.image == image)
+    known.roles.update(_roles(image, material))
+
+
+def _roles(image: bpy.types.Image, material: bpy.types.Material) -> dict[Role, None]:
+    return {role: None for role in image_roles.roles(material) if role.image == image}
+
+
+def _is_data(image: bpy.types.Image, known: _Found) -> bool:
+    """Tells whether an image is no color: one that is a color and data at once is both."""
+    if not image.colorspace_settings.is_data:
+        return False
+    is_read_as_data = any(role.use == "data" and not role.is_factor for role in known.roles)
+    return not is_read_as_data or not any(
+        image_roles.shows_as_color(material, image) for material in known.shown_by
+    )
 
 
 def _why_left_out(image: bpy.types.Image, known: _Found) -> str:
@@ -248,7 +271,7 @@ def _item(image: bpy.types.Image, known: _Found) -> Item:
         image.name_full,
         tuple(known.objects),
         tuple(dict.fromkeys(uses)),
-        "data" if image.colorspace_settings.is_data else "color",
+        "data" if _is_data(image, known) else "color",
         channels=frozenset(role.channel for role in known.roles),
         materials=frozenset(material.name for material in known.shown_by),
     )

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import bpy
+from prefilter._work.mipmaps import contents, lookups, stretching
 
 from ...bridge import images
 from ...bridge.images import Picture
 from ...core.wording import counted
-from .. import contents, lookups
 from ..choices import FILTERS, Settings
 from . import decisions
 from .plan import Item, Job, image_of
@@ -141,7 +141,12 @@ def _with_roughness(
     row = made.rows[0]
     if pair.is_normal_map:
         rough_row = _row(item, pair.rough, "data", made.settings, picture, file, chosen)
-        rows = [row, replace(rough_row, remarks=(told,))]
+        # Where one is stretched so is the other.
+        sides = max(row.sides, rough_row.sides)
+        rows = [
+            replace(row, sides=sides),
+            replace(rough_row, sides=sides, remarks=(told,)),
+        ]
     else:
         rows = [replace(row, remarks=(told,))]
     own = replace(
@@ -164,15 +169,19 @@ def _row(
     file: str,
     texture_format: str,
 ) -> Row:
+    target, (height, width, _) = _target(file), picture.shape
+    size = stretching.size_for(picture, target, texture_format)
     return Row(
         image.name,
         _size(image),
         item.objects,
-        decisions.shown_content(content),
+        content,
         item.uses,
         FILTERS[settings.filter].label,
-        decisions.shown_format(picture, _target(file), texture_format),
+        decisions.shown_format(picture, target, texture_format),
         file,
+        size if settings.use_multiples_of_4 else (width, height),
+        tuple(images.tile_numbers(image)),
     )
 
 

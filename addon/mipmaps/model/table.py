@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...bridge.files import textures
+from prefilter._work.files import textures
+
+from ..choices import CONTENTS
 
 _HEAD = ("Image", "Size", "Objects", "Content", "Filter", "Format", "File")
 _MOST_OBJECTS = 3
@@ -20,11 +22,13 @@ class Row:
         image: Its name.
         size: Such as "2048 x 2048".
         objects: The names of the objects whose surfaces count.
-        content: What it is taken for.
+        content: What it is taken for, a key of `choices.CONTENTS`.
         uses: What shaders take of it, which says why.
         filter: The label of the filter.
         format: What the file holds.
         file: The path of the file, or of all levels; empty for none.
+        sides: The width and height of level 0 in the file.
+        tiles: The numbers of its tiles; none for an image without.
         remarks: More about what is done.
     """
 
@@ -36,6 +40,8 @@ class Row:
     filter: str
     format: str
     file: str
+    sides: tuple[int, int]
+    tiles: tuple[int, ...] = ()
     remarks: tuple[str, ...] = ()
 
 
@@ -55,7 +61,7 @@ def _cells(row: Row) -> tuple[str, ...]:
     more = len(row.objects) - _MOST_OBJECTS
     objects = ", ".join(row.objects[:_MOST_OBJECTS]) + (f" and {more} more" if more > 0 else "")
     return (
-        *(row.image, row.size, objects, row.content, row.filter),
+        *(row.image, row.size, objects, CONTENTS[row.content].label, row.filter),
         *(row.format or "-", _shown_file(row.file) or "-"),
     )
 

@@ -100,7 +100,8 @@ class PREFILTER_OT_bake_model(
         return self._model.discard if self._model is not None else super().releaser()
 
     def _planned(self, context: bpy.types.Context) -> "ModelBake":
-        from ...bridge.files import engines
+        from prefilter._work.files import engines
+
         from .. import file_names
         from ..model.bake import ModelBake
         from ..model.known import chosen_objects

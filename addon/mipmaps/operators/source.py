@@ -111,8 +111,10 @@ def reading_source(
     Raises:
         ValueError: There is no such image, or no surface.
     """
+    from prefilter._work.mipmaps import lookups
+
     from ...bridge import images
-    from .. import lookups, reading, users
+    from .. import reading, users
     from ..bake import Bake
     from ..reading import Request
 

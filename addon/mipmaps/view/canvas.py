@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 import prefilter
 from numpy.typing import ArrayLike, NDArray
+from prefilter._work.shapes.outlines import add_contour
 
 from ...bridge.images import FloatArray
-from ...bridge.outlines import add_contour
 
 Color = tuple[float, float, float]
 

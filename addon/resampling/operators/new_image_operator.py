@@ -11,7 +11,8 @@ from ...bridge.image_operator import ImageOperator, MakesImage
 from ...core.translations import CONTEXT
 
 if TYPE_CHECKING:
-    from ...bridge.images import Picture
+    from ...bridge.images import FloatArray, Picture
+    from ...core.outcome import Outcome
     from ..new_picture import NewPicture
 
 
@@ -34,6 +35,12 @@ class NewImageOperator(ImageOperator, MakesImage):
     def work_on(self, picture: "Picture") -> "NewPicture":
         """Returns what is to do to an image."""
         raise NotImplementedError
+
+    def keep(self, work: "NewPicture", stored: "FloatArray") -> "Outcome":
+        """Makes an image of the new pixels."""
+        from ..new_picture import keep
+
+        return keep(work, stored, in_place=self.use_in_place)
 
     def draw_in(self, layout: bpy.types.UILayout) -> None:
         """Draws the settings."""

@@ -11,8 +11,9 @@ from ..properties import RESAMPLE, ResampleProperties
 from .new_image_operator import NewImageOperator
 
 if TYPE_CHECKING:
+    from prefilter._work.resampling.resampling import Resampling
+
     from ...bridge.images import Picture
-    from ..resampling import Resampling
 
 
 class PREFILTER_OT_resample_image(
@@ -37,12 +38,12 @@ class PREFILTER_OT_resample_image(
 
     def work_on(self, picture: "Picture") -> "Resampling":
         """Returns what is to do to an image."""
-        from ..resampling import Resampling
+        from prefilter._work.resampling.resampling import Resampling
 
-        return Resampling(picture, self.to_settings(), in_place=self.use_in_place)
+        return Resampling(picture, self.to_settings(), keep=self.keep)
 
     def effort(self, load: tuple[int, int]) -> float:
         """Returns about how long it takes."""
-        from ..resampling import effort
+        from prefilter._work.resampling.resampling import effort
 
         return effort(self.to_settings(), *load)

@@ -11,8 +11,9 @@ from ..properties import RESIZE, ResizeProperties
 from .new_image_operator import NewImageOperator
 
 if TYPE_CHECKING:
+    from prefilter._work.resampling.resizing import Resizing
+
     from ...bridge.images import Picture
-    from ..resizing import Resizing
 
 
 class PREFILTER_OT_resize_image(
@@ -32,9 +33,9 @@ class PREFILTER_OT_resize_image(
 
     def work_on(self, picture: "Picture") -> "Resizing":
         """Returns what is to do to an image."""
-        from ..resizing import Resizing
+        from prefilter._work.resampling.resizing import Resizing
 
-        return Resizing(picture, self.to_settings(), in_place=self.use_in_place)
+        return Resizing(picture, self.to_settings(), keep=self.keep)
 
     def effort(self, load: tuple[int, int]) -> float:
         """Returns about how many pixels are read and written, times the filter's cost."""

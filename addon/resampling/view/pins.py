@@ -83,7 +83,7 @@ def canvas_of(region: bpy.types.Region, size: tuple[int, int]) -> "Canvas":
 
 
 def _draw() -> None:
-    from ..placement import corners
+    from prefilter._work.resampling.placement import corners
 
     image = bpy.context.space_data.image
     if session is None or not is_on(image):
@@ -128,8 +128,9 @@ def _draw_pinned(
     places: "NDArray[np.float64]",
 ) -> None:
     """Draws the image between its corners, over all of the frame that they are places of."""
+    from prefilter._work.resampling.placement import frame, homography, rectangle
+
     from ..pins import uv_of_box
-    from ..placement import frame, homography, rectangle
 
     size = tuple(image.size)
     low, high = np.zeros(2), np.array(frame(settings, *size), np.float64)
@@ -147,9 +148,10 @@ def _draw_rectified(
     places: "NDArray[np.float64]",
 ) -> None:
     """Draws the straightened image in a corner of the region, away from the active pin."""
+    from prefilter._work.resampling.placement import placement
+
     from ...bridge.drawing import draw_label, draw_lines
     from ..pins import uv_of_box
-    from ..placement import placement
 
     assert session is not None
     size = tuple(image.size)

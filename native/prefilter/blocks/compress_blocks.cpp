@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <type_traits>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/blocks/encoders.h"
+#include "prefilter/blocks/worker_pool.h"
 
 namespace prefilter {
 namespace {
@@ -49,35 +49,6 @@ std::unique_ptr<HalfEncoder> make_encoder<HalfBits>(const BlockOptions& options)
   return make_astc_hdr_encoder(options);
 }
 
-/// Encoders that are not in use. There are no more than threads.
-template <class Channel>
-class EncoderPool {
- public:
-  explicit EncoderPool(const BlockOptions& options) : options_(options) {}
-
-  std::unique_ptr<BlockEncoder<Channel>> take() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!free_.empty()) {
-        auto encoder = std::move(free_.back());
-        free_.pop_back();
-        return encoder;
-      }
-    }
-    return make_encoder<Channel>(options_);
-  }
-
-  void put_back(std::unique_ptr<BlockEncoder<Channel>> encoder) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(encoder));
-  }
-
- private:
-  const BlockOptions options_;
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<BlockEncoder<Channel>>> free_;
-};
-
 template <class Channel>
 std::vector<std::uint8_t> compress(const Channel* rgba, int width, int height,
                                    const BlockOptions& options, const Progress& progress) {
@@ -95,7 +66,7 @@ std::vector<std::uint8_t> compress(const Channel* rgba, int width, int height,
   const std::int64_t parts = range_count(columns, kBlocksAtOnce);
   const std::int64_t block_texels = std::int64_t{layout.columns} * layout.rows;
   std::vector<std::uint8_t> blocks(static_cast<std::size_t>(rows * columns * layout.bytes));
-  EncoderPool<Channel> encoders(options);
+  WorkerPool<BlockEncoder<Channel>> encoders([&] { return make_encoder<Channel>(options); });
   parallel_for(rows * parts, options.threads, progress, [&](std::int64_t index) {
     const std::int64_t row = index / parts;
     const std::int64_t first = index % parts * kBlocksAtOnce;

@@ -7,6 +7,9 @@
 #include <algorithm>
 #include <memory>
 #include <new>
+#include <string>
+
+#include "prefilter/base/error.h"
 
 namespace prefilter {
 namespace {
@@ -45,6 +48,25 @@ std::vector<std::uint8_t> supercompress(const std::uint8_t* bytes, std::size_t c
   }
   frame.resize(output.pos);
   return frame;
+}
+
+std::vector<std::uint8_t> decompress(std::span<const std::uint8_t> frames, std::size_t count) {
+  // A frame of zeros is the densest: 128 KiB in a block of 4 bytes.
+  constexpr std::size_t kMostRatio = 1 << 15;
+  if (count / kMostRatio > frames.size()) {
+    throw_invalid("levels: " + std::to_string(frames.size()) + " bytes of zstd cannot hold " +
+                  std::to_string(count));
+  }
+  std::vector<std::uint8_t> bytes(count);
+  const std::size_t found = ZSTD_decompress(bytes.data(), count, frames.data(), frames.size());
+  if (ZSTD_isError(found) != 0) {
+    throw_invalid("levels: zstd says: " + std::string(ZSTD_getErrorName(found)));
+  }
+  if (found != count) {
+    throw_invalid("levels: " + std::to_string(found) + " bytes where " + std::to_string(count) +
+                  " are needed");
+  }
+  return bytes;
 }
 
 }  // namespace prefilter

@@ -3,12 +3,24 @@
 #include "prefilter/mipmap/argument_checks.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/text.h"
 
 namespace prefilter {
+
+ValueRange range_of(const Bounds& bounds) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const ValueRange range = {bounds.low.value_or(-kInfinity), bounds.high.value_or(kInfinity)};
+  if (!(range.low <= range.high) || range.low == kInfinity || range.high == -kInfinity) {
+    throw_invalid("bounds: the low bound is " + (bounds.low ? to_text(*bounds.low) : "open") +
+                  " and the high bound is " + (bounds.high ? to_text(*bounds.high) : "open") +
+                  "; numbers are needed, and low must not be above high");
+  }
+  return range;
+}
 
 void check_surface_area(const std::vector<const Surface*>& surfaces) {
   double area = 0.0;

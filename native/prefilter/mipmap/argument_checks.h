@@ -5,10 +5,15 @@
 
 #include <vector>
 
+#include "prefilter/base/value_range.h"
+#include "prefilter/mipmap/mipmaps.h"
 #include "prefilter/surface/surface.h"
 #include "prefilter/texels/texel_triangles.h"
 
 namespace prefilter {
+
+/// Bounds as a range, unless one is no number or the low one is above the high one.
+ValueRange range_of(const Bounds& bounds);
 
 /// Unless the surfaces have a positive, finite area in all.
 void check_surface_area(const std::vector<const Surface*>& surfaces);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "prefilter/base/error.h"
@@ -117,11 +116,6 @@ std::vector<Image> texture_space_levels(const ImageView& image,
   return levels;
 }
 
-ValueRange range_of(const Bounds& bounds) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  return {bounds.low.value_or(-kInfinity), bounds.high.value_or(kInfinity)};
-}
-
 SolveOptions solve_options(const FilteredImage& image, const MipmapOptions& options) {
   SolveOptions solve;
   for (int c = 0; c < image.texels().channels; ++c) {
@@ -215,15 +209,7 @@ void check_options(const TexelSource& image, const std::vector<const Surface*>& 
                   std::to_string(image.width) + " x " + std::to_string(image.height) +
                   " texels has 1 to " + std::to_string(full));
   }
-  const Bounds& bounds = options.bounds;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  const float low = bounds.low.value_or(-kInfinity);
-  const float high = bounds.high.value_or(kInfinity);
-  if (!(low <= high) || low == kInfinity || high == -kInfinity) {
-    throw_invalid("bounds: the low bound is " + (bounds.low ? to_text(*bounds.low) : "open") +
-                  " and the high bound is " + (bounds.high ? to_text(*bounds.high) : "open") +
-                  "; numbers are needed, and low must not be above high");
-  }
+  range_of(options.bounds);
   if (!(options.seam_budget >= 0.0) || !std::isfinite(options.seam_budget)) {
     throw_invalid("seam_budget: " + to_text(options.seam_budget) +
                   "; a finite number of at least 0 is needed");

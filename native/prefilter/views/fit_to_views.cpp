@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,6 +14,9 @@
 #include "prefilter/base/filterable.h"
 #include "prefilter/base/parallel.h"
 #include "prefilter/base/text.h"
+#include "prefilter/filters/filtered_image.h"
+#include "prefilter/mipmap/argument_checks.h"
+#include "prefilter/solve/nine_point_system.h"
 #include "prefilter/texels/levels.h"
 #include "prefilter/views/view_plan.h"
 #include "prefilter/views/view_system.h"
@@ -19,7 +24,6 @@
 namespace prefilter {
 namespace {
 
-constexpr int kAlpha = 3;
 constexpr double kMostEffort = 100.0;
 // What a texel that few views read is worth: as much as so many frames that say what it was before.
 constexpr double kFramesOfPull = 20.0;
@@ -53,50 +57,29 @@ void check(const std::vector<ImageView>& levels, const std::vector<const Surface
     throw_invalid("effort: " + to_text(options.effort) +
                   "; a number above 0 and up to 100 is needed");
   }
-  if (options.bounds.low && options.bounds.high && !(*options.bounds.low <= *options.bounds.high)) {
-    throw_invalid("bounds: the low one is above the high one");
-  }
+  range_of(options.bounds);
 }
 
-bool is_straight(const ImageView& image, const ViewFitOptions& options) {
-  return image.channels == kMaxChannels && !options.premultiplied;
+// A level as it is filtered, multiplied by its alpha where that counts: always if `is_multiplied`.
+std::unique_ptr<FilteredImage> filtered(const TexelSource& level, bool is_multiplied,
+                                        const ViewFitOptions& options) {
+  const bool has_alpha = level.channels == kMaxChannels && !options.premultiplied;
+  const auto all = [&] { return std::vector<unsigned char>(level.floats().texel_count(), 1); };
+  return std::make_unique<FilteredImage>(
+      level, all,
+      FilteredImage::Options{.alpha = has_alpha ? std::optional(kMaxChannels - 1) : std::nullopt,
+                             .stays_opaque = !is_multiplied,
+                             .threads = options.threads,
+                             .progress = Progress()});
 }
 
-Image multiplied(const ImageView& image) {
-  Image result(image);
-  for (std::size_t i = 0; i < image.texel_count(); ++i) {
-    float* const texel = result.data.data() + i * kMaxChannels;
-    for (int c = 0; c < kAlpha; ++c) texel[c] *= texel[kAlpha];
+SolveOptions solve_options(const FilteredImage& image, const ViewFitOptions& options) {
+  SolveOptions solve;
+  for (int c = 0; c < image.texels().channels; ++c) {
+    solve.ranges[static_cast<std::size_t>(c)] = image.solved_range(c, range_of(options.bounds));
   }
-  return result;
-}
-
-// Colors of texels that are not covered stay as they were.
-void divide(const ImageView& before, const Bounds& bounds, Image* level) {
-  constexpr float kLeast = 1e-4F;
-  for (std::size_t i = 0; i < before.texel_count(); ++i) {
-    float* const texel = level->data.data() + i * kMaxChannels;
-    for (int c = 0; c < kAlpha; ++c) {
-      texel[c] = texel[kAlpha] > kLeast
-                     ? texel[c] / texel[kAlpha]
-                     : before.data[i * kMaxChannels + static_cast<std::size_t>(c)];
-      if (bounds.low) texel[c] = std::max(texel[c], *bounds.low);
-      if (bounds.high) texel[c] = std::min(texel[c], *bounds.high);
-    }
-  }
-}
-
-LaneRange range_of(const Bounds& bounds, bool has_alpha) {
-  LaneRange range;
-  for (int c = 0; c < kMaxChannels; ++c) {
-    range.low[c] = bounds.low.value_or(-kLargestValue);
-    range.high[c] = bounds.high.value_or(kLargestValue);
-  }
-  if (has_alpha) {
-    range.low[kAlpha] = 0.0F;
-    range.high[kAlpha] = 1.0F;
-  }
-  return range;
+  solve.ranges_times_alpha = image.is_multiplied();
+  return solve;
 }
 
 // The more frames look at a level, the less what it was before counts.
@@ -149,14 +132,12 @@ std::vector<Image> fit_to_views(const std::vector<ImageView>& levels,
                                 const ViewFitOptions& options) {
   check(levels, surfaces, options);
   const ImageView& image = levels[0];
-  const bool has_alpha = is_straight(image, options);
-  std::vector<Image> owned;
-  std::vector<ImageView> start = levels;
-  if (has_alpha) {
-    for (ImageView& level : start) {
-      owned.push_back(multiplied(level));
-      level = owned.back().view();
-    }
+  const std::vector<TexelSource> sources(levels.begin(), levels.end());
+  std::vector<std::unique_ptr<FilteredImage>> read;
+  std::vector<ImageView> start;
+  for (const TexelSource& level : sources) {
+    read.push_back(filtered(level, !read.empty() && read[0]->is_multiplied(), options));
+    start.push_back(read.back()->floats());
   }
   const std::vector<View> views = plan_views(surfaces, image.width, image.height,
                                              static_cast<int>(levels.size()), options.effort);
@@ -164,11 +145,12 @@ std::vector<Image> fit_to_views(const std::vector<ImageView>& levels,
   ViewSystem system(start, pulls_of(views, levels.size()), std::move(seen), options,
                     options.progress.part(0.3, 0.4));
   std::vector<Image> fitted =
-      system.solve(range_of(options.bounds, has_alpha), options.progress.part(0.4, 1.0));
-  if (has_alpha) {
-    for (std::size_t k = 0; k < fitted.size(); ++k) {
-      divide(levels[k + 1], options.bounds, &fitted[k]);
-    }
+      system.solve(solve_options(*read[0], options), options.progress.part(0.4, 0.98));
+  const ValueRange range = range_of(options.bounds);
+  for (Image& level : fitted) {
+    read[0]->divide_by_alpha(options.wrap, options.progress.part(0.98, 0.99), options.threads,
+                             &level);
+    for (float& value : level.data) value = std::clamp(value, range.low, range.high);
   }
   options.progress.report(1.0);
   return fitted;

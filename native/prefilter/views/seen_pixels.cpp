@@ -11,6 +11,8 @@
 namespace prefilter {
 namespace {
 
+constexpr float kMostMip = 30.0F;   // of what a pixel looks up: no image has as many levels
+constexpr double kFarthest = 1e9;   // of u and v, so that floats hold them
 constexpr double kElsewhere = 0.5;  // pixels from where the middle of a pixel says
 // What pixels show of places that lookups do not know is mostly chance: errors there are large, and
 // would decide alone. With a tenth both kinds of pixels gain.
@@ -58,7 +60,7 @@ class Frame {
     if (triangle == SeenTriangles::kNothing) return std::nullopt;
     const ScreenMap middle = triangles_.map_of(triangle);
     SeenPixel pixel = looked_up(middle, x + 0.5, y + 0.5);
-    if (!std::isfinite(pixel.mip) || !look(x, y, middle, &pixel)) return std::nullopt;
+    if (!(pixel.mip <= kMostMip) || !look(x, y, middle, &pixel)) return std::nullopt;
     return pixel;
   }
 
@@ -101,7 +103,7 @@ class Frame {
       double at = map.at[a] + x * map.by_x[a] + y * map.by_y[a];
       // So that floats tell texels of far tiles apart.
       if ((a == 0 ? wrap_.u : wrap_.v) == Wrap::kRepeat) at -= std::floor(at);
-      pixel.uv[a] = static_cast<float>(at);
+      pixel.uv[a] = static_cast<float>(std::clamp(at, -kFarthest, kFarthest));
     }
     const double side_x =
         elementary::hypot(map.by_x[0] * image_.width, map.by_x[1] * image_.height);

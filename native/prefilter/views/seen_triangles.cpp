@@ -46,8 +46,8 @@ void SeenTriangles::draw(int begin, int end, int samples, std::vector<std::uint3
         ((z[1] - z[0]) * (p[2][1] - p[0][1]) - (z[2] - z[0]) * (p[1][1] - p[0][1])) / area;
     const double depth_y =
         ((z[2] - z[0]) * (p[1][0] - p[0][0]) - (z[1] - z[0]) * (p[2][0] - p[0][0])) / area;
-    const int first = std::max(0, static_cast<int>(std::ceil(low)));
-    const int last = std::min(height - 1, static_cast<int>(std::floor(high)));
+    const int first = static_cast<int>(std::ceil(std::max(low, 0.0)));
+    const int last = static_cast<int>(std::floor(std::min(high, height - 1.0)));
     for (int y = first; y <= last; ++y) {
       double from = std::numeric_limits<double>::infinity();
       double to = -from;
@@ -62,6 +62,7 @@ void SeenTriangles::draw(int begin, int end, int samples, std::vector<std::uint3
         from = std::min(from, x);
         to = std::max(to, x);
       }
+      if (!(from <= width - 1.0 && to >= 0.0)) continue;
       const int left = static_cast<int>(std::ceil(std::max(from, 0.0)));
       const int right = static_cast<int>(std::floor(std::min(to, width - 1.0)));
       const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);

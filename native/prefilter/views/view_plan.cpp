@@ -22,6 +22,7 @@ constexpr double kMostViews = 320.0;
 constexpr int kLeastSize = 6;    // pixels
 constexpr int kMostSize = 6000;  // likewise: larger ones, of many tiles, take too long
 constexpr int kMargin = 2;       // likewise
+constexpr int kFewSamples = 4;   // along a side of pixels of two to four texels
 constexpr int kMostSamples = 8;
 
 double fraction(double x) { return x - std::floor(x); }
@@ -85,9 +86,7 @@ View view_at(const Surface& surface, const Extent& extent, int octave, std::int6
   const double mip = octave + fraction(number * kPlasticSecond + 0.5);
   view.pixel = extent.texel * elementary::exp2(mip);
   view.size = 2 * (static_cast<int>(std::ceil(extent.radius / view.pixel)) + kMargin);
-  view.samples = std::min(2 << octave, kMostSamples);
-  if (octave == 0) view.samples = 4;
-  // Steps between samples are a quarter of a pixel, or an eighth.
+  view.samples = octave < 2 ? kFewSamples : kMostSamples;
   view.sampled_level = std::max(0, octave - 2);
   const double turn = kTurn * fraction(number * kGolden * kGolden + 0.25);
   view.step = {kStep * elementary::cos(turn), kStep * elementary::sin(turn)};
@@ -118,9 +117,8 @@ std::vector<View> plan_views(const std::vector<const Surface*>& surfaces, int wi
           std::max<std::int64_t>(1, std::llround(effort * wanted * extent.area / area));
       for (std::int64_t k = 0; k < count; ++k) {
         View view = view_at(*surfaces[i], extent, octave, k, count);
-        // Of the surface's area, that of the pixel.
-        view.weight =
-            elementary::exp2(2.0 * octave) * extent.area / area / static_cast<double>(count);
+        // By the area of the octave's smallest pixels.
+        view.weight = elementary::exp2(2.0 * octave) / static_cast<double>(count);
         views.push_back(view);
       }
     }

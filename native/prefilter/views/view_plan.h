@@ -22,7 +22,7 @@ struct View {
   double pixel = 0.0;            // its side, in units of space
   int size = 0;                  // pixels along each side of the frame
   int samples = 0;               // along each side of a pixel, of what it should show
-  int sampled_level = 0;         // whose texels are no larger than the steps between them
+  int sampled_level = 0;         // whose texels are at most twice the steps between them
   int octave = 0;                // levels 0 and 1, 1 and 2, ... are what most of its pixels look up
   double weight = 0.0;           // of each pixel
   std::array<double, 2> step{};  // to the second frame, in pixels

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "prefilter/base/parallel.h"
@@ -321,12 +322,24 @@ void ViewSystem::improve(int steps, Texels* texels, const Progress& progress) co
   }
 }
 
-std::vector<Image> ViewSystem::solve(const LaneRange& range, const Progress& progress) {
+std::vector<Image> ViewSystem::solve(const SolveOptions& options, const Progress& progress) {
   Texels beyond(start_.size());
+  Lanes low{};
+  Lanes high{};
+  for (std::size_t c = 0; c < kMaxChannels; ++c) {
+    // Open ranges are as wide as floats go, and not infinite: times an alpha of 0 they are 0.
+    low[c] = std::max(options.ranges[c].low, -std::numeric_limits<float>::max());
+    high[c] = std::min(options.ranges[c].high, std::numeric_limits<float>::max());
+  }
   const auto clip = [&] {
     for (std::size_t j = 0; j < start_.size(); ++j) {
       const Lanes texel = start_[j].v + beyond[j].v;
-      const Lanes within = lane_min(lane_max(texel, range.low), range.high);
+      Lanes scale = all_lanes(1.0F);
+      if (options.ranges_times_alpha) {
+        scale = all_lanes(std::clamp(texel[3], low[3], high[3]));
+        scale[3] = 1.0F;
+      }
+      const Lanes within = lane_min(lane_max(texel, low * scale), high * scale);
       for (std::size_t c = 0; c < kMaxChannels; ++c) {
         free_[j].v[c] = texel[c] == within[c] ? 1.0F : 0.0F;
       }

@@ -12,16 +12,11 @@
 #include "prefilter/base/lanes.h"
 #include "prefilter/base/progress.h"
 #include "prefilter/base/wrap.h"
+#include "prefilter/solve/nine_point_system.h"
 #include "prefilter/views/fit_to_views.h"
 #include "prefilter/views/seen_pixels.h"
 
 namespace prefilter {
-
-/// Least and greatest value of each channel.
-struct LaneRange {
-  Lanes low;
-  Lanes high;
-};
 
 /// Minimizes, over the texels t of levels 1 and up,
 ///   sum over pixels of w (lookup - shown)^2  +  s sum over pixels of w (change of the difference
@@ -32,8 +27,9 @@ class ViewSystem {
   ViewSystem(const std::vector<ImageView>& levels, const std::vector<double>& pulls,
              std::vector<SeenPixels> seen, const ViewFitOptions& options, const Progress& progress);
 
-  /// Conjugate gradients, within the range; then again for the texels that are not at its ends.
-  std::vector<Image> solve(const LaneRange& range, const Progress& progress);
+  /// Conjugate gradients, then within the ranges; then again for the texels that are not at their
+  /// ends.
+  std::vector<Image> solve(const SolveOptions& options, const Progress& progress);
 
  private:
   using Texels = std::vector<LaneValues>;

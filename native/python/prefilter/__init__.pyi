@@ -67,6 +67,8 @@ from .shapes.shape import Shape as Shape
 from .shapes.svg import SvgDrawing as SvgDrawing
 from .shapes.svg import read_svg as read_svg
 from .textures.exr import write_exr as write_exr
+from .textures.ktx2_reader import Ktx2Info as Ktx2Info
+from .textures.ktx2_reader import read_ktx2 as read_ktx2
 from .textures.texel_formats import TEXEL_FORMATS as TEXEL_FORMATS
 from .textures.texel_formats import TexelFormat as TexelFormat
 from .textures.texture_files import write_dds as write_dds

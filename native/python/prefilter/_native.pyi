@@ -370,6 +370,29 @@ def compress_blocks(
     threads: int,
 ) -> bytes: ...
 def supercompress(data: bytes, progress: ProgressCallback | None) -> bytes: ...
+def decompress(frames: bytes, count: int) -> bytes: ...
+def decode_blocks(
+    blocks: bytes,
+    format: str,
+    srgb: bool,
+    width: int,
+    height: int,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> npt.NDArray[np.uint8] | npt.NDArray[np.uint16]: ...
+def compress_etc1s(
+    levels: Sequence[npt.NDArray[np.uint8]],
+    quality: int,
+    has_alpha: bool,
+    is_color: bool,
+    progress: ProgressCallback | None,
+    threads: int,
+) -> tuple[tuple[int, int, bytes, bytes, bytes], list[tuple[bytes, bytes]]]: ...
+def decode_etc1s(
+    codebooks: tuple[int, int, bytes, bytes, bytes],
+    levels: Sequence[tuple[int, int, bytes, bytes]],
+    progress: ProgressCallback | None,
+) -> list[npt.NDArray[np.uint8]]: ...
 
 EXR_TILE_SIDE: int
 

@@ -7,6 +7,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 import scenes
+from prefilter._work import openimageio
 
 
 def read(addon, made):
@@ -60,7 +61,7 @@ def test_conversion_in_bands(addon, monkeypatch):
     images = addon("bridge.images")
     picture = read(addon, scenes.image("Paint", scenes.noise(10, 4), colorspace="ACEScg"))
     whole = images.scene_linear(picture)
-    monkeypatch.setattr(addon("bridge.openimageio"), "_PIXELS_A_BAND", 12)
+    monkeypatch.setattr(openimageio, "_PIXELS_A_BAND", 12)
     checks = []
     banded = images.scene_linear(picture, lambda: checks.append(None))
     np.testing.assert_array_equal(banded, whole)

@@ -8,6 +8,7 @@ import OpenImageIO as oiio
 import prefilter
 import pytest
 import scenes
+from prefilter._work import openimageio
 
 
 @pytest.fixture
@@ -20,7 +21,7 @@ def calls(addon, monkeypatch):
         caught.append(options)
         return original(image, surface, **options)
 
-    monkeypatch.setattr(addon("mipmaps.contents").prefilter, "coarser_levels", mipmaps)
+    monkeypatch.setattr(prefilter, "coarser_levels", mipmaps)
     return caught
 
 
@@ -135,8 +136,8 @@ def test_mirror_and_disagreement_are_said(bake):
     ("is_float", "low", "colorspace", "bounds", "expected"),
     [
         (False, 0, "sRGB", "auto", (0, 1)),
-        (True, 0, None, "auto", (0, None)),
-        (True, -1, None, "auto", (-1, None)),
+        (True, 0, None, "auto", (0, 1)),
+        (True, -1, None, "auto", (-1, 1)),
         (True, 0, None, "unit", (0, 1)),
         (False, 0, "sRGB", "positive", (0, None)),
         (False, 0, "sRGB", "none", None),
@@ -145,6 +146,7 @@ def test_mirror_and_disagreement_are_said(bake):
 def test_bounds(bake, calls, is_float, low, colorspace, bounds, expected):
     values = scenes.noise(4, 4) + low
     values[0, 0] = 1
+    values[..., 3] = 1
     values[1, 1, :3] = low
     image = scenes.image("Paint", values, is_float=is_float, colorspace=colorspace)
     bake(image, filter="box", bounds=bounds)
@@ -175,6 +177,35 @@ def test_light_falls_no_deeper_than_the_image(bake):
     assert min(scenes.pixels(name).min() for name in names) >= -1e-6
 
 
+@pytest.mark.parametrize("filter", ["pam-bilinear", "pam-trilinear", "lanczos3"])
+def test_light_rises_no_higher_than_the_image(bake, filter):
+    """A few suns: a free fit makes brighter ones of them, which twinkle."""
+    values = np.full((32, 32, 4), 0.01, np.float32)
+    values[7:17, 7:17, :3] = 50
+    values[..., 3] = 1
+    image = scenes.image("Suns", values, is_float=True)
+    quad = scenes.textured_quad(image)
+    names = bake(image, [quad], filter=filter).images
+    assert max(scenes.pixels(name).max() for name in names) <= 50
+    names = bake(image, [quad], filter=filter, bounds="positive").images
+    assert max(scenes.pixels(name)[..., :3].max() for name in names) > 50
+
+
+@pytest.mark.parametrize("filter", ["pam-bilinear", "lanczos3"])
+def test_associated_light_keeps_its_color(bake, filter):
+    """Alpha and colors are limited together: suns stay as orange as they are, and as bright."""
+    values = np.zeros((32, 32, 4), np.float32)
+    values[7:17, 7:17] = (30, 20, 10, 1)
+    image = scenes.image("Suns", values, is_float=True)
+    for name in bake(image, [scenes.textured_quad(image)], filter=filter).images:
+        found = scenes.pixels(name)
+        assert found.max() <= 30.001
+        assert found[..., 3].max() <= 1
+        seen = found[found[..., 3] > 0.1]
+        straight = seen[:, :3] / seen[:, 3:]
+        np.testing.assert_allclose(straight, np.broadcast_to((30, 20, 10), straight.shape), 1e-3)
+
+
 @pytest.mark.parametrize("is_packed", [False, True])
 def test_integers_of_many_bits_stay_within_one(bake, tmp_path, is_packed):
     """Blender has a 16-bit PNG as floats."""
@@ -202,7 +233,7 @@ def test_values_that_are_not_finite_leave_the_bounds(bake, calls):
     half = scenes.quads("Half", [((0, 0.6), (1, 0.6), (1, 0.9), (0, 0.9))])
     half.data.materials.append(scenes.material("Cloth", image))
     bake(image, [half], filter="pam-box", wrap="clamp", levels=2)
-    assert calls[0]["bounds"] == (0, None)
+    assert calls[0]["bounds"] == (0, 1)
 
 
 def test_levels_limit_the_images_and_not_the_file(bake, tmp_path):
@@ -362,7 +393,7 @@ def test_failure_of_an_image_leaves_everything_as_it_was(bake, addon, tmp_path, 
 
 
 def test_cancel_between_level_files(bake, addon, tmp_path, monkeypatch):
-    module = addon("bridge.openimageio")
+    module = openimageio
     written = []
     original = module._write_level
 

@@ -2,6 +2,8 @@
 
 """`bake --all`: every image of a model as what it is, against bakes of single images."""
 
+import json
+
 import bpy
 import gltf_files
 import numpy as np
@@ -202,10 +204,7 @@ def test_the_files_are_those_of_single_bakes(model, tmp_path):
             *("--roughness-channel", "green", "--output", one / "normal.tif"),
             *("--roughness-output", one / "orm.tif"),
         ),
-        (
-            *("--image", "leaf.png", "--content", "cutout", "--threshold", CUTOFF),
-            *("--output", one / "leaf.tif"),
-        ),
+        ("--image", "leaf.png", "--output", one / "leaf.tif"),
     ):
         assert run("bake", model, *arguments).returncode == 0
     assert names(tmp_path / "all") == names(one)
@@ -286,10 +285,62 @@ def test_what_output_means(addon, output, expected):
     assert addon("mipmaps.file_names").Pattern.of(output, ".ktx2").text == expected
 
 
+def test_a_manifest_of_the_files(model, tmp_path):
+    """Sizes are those of the files, which are stretched where blocks need it."""
+    gltf_files.write_png(tmp_path / "albedo.png", scenes.noise(10, 18)[..., :3])
+    listing = tmp_path / "out" / "textures.json"
+    result = run("bake", model, "--all", "--output", tmp_path / "out" / "t", "--manifest", listing)
+    assert result.returncode == 0, result.stderr
+    assert f"Listed 5 images in '{listing}'" in result.stdout
+    found = {one["image"]: one for one in json.loads(listing.read_text())["images"]}
+    assert {name: one["role"] for name, one in found.items()} == {
+        "albedo.png": "color",
+        "orm.png": "data",
+        "normal.png": "normal",
+        "glow.png": "color",
+        "leaf.png": "cutout",
+    }
+    for one in found.values():
+        assert [one["file"]] == one["files"]
+        file = read_ktx2(tmp_path / "out" / one["file"])
+        assert one["size"] == [file.width, file.height]
+        assert file.format.startswith(one["format"])
+    assert found["albedo.png"]["size"] == [20, 12]
+    assert found["orm.png"]["uses"] == ["Metallic (blue)", "Roughness (green)", "Occlusion (red)"]
+
+
+def test_a_manifest_lists_all_levels_and_only_what_is_baked(model, tmp_path):
+    (tmp_path / "glow.png").unlink()
+    listing = tmp_path / "textures.json"
+    out = ("--output", tmp_path / "out", "--format", "png", "--manifest", listing)
+    assert run("bake", model, "--all", *out).returncode == 1
+    found = {one["image"]: one for one in json.loads(listing.read_text())["images"]}
+    assert "glow.png" not in found
+    assert found["leaf.png"]["files"] == [f"out/leaf.{number:02d}.png" for number in range(5)]
+
+
+def test_a_manifest_that_cannot_be_written_stops_all(model, tmp_path):
+    listing = tmp_path / "textures.json"
+    listing.mkdir()
+    before = names(tmp_path)
+    result = run("bake", model, "--all", "--output", tmp_path / "out", "--manifest", listing)
+    assert_fails(result, "textures.json")
+    assert names(tmp_path) == before
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--all"], ["nothing to write"]),
+        (["--all", "--list", "--manifest", "m.json"], ["--manifest", "--output"]),
+        (["--output", "o.exr", "--manifest", "m.json"], ["--manifest", "--all"]),
+        (["--all", "--output", "o", "--fallback", "picture"], ["--fallback", ".glb"]),
+        (["--all", "--output", "o.glb", "--fallback", "gif"], ["--fallback", "picture"]),
+        (["--all", "--output", "o.glb", "--list"], ["--list", ".glb"]),
+        (["--all", "--output", "o.glb", "--texture-format", "bc7"], ["--texture-format", ".glb"]),
+        (["--all", "--output", "o.glb", "--wrap", "clamp"], ["--wrap", ".glb"]),
+        (["--all", "--output", "o.glb", "--manifest", "m.json"], ["--manifest", ".glb"]),
+        (["--all", "--output", "o.glb", "--format", "dds"], ["--format", ".glb"]),
         (["--all", "--list", "--image", "Wood"], ["--image", "--all"]),
         (["--all", "--list", "--content", "data"], ["--content", "--all"]),
         (["--all", "--list", "--roughness-output", "o.exr"], ["--roughness-output", "--all"]),

@@ -8,6 +8,7 @@ import OpenImageIO as oiio
 import prefilter
 import pytest
 import scenes
+from texture_readers import read_ktx2
 
 
 def bumps(height, width, seed=1):
@@ -105,7 +106,7 @@ def test_use_in_a_normal_map_node_is_found(bake):
 
 @pytest.mark.parametrize("way", ["direct", "reroute", "turned", "group", "in group", "factor"])
 def test_how_a_normal_map_node_gets_its_color(addon, way):
-    feeds = addon("bridge.image_roles").feeds_normal_map
+    plan = addon("mipmaps.model.plan")
     image = scenes.image("Bumps", bumps(8, 8), colorspace="Non-Color")
     other = scenes.image("Other", bumps(8, 8), colorspace="Non-Color")
     material = bpy.data.materials.new("Bumpy")
@@ -114,6 +115,10 @@ def test_how_a_normal_map_node_gets_its_color(addon, way):
     texture = scenes.image_node(tree, image)
     node = tree.nodes.new("ShaderNodeNormalMap")
     color = texture.outputs["Color"]
+
+    def feeds(material, image):
+        return plan.said_of(image, [material]).content == "normal"
+
     if way == "reroute":
         reroute = tree.nodes.new("NodeReroute")
         tree.links.new(color, reroute.inputs[0])
@@ -354,12 +359,64 @@ def test_data_of_an_srgb_image_stays_as_stored(bake):
     assert bpy.data.images["Mask.mip01"].colorspace_settings.name == "sRGB"
 
 
-def test_color_of_a_data_image_has_coverage(bake):
+def test_color_of_a_data_image_is_light_with_coverage(bake):
     values = scenes.noise(8, 8, alpha=True)
     bake(scenes.image("Leaf", values, colorspace="Non-Color"), filter="box", content="color")
     alpha = scenes.halved(values[..., 3:])
-    color = scenes.halved(values[..., :3] * values[..., 3:]) / alpha
-    np.testing.assert_allclose(scenes.pixels("Leaf.mip01")[..., :3], color, atol=0.51 / 255)
+    color = scenes.halved(scenes.to_linear(values[..., :3]) * values[..., 3:]) / alpha
+    found = scenes.pixels("Leaf.mip01")[..., :3]
+    np.testing.assert_allclose(found, scenes.to_srgb(color), atol=0.51 / 255)
+    assert bpy.data.images["Leaf.mip01"].colorspace_settings.name == "Non-Color"
+
+
+def shader_of(material):
+    return next(node for node in material.node_tree.nodes if node.type == "BSDF_PRINCIPLED")
+
+
+@pytest.mark.parametrize("way", ["tinted", "alone", "ramp", "over another"])
+def test_color_and_data_at_once_is_color(bake, addon, way):
+    """As glTF files have it, whose importer leaves such an image Non-Color."""
+    values = scenes.noise(8, 8)
+    image = scenes.image("Both", values, colorspace="Non-Color")
+    quad = scenes.textured_quad(image)
+    tree, shader = quad.active_material.node_tree, shader_of(quad.active_material)
+    texture = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    color = texture.outputs["Color"]
+    if way == "ramp":
+        ramp = tree.nodes.new("ShaderNodeValToRGB")
+        tree.links.new(color, ramp.inputs[0])
+        color = ramp.outputs["Color"]
+    elif way != "alone":
+        mix = tree.nodes.new("ShaderNodeMix")
+        mix.data_type, mix.blend_type = "RGBA", "MULTIPLY"
+        tree.links.new(color, mix.inputs[6])
+        if way == "over another":
+            base = scenes.image_node(tree, scenes.image("Base", scenes.noise(8, 8)))
+            tree.links.new(base.outputs["Color"], mix.inputs[7])
+        color = mix.outputs[2]
+    tree.links.new(color, shader.inputs["Base Color"])
+    if way != "alone":
+        apart = tree.nodes.new("ShaderNodeSeparateColor")
+        tree.links.new(texture.outputs["Color"], apart.inputs["Color"])
+        tree.links.new(apart.outputs["Green"], shader.inputs["Roughness"])
+    content = "color" if way == "tinted" else "data"
+    depsgraph = scenes.depsgraph()
+    planned = addon("mipmaps.model.plan").plan(depsgraph.view_layer, depsgraph)
+    assert {item.image: item.content for item in planned.items}["Both"] == content
+    bake(image, [quad], filter="box")
+    colors = values[..., :3]
+    expected = scenes.halved(colors)
+    if content == "color":
+        expected = scenes.to_srgb(scenes.halved(scenes.to_linear(colors)))
+    found = scenes.pixels("Both.mip01")[..., :3]
+    np.testing.assert_allclose(found, expected, atol=0.51 / 255)
+
+
+def test_color_that_is_data_too_is_written_as_color(bake, tmp_path):
+    image = scenes.image("Both", scenes.noise(8, 8), colorspace="Non-Color")
+    path = tmp_path / "both.ktx2"
+    bake(image, content="color", filter="box", filepath=str(path), texture_format="bc7")
+    assert read_ktx2(path).format == "BC7_SRGB"
 
 
 @pytest.mark.parametrize("alpha_mode", ["CHANNEL_PACKED", "NONE"])
@@ -443,6 +500,30 @@ def test_alpha_that_a_material_shows_by_is_coverage(bake, way, covers):
     bake(image, [quad], filter="box", wrap="clamp", content="data")
     plain = leaves()[..., 3].mean() * LEAF[0] + (1 - leaves()[..., 3].mean())
     assert colors_shown(False)[0, 0, 0] == pytest.approx(plain, abs=1.1 / 255)
+
+
+@pytest.mark.parametrize("way", ["mask", "mix"])
+def test_an_alpha_test_is_found(bake, way):
+    """Its threshold, too, whatever the settings say."""
+    image = gltf_leaf()
+    quad = scenes.textured_quad(image)
+    drive_alpha(quad.active_material, way)
+    tree = quad.active_material.node_tree
+    next(node for node in tree.nodes if node.type == "MATH").inputs[1].default_value = 0.25
+    outcome = bake(image, [quad], wrap="clamp", threshold=0.75)
+    assert "as Cut-Out" in outcome.summary
+    found = scenes.pixels("Leaf.mip02")
+    bake(image, [quad], wrap="clamp", content="cutout", threshold=0.25)
+    np.testing.assert_array_equal(found, scenes.pixels("Leaf.mip02"))
+
+
+def test_an_alpha_test_of_an_opaque_image(bake):
+    image = scenes.image("Leaf", scenes.noise(8, 8))
+    quad = scenes.textured_quad(image)
+    drive_alpha(quad.active_material, "mask")
+    outcome = bake(image, [quad])
+    assert outcome.warnings == ["image 'Leaf' is opaque, so its alpha test is left out"]
+    assert "as Cut-Out" not in outcome.summary
 
 
 def test_alpha_of_an_instanced_collection_is_coverage(bake):

@@ -2,6 +2,7 @@
 
 """What Blender's glTF exporter writes with fitted mipmaps, read back by its parts."""
 
+import io
 import json
 import struct
 import sys
@@ -11,6 +12,7 @@ import numpy as np
 import prefilter
 import pytest
 import scenes
+from command_line import assert_fails, run
 from conftest import PACKAGE
 
 TYPES = {5123: np.uint16, 5125: np.uint32, 5126: np.float32}
@@ -117,6 +119,44 @@ def test_levels_are_those_of_the_surface(tmp_path):
         assert ktx2_of(file, buffer, info) == path.read_bytes(), kind
 
 
+def test_etc1s_is_for_all_but_normal_maps(tmp_path):
+    model()
+    settings = bpy.context.scene.prefilter_gltf
+    export(tmp_path / "fine.glb", export_format="GLB")
+    settings.texture_format = "etc1s"
+    try:
+        export(tmp_path / "small.glb", export_format="GLB")
+    finally:
+        settings.property_unset("texture_format")
+    file, buffer = read_glb(tmp_path / "small.glb")
+    (material,) = file["materials"]
+    metal = material["pbrMetallicRoughness"]
+    found = {
+        kind: ktx2_of(file, buffer, info)
+        for kind, info in (
+            ("color", metal["baseColorTexture"]),
+            ("data", metal["metallicRoughnessTexture"]),
+            ("normal", material["normalTexture"]),
+        )
+    }
+    formats = {kind: prefilter.read_ktx2(io.BytesIO(data))[1] for kind, data in found.items()}
+    assert [formats[kind].format for kind in ("color", "data", "normal")] == [
+        *("etc1s", "etc1s", "uastc")
+    ]
+    assert [formats[kind].supercompression for kind in ("color", "data", "normal")] == [
+        *("basislz", "basislz", "zstd")
+    ]
+    # The levels are those of UASTC: the codecs are all that differs.
+    fine_file, fine_buffer = read_glb(tmp_path / "fine.glb")
+    fine_metal = fine_file["materials"][0]["pbrMetallicRoughness"]
+    fine = ktx2_of(fine_file, fine_buffer, fine_metal["baseColorTexture"])
+    levels = [prefilter.read_ktx2(io.BytesIO(data))[0] for data in (found["color"], fine)]
+    assert [one.shape for one in levels[0]] == [one.shape for one in levels[1]]
+    for one, other in zip(*levels, strict=True):
+        assert abs(one.astype(float).mean() - other.mean()) < 6
+    assert len(found["color"]) < len(fine)
+
+
 def test_files_by_themselves_with_a_fallback(tmp_path):
     model()
     export(tmp_path / "model.gltf", fallback="picture", export_format="GLTF_SEPARATE")
@@ -153,20 +193,37 @@ def test_off_changes_nothing(tmp_path, kind, addon):
     assert made == {path.name: path.read_bytes() for path in (tmp_path / "without").iterdir()}
 
 
-def test_sides_that_are_no_multiples_of_4_stay_pictures(tmp_path):
-    cube = scenes.cube(scenes.image("Odd", scenes.noise(30, 30)))
-    tree = cube.active_material.node_tree
-    shader = next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
-    color = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
-    tree.links.new(color.outputs[0], shader.inputs["Base Color"])
-    export(tmp_path / "model.glb", export_format="GLB")
-    file, _ = read_glb(tmp_path / "model.glb")
-    assert [image["mimeType"] for image in file["images"]] == ["image/png"]
-    assert "extensionsUsed" not in file
-
-
 def principled(tree):
     return next(node for node in tree.nodes if node.type == "BSDF_PRINCIPLED")
+
+
+def painted(name, pixels):
+    """Makes a cube with an image as its base color."""
+    cube = scenes.cube(scenes.image(name, pixels))
+    tree = cube.active_material.node_tree
+    color = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    tree.links.new(color.outputs[0], principled(tree).inputs["Base Color"])
+    return cube
+
+
+def as_bytes(values):
+    return (np.clip(values, 0, 1) * 255 + 0.5).astype(np.uint8)
+
+
+def test_sides_become_multiples_of_4(tmp_path):
+    pixels = scenes.noise(30, 21)
+    painted("Odd", pixels)
+    export(tmp_path / "model.glb", export_format="GLB")
+    file, buffer = read_glb(tmp_path / "model.glb")
+    light = prefilter.to_linear(np.rint(pixels[..., :3] * 255).astype(np.float32) / 255)
+    wide = prefilter.resize(light, 24, 32, wrap="repeat")
+    texels = as_bytes(prefilter.to_srgb(np.clip(wide, light.min((0, 1)), light.max((0, 1)))))
+    options = {"encoding": "srgb", "footprint": 1.0, "wrap": "repeat"}
+    levels = prefilter.mipmaps(texels, [surface_of(file, buffer)], **options)
+    path = tmp_path / "odd.ktx2"
+    prefilter.write_ktx2(path, levels, format="uastc", encoding="srgb", supercompression="zstd")
+    info = file["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"]
+    assert ktx2_of(file, buffer, info) == path.read_bytes()
 
 
 def test_alpha_is_straight_and_uvs_are_under_a_transform(tmp_path):
@@ -205,3 +262,224 @@ def test_alpha_is_straight_and_uvs_are_under_a_transform(tmp_path):
     options = {"format": "uastc", "encoding": "srgb", "alpha": "straight"}
     prefilter.write_ktx2(path, made, **options, supercompression="zstd")
     assert ktx2_of(file, buffer, info) == path.read_bytes()
+
+
+@pytest.mark.parametrize("ending", ["glb", "gltf"])
+def test_the_command_exports_as_the_dialog_does(tmp_path, ending):
+    cube = model()
+    cube.rotation_euler = (0.1, 0.2, 0.3)
+    source = tmp_path / "in" / "model.blend"
+    for folder in ("in", "dialog", "command"):
+        (tmp_path / folder).mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(source))
+    kind = {"glb": "GLB", "gltf": "GLTF_SEPARATE"}[ending]
+    export(tmp_path / "dialog" / f"out.{ending}", export_format=kind)
+    target = tmp_path / "command" / f"out.{ending}"
+    result = run("bake", source, "--all", "--output", target)
+    assert result.returncode == 0, result.stderr
+    assert f"Baked 3 images into '{target}'" in result.stdout
+    made = {path.name: path.read_bytes() for path in target.parent.iterdir()}
+    assert made == {path.name: path.read_bytes() for path in (tmp_path / "dialog").iterdir()}
+
+
+def test_the_command_has_options(tmp_path):
+    model()
+    scenes.textured_quad(scenes.image("Odd", scenes.noise(30, 30)), "Other")
+    source, target = tmp_path / "model.blend", tmp_path / "out" / "out.gltf"
+    bpy.ops.wm.save_as_mainfile(filepath=str(source))
+    target.parent.mkdir()
+    options = ("--fallback", "picture", "--supercompression", "none", "--filter", "box")
+    result = run("bake", source, "--all", "--object", "Cube", "--output", target, *options)
+    assert result.returncode == 0, result.stderr
+    file = json.loads(target.read_text())
+    assert [mesh["name"] for mesh in file["meshes"]] == ["Cube"]
+    assert "extensionsRequired" not in file
+    assert len(file["images"]) == 6
+    ktx2 = [image["uri"] for image in file["images"] if image["mimeType"] == "image/ktx2"]
+    schemes = [struct.unpack_from("<I", (target.parent / name).read_bytes(), 44) for name in ktx2]
+    assert schemes == [(0,)] * 3
+
+
+def test_the_command_has_etc1s(tmp_path):
+    painted("Even", scenes.noise(32, 32))
+    source, target = tmp_path / "model.blend", tmp_path / "out.glb"
+    bpy.ops.wm.save_as_mainfile(filepath=str(source))
+    options = ("--texture-format", "etc1s")
+    result = run("bake", source, "--all", "--output", target, *options)
+    assert result.returncode == 0, result.stderr
+    file, buffer = read_glb(target)
+    (image,) = file["images"]
+    _, info = prefilter.read_ktx2(io.BytesIO(view(file, buffer, image["bufferView"])))
+    assert info.format == "etc1s"
+    result = run("bake", source, "--all", "--output", target, "--texture-format", "bc7")
+    assert_fails(result, "--texture-format: found 'bc7'", "uastc or etc1s is needed", status=2)
+
+
+def test_the_command_leaves_its_sources(tmp_path):
+    model()
+    source = tmp_path / "model.glb"
+    export(source, use=False, export_format="GLB")
+    before = source.read_bytes()
+    for target in (source, tmp_path / "other.gltf"):
+        result = run("bake", source, "--all", "--output", target)
+        assert_fails(result, "--output", "among the files of the model")
+    assert source.read_bytes() == before
+    assert list(tmp_path.iterdir()) == [source]
+
+
+def test_the_command_tells_of_images_that_stay(tmp_path):
+    painted("Odd", scenes.noise(30, 30))
+    source, target = tmp_path / "model.blend", tmp_path / "out.glb"
+    bpy.ops.wm.save_as_mainfile(filepath=str(source))
+    result = run("bake", source, "--all", "--output", target)
+    assert "'Odd' is stretched from 30 x 30 to 32 x 32" in result.stdout
+    assert result.returncode == 0
+
+
+def uastc(path, levels, encoding, **options):
+    """Returns the bytes of a file as an export has it."""
+    more = {"encoding": encoding, "supercompression": "zstd", **options}
+    prefilter.write_ktx2(path, levels, format="uastc", **more)
+    return path.read_bytes()
+
+
+def color_levels(pixels, surface):
+    texels = np.rint(pixels[..., :3] * 255).astype(np.uint8)
+    return prefilter.mipmaps(texels, [surface], encoding="srgb", footprint=1.0, wrap="repeat")
+
+
+def base_color(file, number=0):
+    return file["materials"][number]["pbrMetallicRoughness"]["baseColorTexture"]
+
+
+def test_cutouts_keep_their_coverage(tmp_path):
+    pixels = scenes.noise(32, 32, alpha=True)
+    cube = painted("Leaf", pixels)
+    tree = cube.active_material.node_tree
+    texture = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    below, rest = tree.nodes.new("ShaderNodeMath"), tree.nodes.new("ShaderNodeMath")
+    below.operation, rest.operation = "LESS_THAN", "SUBTRACT"
+    below.inputs[1].default_value, rest.inputs[0].default_value = 0.3, 1.0
+    tree.links.new(texture.outputs["Alpha"], below.inputs[0])
+    tree.links.new(below.outputs[0], rest.inputs[1])
+    tree.links.new(rest.outputs[0], principled(tree).inputs["Alpha"])
+    export(tmp_path / "model.glb", export_format="GLB")
+    file, buffer = read_glb(tmp_path / "model.glb")
+    assert file["materials"][0]["alphaMode"] == "MASK"
+    assert file["materials"][0]["alphaCutoff"] == pytest.approx(0.3)
+    surface = surface_of(file, buffer)
+    texels = np.rint(pixels * 255).astype(np.uint8)
+    light = texels.astype(np.float32) / 255
+    light[..., :3] = prefilter.to_linear(light[..., :3])
+    options = {"wrap": "repeat", "premultiplied": False}
+    made = prefilter.mipmaps(light, [surface], footprint=1.0, **options)
+    threshold = float(np.float32(0.3))
+    kept = prefilter.keep_coverage(made, [surface], threshold=threshold, **options)
+    plain, kept = (
+        [np.dstack([prefilter.to_srgb(one[..., :3]), one[..., 3]]) for one in levels[1:]]
+        for levels in (made, kept)
+    )
+    path = tmp_path / "leaf.ktx2"
+    expected = uastc(path, [texels, *map(as_bytes, kept)], "srgb", alpha="straight")
+    found = ktx2_of(file, buffer, base_color(file))
+    assert found == expected
+    assert found != uastc(path, [texels, *map(as_bytes, plain)], "srgb", alpha="straight")
+
+
+def test_color_and_occlusion_at_once_are_color(tmp_path):
+    pixels = scenes.noise(32, 32)
+    cube = painted("Both", pixels)
+    tree = cube.active_material.node_tree
+    texture = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    kept = bpy.data.node_groups.new("glTF Material Output", "ShaderNodeTree")
+    kept.interface.new_socket("Occlusion", in_out="INPUT", socket_type="NodeSocketFloat")
+    group = tree.nodes.new("ShaderNodeGroup")
+    group.node_tree = kept
+    apart = tree.nodes.new("ShaderNodeSeparateColor")
+    tree.links.new(texture.outputs["Color"], apart.inputs[0])
+    tree.links.new(apart.outputs["Red"], group.inputs["Occlusion"])
+    export(tmp_path / "model.glb", export_format="GLB")
+    file, buffer = read_glb(tmp_path / "model.glb")
+    info = file["materials"][0]["occlusionTexture"]
+    levels = color_levels(pixels, surface_of(file, buffer))
+    expected = uastc(tmp_path / "both.ktx2", levels, "srgb")
+    assert ktx2_of(file, buffer, info) == expected
+    assert ktx2_of(file, buffer, base_color(file)) == expected
+    assert len(file["images"]) == 1
+
+
+def test_the_fallback_of_a_jpeg_file_is_that_file(tmp_path):
+    source = tmp_path / "in" / "photo.jpg"
+    source.parent.mkdir()
+    bpy.context.scene.render.image_settings.file_format = "JPEG"
+    made = scenes.image("Made", scenes.noise(32, 32))
+    made.filepath_raw, made.file_format = str(source), "JPEG"
+    made.save()
+    photo = bpy.data.images.load(str(source))
+    cube = scenes.cube(photo)
+    tree = cube.active_material.node_tree
+    color = next(node for node in tree.nodes if node.type == "TEX_IMAGE")
+    tree.links.new(color.outputs[0], principled(tree).inputs["Base Color"])
+    export(tmp_path / "model.glb", fallback="picture", export_format="GLB")
+    file, buffer = read_glb(tmp_path / "model.glb")
+    picture = file["images"][file["textures"][0]["source"]]
+    assert picture["mimeType"] == "image/jpeg"
+    assert view(file, buffer, picture["bufferView"]) == source.read_bytes()
+    levels = color_levels(scenes.pixels("photo.jpg"), surface_of(file, buffer))
+    expected = uastc(tmp_path / "photo.ktx2", levels, "srgb")
+    assert ktx2_of(file, buffer, base_color(file)) == expected
+
+
+def test_draco_compresses_the_mesh_alone(tmp_path):
+    model()
+    export(tmp_path / "plain.glb", export_format="GLB")
+    options = {"export_draco_mesh_compression_enable": True}
+    try:
+        export(tmp_path / "draco.glb", export_format="GLB", **options)
+    except (RuntimeError, TypeError):
+        pytest.skip("this Blender has no Draco")
+    file, buffer = read_glb(tmp_path / "draco.glb")
+    if "KHR_draco_mesh_compression" not in file["extensionsUsed"]:
+        pytest.skip("this Blender has no Draco")
+    plain, others = read_glb(tmp_path / "plain.glb")
+    for info, same in zip(textures_of(file), textures_of(plain), strict=True):
+        assert ktx2_of(file, buffer, info) == ktx2_of(plain, others, same)
+
+
+def textures_of(file):
+    (material,) = file["materials"]
+    metal = material["pbrMetallicRoughness"]
+    return [
+        metal["baseColorTexture"],
+        metal["metallicRoughnessTexture"],
+        material["normalTexture"],
+    ]
+
+
+def test_textures_of_variants_are_fitted(tmp_path):
+    preferences = bpy.context.preferences.addons["io_scene_gltf2"].preferences
+    preferences.KHR_materials_variants_ui = True
+    try:
+        cube = painted("First", scenes.noise(32, 32))
+        second = painted("Second", scenes.noise(32, 32, seed=9))
+        material = second.active_material
+        bpy.data.objects.remove(second)
+        scene = bpy.context.scene
+        variant = scene.gltf2_KHR_materials_variants_variants.add()
+        variant.variant_idx, variant.name = 0, "Other"
+        data = cube.data.gltf2_variant_mesh_data.add()
+        data.material_slot_index, data.material = 0, material
+        data.variants.add().variant.variant_idx = 0
+        export(tmp_path / "model.glb", export_format="GLB")
+    finally:
+        preferences.KHR_materials_variants_ui = False
+    file, buffer = read_glb(tmp_path / "model.glb")
+    assert "KHR_materials_variants" in file["extensionsUsed"]
+    surface = surface_of(file, buffer)
+    found = {
+        file["materials"][number]["name"]: ktx2_of(file, buffer, base_color(file, number))
+        for number in (0, 1)
+    }
+    for name, seed in (("Cube material", 1), ("Cube material.001", 9)):
+        levels = color_levels(scenes.noise(32, 32, seed=seed), surface)
+        assert found[name] == uastc(tmp_path / "one.ktx2", levels, "srgb"), name

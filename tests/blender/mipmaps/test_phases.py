@@ -7,6 +7,7 @@ from pathlib import Path
 import bpy
 import pytest
 import scenes
+from prefilter._work.mipmaps import levels
 
 
 @pytest.fixture
@@ -105,7 +106,7 @@ def test_what_heeds_seams(addon, without_surface, budget, filter_name, content, 
         settings,
         content,
     )
-    assert addon("mipmaps.levels").heeds_seams(source) is expected
+    assert levels.heeds_seams(source) is expected
 
 
 def test_the_line_that_says_what_was_baked(addon, without_surface):

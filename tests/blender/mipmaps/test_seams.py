@@ -71,7 +71,7 @@ def test_seams_are_compared(bake, addon, paint, filter):
             surface,
             filter=filter,
             wrap="repeat",
-            bounds=(0, None),
+            bounds=(0, 1),
             premultiplied=True,
             seam_budget=budget,
         )

@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 import pytest
+from prefilter._work.resampling import perspective as perspectives
+from prefilter._work.resampling import placement as placing
 
 WIDTH, HEIGHT = 1500, 1100
 DIAGONAL = math.hypot(WIDTH, HEIGHT)
@@ -13,7 +15,7 @@ DIAGONAL = math.hypot(WIDTH, HEIGHT)
 
 @pytest.fixture
 def proportions(addon):
-    return addon("resampling.perspective").proportions
+    return perspectives.proportions
 
 
 def seen(aspect, *, focal, yaw=0.0, pitch=0.0, roll=0.0, aside=(0.0, 0.0), far=3.0):
@@ -102,7 +104,10 @@ def test_a_pixel_more_or_less_changes_little(proportions):
 
 def test_the_result_has_these_proportions(addon):
     """And no side has fewer pixels than in the image."""
-    choices, placement = addon("resampling.choices"), addon("resampling.placement")
+    choices, placement = (
+        addon("resampling.choices"),
+        placing,
+    )
     corners = seen(4 / 3, focal=0.65, yaw=35, pitch=10, far=1.6)
     named = dict(zip(choices.CORNERS, map(tuple, corners), strict=True))
     options = {"warp": "rectify", "use_pixels": True, **named}

@@ -4,6 +4,7 @@
 
 import numpy as np
 import pytest
+from prefilter._work.resampling import placement as placing
 
 SIZE = (60, 40)
 PLACES = np.array([(10.0, 5.0), (50.0, 8.0), (48.0, 35.0), (12.0, 30.0)])
@@ -79,7 +80,7 @@ def test_shares_are_what_settings_keep(addon, pins, settings, options, frame):
     shares = pins.shares((15, 10), settings(**options), SIZE)
     assert shares == pytest.approx((15 / frame[0], 10 / frame[1]))
     placed = settings(**options, lower_left=shares)
-    corners = addon("resampling.placement").corners(placed, *SIZE)
+    corners = placing.corners(placed, *SIZE)
     np.testing.assert_allclose(corners[0], (15, 10))
 
 
@@ -100,7 +101,7 @@ def test_the_grid_is_straight(addon, pins):
 
 
 def test_a_box_shows_what_it_covers(addon, pins):
-    placement = addon("resampling.placement")
+    placement = placing
     matrix = pins.uv_of_box(placement.moved(5.0, 0.0), (10, 20), (30, 10), SIZE)
     ends = placement.applied(matrix, [(0, 0), (1, 1)])
     np.testing.assert_allclose(ends, [(15 / 60, 20 / 40), (45 / 60, 30 / 40)])

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from prefilter._work.resampling import placement as placing
 
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
 
@@ -16,7 +17,7 @@ def place(addon):
     settings = addon("resampling.choices").ResampleSettings
 
     def run(**options):
-        return addon("resampling.placement").placement(settings(**options), 60, 40)
+        return placing.placement(settings(**options), 60, 40)
 
     return run
 
@@ -24,7 +25,7 @@ def place(addon):
 @pytest.fixture
 def applied(addon):
     """Returns the function that applies a transform to points."""
-    return addon("resampling.placement").applied
+    return placing.applied
 
 
 def dlt(source, target):
@@ -47,7 +48,7 @@ def test_homography_is_the_only_one(addon, mirrored):
         target = 3 * SQUARE + random.uniform(-0.6, 0.6, (4, 2))
         if mirrored:
             target[:, 0] *= -1
-        found = addon("resampling.placement").homography(source, target)
+        found = placing.homography(source, target)
         expected = dlt(source, target)
         np.testing.assert_allclose(
             found / np.linalg.norm(found),
@@ -74,7 +75,7 @@ def test_corners_that_fold_are_refused(addon, corners):
     for warp in ("corners", "rectify"):
         chosen = settings(warp=warp, **dict(zip(names, corners, strict=True)))
         with pytest.raises(ValueError, match=r"^Corners: found .*convex quadrilateral"):
-            addon("resampling.placement").placement(chosen, 60, 40)
+            placing.placement(chosen, 60, 40)
 
 
 def test_nothing_is_moved_by_default(place):
@@ -184,7 +185,7 @@ def test_a_result_has_a_pixel_at_least(place):
 
 
 def test_squeeze(addon, place):
-    squeeze = addon("resampling.placement").squeeze
+    squeeze = placing.squeeze
     assert squeeze(place(), 60, 40) == pytest.approx(1)
     assert squeeze(place(scale_x=3.0), 60, 40) == pytest.approx(1)
     assert squeeze(place(scale_x=0.5, scale_y=0.25), 60, 40) == pytest.approx(16)

@@ -10,6 +10,7 @@ import pytest
 import scenes
 from command_line import assert_fails, run
 from picture_files import content, write
+from prefilter._work.resampling import placement as placing
 
 CORNERS = (0.1, 0.0, 0.9, 0.2, 1.0, 1.0, 0.0, 0.7)
 
@@ -28,7 +29,7 @@ def transform(addon):
     settings = addon("resampling.choices").ResampleSettings
 
     def find(size, /, **options):
-        return addon("resampling.placement").placement(settings(**options), *size)
+        return placing.placement(settings(**options), *size)
 
     return find
 

@@ -9,6 +9,8 @@ import numpy as np
 import prefilter
 import pytest
 import scenes
+from prefilter._work.resampling import placement as placing
+from prefilter._work.resampling import resampling as resamplings
 
 CORNERS = {
     "lower_left": (0.1, 0.0),
@@ -31,7 +33,7 @@ def transform(addon, size, /, **options):
         for name, value in options.items()
     }
     settings = addon("resampling.choices").ResampleSettings(**single)
-    return addon("resampling.placement").placement(settings, *size).transform
+    return placing.placement(settings, *size).transform
 
 
 @pytest.mark.parametrize("method", ["exact", "8", "6", "4", "trilinear"])
@@ -235,7 +237,7 @@ def test_udim_is_refused():
 def test_cancelled_leaves_nothing(addon):
     picture = addon("resampling.new_picture").read(scenes.image("Paint", scenes.noise(64, 64)))
     settings = addon("resampling.choices").ResampleSettings(scale_x=4.0)
-    work = addon("resampling.resampling").Resampling(picture, settings)
+    work = resamplings.Resampling(picture, settings)
     with pytest.raises(prefilter.Cancelled):
         work.compute(lambda fraction: fraction < 0.3)
     work.discard()

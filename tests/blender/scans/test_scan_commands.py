@@ -11,6 +11,7 @@ import clouds
 import numpy as np
 import pytest
 from command_line import assert_fails, loaded, run
+from prefilter._command import telling
 
 DEPTH = ("--depth", 6)
 
@@ -186,7 +187,7 @@ def test_failures_leave_nothing(scan, tmp_path):
 
 def test_ctrl_c_leaves_nothing(scan, tmp_path, addon, monkeypatch):
     """As a user presses it who sees the first line of progress."""
-    module = addon("core.command")
+    module = telling
 
     class Interrupted(module.ProgressLine):
         def __call__(self, fraction):

@@ -8,29 +8,10 @@ import bmesh
 import bodies
 import bpy
 import pytest
+from voxel_reports import outcome, rows, the_line
 
 DONE = {"FINISHED"}
 PACKAGE = "bl_ext.user_default.prefilter"
-
-
-def outcome(*objects, **options):
-    """Returns what voxelizing ends with."""
-    choices = importlib.import_module(f"{PACKAGE}.voxels.choices")
-    voxelization = importlib.import_module(f"{PACKAGE}.voxels.voxelization")
-    command = importlib.import_module(f"{PACKAGE}.core.command")
-    settings = choices.VoxelizeSettings(**{"depth": 6, **options})
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    return command.done(voxelization.Voxelization.read(list(objects), settings, depsgraph))
-
-
-def rows(line):
-    """Returns what follows the name of the object."""
-    return line.split(": ", 1)[1].split("; ")
-
-
-def the_line(found):
-    (line,) = [one for one in [*found.warnings, *found.notes] if "parts: " in one]
-    return rows(line)
 
 
 def cells_of(obj, depth):
@@ -173,22 +154,43 @@ def recounted(mesh):
     return parts, parts - euler // 2
 
 
+def eye_fronts(monkey):
+    """Returns the middles of faces that look ahead of the parts before the monkey's face."""
+    mesh = bmesh.new()
+    mesh.from_mesh(monkey.data)
+    ahead = [face for face in mesh.faces if face.normal.y < -0.9]
+    first = min(face.calc_center_median().y for face in ahead)
+    found = [face.calc_center_median().copy() for face in ahead]
+    mesh.free()
+    return [point for point in found if point.y < first + 0.05 and abs(point.x) > 0.2]
+
+
 @pytest.mark.parametrize("faces", ["triangles", "quads"])
 def test_a_monkey_loses_no_eyes(faces):
+    """They reach into the head, and so become one part with it."""
     assert bpy.ops.mesh.primitive_monkey_add() == DONE
     monkey = bpy.context.active_object
-    found = outcome(monkey, faces=faces)
+    fronts, cell = eye_fronts(monkey), cells_of(monkey, 7)
+    assert {point.x > 0 for point in fronts} == {True, False}
+    found = outcome(monkey, faces=faces, depth=7)
     line = the_line(found)
     parts, genus = recounted(monkey.data)
     assert line[0] == f"parts: 3 before, {parts} after"
     assert line[1] == f"genus: 0 before, {genus} after"
-    assert parts == 3
+    assert (parts, genus) == (1, 0)
     assert not any("lost" in row for row in line)
+    for point in fronts:
+        _, place, _, _ = monkey.closest_point_on_mesh(point)
+        assert (place - point).length < 0.1 * cell
 
 
 def test_sheets_that_cross_what_is_around_them():
-    """The monkey's eyes: there are walls of any thickness where they do, and few of them."""
-    assert bpy.ops.mesh.primitive_monkey_add() == DONE
+    """There are walls of any thickness where they do, and few of them."""
+    assert bpy.ops.mesh.primitive_uv_sphere_add() == DONE
+    ball = bpy.context.active_object
+    assert bpy.ops.mesh.primitive_grid_add(size=3.0, rotation=(0.3, 1.35, 0.0)) == DONE
+    ball.select_set(True)
+    assert bpy.ops.object.join() == DONE
     line = the_line(outcome(bpy.context.active_object, depth=8))
     assert line[-1] == "sheets: no depth keeps them"
 

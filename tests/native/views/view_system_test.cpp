@@ -140,9 +140,8 @@ TEST_P(ViewSystemTest, SolutionIsTheLeast) {
   for (const int threads : {1, 3}) {
     options.threads = threads;
     ViewSystem system(levels, {1e-6, 1e-6, 1e-6}, scene.seen, options, Progress());
-    LaneRange range;
-    range.low = Lanes{} - 100.0F;
-    range.high = Lanes{} + 100.0F;
+    SolveOptions range;
+    range.ranges.fill({-100.0F, 100.0F});
     const std::vector<Image> solved = system.solve(range, Progress());
     ASSERT_EQ(solved.size(), 2U);
     std::array<double, 21> texels = start;
@@ -170,9 +169,8 @@ TEST_P(ViewSystemTest, SolutionIsWithinItsRange) {
   options.lookups = GetParam();
   options.steadiness = 0.0;
   ViewSystem system(levels, {1e-6, 1e-6, 1e-6}, scene.seen, options, Progress());
-  LaneRange range;
-  range.low = Lanes{} + 0.45F;
-  range.high = Lanes{} + 0.55F;
+  SolveOptions range;
+  range.ranges.fill({0.45F, 0.55F});
   for (const Image& level : system.solve(range, Progress())) {
     for (const float value : level.data) {
       EXPECT_GE(value, 0.45F);

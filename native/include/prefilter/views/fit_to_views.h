@@ -41,11 +41,11 @@ struct ViewFitOptions {
 };
 
 /// Levels that come nearest to what pixels should show, on average over views from all around and
-/// over distances: the mean of level 0, looked up bilinearly, over what is visible in each pixel.
-/// Edges of the model and borders between charts are part of it, as pixels there show several
-/// places of the texture and lookups only one. `levels` are where the search starts, level 0 first
-/// and each half as wide and high as the one before; texels that hardly any view reads stay near
-/// them.
+/// over distances: the mean of level 0, looked up bilinearly, over what is visible in each pixel;
+/// of a finer level than the pixel's in place of level 0 where pixels are large. Edges of the model
+/// and borders between charts are part of it, as pixels there show several places of the texture
+/// and lookups only one. `levels` are where the search starts, level 0 first and each half as wide
+/// and high as the one before; texels that hardly any view reads stay near them.
 ///
 /// Each surface is seen by itself, from outside and inside, with pixels that it covers fully.
 /// Returns levels 1 and up. Throws Error where there are no levels or no surface, sizes are not

@@ -13,12 +13,13 @@ from .texel_formats import ALPHA, Container, Texture
 
 _IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
 _HEADER_BYTES, _LEVEL_INDEX_BYTES = 80, 24
+_SHARED_ALIGNMENT = 8
 _BASIC_FORMAT_VERSION = 2
 _PRIMARIES_UNSPECIFIED, _PRIMARIES_BT709 = 0, 1
 _TRANSFER_LINEAR, _TRANSFER_SRGB = 1, 2
 _FLAG_PREMULTIPLIED = 1
 _LINEAR, _SIGNED, _FLOAT = 0x10, 0x40, 0x80
-_SCHEMES = {"none": 0, "zstd": 2}
+_SCHEMES = {"none": 0, "basislz": 1, "zstd": 2}
 
 
 def _parts(texture: Texture) -> Iterator[bytes]:
@@ -32,7 +33,11 @@ def _parts(texture: Texture) -> Iterator[bytes]:
     scheme = _SCHEMES[texture.supercompression]
     alignment = 1 if scheme else math.lcm(texture.texel_format.unit_bytes, 4)
     index: list[bytes] = []
-    data: list[bytes] = []
+    shared_offset, data = 0, [b""]
+    if texture.shared:
+        data = [bytes(-end % _SHARED_ALIGNMENT), texture.shared]
+        shared_offset = end + len(data[0])
+        end = shared_offset + len(texture.shared)
     for level, level_bytes in zip(
         reversed(texture.levels), reversed(texture.level_bytes), strict=True
     ):
@@ -47,9 +52,8 @@ def _parts(texture: Texture) -> Iterator[bytes]:
     channel_bytes = np.dtype(channel_type).itemsize
     counts = (0, 0, 1, len(texture.levels), scheme)  # the first are depth, layers and faces
     yield struct.pack("<9I", texture.code, channel_bytes, texture.width, texture.height, *counts)
-    yield struct.pack(
-        "<4I2Q", descriptor_offset, len(descriptor), metadata_offset, len(metadata), 0, 0
-    )
+    yield struct.pack("<4I", descriptor_offset, len(descriptor), metadata_offset, len(metadata))
+    yield struct.pack("<2Q", shared_offset, len(texture.shared))
     yield from reversed(index)
     yield descriptor
     yield metadata
@@ -62,6 +66,9 @@ def _descriptor(texture: Texture) -> bytes:
     size = 24 + len(samples)
     model, _ = texel_format.khronos
     columns, rows = texel_format.block or (1, 1)
+    planes = [texel_format.unit_bytes, 0]
+    if texel_format.is_shared and texture.alpha is not None:
+        planes[1] = texel_format.unit_bytes
     return (
         struct.pack("<I2I", 4 + size, 0, size << 16 | _BASIC_FORMAT_VERSION)
         + struct.pack(
@@ -72,13 +79,13 @@ def _descriptor(texture: Texture) -> bytes:
             _FLAG_PREMULTIPLIED if texture.alpha == "premultiplied" else 0,
         )
         + struct.pack("<4B", columns - 1, rows - 1, 0, 0)
-        + struct.pack("<8B", texel_format.unit_bytes, *(0,) * 7)
+        + struct.pack("<8B", *planes, *(0,) * 6)
         + samples
     )
 
 
 def _primaries(texture: Texture) -> int:
-    # KHR_texture_basisu of glTF: of what is no color, UASTC has none.
+    # KHR_texture_basisu of glTF: what is no color has none.
     is_data = texture.texel_format.is_transcoded and not texture.is_srgb
     return _PRIMARIES_UNSPECIFIED if is_data else _PRIMARIES_BT709
 
@@ -88,7 +95,8 @@ def _samples(texture: Texture) -> Iterator[bytes]:
     _, channels = texel_format.khronos
     if texture.alpha is None:
         channels = texel_format.opaque_khronos or channels
-    bits = 8 * texel_format.unit_bytes // len(channels)
+    planes = len(channels) if texel_format.is_shared else 1
+    bits = 8 * texel_format.unit_bytes * planes // len(channels)
     for number, channel in enumerate(channels):
         if texel_format.is_float:
             qualifiers = _FLOAT | (_SIGNED if texel_format.has_sign else 0)

@@ -33,6 +33,7 @@ class TexelFormat:
         alpha: "full", "cut-out" (0 or 1), or "none".
         has_sign: Whether its type has negative values; see `keeps_negatives`.
         is_coarse: Whether the colors that a block mixes are rounded to 4 to 6 bits a channel.
+        is_shared: Whether all levels share codebooks, and so are compressed together.
     """
 
     name: str
@@ -47,6 +48,7 @@ class TexelFormat:
     alpha: str = "none"
     has_sign: bool = False
     is_coarse: bool = False
+    is_shared: bool = False
 
     @property
     def texel_bytes(self) -> float:
@@ -91,7 +93,8 @@ class Texture:
         levels: Their texels or blocks, level 0 first, the top row first.
         alpha: What the fourth channel is: one of `ALPHAS`; None where there is none.
         supercompression: How the levels are compressed once more, one of `SUPERCOMPRESSIONS`.
-        level_bytes: How many each level had before that.
+        level_bytes: How many each level had before that; 0 where a reader does not ask.
+        shared: What the levels share, as BasisLZ has it.
     """
 
     texel_format: TexelFormat
@@ -103,6 +106,7 @@ class Texture:
     alpha: str | None
     supercompression: str = "none"
     level_bytes: tuple[int, ...] = ()
+    shared: bytes = b""
 
 
 class Container(NamedTuple):
@@ -121,7 +125,7 @@ RED, GREEN, BLUE, ALPHA = 0, 1, 2, 15
 """Khronos' channels, of texels and of blocks of one or two channels."""
 _COLOR, _COLOR_AND_CUT_OUT, _ETC2_COLOR = 0, 1, 2
 _UASTC_RGB, _UASTC_RGBA = 0, 3
-_RGBSDA, _ETC2, _ASTC, _UASTC = 1, 161, 162, 166
+_RGBSDA, _ETC2, _ASTC, _ETC1S, _UASTC = 1, 161, 162, 163, 166
 _BC1, _BC3, _BC4, _BC5, _BC6H, _BC7 = 128, 130, 131, 132, 133, 134
 _UNDEFINED = 0
 _NONE = (None, None)
@@ -212,6 +216,14 @@ TEXEL_FORMATS = {
         _blocks(
             *("uastc", 4, _NONE, (_UNDEFINED, _UNDEFINED), _UASTC, _UASTC_RGBA),
             opaque_khronos=(_UASTC_RGB,),
+        ),
+        TexelFormat(
+            *("etc1s", 4, 8, (4, 4), np.uint8, _NONE, (_UNDEFINED, _UNDEFINED)),
+            (_ETC1S, (_COLOR, ALPHA)),
+            opaque_khronos=(_COLOR,),
+            alpha="full",
+            is_coarse=True,
+            is_shared=True,
         ),
     )
 }

@@ -88,13 +88,11 @@ def encoded(
     threads: int,
 ) -> bytes:
     """A level as a file holds it, the top row first."""
-    flipped = np.ascontiguousarray(level[::-1])
     if texel_format.is_float:
+        flipped = np.ascontiguousarray(level[::-1])
         texels = _linear_floats(flipped, srgb, texel_format, threads)
-    elif flipped.dtype == np.uint8:
-        texels = flipped
     else:
-        texels = _native.to_bytes(flipped, srgb, threads)
+        texels = _as_bytes(level, srgb, threads)
     if texel_format.is_block:
         rgba = _with_channels(texels, 4)
         if texel_format.is_float:
@@ -103,6 +101,18 @@ def encoded(
             rgba, texel_format.name, srgb, weigh_by_alpha, progress, threads
         )
     return _with_channels(texels, texel_format.channels).tobytes()
+
+
+def rgba_bytes(level: np.ndarray, srgb: bool, threads: int) -> np.ndarray:
+    """A level as four channels of bytes, the top row first."""
+    return _with_channels(_as_bytes(level, srgb, threads), 4)
+
+
+def _as_bytes(level: np.ndarray, srgb: bool, threads: int) -> np.ndarray:
+    flipped = np.ascontiguousarray(level[::-1])
+    if flipped.dtype == np.uint8:
+        return flipped
+    return _native.to_bytes(flipped, srgb, threads)
 
 
 def _linear_floats(

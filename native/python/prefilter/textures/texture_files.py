@@ -12,10 +12,13 @@ from .. import _native
 from .._border.arguments import ProgressCallback, as_one_of, as_progress, is_srgb
 from .._border.arrays import as_threads
 from .._border.staging import Output, as_output, write_output
+from . import etc1s
 from .dds import DDS
 from .ktx2 import KTX2
 from .texel_formats import ALPHAS, SUPERCOMPRESSIONS, Container, TexelFormat, Texture
 from .texels import as_format, as_levels, encoded
+
+_QUALITY = 192
 
 
 def write_dds(
@@ -63,7 +66,7 @@ def write_dds(
         OSError: The file cannot be written.
         Cancelled: The progress callback returned False.
     """
-    _write(path, levels, format, encoding, alpha, "none", progress, threads, DDS)
+    _write(path, levels, format, encoding, alpha, "none", _QUALITY, progress, threads, DDS)
 
 
 def write_ktx2(
@@ -74,6 +77,7 @@ def write_ktx2(
     encoding: str = "linear",
     alpha: str = "straight",
     supercompression: str = "none",
+    quality: int = _QUALITY,
     progress: ProgressCallback | None = None,
     threads: int = 0,
 ) -> None:
@@ -89,21 +93,27 @@ def write_ktx2(
             "eac-r11" (the first channel) and "eac-rg11" (two) in blocks of 4 x 4, by etcpak;
             "astc-4x4", "astc-6x6", "astc-8x8" in blocks of that size, by astcenc. "astc-4x4-hdr"
             and "astc-6x6-hdr" are compressed from half floats; negative values become 0, and an
-            alpha beyond 1 becomes 1. "uastc", by Basis Universal, is turned into what a device has
-            when it is loaded.
+            alpha beyond 1 becomes 1. "uastc" and "etc1s", by Basis Universal, are turned into what
+            a device has when they are loaded; in "etc1s" all levels share codebooks, and files are
+            several times smaller than in any other format.
         encoding: As for `write_dds`.
         alpha: As for `write_dds`; it counts in the blocks of ASTC as in those of "bc3".
         supercompression: "zstd" compresses every level once more, without loss; most loaders know
-            it, and undo it before they upload a level. "none" does not.
+            it, and undo it before they upload a level. "none" does not; "etc1s" has to have it, and
+            is compressed by BasisLZ.
+        quality: Of "etc1s", 1 to 255: from the smallest file to the best picture. No other format
+            uses it.
         progress: As for `write_dds`.
-        threads: As for `write_dds`.
+        threads: As for `write_dds`. In "etc1s" the file may depend on the C++ standard library.
 
     Raises:
         ValueError: As for `write_dds`.
         OSError: As for `write_dds`.
         Cancelled: As for `write_dds`.
     """
-    _write(path, levels, format, encoding, alpha, supercompression, progress, threads, KTX2)
+    _write(
+        path, levels, format, encoding, alpha, supercompression, quality, progress, threads, KTX2
+    )
 
 
 def _write(
@@ -113,6 +123,7 @@ def _write(
     encoding: str,
     alpha: str,
     supercompression: str,
+    quality: int,
     progress: ProgressCallback | None,
     threads: int,
     container: Container,
@@ -129,15 +140,29 @@ def _write(
     has_alpha = channels == 4 and texel_format.channels == 4
     alpha = as_one_of("alpha", alpha, ALPHAS)
     scheme = as_one_of("supercompression", supercompression, SUPERCOMPRESSIONS)
-    payloads, sizes = _payloads(
-        images,
-        texel_format,
-        encoding == "srgb",
-        has_alpha and alpha == "straight",
-        scheme,
-        report,
-        count,
-    )
+    quality = etc1s.as_quality(quality)
+    shared = b""
+    if texel_format.is_shared:
+        if scheme != "none":
+            raise ValueError(
+                f"supercompression: '{scheme}' with the format '{texel_format.name}', which has "
+                "one of its own; 'none' is needed"
+            )
+        scheme = "basislz"
+        payloads, shared = etc1s.compressed(
+            images,
+            encoding == "srgb",
+            has_alpha=has_alpha,
+            quality=quality,
+            report=report,
+            threads=count,
+        )
+        sizes = [0] * len(payloads)
+    else:
+        weigh = has_alpha and alpha == "straight"
+        payloads, sizes = _payloads(
+            images, texel_format, encoding == "srgb", weigh, scheme, report, count
+        )
     texture = Texture(
         texel_format=texel_format,
         code=code,
@@ -148,6 +173,7 @@ def _write(
         alpha=alpha if has_alpha else None,
         supercompression=scheme,
         level_bytes=tuple(sizes),
+        shared=shared,
     )
 
     def write_parts(file: BinaryIO) -> None:

@@ -35,11 +35,13 @@ def bake(bake, tmp_path):
 @pytest.mark.parametrize("texture_format", COLORS)
 def test_colors(bake, tmp_path, texture_format):
     image = scenes.image("Paint", scenes.noise(10, 14))
+    size = (16, 12) if texture_format == "uastc" else (14, 10)
     outcome = bake(image, "out.ktx2", texture_format=texture_format)
     assert outcome.warnings == []
     file = read_ktx2(tmp_path / "out.ktx2")
-    assert (file.format, file.width, file.height) == (COLORS[texture_format], 14, 10)
-    assert len(file.level_data) == 4
+    size = (16, 12) if texture_format == "uastc" else (14, 10)
+    assert (file.format, file.width, file.height) == (COLORS[texture_format], *size)
+    assert len(file.level_data) == max(size).bit_length()
 
 
 @pytest.mark.parametrize("texture_format", DATA)

@@ -8,6 +8,7 @@ import stat
 import numpy as np
 import pytest
 import scenes
+from prefilter._work.files import textures
 
 
 def make_pipe(path):
@@ -26,10 +27,10 @@ def make_device(path):
 @pytest.mark.parametrize(
     ("module", "check", "name"),
     [
-        ("textures", "check_target", "out.exr"),
-        ("textures", "check_target", "out.dds"),
-        ("staging", "check_output", "out.blend"),
-        ("staging", "check_plain_target", "out.csv"),
+        (textures, "check_target", "out.exr"),
+        (textures, "check_target", "out.dds"),
+        (None, "check_output", "out.blend"),
+        (None, "check_plain_target", "out.csv"),
     ],
 )
 def test_only_regular_files_are_replaced(addon, tmp_path, make, module, check, name):
@@ -38,7 +39,7 @@ def test_only_regular_files_are_replaced(addon, tmp_path, make, module, check, n
     before = path.stat().st_mode
     ending = [path.suffix] if check == "check_plain_target" else []
     with pytest.raises(OSError, match=rf"'.*{name}' is a (device|pipe); a regular file"):
-        getattr(addon(f"bridge.files.{module}"), check)(str(path), *ending)
+        getattr(module or addon("bridge.files.staging"), check)(str(path), *ending)
     assert path.stat().st_mode == before
 
 

@@ -8,6 +8,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 import scenes
+from prefilter._work import openimageio
+from prefilter._work.files import textures
 
 
 def written(bake, tmp_path, file_name, values, **options):
@@ -118,7 +120,7 @@ def test_odd_folder_of_the_file(bake, tmp_path, monkeypatch, name):
 
 
 def test_level_file_that_cannot_be_read(bake, addon, tmp_path, monkeypatch):
-    module = addon("bridge.openimageio")
+    module = openimageio
 
     class Lost:
         def write(self, path):
@@ -169,7 +171,7 @@ def test_missing_module_says_what_to_install(bake, tmp_path, monkeypatch):
 
 
 def test_targets_that_cannot_be_written(addon, tmp_path):
-    check = addon("bridge.files.textures").check_target
+    check = textures.check_target
     with pytest.raises(ValueError, match=r"'\.jpg'.*\.exr"):
         check(str(tmp_path / "out.jpg"))
     with pytest.raises(OSError, match="no folder"):

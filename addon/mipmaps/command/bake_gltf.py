@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command `bake --all` with a glTF file as its output: the model with fitted textures."""
+
+import argparse
+import os
+from pathlib import Path
+
+import bpy
+
+from ...bridge import meshes
+from ...bridge.files import scenes, staging
+from ...core import command
+from ...core.flags import given
+from ...core.wording import counted, listed
+from .. import file_names
+from ..choices import ModelSettings, Settings
+from ..gltf import hooks
+from ..gltf.choices import TEXTURE_FORMATS, GltfSettings
+from ..gltf.export import Export
+from .source import WANTED
+
+_ENDINGS = (".glb", ".gltf")
+_USED = {
+    *("filepath", "filter", "lookups", "bounds", "seam_budget", "threads"),
+    *("texture_format", "supercompression"),
+}
+
+
+def is_gltf(path: str) -> bool:
+    """Tells whether a path is that of a glTF file."""
+    return path.lower().endswith(_ENDINGS)
+
+
+def bake_gltf(options: argparse.Namespace, settings: Settings) -> None:
+    """Exports the model, as Blender's exporter does with Prefilter Mipmaps."""
+    _check(options)
+    target = staging.check_output(settings.filepath)
+    (objects,) = scenes.load([options.file], meshes.may_show_image, WANTED)
+    _check_sources(options, target)
+    names = [obj.name for obj in bpy.context.view_layer.objects]
+    if options.object:
+        names = [obj.name for obj in scenes.chosen(objects, options.object, WANTED)]
+    shared = {"texture_format", "supercompression"}
+    chosen = {key: value for key, value in given(options, Settings).items() if key in shared}
+    fallback = given(options, GltfSettings)
+    export = Export(settings, GltfSettings(use_mipmaps=True, **chosen, **fallback))
+    with hooks.exporting(export):
+        scenes.save(target, names)
+    command.warn(export.warnings)
+    for note in export.notes:
+        print(note)
+    print(f"Baked {counted(export.baked, 'image')} into '{target}'")
+    if export.failed:
+        raise ValueError(f"not baked: {listed(export.failed)}")
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Refuses what a glTF file says itself."""
+    found = {*given(options, Settings), *given(options, ModelSettings)} - _USED
+    found |= {
+        name
+        for name in ("image", "frames", "save", "list", "manifest")
+        if getattr(options, name, None)
+    }
+    flags = [
+        f"--{name.removeprefix('use_').removeprefix('file_').replace('_', '-')}"
+        for name in sorted(found)
+    ]
+    if flags:
+        options.usage_error(f"{flags[0]}: not allowed with a .glb or .gltf file as --output")
+    texture_format = given(options, Settings).get("texture_format")
+    if texture_format not in (None, *TEXTURE_FORMATS):
+        options.usage_error(
+            f"--texture-format: found '{texture_format}'; with a .glb or .gltf file as --output, "
+            f"{' or '.join(TEXTURE_FORMATS)} is needed"
+        )
+
+
+def _check_sources(options: argparse.Namespace, target: Path) -> None:
+    """Raises ValueError where the export would write what the model is read from."""
+    sources = [Path(os.path.realpath(path)) for path in (options.file, *file_names.source_files())]
+    folders = {source.parent for source in sources} if target.suffix.lower() == ".gltf" else set()
+    if target in sources or target.parent in folders:
+        raise ValueError(
+            f"--output: '{target}' is among the files of the model, which stay as they are; "
+            "choose another folder"
+        )

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The textures of a glTF import that are KTX 2 files, as pictures that Blender reads."""
+
+import base64
+import io
+from typing import Any
+
+import bpy
+import numpy as np
+import prefilter
+from numpy.typing import NDArray
+from prefilter._work.files import png
+
+from ...bridge import images, level_images
+from ...core.outcome import FAILURES
+
+_IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
+
+
+class Import:
+    """The textures of one import."""
+
+    def __init__(self, *, keep_levels: bool) -> None:
+        """Takes whether the levels below level 0 are to become images too."""
+        self._keep_levels = keep_levels
+        self._levels: dict[int, list[NDArray[np.uint8]]] = {}
+        self._kept: list[tuple[bpy.types.Image, list[NDArray[np.uint8]]]] = []
+
+    def replace_image(self, image: Any, gltf: Any) -> None:
+        """Puts a PNG file in the place of a KTX 2 file, before Blender reads it."""
+        data = _data(image, gltf)
+        if not data.startswith(_IDENTIFIER):
+            return
+        name = image.name or _name(image.uri)
+        try:
+            levels, _ = prefilter.read_ktx2(io.BytesIO(data))
+            if levels[0].dtype != np.uint8:
+                raise ValueError(f"holds {levels[0].dtype}; bytes are needed, as glTF has them")
+        except FAILURES as error:
+            gltf.log.error(f"Prefilter: texture '{name}' cannot be read: {error}")
+            return
+        levels = [_with_colors(level) for level in levels]
+        picture = base64.b64encode(png.encoded(levels[0])).decode("ascii")
+        image.uri, image.buffer_view = f"data:image/png;base64,{picture}", None
+        image.mime_type, image.name = "image/png", name
+        if self._keep_levels:
+            self._levels[id(image)] = levels[1:]
+
+    def add_image(self, image: Any, made: bpy.types.Image | None) -> None:
+        """Takes what Blender has made of an image; what it holds is known at the end."""
+        levels = self._levels.pop(id(image), None)
+        if made is not None and levels:
+            self._kept.append((made, levels))
+
+    def keep_levels(self, gltf: Any) -> None:
+        """Makes images of the levels, as a bake does."""
+        for image, levels in self._kept:
+            try:
+                picture = images.read(image)
+                floats = [level.astype(np.float32) / np.float32(255) for level in levels]
+                level_images.stage_levels(picture, floats).commit()
+            except FAILURES as error:
+                gltf.log.error(f"Prefilter: the levels of '{image.name}' are not kept: {error}")
+        self._kept.clear()
+
+
+def show_ktx2(gltf: Any) -> None:
+    """Makes textures that have no other picture show that of KHR_texture_basisu."""
+    for texture in gltf.data.textures or ():
+        extension = (texture.extensions or {}).get("KHR_texture_basisu")
+        if texture.source is None and isinstance(extension, dict):
+            texture.source = extension.get("source")
+
+
+def _data(image: Any, gltf: Any) -> bytes:
+    """Returns the file that an image is, or its beginning where that is no KTX 2 file."""
+    from io_scene_gltf2.io.imp.gltf2_io_binary import BinaryData
+
+    is_elsewhere = image.uri is not None and not image.uri.startswith("data:")
+    if is_elsewhere and not image.uri.lower().endswith(".ktx2"):
+        return b""
+    found = BinaryData.get_image_data(gltf, gltf.data.images.index(image))
+    if found is None:
+        return b""
+    size = len(found) if bytes(found[: len(_IDENTIFIER)]) == _IDENTIFIER else 0
+    return bytes(found[:size])
+
+
+def _name(uri: str | None) -> str | None:
+    if uri is None or uri.startswith("data:"):
+        return None
+    return uri.rpartition("/")[2].rpartition(".")[0]
+
+
+def _with_colors(level: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Returns a level with red, green and blue; of two channels the third is 0, one is gray."""
+    height, width, channels = level.shape
+    if channels >= 3:
+        return level
+    colors = np.zeros((height, width, 3), np.uint8)
+    colors[..., : 3 if channels == 1 else 2] = level
+    return colors

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// What Basis Universal calls transcoding, to texels.
+#include <transcoder/basisu_transcoder.h>
+
+#include <array>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <mutex>
+#include <string>
+
+#include "prefilter/base/error.h"
+#include "prefilter/blocks/decoders.h"
+
+namespace prefilter {
+namespace {
+
+constexpr int kSide = 4;
+constexpr std::ptrdiff_t kChannels = 4;
+
+void make_tables() {
+  static std::once_flag once;
+  std::call_once(once, [] { basist::basisu_transcoder_init(); });
+}
+
+class UastcDecoder final : public ByteDecoder {
+ public:
+  UastcDecoder() { make_tables(); }
+
+  void decode(const std::uint8_t* blocks, int count, std::uint8_t* texels) override {
+    for (int i = 0; i < count; ++i) {
+      basist::uastc_block block;
+      std::memcpy(&block, blocks + std::ptrdiff_t{sizeof block} * i, sizeof block);
+      std::array<basist::color32, std::size_t{kSide} * kSide> colors;
+      if (!basist::unpack_uastc(block, colors.data(), false)) {
+        throw_invalid("blocks: one of 'uastc' is damaged");
+      }
+      for (std::ptrdiff_t y = 0; y < kSide; ++y) {
+        std::memcpy(texels + kChannels * kSide * (y * count + i), colors.data() + kSide * y,
+                    kChannels * kSide);
+      }
+    }
+  }
+};
+
+std::uint32_t size_of(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw_invalid("blocks: " + std::to_string(bytes.size()) + " bytes of ETC1S; 4 GiB at most");
+  }
+  return static_cast<std::uint32_t>(bytes.size());
+}
+
+std::vector<std::uint8_t> decoded(basist::basisu_lowlevel_etc1s_transcoder* transcoder,
+                                  const Etc1sLevel& level) {
+  if (level.width < 1 || level.height < 1) {
+    throw_invalid("image: " + std::to_string(level.width) + " x " + std::to_string(level.height) +
+                  " texels; both sides must be at least 1");
+  }
+  // The library takes one array with both; it keeps what it found of a level for the next one of
+  // videos only.
+  std::vector<std::uint8_t> both(level.color.begin(), level.color.end());
+  both.insert(both.end(), level.alpha.begin(), level.alpha.end());
+  const auto width = static_cast<std::uint32_t>(level.width);
+  const auto height = static_cast<std::uint32_t>(level.height);
+  std::vector<std::uint8_t> texels(std::size_t{kChannels} * width * height);
+  basist::basisu_transcoder_state state;
+  if (!transcoder->transcode_image(
+          basist::transcoder_texture_format::cTFRGBA32, texels.data(), width * height, both.data(),
+          size_of(both), (width + kSide - 1) / kSide, (height + kSide - 1) / kSide, width, height,
+          0, 0, size_of(level.color), size_of(level.color), size_of(level.alpha), 0,
+          !level.alpha.empty(), false, 0, &state)) {
+    throw_invalid("levels: one in ETC1S is damaged");
+  }
+  return texels;
+}
+
+}  // namespace
+
+std::unique_ptr<ByteDecoder> make_uastc_decoder() { return std::make_unique<UastcDecoder>(); }
+
+std::vector<std::vector<std::uint8_t>> decode_etc1s(const Etc1sCodebooks& codebooks,
+                                                    std::span<const Etc1sLevel> levels,
+                                                    const Progress& progress) {
+  make_tables();
+  basist::basisu_lowlevel_etc1s_transcoder transcoder;
+  const auto is_count = [](int count) { return count >= 1 && count <= 0xffff; };
+  if (!is_count(codebooks.endpoint_count) || !is_count(codebooks.selector_count) ||
+      !transcoder.decode_tables(codebooks.tables.data(), size_of(codebooks.tables)) ||
+      !transcoder.decode_palettes(static_cast<std::uint32_t>(codebooks.endpoint_count),
+                                  codebooks.endpoints.data(), size_of(codebooks.endpoints),
+                                  static_cast<std::uint32_t>(codebooks.selector_count),
+                                  codebooks.selectors.data(), size_of(codebooks.selectors))) {
+    throw_invalid("codebooks: those of ETC1S are damaged");
+  }
+  std::vector<std::vector<std::uint8_t>> images;
+  for (const Etc1sLevel& level : levels) {
+    images.push_back(decoded(&transcoder, level));
+    progress.report(static_cast<double>(images.size()) / static_cast<double>(levels.size()));
+  }
+  return images;
+}
+
+}  // namespace prefilter

@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""`python -m prefilter`: the command."""
+
+import sys
+
+from ._command.program import main
+
+sys.exit(main())

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command: which commands there are, and how they end."""
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+from .. import _native
+
+CANCELED = 130  # 128 + SIGINT
+COMMANDS = {
+    "mipmaps": "make the mipmap levels of a texture, weighted by the meshes that wear it",
+    "resize": "make a picture larger or smaller",
+    "resample": "scale, rotate, or warp a picture between corners",
+    "voxelize": "make closed surfaces, or volumes, of any meshes, through voxels",
+    "rasterize": "make an image of curves and texts, of an SVG file, or of a UV map",
+    "reconstruct": "make the surface of points that a scanner has measured",
+}
+"""What each command does; the module of the same name in this folder adds its arguments."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs `prefilter ARGUMENTS`.
+
+    Returns:
+        The exit status: 0, 1 for a failure that was told on stderr, 2 for wrong arguments, 130
+        after Ctrl-C.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    try:
+        options = parser(words[:1]).parse_args(words)
+        from .._work.outcome import FAILURES
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 0
+    try:
+        options.execute(options)
+    except SystemExit as end:
+        return end.code if isinstance(end.code, int) else 0
+    except _native.Cancelled:
+        print("prefilter: canceled", file=sys.stderr)
+        return CANCELED
+    except FAILURES as error:
+        print(f"prefilter: error: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def parser(chosen: Sequence[str] = tuple(COMMANDS)) -> argparse.ArgumentParser:
+    """Returns what reads the arguments.
+
+    Args:
+        chosen: The commands that need their arguments: the modules of others are not imported.
+    """
+    found = argparse.ArgumentParser(
+        prog="prefilter",
+        description=(
+            "Filters images for the surfaces that use them. In Blender the same options, and more "
+            "commands: blender --background --command prefilter --help"
+        ),
+    )
+    found.add_argument("--version", action="version", version=f"prefilter {_native.VERSION}")
+    commands = found.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for name, purpose in COMMANDS.items():
+        if name in chosen:
+            import_module(f".{name}", __package__).add(commands, purpose)
+        else:
+            commands.add_parser(name, help=purpose)
+    return found

@@ -1,0 +1,112 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command `rasterize`."""
+
+import argparse
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .._border.staging import check_target
+from .._options.flags import add_flags, given, tables
+from .._options.shapes import RasterizeSettings
+from .._work import mesh_files
+from .._work.files import pictures
+from .._work.shapes.layers import Source, svg_drawing, uv_layers
+from .._work.shapes.layouts import borders
+from .._work.shapes.rasterizing import RasterFile
+from .._work.wording import either
+from . import telling
+from .host import PLAIN, Host
+
+_SVG = ".svg"
+_SOURCES = (_SVG, *mesh_files.ENDINGS)
+FLAGS = (
+    *("filter", "side", "width", "height", "density", "margin", "tile", "color"),
+    *("background_color", "overlap", "pixel_type", "alpha", "use_bleed", "threads"),
+)
+"""The options that need no Blender."""
+_NOTES = """\
+The image is as long as --side says, and as high or wide as the shapes are; with --width and
+--height they are fitted into that, inside the margin; with --density, their size decides. PNG files
+have 8 bits with --pixel-type byte, otherwise 16, and straight alpha; OpenEXR files are
+scene-linear, with premultiplied alpha.
+
+examples:
+  prefilter rasterize logo.svg logo.png --side 512
+  prefilter rasterize figure.glb mask.png --uv --object Body --width 2048 --height 2048"""
+
+
+def add(commands: Any, purpose: str) -> None:
+    """Adds the command."""
+    notes = (*tables(RasterizeSettings, *FLAGS), _NOTES)
+    parser = telling.add_command(commands, "rasterize", purpose, *notes)
+    parser.add_argument("source", metavar="INPUT", help=f"a file: {either(_SOURCES)}")
+    parser.add_argument(
+        "target", metavar="OUTPUT", help=f"the file to write: {either(pictures.ENDINGS)}"
+    )
+    parser.add_argument(
+        "--object", metavar="NAME", help="with --uv, the mesh, if there are several"
+    )
+    parser.add_argument("--uv", action="store_true", help="make a mask of the UV map of a mesh")
+    add_flags(parser, RasterizeSettings, *FLAGS)
+    parser.set_defaults(execute=_rasterize, usage_error=parser.error)
+
+
+def settings_of(options: argparse.Namespace, host: Host) -> RasterizeSettings:
+    """Returns the settings that were given, with what follows from them."""
+    found = given(options, RasterizeSettings)
+    more: dict[str, Any] = {}
+    ways = {"width": "size", "height": "size", "density": "density", "side": "side"}
+    chosen = {way: name for name, way in ways.items() if name in found}
+    if len(chosen) > 1:
+        options.usage_error("--side, --density, and --width with --height: only one of these")
+    if chosen:
+        (more["resolution"],) = chosen
+    if options.uv and "side" in found:
+        more["width"] = more["height"] = found["side"]
+    if options.uv:
+        more["color"] = "mask"
+    if "background_color" in found:
+        more["background"] = "color"
+    settings: RasterizeSettings = host.settings(options, RasterizeSettings, **more)
+    return settings
+
+
+def _rasterize(options: argparse.Namespace) -> None:
+    ending = telling.check_ending(options, "INPUT", options.source, _SOURCES)
+    telling.check_ending(options, "OUTPUT", options.target, pictures.ENDINGS)
+    if ending == _SVG and (options.uv or options.object):
+        options.usage_error("--object, --uv: an SVG file has neither objects nor a UV map")
+    if ending != _SVG and not options.uv:
+        options.usage_error("--uv: needed for meshes")
+    target = Path(os.path.realpath(options.target))
+    check_target(target)
+    settings = settings_of(options, PLAIN)
+    warnings: list[str] = []
+    if ending == _SVG:
+        source = svg_drawing("INPUT", options.source)
+    else:
+        source = _layout(options, settings, warnings)
+    telling.tell(telling.done(RasterFile(source, target, settings, warnings)))
+
+
+def _layout(
+    options: argparse.Namespace, settings: RasterizeSettings, warnings: list[str]
+) -> Source:
+    """Returns the UV map of the mesh; adds to the warnings where it has no area."""
+    names = [options.object] if options.object else []
+    found = mesh_files.chosen(mesh_files.read("INPUT", [options.source]), names)
+    if len(found) > 1:
+        options.usage_error(f"--object: choose one of the {len(found)} meshes; --uv takes one")
+    (part,) = found
+    if part.uvs is None:
+        raise ValueError(f"mesh '{part.name}' has no UV map")
+    if not np.isfinite(part.uvs).all():
+        raise ValueError(f"mesh '{part.name}': the UV map has UVs that are not finite")
+    polygons = borders(part.uvs.astype(np.float32)[part.triangles])
+    if not polygons:
+        warnings.append(f"mesh '{part.name}': no face has an area in the UV map")
+    return uv_layers(f"{part.name}.uv", polygons, settings)

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command `resize`."""
+
+import argparse
+from functools import partial
+from typing import Any
+
+from .._options.flags import add_flags, given, tables
+from .._options.resampling import ResizeSettings
+from .._work.resampling.resizing import Resizing
+from . import picture_arguments, telling
+from .host import PLAIN, Host
+
+_SIZES = ("percent", "width", "height")
+_NOTES = f"""\
+{picture_arguments.NOTE}
+
+examples:
+  prefilter resize photo.png small.png --percent 25 --filter least-squares
+  prefilter resize roughness.png roughness-1k.png --width 1024 --data --wrap repeat
+  prefilter resize sky.exr sky-2k.exr --width 2048 --height 1024 --filter mitchell"""
+
+
+def add(commands: Any, purpose: str, host: Host = PLAIN) -> None:
+    """Adds the command."""
+    parser = telling.add_command(commands, "resize", purpose, *tables(ResizeSettings), _NOTES)
+    picture_arguments.add_arguments(parser)
+    host.add_preset(parser)
+    add_flags(parser, ResizeSettings, without_default=_SIZES, preferred=host.preferred)
+    parser.set_defaults(execute=partial(_resize, host), usage_error=parser.error)
+
+
+def _resize(host: Host, options: argparse.Namespace) -> None:
+    picture_arguments.check_target(options)
+    found = given(options, ResizeSettings)
+    sizes = [name for name in _SIZES if name in found]
+    if not sizes and "size" not in host.preset(options):
+        options.usage_error("no size: give --percent, --width or --height")
+    if "percent" in sizes and len(sizes) > 1:
+        options.usage_error("--percent: not allowed with --width and --height")
+    picture, target = picture_arguments.read_source(options, host)
+    if sizes == ["height"]:
+        height, width = picture.shape[:2]
+        found["width"] = max(1, round(width * found["height"] / height))
+    more = {"width": found["width"]} if "width" in found else {}
+    if sizes:
+        more |= {
+            "size": "percent" if sizes == ["percent"] else "pixels",
+            "use_aspect": sizes == ["width"],
+        }
+    settings = host.settings(options, ResizeSettings, **more)
+    telling.tell(telling.done(Resizing(picture, settings, target=target)))

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command `voxelize`."""
+
+import argparse
+import os
+from pathlib import Path
+from typing import Any
+
+from .._border import staging
+from .._options.flags import add_flags, given, tables
+from .._options.voxels import VoxelizeSettings, VoxelSettings
+from .._work import mesh_files
+from .._work.mesh_files import Part
+from .._work.outcome import Outcome
+from .._work.progress import Progress, go_on, parts, share
+from .._work.voxels import surfaces
+from .._work.voxels.grid import check_memory, choose_grid
+from .._work.wording import Sentence, amount, counted, either
+from ..meshes.measures import measure_mesh
+from . import telling
+from .host import PLAIN, Host
+
+RESOLUTIONS = ("depth", "voxel_size")
+FLAGS = (
+    *(*RESOLUTIONS, "interpolant", "adaptivity", "thickness", "gap", "use_close_holes", "holes"),
+    *("use_cleanup", "threads"),
+)
+"""The options that need no Blender."""
+_VOXELIZED = 0.5  # What the progress is once there is a tree.
+_COMPUTED = 0.95  # The same once there are surfaces.
+_NOTES = """\
+Each mesh of FILE is voxelized by itself. Meshes may be open, leaky, and intersect themselves. Only
+positions and triangles are written; materials and attributes need Blender.
+
+examples:
+  prefilter voxelize bunny.ply bunny.stl --depth 8
+  prefilter voxelize scene.glb figure.glb --object Figure --voxel-size 0.01"""
+
+
+def add(commands: Any, purpose: str) -> None:
+    """Adds the command."""
+    notes = (*tables(VoxelizeSettings, *FLAGS), _NOTES)
+    parser = telling.add_command(commands, "voxelize", purpose, *notes)
+    parser.add_argument("file", metavar="FILE", help=f"a file: {either(mesh_files.ENDINGS)}")
+    parser.add_argument(
+        "output", metavar="OUTPUT", help=f"the file to write: {either(mesh_files.TARGETS)}"
+    )
+    parser.add_argument(
+        "--object",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="a mesh to voxelize; repeat for several (default: all)",
+    )
+    add_flags(parser, VoxelizeSettings, *FLAGS, exclusive=RESOLUTIONS)
+    parser.set_defaults(execute=_voxelize, usage_error=parser.error)
+
+
+def settings_of(
+    options: argparse.Namespace, host: Host, settings: type[VoxelSettings], **more: Any
+) -> Any:
+    """Returns the settings that were given, with what follows from them."""
+    found = given(options, settings)
+    for name, resolution in zip(RESOLUTIONS, ("depth", "size"), strict=True):
+        if name in found:
+            more["resolution"] = resolution
+    if "smooth_angle" in found:
+        more["use_smooth_shading"] = found["smooth_angle"] > 0.0
+    return host.settings(options, settings, **more)
+
+
+class VoxelFile:
+    """Meshes, each voxelized, to a file."""
+
+    def __init__(self, meshes: list[Part], target: Path, settings: VoxelizeSettings) -> None:
+        """Takes what to voxelize, where to, and how."""
+        self._meshes = meshes
+        self._target = target
+        self._settings = settings
+        self._warnings: list[str] = []
+        self._notes: list[str] = []
+        self._lines: list[str] = []
+        self._triangles = 0
+        self._staged: staging.StagedFile | None = None
+
+    def compute(self, progress: Progress) -> None:
+        """Voxelizes, contours, and stages the file.
+
+        Raises:
+            ValueError: A mesh encloses nothing, or its cells are too small.
+            MemoryError: A result does not fit into memory.
+            OSError: The file cannot be written.
+            prefilter.Cancelled: `progress` returned False.
+        """
+        steps = parts(share(progress, 0.0, _COMPUTED), len(self._meshes))
+        made = []
+        for mesh, part in zip(self._meshes, steps, strict=True):
+            try:
+                made.append(self._voxelized(mesh, part))
+            except ValueError as error:
+                raise ValueError(f"mesh '{mesh.name}': {error}") from error
+        go_on(progress, _COMPUTED)
+        self._staged = staging.stage_with(self._target, lambda path: mesh_files.write(path, made))
+        go_on(progress, 1.0)
+
+    def write(self) -> Outcome:
+        """Puts the file into place."""
+        assert self._staged is not None
+        self._staged.commit()
+        summary, notes = Sentence("Voxelized {}", self._lines[0]), self._notes
+        if len(self._lines) > 1:
+            meshes, triangles = counted(self._lines, "object"), amount(self._triangles, "triangle")
+            summary, notes = Sentence("Voxelized {}: {}", meshes, triangles), [*self._lines, *notes]
+        return Outcome(summary, files=[str(self._target)], warnings=self._warnings, notes=notes)
+
+    def discard(self) -> None:
+        """Removes what was staged, if it was not put into place."""
+        if self._staged is not None:
+            self._staged.discard()
+
+    def _voxelized(self, mesh: Part, progress: Progress) -> Part:
+        settings = self._settings
+        measures = measure_mesh(mesh.positions, mesh.triangles, threads=settings.threads)
+        grid = choose_grid(measures.box, settings)
+        check_memory(grid, measures.area)
+        steps = share(progress, 0.0, _VOXELIZED)
+        made = surfaces.occupancy(mesh.positions, mesh.triangles, grid, settings, steps)
+        warnings, notes = surfaces.lines_of(mesh.name, made)
+        self._warnings += warnings
+        self._notes += notes
+        positions, triangles, _ = surfaces.surface(
+            made.tree,
+            [(made.positions, made.triangles)],
+            settings,
+            share(progress, _VOXELIZED, 1.0),
+            adaptivity=settings.adaptivity,
+        )
+        if len(triangles) == 0:
+            raise ValueError(surfaces.empty())
+        self._triangles += len(triangles)
+        self._lines.append(
+            f"'{mesh.name}' in {grid.cells}³ cells of {grid.spacing:.4g}: "
+            f"{amount(len(triangles), 'triangle')}, volume {made.tree.volume:.4g}"
+        )
+        return Part(mesh.name, positions, triangles, None)
+
+
+def _voxelize(options: argparse.Namespace) -> None:
+    telling.check_ending(options, "FILE", options.file, mesh_files.ENDINGS)
+    telling.check_ending(options, "OUTPUT", options.output, mesh_files.TARGETS)
+    target = Path(os.path.realpath(options.output))
+    staging.check_target(target)
+    settings = settings_of(options, PLAIN, VoxelizeSettings)
+    found = mesh_files.chosen(mesh_files.read("FILE", [options.file]), options.object)
+    meshes = [mesh_files.without_seams(one) for one in found]
+    telling.tell(telling.done(VoxelFile(meshes, target, settings)))

@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The filters of the library as choices."""
+
+from collections.abc import Mapping
+
+import prefilter
+
+from .choices import Choice
+
+LABELS = {one.name: one.label for one in prefilter.PIXEL_FILTERS}
+
+
+def filters_for(use: str, descriptions: Mapping[str, str]) -> dict[str, Choice]:
+    """Returns the filters for a use, those with a description first, in the order of these."""
+    names = [one.name for one in prefilter.PIXEL_FILTERS if use in one.uses]
+    ordered = [*descriptions, *(name for name in names if name not in descriptions)]
+    return {
+        name: Choice(LABELS[name], descriptions.get(name, "")) for name in ordered if name in names
+    }

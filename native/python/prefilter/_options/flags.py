@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Options as flags of commands."""
+
+import argparse
+import math
+from collections.abc import Collection, Iterator, Mapping
+from functools import partial
+from types import MappingProxyType
+from typing import Any
+
+from .colors import from_hex
+from .options import Option, declared
+
+
+def add_flags(
+    parser: argparse.ArgumentParser,
+    settings: type,
+    *names: str,
+    exclusive: Collection[str] = (),
+    without_default: Collection[str] = (),
+    short: Mapping[str, str] = MappingProxyType({}),
+    preferred: str = "",
+) -> None:
+    """Adds the flags of options to a parser.
+
+    Args:
+        parser: Gets them; `given` finds what a user gives.
+        settings: A dataclass.
+        names: The fields; all if none is named.
+        exclusive: Fields of which a user may give one.
+        without_default: Fields that mean something else, or nothing, where no flag gives them.
+        short: For a field, a flag of one letter, which does the same.
+        preferred: What the help adds to the default of an option that follows a preference.
+    """
+    group = parser.add_mutually_exclusive_group() if exclusive else parser
+    for name, default, flag, found in _flags(settings, names):
+        more: dict[str, Any] = {"default": argparse.SUPPRESS, "dest": name}
+        description = found.flag_description or found.description
+        text = description[:1].lower() + description[1:]
+        if isinstance(default, bool):
+            more["action"] = argparse.BooleanOptionalAction
+            text += f" (default: {'on' if default else 'off'})"
+        else:
+            more |= {"type": partial(_read, default, found), "metavar": found.metavar}
+            if isinstance(default, tuple) and found.choices:
+                more["nargs"] = "+"
+            elif isinstance(default, tuple) and found.subtype != "COLOR":
+                more["nargs"] = len(default)
+            notes = [found.allowed] if found.has_limits else []
+            # What a color is without its flag is another option's to say.
+            if default != "" and found.subtype != "COLOR" and name not in without_default:
+                follows = preferred if found.preference else ""
+                notes.append(f"default: {found.shown(default)}{follows}")
+            if notes:
+                text += f" ({'; '.join(notes)})"
+        target = group if name in exclusive else parser
+        named = [flag, short[name]] if name in short else [flag]
+        target.add_argument(*named, help=text.replace("%", "%%"), **more)
+
+
+def given(options: argparse.Namespace, settings: type) -> dict[str, Any]:
+    """Returns the values of the flags that were given, by the names of the fields."""
+    return {
+        name: tuple(value) if isinstance(default, tuple) else value
+        for name, default, _, _ in _flags(settings, ())
+        if (value := getattr(options, name, None)) is not None
+    }
+
+
+def tables(settings: type, *names: str) -> list[str]:
+    """Returns what may be chosen for each flag with choices, for the end of a help text."""
+    return [
+        "\n".join(
+            [f"{flag}:", *(f"  {key:<18}{one.description}" for key, one in found.choices.items())]
+        )
+        for _, _, flag, found in _flags(settings, names)
+        if found.choices
+    ]
+
+
+def _flags(settings: type, names: tuple[str, ...]) -> Iterator[tuple[str, Any, str, Option]]:
+    """Yields name, default, flag and option of the fields that have flags."""
+    for name, default, found in declared(settings):
+        if found.flag == "" or (names and name not in names):
+            continue
+        flag = name.removeprefix("use_").replace("_", "-")
+        yield name, default, found.flag or f"--{flag}", found
+
+
+def _read(default: Any, declaration: Option, text: str) -> Any:
+    if isinstance(default, str) or declaration.choices:
+        value: Any = text
+    elif declaration.subtype == "COLOR":
+        value = from_hex(text) or ()
+    else:
+        kind = float if isinstance(default, tuple) else type(default)
+        try:
+            value = kind(text)
+        except ValueError:
+            value = math.nan
+        if declaration.subtype == "ANGLE":
+            value = math.radians(value)
+    if not declaration.allows(value):
+        raise argparse.ArgumentTypeError(f"found '{text}'; allowed: {declaration.allowed}")
+    return value

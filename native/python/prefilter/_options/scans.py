@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What a user may set for the surface of points."""
+
+from dataclasses import dataclass
+
+import prefilter
+
+from .choices import Choice
+from .options import number, one_of, switch, threads
+
+RESOLUTIONS = {
+    "depth": Choice("Depth", "Halve the cube around the points this many times"),
+    "size": Choice("Voxel Size", "Cells of at most this size, in the units of the world"),
+}
+WAVELETS = {
+    "haar": Choice("Haar", "Fastest, and needs the least memory"),
+    "d4": Choice(
+        "D4",
+        "Each value depends on more points: smoother if Fit to Points is off. Slower, and "
+        "needs more memory",
+    ),
+}
+ISOVALUES = {
+    "auto": Choice("Automatic", "Chosen by Prefilter: the mean of the values at the points"),
+    "half": Choice("One Half", "Where cells are half full"),
+    "mean": Choice("Mean at Points", "The mean of the values at the points"),
+    "custom": Choice("Custom", "A value of your own"),
+}
+POINTS = {
+    "keep": Choice("Keep", "The points stay visible"),
+    "hide": Choice("Hide", "The points are hidden, in renders too"),
+    "delete": Choice("Delete", "The points are deleted"),
+}
+
+
+@dataclass(frozen=True)
+class ScanSettings:
+    """What `prefilter.reconstruct` does."""
+
+    resolution: str = one_of(
+        "depth", "Resolution", "How to specify the size of the cells", RESOLUTIONS, flag=""
+    )
+    depth: int = number(
+        9,
+        "Depth",
+        "Octree depth: 9 gives 512 cells per axis. Each step quadruples the triangles, as far as "
+        "there are enough points",
+        low=1,
+        high=prefilter.MAX_DEPTH,
+        display={"soft_max": 11},
+        metavar="N",
+    )
+    voxel_size: float = number(
+        0.01,
+        "Voxel Size",
+        "Largest side of a cell in world space: the cube around the points is halved until "
+        "cells are no larger",
+        low=1e-6,
+        subtype="DISTANCE",
+        display={"soft_min": 0.001, "precision": 4, "step": 1},
+        flag_description="largest side of a cell, instead of a depth",
+        metavar="LENGTH",
+    )
+    wavelet: str = one_of(
+        "haar", "Wavelet", "Basis in which the surface is computed", WAVELETS, metavar="NAME"
+    )
+    use_smooth: bool = switch(
+        True,
+        "Smoothing",
+        "Smooth the values inside and outside before the surface is extracted: fewer bumps "
+        "from noise",
+    )
+    use_fit: bool = switch(
+        True,
+        "Fit to Points",
+        "Move the vertices onto planes through the nearest points: details finer than a cell",
+    )
+    trim: float = number(
+        0.0,
+        "Trim",
+        "Remove surface that is farther from every point than this many cells, so that borders of "
+        "the scan stay open. 0 keeps a closed surface",
+        low=0.0,
+        display={"soft_max": 20.0, "precision": 1, "step": 50},
+        metavar="CELLS",
+    )
+    isovalue: str = one_of(
+        "auto",
+        "Iso-Value",
+        "Value at which the surface lies, between 0 outside and 1 inside",
+        ISOVALUES,
+        metavar="NAME",
+    )
+    custom_isovalue: float = number(
+        0.5,
+        "Value",
+        "Higher values shrink the surface, lower ones grow it",
+        low=0.0,
+        high=1.0,
+        is_above=True,
+        flag_description="The value at the surface, instead of --isovalue",
+        metavar="VALUE",
+    )
+    points: str = one_of(
+        "hide", "Points", "What to do with the objects that contain the points", POINTS, flag=""
+    )
+    use_smooth_shading: bool = switch(
+        True,
+        "Smooth Shading",
+        "Shade the result smooth",
+    )
+    memory_limit: int = number(
+        0,
+        "Memory Limit",
+        "Use at most this many MiB beside the points, and temporary files for the rest; "
+        "0 sets no limit",
+        low=0,
+        display={"soft_max": 65536},
+        metavar="MiB",
+        preference="memory_limit",
+    )
+    threads: int = threads()

@@ -1,0 +1,268 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Files for engines: DDS and KTX 2 with all levels, and a PNG for each level.
+
+* A byte image in sRGB or data keeps its bytes, in 8-bit and block formats; straight alpha.
+* Other images are sRGB-encoded in these, or as they are where they are data.
+* Formats of floats are scene-linear. A float image has associated alpha, and the file says so.
+* PNG: a byte image as it is; a float image with 16 bits, sRGB-encoded unless it is data; straight
+  alpha.
+"""
+
+import re
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import prefilter
+from prefilter import TexelFormat
+
+from ..._border import staging
+from ..._border.staging import StagedFile
+from ..alpha import unassociated
+from ..openimageio import Check
+from ..picture import Encoding, FloatArray, Picture
+from . import png
+from .textures import numbered
+
+_WRITERS: dict[str, Callable[..., None]] = {
+    ".dds": prefilter.write_dds,
+    ".ktx2": prefilter.write_ktx2,
+}
+_CHANNELS = {1: "the red channel", 2: "the red and green channels"}
+_CUT_OUT_ALPHA = 0.5
+
+
+def is_for_engines(target: Path) -> bool:
+    """Tells whether `stage` of this module writes such a file."""
+    return target.suffix.lower() in (*_WRITERS, ".png")
+
+
+def has_formats(path: str) -> bool:
+    """Tells whether there is a choice of formats for such a file."""
+    return path.lower().endswith(tuple(_WRITERS))
+
+
+def has_supercompression(path: str) -> bool:
+    """Tells whether such a file may be supercompressed."""
+    return path.lower().endswith(".ktx2")
+
+
+def checked(
+    picture: Picture,
+    target: Path | None,
+    texture_format: str,
+    threshold: float | None = None,
+    *,
+    may_lose_channels: bool = False,
+    is_stretched: bool = False,
+) -> list[str]:
+    """Returns what the user should know about the format of a picture's file.
+
+    Args:
+        picture: Level 0.
+        target: The file; None for none.
+        texture_format: See `stage`.
+        threshold: The alpha from which on a cut-out is shown; None for other images.
+        may_lose_channels: Whether nothing reads the channels that the format has not.
+        is_stretched: Whether its sides become multiples of `unit_of_sides`.
+
+    Raises:
+        ValueError: The picture does not go with the format.
+    """
+    if target is None or not has_formats(target.name):
+        return []
+    chosen = _chosen(picture, texture_format)
+    who = f"Texture Format: {_label(chosen.name)}"
+    if not chosen.is_in_dds and not has_supercompression(target.name):
+        raise ValueError(f"{who} needs a .ktx2 file; found '{target.name}'")
+    has_no_srgb = chosen.channels in _CHANNELS
+    if has_no_srgb and not picture.is_float and picture.encoding is not Encoding.NONE:
+        raise ValueError(
+            f"{who} has no sRGB variant, and image '{picture.name}' has the color space "
+            f"{picture.colorspace}; set Non-Color, or choose another format"
+        )
+    told = []
+    height, width, _ = picture.shape
+    unit = unit_of_sides(picture, target, texture_format)
+    if not is_stretched and (width % unit or height % unit):
+        told.append(f"{who} of {width} x {height} texels: readers need sides divisible by {unit}")
+    told += _lost_channels(picture, chosen, who, threshold, may_lose_channels)
+    told += _lost_values(picture, chosen, who)
+    return told
+
+
+def unit_of_sides(picture: Picture, target: Path | None, texture_format: str) -> int:
+    """Returns what readers of a picture's file need the sides to be multiples of.
+
+    Direct3D needs that of its blocks, and so do those who transcode others to them.
+    """
+    if target is None or not has_formats(target.name):
+        return 1
+    chosen = _chosen(picture, texture_format)
+    if chosen.block is None or not (chosen.is_in_dds or chosen.is_transcoded):
+        return 1
+    return max(chosen.block)
+
+
+def _lost_channels(
+    picture: Picture,
+    chosen: TexelFormat,
+    who: str,
+    threshold: float | None,
+    may_lose_channels: bool,
+) -> list[str]:
+    if chosen.channels in _CHANNELS:
+        kept = f"{who} keeps only {_CHANNELS[chosen.channels]} of '{picture.name}'"
+        return [] if may_lose_channels else [kept]
+    if picture.shape[2] < 4 or chosen.alpha == "full":
+        return []
+    if chosen.alpha == "none" or not picture.alpha_is_coverage:
+        is_lost = picture.alpha_is_coverage or not may_lose_channels
+        return [f"{who} drops the fourth channel of '{picture.name}'"] if is_lost else []
+    if threshold is None:
+        return [f"{who} stores only alpha 0 and 1; '{picture.name}' has values in between"]
+    if threshold != _CUT_OUT_ALPHA:
+        return [f"{who} cuts alpha off at {_CUT_OUT_ALPHA}, not at the threshold {threshold:g}"]
+    return []
+
+
+def _lost_values(picture: Picture, chosen: TexelFormat, who: str) -> list[str]:
+    if not picture.is_float:
+        if not chosen.is_float or chosen.keeps_negatives:
+            return []
+        closer = "BC7" if chosen.is_in_dds else "ASTC"
+        return [f"{who} is for float images; {closer} is closer to '{picture.name}'"]
+    finite = picture.stored[np.isfinite(picture.stored)]
+    if finite.size == 0 or chosen.keeps_negatives:
+        return []
+    if not chosen.is_float and (finite.min() < 0 or finite.max() > 1):
+        return [f"{who} clips values of '{picture.name}' outside 0 to 1"]
+    if chosen.is_float and finite.min() < 0:
+        return [f"{who} clips values of '{picture.name}' below 0"]
+    return []
+
+
+def stage(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    texture_format: str,
+    check: Check,
+    *,
+    supercompression: str = "none",
+    threads: int = 0,
+) -> list[StagedFile]:
+    """Writes a DDS or KTX 2 file, or a PNG for each level, beside the target.
+
+    Args:
+        target: A path from `textures.check_target`.
+        picture: Where the levels come from.
+        linear_levels: Every level, scene-linear, row 0 at the bottom.
+        stored_levels: The same levels in the encoding of the picture.
+        texture_format: A format of `prefilter.write_dds`; for "auto" floats or bytes, as the
+            picture has them. Not for PNG.
+        check: Called now and then.
+        supercompression: As of `prefilter.write_ktx2`; other files have none.
+        threads: How many threads to use; 0 for all.
+
+    Raises:
+        ValueError: The values do not go with the format.
+        OSError: A file cannot be written.
+    """
+    write_texture = _WRITERS.get(target.suffix.lower())
+    if write_texture is None:
+        return _stage_numbered(target, picture, linear_levels, stored_levels, check)
+    chosen = _chosen(picture, texture_format)
+    levels, encoding = _values(picture, linear_levels, stored_levels, chosen)
+    alpha = "independent"
+    if picture.alpha_is_coverage:
+        alpha = "straight" if picture.alpha_is_straight else "premultiplied"
+    elif chosen.alpha == "cut-out":
+        levels = [level[..., :3] for level in levels]
+
+    def go_on(_: float) -> bool:
+        check()
+        return True
+
+    write = partial(
+        write_texture,
+        levels=levels,
+        format=chosen.name,
+        encoding=encoding,
+        alpha=alpha,
+        progress=go_on,
+        threads=threads,
+    )
+    if has_supercompression(target.name) and not chosen.is_shared:
+        write = partial(write, supercompression=supercompression)
+    return [staging.stage_bytes(target, write)]
+
+
+def _stage_numbered(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    check: Check,
+) -> list[StagedFile]:
+    is_srgb = not picture.is_data and (picture.is_float or picture.encoding is Encoding.SRGB)
+    staged: list[StagedFile] = []
+    try:
+        for number, level in enumerate(linear_levels if picture.is_float else stored_levels):
+            check()
+            data = png.encoded(_png_pixels(picture, level), is_srgb=is_srgb)
+            staged.append(
+                staging.stage_with(numbered(target, number), partial(Path.write_bytes, data=data))
+            )
+    except BaseException:
+        for file in staged:
+            file.discard()
+        raise
+    return staged
+
+
+def _png_pixels(picture: Picture, level: FloatArray) -> np.ndarray[Any, Any]:
+    """Returns bytes, or 16 bits, with straight alpha."""
+    if not picture.is_float:
+        return _bytes(level)
+    if picture.alpha_is_coverage and not picture.alpha_is_straight:
+        level = unassociated(level)
+    if not picture.is_data:
+        level = prefilter.to_srgb(level)
+    values = np.clip(np.nan_to_num(level, nan=0.0, posinf=1.0, neginf=0.0), 0, 1)
+    return np.rint(values * 65535).astype(np.uint16)
+
+
+def _label(texture_format: str) -> str:
+    """Returns a format as users see it: "ASTC 6x6 HDR" of "astc-6x6-hdr"."""
+    return re.sub(r"(\d)X(\d)", r"\1x\2", texture_format.upper().replace("-", " "))
+
+
+def _chosen(picture: Picture, texture_format: str) -> TexelFormat:
+    if texture_format == "auto":
+        texture_format = "rgba16f" if picture.is_float else "rgba8"
+    return prefilter.TEXEL_FORMATS[texture_format]
+
+
+def _values(
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    chosen: TexelFormat,
+) -> tuple[list[Any], str]:
+    """Returns the levels to write, and the encoding that they have or are to get."""
+    if not (picture.is_float or chosen.is_float or picture.encoding is Encoding.OCIO):
+        encoding = "srgb" if picture.encoding is Encoding.SRGB else "linear"
+        return [_bytes(level) for level in stored_levels], encoding
+    encoding = "linear" if picture.is_data or chosen.channels in _CHANNELS else "srgb"
+    return list(linear_levels), encoding
+
+
+def _bytes(level: FloatArray) -> np.ndarray[Any, Any]:
+    # As Blender rounds, so that level images are the same.
+    return (np.clip(level, 0, 1) * np.float32(255) + np.float32(0.5)).astype(np.uint8)

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Mip-mapped files for renderers.
+
+* OpenEXR: scene-linear, associated alpha, 16-bit floats unless 32 are asked for.
+* TIFF (.tif, .tiff, .tx): a byte image stays 8-bit and in its color space, a float image is
+  written as scene-linear 32-bit floats; associated alpha, as texture readers expect.
+
+A file always holds every level down to 1 x 1, in tiles of 64 x 64. OpenEXR files are written by
+the library, TIFF files by OpenImageIO, and those for engines by `engines`.
+"""
+
+import os
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+import prefilter
+
+from ..._border import staging
+from ..._border.staging import StagedFile, stage_bytes, stage_with
+from .. import alpha, openimageio
+from .. import picture as images
+from ..picture import FloatArray, Picture
+from ..wording import Sentence
+
+_OF_RENDERERS = (".exr", ".tif", ".tiff", ".tx")
+# Those that `engines` writes; the last one gets a file a level.
+_OTHER_EXTENSIONS = (".dds", ".ktx2", ".png")
+_MOST_LEVELS = 31
+EXTENSIONS = (*_OF_RENDERERS, *_OTHER_EXTENSIONS)
+"""Those that a texture file may have."""
+
+_WRAP_MODES = {"repeat": "periodic", "clamp": "clamp", "border": "black"}
+
+
+def check_target(path: str) -> Path:
+    """Returns the absolute path of a texture file that can be written, symbolic links resolved.
+
+    Raises:
+        ValueError: The name does not end in a known extension.
+        OSError: The folder is missing, or the file or its folder is read-only.
+    """
+    target = Path(os.path.realpath(path))
+    extension = target.suffix.lower()
+    if extension not in EXTENSIONS:
+        raise ValueError(
+            f"file '{path}': unsupported extension '{target.suffix}'; use {', '.join(EXTENSIONS)}"
+        )
+    for file in written(target):
+        staging.check_target(file)
+    return target
+
+
+def written(target: Path) -> list[Path]:
+    """Returns the files that may be written for a target: one, or one a level."""
+    if target.suffix.lower() != ".png":
+        return [target]
+    return [numbered(target, number) for number in range(_MOST_LEVELS)]
+
+
+def numbered(target: Path, number: int) -> Path:
+    """Returns the file of a level where each has its own, symbolic links resolved."""
+    return Path(os.path.realpath(target.with_suffix(f".{number:02d}{target.suffix}")))
+
+
+def shown(target: Path) -> str:
+    """Returns how to call a file, or the files of all levels."""
+    if target.suffix.lower() != ".png":
+        return f"'{target}'"
+    return Sentence("'{}' and so on", numbered(target, 0))
+
+
+def is_stored(target: Path) -> bool:
+    """Tells whether a file may hold the levels in the encoding of the picture."""
+    return target.suffix.lower() != ".exr"
+
+
+def stage(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    stored_levels: Sequence[FloatArray],
+    wrap: tuple[str, str],
+    check: openimageio.Check,
+    *,
+    half: bool = True,
+    threads: int = 0,
+) -> StagedFile:
+    """Writes a mip-mapped file beside its target.
+
+    Args:
+        target: A path from `check_target`.
+        picture: Level 0.
+        linear_levels: Levels 1, 2, ..., scene-linear, row 0 at the bottom.
+        stored_levels: The same in the encoding of the picture; not needed unless `is_stored`.
+        wrap: Wrap modes in u and v.
+        check: Called before each level, at least.
+        half: Whether OpenEXR gets 16-bit floats instead of 32-bit ones.
+        threads: How many threads to use for OpenEXR; 0 for all.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    wrap_modes = ",".join(_WRAP_MODES[mode] for mode in wrap)
+    if not is_stored(target):
+        return _stage_exr(target, picture, linear_levels, wrap_modes, check, half, threads)
+    keep_bytes = not picture.is_float
+    levels = stored_levels if keep_bytes else linear_levels
+    if keep_bytes and not picture.alpha_is_straight:
+        full = picture.texels
+    else:
+        full = picture.stored if keep_bytes else images.scene_linear(picture, check)
+    write = partial(
+        openimageio.write_texture,
+        levels=[_file_pixels(picture, level) for level in (full, *levels)],
+        pixel_type="uint8" if keep_bytes else "float",
+        color_space=_color_space(picture, keep_bytes),
+        wrap_modes=wrap_modes,
+        has_alpha=picture.alpha_is_coverage,
+        check=check,
+    )
+    return stage_with(target, write)
+
+
+def _stage_exr(
+    target: Path,
+    picture: Picture,
+    linear_levels: Sequence[FloatArray],
+    wrap_modes: str,
+    check: openimageio.Check,
+    half: bool,
+    threads: int,
+) -> StagedFile:
+    def go_on(_: float) -> bool:
+        check()
+        return True
+
+    full, encoding = images.light_or_bytes(picture, check)
+    attributes = {
+        "Software": "Prefilter",
+        "textureformat": "Plain Texture",
+        "wrapmodes": wrap_modes,
+    }
+    if picture.is_data:
+        attributes["oiio:ColorSpace"] = _color_space(picture, keep_bytes=False)
+    kind = "independent"
+    if picture.alpha_is_coverage:
+        kind = "straight" if picture.alpha_is_straight else "premultiplied"
+    write = partial(
+        prefilter.write_exr,
+        levels=[full, *linear_levels],
+        format="half" if half else "float",
+        encoding=encoding,
+        alpha=kind,
+        attributes=attributes,
+        progress=go_on,
+        threads=threads,
+    )
+    return stage_bytes(target, write)
+
+
+def _file_pixels(picture: Picture, level: images.Texels) -> images.Texels:
+    """Returns a level with associated alpha and rows from the top."""
+    if picture.alpha_is_straight:
+        level = alpha.associated(level)
+    return np.ascontiguousarray(level[::-1])
+
+
+def _color_space(picture: Picture, keep_bytes: bool) -> str:
+    if picture.is_data:
+        return "raw"
+    if keep_bytes and picture.encoding is not images.Encoding.NONE:
+        return picture.colorspace
+    return "scene_linear"

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Which compressed blocks suit what an image holds."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+import prefilter
+
+from ..picture import Encoding, Picture
+
+
+def suiting(
+    picture: Picture,
+    content: str,
+    *,
+    reads_alpha: bool = False,
+    is_height: bool = False,
+    is_one_channel: bool = False,
+) -> str:
+    """Returns the key of the texel format that suits an image: the smallest that keeps it.
+
+    Args:
+        picture: Its pixels.
+        content: A key of `choices.CONTENTS`, and not "auto".
+        reads_alpha: Whether shaders read its alpha; they do where it is coverage.
+        is_height: Whether it holds heights, of which more than 8 bits are kept.
+        is_one_channel: Whether shaders read its red channel alone.
+    """
+    reads_alpha = reads_alpha or picture.alpha_is_coverage
+    if content == "normal":
+        return _smallest(4 if reads_alpha else 2)
+    if picture.is_float and (not picture.is_integer or is_height):
+        is_signed = not _is_positive(picture)
+        return _smallest(4 if reads_alpha else 3, is_float=True, is_signed=is_signed)
+    has_no_srgb = picture.is_float or picture.encoding is Encoding.NONE
+    is_data = has_no_srgb and content != "color" and not reads_alpha
+    if is_data and (is_one_channel or is_gray(picture)):
+        return _smallest(1)
+    return _smallest(4 if reads_alpha else 3)
+
+
+def suiting_all(keys: Iterable[str]) -> str:
+    """Returns the one of several formats that suits what all of them suit."""
+
+    def extent(key: str) -> tuple[bool, float, int]:
+        found = prefilter.TEXEL_FORMATS[key]
+        return found.is_float, found.texel_bytes, found.channels
+
+    return max(keys, key=extent)
+
+
+def _smallest(channels: int, *, is_float: bool = False, is_signed: bool = False) -> str:
+    """Returns the key of the smallest format of DDS files that keeps so many channels well."""
+    fitting = (
+        found
+        for found in prefilter.TEXEL_FORMATS.values()
+        if found.is_in_dds
+        and found.channels >= channels
+        and found.is_float == is_float
+        and (found.keeps_negatives or not is_signed)
+        and (found.alpha == "full" or channels < 4)
+        and not found.is_coarse
+    )
+    return min(fitting, key=lambda found: (found.texel_bytes, found.channels)).name
+
+
+def is_gray(picture: Picture) -> bool:
+    """Tells whether red, green and blue are the same everywhere."""
+    return bool((picture.texels[..., :1] == picture.texels[..., 1:3]).all())
+
+
+def _is_positive(picture: Picture) -> bool:
+    return bool(np.nanmin(picture.texels[..., :3]) >= 0.0)

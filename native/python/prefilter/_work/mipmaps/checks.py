@@ -1,0 +1,149 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Whether the settings of a bake go with its image, and what they mean for it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import prefilter
+
+from ..._options.mipmaps import Settings
+from ..files import textures
+from ..picture import Picture, scene_linear
+from ..wording import Sentence
+from . import blocks, contents
+from .source import reads_encoded
+
+
+@dataclass(frozen=True)
+class Rough:
+    """The roughness of a normal map.
+
+    Attributes:
+        roughness: What was read of it; None for none.
+        target: Its file; None for none.
+    """
+
+    roughness: contents.Roughness | None = None
+    target: Path | None = None
+
+
+def roughness_of(
+    settings: Settings,
+    normal_map: Picture,
+    content: str,
+    targets: Sequence[Path],
+    read: Callable[[], Picture],
+    texture_format: str = "",
+) -> Rough:
+    """Returns the roughness of a normal map, after a check of what the settings say of it.
+
+    Args:
+        settings: Of the bake.
+        normal_map: The image that is baked.
+        content: What it holds.
+        targets: Its files.
+        read: Reads the image of the roughness.
+        texture_format: That of the file of the roughness; empty for `roughness_format`.
+
+    Raises:
+        ValueError: The settings do not go together, or the images do not.
+        OSError: The file of the roughness cannot be written.
+    """
+    if not settings.roughness:
+        if settings.roughness_filepath:
+            raise ValueError(Sentence("Roughness File: choose a Roughness image too"))
+        return Rough()
+    if content != "normal":
+        if settings.content == "auto":
+            return Rough()
+        raise ValueError(
+            f"Roughness: '{settings.roughness}' needs a normal map, and the content is '{content}'"
+        )
+    if not settings.use_images and not settings.roughness_filepath:
+        raise ValueError(
+            Sentence("nothing to write the roughness to: choose level images or a Roughness File")
+        )
+    target = None
+    if settings.roughness_filepath:
+        target = textures.check_target(settings.roughness_filepath)
+        if target in targets:
+            raise ValueError(f"Roughness File: '{target}' is the file of the normal map")
+    picture = read()
+    contents.check_roughness(normal_map, picture)
+    chosen = texture_format or roughness_format(settings, picture)
+    linear = scene_linear(picture)
+    return Rough(contents.Roughness(picture, linear, settings.roughness_channel, chosen), target)
+
+
+def roughness_format(settings: Settings, picture: Picture) -> str:
+    """Returns the format of the roughness file: that of the normal map, unless channels lack."""
+    chosen = prefilter.TEXEL_FORMATS.get(settings.texture_format)
+    if chosen is None or chosen.channels > 2:
+        return settings.texture_format
+    if settings.roughness_channel == "all":
+        return "bc4" if chosen.is_in_dds else "eac-r11"
+    if chosen.is_in_dds:
+        return "bc7"
+    return "etc2-rgba" if picture.stored.shape[2] == 4 else "etc2-rgb"
+
+
+def odd_uses(
+    settings: Settings,
+    picture: Picture,
+    content: str,
+    targets: Sequence[Path],
+    rough: Rough,
+    *,
+    is_encoded: bool,
+) -> list[str]:
+    """Returns warnings of settings that do not go with the image, or with each other.
+
+    Args:
+        settings: Of the bake.
+        picture: The image.
+        content: What it holds.
+        targets: Its files.
+        rough: What `roughness_of` returned.
+        is_encoded: Whether the image is to be decoded, whatever it holds.
+    """
+    told = []
+    if content == "normal" and is_encoded:
+        told.append(
+            f"image '{picture.name}' has the color space {picture.colorspace}; "
+            "shaders read normals correctly only in Non-Color"
+        )
+    if settings.reader != "linear":
+        told.extend(_odd_readers(picture, targets))
+        if settings.lookups in {"one-lookup", "anisotropic", "views"} and reads_encoded(picture):
+            told.append(
+                "Lookups: readers of encoded texels are always supersampled, so "
+                f"'{picture.name}' is baked for that"
+            )
+    if settings.roughness and rough.roughness is None:
+        told.append(
+            f"Roughness: '{settings.roughness}' is not used, because '{picture.name}' "
+            "is not a normal map"
+        )
+    return told
+
+
+def suiting_blocks(pictures: Sequence[Picture], content: str) -> str:
+    """Returns the format that suits an image; of several tiles, one that suits them all."""
+    return blocks.suiting_all(
+        blocks.suiting(one, content, reads_alpha=one.shape[2] == 4) for one in pictures
+    )
+
+
+def _odd_readers(picture: Picture, targets: Sequence[Path]) -> list[str]:
+    """Returns warnings where nothing that is baked is read as encoded."""
+    if not reads_encoded(picture):
+        return [
+            f"Reader: '{picture.name}' is not an 8-bit sRGB image, so it is read as linear light"
+        ]
+    return [
+        f"Reader: '{target}' is read as linear light, but its levels are for encoded texels"
+        for target in targets
+        if target.suffix.lower() in {".exr", ".dds", ".ktx2"}
+    ]

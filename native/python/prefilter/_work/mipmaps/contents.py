@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What an image holds, and how its levels are made accordingly."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+import prefilter
+
+from ..._options.mipmaps import TEXTURE_SPACE_FILTERS
+from ..picture import Encoding, FloatArray, Picture, Texels, as_srgb, automatic_bounds
+from ..progress import Progress, share
+
+Bounds = tuple[float | None, float | None] | None
+
+CHANNELS = {"all": (0, 1, 2), "red": (0,), "green": (1,), "blue": (2,)}
+"""The channels of an image that hold roughness, by the key of the choice."""
+
+
+@dataclass(frozen=True)
+class Roughness:
+    """The roughness that belongs to a normal map.
+
+    Attributes:
+        picture: The image.
+        linear: Its values as a shader reads them, of the size of the normal map.
+        channels: A key of `CHANNELS`.
+        texture_format: A key of `choices.TEXTURE_FORMATS`, for its file.
+    """
+
+    picture: Picture
+    linear: FloatArray
+    channels: str
+    texture_format: str = "auto"
+
+
+def as_content(picture: Picture, content: str) -> Picture:
+    """Returns the picture with its values taken for what the content says that they are."""
+    if content in {"normal", "data"}:
+        # Blender keeps a float image as light whatever its color space; a level has to say so.
+        space = picture.linear_space if picture.is_float else picture.colorspace
+        changed = replace(picture, encoding=Encoding.NONE, is_data=True, colorspace=space)
+        return picture if picture.is_data else changed
+    if picture.is_data and not picture.is_float and (content == "color" or picture.shape[2] == 4):
+        picture = as_srgb(picture)
+    return replace(picture, is_data=False, covers=picture.covers or content == "cutout")
+
+
+def check_cutout(picture: Picture) -> None:
+    """Raises ValueError unless an alpha test of the picture makes sense."""
+    if picture.shape[2] == 3 and not _is_gray(picture.texels):
+        raise ValueError(
+            f"image '{picture.name}': has no alpha, and is not a grayscale mask; a cut-out needs "
+            f"alpha that is not 1 everywhere, or a grayscale image"
+        )
+
+
+def check_roughness(picture: Picture, roughness: Picture) -> None:
+    """Raises ValueError unless a roughness image fits the normal map."""
+    if roughness.full_name == picture.full_name:
+        raise ValueError(f"Roughness: '{roughness.name}' is the normal map itself")
+    (height, width), (high, wide) = picture.shape[:2], roughness.shape[:2]
+    if (high, wide) != (height, width):
+        raise ValueError(
+            f"Roughness: '{roughness.name}' has {wide} x {high} texels, and "
+            f"'{picture.name}' has {width} x {height}; they must be the same"
+        )
+
+
+def plain_levels(
+    picture: Picture,
+    texels: Texels,
+    surfaces: Sequence[prefilter.Surface] | None,
+    bounds: Bounds,
+    progress: Progress,
+    **options: Any,
+) -> list[FloatArray]:
+    """Returns the levels above 0 of color or data, of light or of bytes."""
+    return prefilter.coarser_levels(
+        texels,
+        surfaces,
+        bounds=bounds,
+        premultiplied=not picture.alpha_is_straight,
+        progress=progress,
+        **options,
+    )
+
+
+def cutout_levels(
+    picture: Picture,
+    linear: FloatArray,
+    surfaces: Sequence[prefilter.Surface] | None,
+    bounds: Bounds,
+    threshold: float,
+    progress: Progress,
+    **options: Any,
+) -> list[FloatArray]:
+    """Returns the levels of color whose alpha test keeps the surface that it keeps at level 0.
+
+    Without an alpha channel, the image itself is what is tested.
+    """
+    is_mask = linear.shape[2] == 3
+    tested = np.ascontiguousarray(linear[..., :1]) if is_mask else linear
+    made = plain_levels(picture, tested, surfaces, bounds, share(progress, 0.0, 0.6), **options)
+    kept = prefilter.keep_coverage(
+        [tested, *made],
+        None if options["filter"] in TEXTURE_SPACE_FILTERS else surfaces,
+        threshold=threshold,
+        wrap=options["wrap"],
+        premultiplied=picture.alpha_is_coverage and not picture.alpha_is_straight,
+        progress=share(progress, 0.6, 1.0),
+        threads=options["threads"],
+    )
+    return [np.repeat(level, 3, axis=2) for level in kept] if is_mask else kept
+
+
+def normal_levels(
+    linear: FloatArray,
+    surfaces: Sequence[prefilter.Surface] | None,
+    roughness: Roughness | None,
+    progress: Progress,
+    **options: Any,
+) -> tuple[list[FloatArray], list[FloatArray]]:
+    """Returns the levels of a normal map, and those of its roughness: none if there is none.
+
+    A fourth channel of the normal map, and the channels of the roughness image that hold something
+    else, are filtered as data.
+    """
+    normals = np.ascontiguousarray(linear[..., :3])
+    made: list[FloatArray] = []
+    rough: list[FloatArray] = []
+    steps = 4
+    if roughness is None:
+        made = prefilter.normal_mipmaps(
+            normals, surfaces, progress=share(progress, 0.0, 3 / steps), **options
+        )
+    else:
+        rough = prefilter.mipmaps(
+            roughness.linear,
+            surfaces,
+            premultiplied=True,
+            bounds=automatic_bounds(roughness.linear),
+            progress=share(progress, 0.0, 1 / steps),
+            **options,
+        )
+        done: list[tuple[FloatArray, list[FloatArray]]] = []
+        for channel in CHANNELS[roughness.channels]:
+            values = np.ascontiguousarray(roughness.linear[..., channel : channel + 1])
+            same = [levels for other, levels in done if np.array_equal(other, values)]
+            if not same:
+                start = (1 + len(done) / 2) / steps
+                made, levels = prefilter.normal_mipmaps(
+                    normals,
+                    surfaces,
+                    roughness=values,
+                    progress=share(progress, start, start + 0.5 / steps),
+                    **options,
+                )
+                done.append((values, levels))
+                same = [levels]
+            for whole, part in zip(rough, same[0], strict=True):
+                whole[..., channel : channel + 1] = part
+    if linear.shape[2] == 4:
+        fourth = prefilter.mipmaps(
+            np.ascontiguousarray(linear[..., 3:]),
+            surfaces,
+            bounds=(0.0, 1.0),
+            progress=share(progress, 3 / steps, 1.0),
+            **options,
+        )
+        made = [
+            np.concatenate([level, last], axis=2) for level, last in zip(made, fourth, strict=True)
+        ]
+    return made, rough
+
+
+def _is_gray(texels: Texels) -> bool:
+    return bool((texels[..., :1] == texels[..., 1:3]).all())

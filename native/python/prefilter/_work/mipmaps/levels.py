@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The levels of an image on its surfaces, by what it holds, and what heeding seams did to them."""
+
+from functools import partial
+from typing import Any
+
+import prefilter
+
+from ..._options.mipmaps import SEAM_FILTERS
+from .. import picture as images
+from ..picture import FloatArray
+from ..progress import Progress, go_on, share
+from . import contents, seams
+from .source import Source
+
+Levels = list[FloatArray]
+
+_FIRST_FILTERED = 2 / 3  # What the progress is once levels are filtered that are then compared.
+
+
+def filtered(
+    source: Source, roughness: contents.Roughness | None, progress: Progress, *, all_levels: bool
+) -> tuple[Levels, Levels, str]:
+    """Returns what `above_0` does, and a line about seams where levels heed them.
+
+    Args:
+        source: The image.
+        roughness: What belongs to a normal map; None for none.
+        progress: Called with the fraction done.
+        all_levels: Whether all are needed, as by files, however many the settings say.
+
+    Raises:
+        prefilter.Cancelled: `progress` returned False.
+        ValueError: The library refuses the image or the surfaces.
+    """
+    compares = heeds_seams(source)
+    end = _FIRST_FILTERED if compares else 1.0
+    with source.naming_objects():
+        made, rough = above_0(source, roughness, share(progress, 0.0, end), all_levels=all_levels)
+        note = seam_note(source, made, share(progress, end, 1.0)) if compares else ""
+    return made, rough, note
+
+
+def above_0(
+    source: Source, roughness: contents.Roughness | None, progress: Progress, *, all_levels: bool
+) -> tuple[Levels, Levels]:
+    """Returns the levels above 0, scene-linear, of an image and of its roughness.
+
+    Args:
+        source: The image.
+        roughness: What belongs to a normal map; None for none.
+        progress: Called with the fraction done.
+        all_levels: Whether all are needed, as by files, however many the settings say.
+
+    Raises:
+        prefilter.Cancelled: `progress` returned False.
+        ValueError: The library refuses the image or the surfaces.
+    """
+    settings = source.settings
+    options: dict[str, Any] = {
+        "filter": settings.filter,
+        "wrap": source.wrap,
+        "levels": None if all_levels else settings.levels or None,
+        "threads": settings.threads,
+        "footprint": source.footprint,
+    }
+    if source.content == "normal":
+        linear, surfaces = source.linear(progress), source.surfaces or None
+        made, rough = contents.normal_levels(linear, surfaces, roughness, progress, **options)
+        return made[1:], rough[1:]
+    options["reader"] = source.reader
+    options["seam_budget"] = settings.seam_budget / 100.0
+    if source.content == "cutout":
+        return _cutout(source, progress, options), []
+    return _plain(source, progress, options), []
+
+
+def heeds_seams(source: Source) -> bool:
+    """Tells whether the levels of an image are made for little contrast across seams."""
+    return (
+        source.settings.seam_budget > 0.0
+        and source.settings.filter in SEAM_FILTERS
+        and source.content in {"color", "data"}
+    )
+
+
+def seam_note(source: Source, levels: Levels, progress: Progress) -> str:
+    """Returns a line that compares the seams of levels with those of levels that do not heed them.
+
+    Args:
+        source: The image.
+        levels: Those above 0.
+        progress: Called with the fraction done.
+    """
+    others = source.filtered(
+        source.linear(progress),
+        source.settings.filter,
+        share(progress, 0.0, 0.8),
+        levels=len(levels) + 1,
+        seam_budget=0.0,
+    )
+    without, weighed = (
+        prefilter.seam_contrast(made, source.surfaces, wrap=source.wrap, progress=part)
+        for made, part in (
+            (others[1:], share(progress, 0.8, 0.9)),
+            (levels, share(progress, 0.9, 1.0)),
+        )
+    )
+    return seams.note(source.image_name, without.tolist(), weighed.tolist())
+
+
+def _cutout(source: Source, progress: Progress, options: dict[str, Any]) -> Levels:
+    linear = source.linear(progress)
+    made = contents.cutout_levels(
+        source.picture,
+        linear,
+        source.surfaces or None,
+        source.bounds(linear),
+        source.settings.threshold,
+        progress,
+        **options,
+    )
+    return source.capped(made[1:], linear)
+
+
+def _plain(source: Source, progress: Progress, options: dict[str, Any]) -> Levels:
+    fits = source.fits_views
+    texels, encoding = images.light_or_bytes(source.picture, partial(go_on, progress, 0.0))
+    made = contents.plain_levels(
+        source.picture,
+        texels,
+        source.surfaces or None,
+        source.bounds(texels),
+        share(progress, 0.0, 0.2) if fits else progress,
+        encoding=encoding,
+        **options,
+    )
+    if fits:
+        linear = source.linear(share(progress, 0.2, 0.2))
+        bounds = source.bounds(texels)
+        made = source.fitted_to_views([linear, *made], bounds, share(progress, 0.2, 1.0))[1:]
+    return source.capped(made, texels)

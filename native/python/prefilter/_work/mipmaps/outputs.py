@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What becomes of the levels of an image: files of them, and a line that says so."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..._border.staging import StagedFile
+from ..._options.mipmaps import CONTENTS, FILTERS, Settings
+from ..files import engines, textures
+from ..picture import FloatArray, Picture, encoded, scene_linear
+from ..wording import Sentence, counted, joined, together
+from . import lookups
+from .contents import Roughness
+from .source import Source
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """What a bake makes beside level images.
+
+    Attributes:
+        target: The file of the levels; None for none.
+        roughness: The roughness whose levels are baked, too; None for none.
+        roughness_target: The file of its levels; None for none.
+        writes_image: Whether the image's own levels are written, and not only those of its
+            roughness.
+    """
+
+    target: Path | None
+    roughness: Roughness | None = None
+    roughness_target: Path | None = None
+    writes_image: bool = True
+
+    @property
+    def targets(self) -> list[Path]:
+        """The files."""
+        return [one for one in (self.target, self.roughness_target) if one is not None]
+
+
+def staged(
+    picture: Picture,
+    made: list[FloatArray],
+    target: Path | None,
+    texture_format: str,
+    *,
+    settings: Settings,
+    wrap: tuple[str, str],
+    check: Callable[[], None],
+) -> tuple[list[StagedFile], list[FloatArray]]:
+    """Stages a file of an image and its levels; returns these as level images hold them, too.
+
+    Args:
+        picture: The image.
+        made: Its levels above 0, scene-linear.
+        target: The file; None for none.
+        texture_format: That of the file.
+        settings: Of the bake.
+        wrap: What lookups read outside of the image along u and v.
+        check: Called now and then.
+    """
+    stored: list[FloatArray] = []
+    if settings.use_images or (target is not None and textures.is_stored(target)):
+        stored = [encoded(picture, level, check) for level in made]
+    files: list[StagedFile] = []
+    threads = settings.threads
+    if target is not None and engines.is_for_engines(target):
+        linear = scene_linear(picture, check)
+        files += engines.stage(
+            target,
+            picture,
+            [linear, *made],
+            [picture.stored, *stored],
+            texture_format,
+            check,
+            supercompression=settings.supercompression,
+            threads=threads,
+        )
+    elif target is not None:
+        files.append(textures.stage(target, picture, made, stored, wrap, check, threads=threads))
+    return files, stored[: settings.levels - 1 if settings.levels else None]
+
+
+def summary(
+    source: Source, outputs: Outputs, names: Sequence[str] = (), frames: Sequence[int] = ()
+) -> str:
+    """Returns a line that says what was baked, over what, and into which images and files.
+
+    Args:
+        source: The image.
+        outputs: What was to be made.
+        names: The level images that were made.
+        frames: Those that it is an average of.
+    """
+    name, settings = source.image_name, source.settings
+    baked = Sentence("Baked '{}'", name)
+    if not outputs.writes_image:
+        assert outputs.roughness is not None
+        rough = outputs.roughness.picture.name
+        baked = Sentence("Baked '{}', the roughness of '{}',", rough, name)
+    elif source.content not in {"color", "data"}:
+        label = Sentence(CONTENTS[source.content].label)
+        baked = Sentence("Baked '{}' as {}", name, label)
+    parts = [Sentence("{} with {}", baked, Sentence(FILTERS[settings.filter].label))]
+    if source.objects:
+        parts.append(Sentence("over {}", counted(set(source.objects), "object")))
+        if frames:
+            parts.append(Sentence("at {}", counted(frames, "frame")))
+    if source.footprint:
+        parts.append(lookups.described(source.footprint, fits=source.fits_views))
+    results: list[str] = [counted(names, "level image")] if names else []
+    results += map(textures.shown, outputs.targets)
+    if not results:
+        return Sentence("{}; it has no further level", joined(" ", parts))
+    return joined(" ", [*parts, Sentence("into {}", together(results))])

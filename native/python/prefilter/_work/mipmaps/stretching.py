@@ -1,0 +1,142 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Images whose sides are stretched to multiples of what readers of compressed blocks need."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+import prefilter
+
+from ..files import engines
+from ..picture import FloatArray, Picture, Texels, encoded, scene_linear
+from ..progress import Progress, go_on, share
+from ..wording import Sentence
+from .outputs import Outputs
+from .source import Source
+
+_WHITE = 255
+
+
+def stretch(source: Source, outputs: Outputs, progress: Progress) -> tuple[Outputs, list[str]]:
+    """Gives images that end in blocks the sides that readers need.
+
+    Args:
+        source: The image; it is replaced.
+        outputs: What is made of it.
+        progress: Asked whether to go on.
+
+    Returns:
+        The outputs, with the roughness likewise; and notes on what was stretched.
+
+    Raises:
+        prefilter.Cancelled: `progress` returned False.
+        ValueError: A texel is not finite.
+    """
+    settings, rough, notes = source.settings, outputs.roughness, []
+    if not settings.use_multiples_of_4:
+        return outputs, []
+    size = size_for(source.picture, outputs.target, settings.texture_format)
+    if rough is not None:
+        # Both have one size, so if one needs another the other gets it, too.
+        own = size_for(rough.picture, outputs.roughness_target, rough.texture_format)
+        size = max(size, own)
+    change = partial(
+        stretched,
+        size=size,
+        wrap=source.wrap,
+        progress=share(progress, 0.0, 0.0),
+        check=partial(go_on, progress, 0.0),
+        threads=settings.threads,
+    )
+    if size == source.picture.shape[1::-1]:
+        return outputs, []
+    if outputs.writes_image:
+        notes.append(note(source.picture, size))
+    source.picture = change(source.picture, is_normal_map=source.content == "normal")
+    if rough is not None:
+        notes.append(note(rough.picture, size))
+        picture = change(rough.picture)
+        rough = replace(rough, picture=picture, linear=scene_linear(picture))
+    return replace(outputs, roughness=rough), notes
+
+
+def size_for(picture: Picture, target: Path | None, texture_format: str) -> tuple[int, int]:
+    """Returns the width and height that readers of a picture's file need."""
+    height, width, _ = picture.shape
+    unit = engines.unit_of_sides(picture, target, texture_format)
+    return -(-width // unit) * unit, -(-height // unit) * unit
+
+
+def stretched(
+    picture: Picture,
+    size: tuple[int, int],
+    wrap: tuple[str, str],
+    progress: Progress,
+    check: Callable[[], None],
+    *,
+    is_normal_map: bool = False,
+    threads: int = 0,
+) -> Picture:
+    """Returns a picture of another size, with values in the range of its own.
+
+    Args:
+        picture: Any picture.
+        size: Width and height.
+        wrap: What lies outside of it along u and v.
+        progress: Called with the fraction done.
+        check: Called between the parts of a conversion that takes long.
+        is_normal_map: Whether its texels are normals, which then have length 1.
+        threads: How many to use; 0 for all.
+
+    Raises:
+        prefilter.Cancelled: `progress` returned False.
+        ValueError: A texel is not finite.
+    """
+    linear = scene_linear(picture, check)
+    try:
+        made = prefilter.resize(
+            linear,
+            *size,
+            filter="lanczos3",
+            wrap=wrap,
+            premultiplied=not picture.alpha_is_straight,
+            progress=progress,
+            threads=threads,
+        )
+    except ValueError as error:
+        raise ValueError(f"image '{picture.name}': {error}") from error
+    if is_normal_map:
+        made[..., :3] = _normalized(made[..., :3])
+    for channel in range(made.shape[2]):
+        low, high = linear[..., channel].min(), linear[..., channel].max()
+        if not is_normal_map or channel == 3:
+            np.clip(made[..., channel], low, high, out=made[..., channel])
+    return replace(picture, texels=_as_stored(picture, encoded(picture, made, check)))
+
+
+def note(picture: Picture, size: tuple[int, int]) -> str:
+    """Returns a line that says how a picture is stretched."""
+    height, width, _ = picture.shape
+    return Sentence(
+        "'{}' is stretched from {} x {} to {} x {} texels, as its texture format needs sides "
+        "divisible by 4",
+        *(picture.name, width, height, *size),
+    )
+
+
+def _normalized(texels: FloatArray) -> FloatArray:
+    """Returns vectors of length 1, as a normal map holds them; zero stays."""
+    vectors = 2 * texels - 1
+    length = np.sqrt((vectors**2).sum(axis=2, keepdims=True))
+    unit = vectors / np.where(length > 0, length, 1)
+    return np.asarray((unit + 1) / 2, np.float32)
+
+
+def _as_stored(picture: Picture, values: FloatArray) -> Texels:
+    if picture.texels.dtype != np.uint8:
+        return values
+    return np.asarray(np.rint(values.clip(0, 1) * _WHITE), np.uint8)

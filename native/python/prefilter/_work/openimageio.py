@@ -1,0 +1,297 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""OpenImageIO's own Python module, as far as pictures need it; imported when it is needed."""
+
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float32]
+
+TILE_SIZE = 64
+
+Check = Callable[[], None]
+"""Called between the steps of long work; raises to end it."""
+
+_MOST_CHANNELS = 4
+_PIXELS_A_BAND = 1 << 20
+_PATH_SEPARATOR = ";"
+_PLACEHOLDER = "%"
+_PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class Pixels(NamedTuple):
+    """What a picture file holds.
+
+    Attributes:
+        values: (h, w, c) array of uint8, uint16 or float32, rows from the top.
+        is_straight: Whether colors are not multiplied by alpha.
+    """
+
+    values: NDArray[Any]
+    is_straight: bool
+
+
+def module() -> ModuleType:
+    """Returns the module.
+
+    Raises:
+        OSError: It is missing.
+    """
+    return _finder()
+
+
+def find_by(finder: Callable[[], ModuleType]) -> None:
+    """Has another function find the module for this process; it raises OSError where it cannot."""
+    global _finder
+    _finder = finder
+
+
+def _installed() -> ModuleType:
+    try:
+        return import_module("OpenImageIO")
+    except ImportError as error:
+        raise OSError(
+            "pictures need OpenImageIO, which is missing: pip install 'prefilter[command]'"
+        ) from error
+
+
+_finder = _installed
+
+
+def color_convert(
+    colors: FloatArray, source: str, target: str, config: str, check: Check
+) -> FloatArray:
+    """Converts (h, w, 3) colors between two spaces of an OpenColorIO configuration.
+
+    Args:
+        colors: The colors.
+        source: The space that they are in.
+        target: The space to convert them to.
+        config: Path of the configuration.
+        check: Called between bands of rows.
+
+    Raises:
+        ValueError: A space is unknown to the configuration, or it cannot be read.
+    """
+    oiio = module()
+    converted = np.empty_like(colors)
+    rows = max(1, _PIXELS_A_BAND // colors.shape[1])
+    for start in range(0, len(colors), rows):
+        check()
+        band = slice(start, start + rows)
+        result = oiio.ImageBufAlgo.colorconvert(
+            oiio.ImageBuf(colors[band]), source, target, unpremult=False, colorconfig=config
+        )
+        if result.has_error:
+            raise ValueError(f"{result.geterror()} (configuration '{config}')")
+        converted[band] = result.get_pixels("float")
+    return converted
+
+
+def holds_integers(path: str) -> bool:
+    """Tells whether a picture file has integers in it; False where that cannot be found out."""
+    try:
+        oiio = module()
+    except OSError:
+        return _is_png(path)
+    reader = oiio.ImageInput.open(path)
+    if reader is None:
+        oiio.geterror()
+        return False
+    kind = reader.spec().format.basetype
+    reader.close()
+    return kind not in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
+
+
+def _is_png(path: str) -> bool:
+    try:
+        with open(path, "rb") as file:
+            return file.read(len(_PNG)) == _PNG
+    except OSError:
+        return False
+
+
+def read_pixels(path: Path) -> Pixels:
+    """Reads a picture file as it is, without a conversion of alpha or color.
+
+    Raises:
+        ValueError: It has neither one, two, three nor four channels, nor those of an RGB image.
+        OSError: It is no picture that OpenImageIO reads, or it is damaged.
+    """
+    oiio = module()
+    config = oiio.ImageSpec()
+    config.attribute("oiio:UnassociatedAlpha", 1)
+    reader = oiio.ImageInput.open(str(path), config)
+    if reader is None:
+        raise OSError(_unreadable(path, oiio.geterror()))
+    try:
+        spec = reader.spec()
+        channels = _channels(list(spec.channelnames))
+        if not channels:
+            names = ", ".join(spec.channelnames)
+            raise ValueError(f"'{path}': found the channels {names}; R, G, B and A are needed")
+        kind = spec.format.basetype
+        is_float = kind in {oiio.HALF, oiio.FLOAT, oiio.DOUBLE}
+        read_as = {oiio.UINT8: "uint8"}.get(kind, "float" if is_float else "uint16")
+        values = reader.read_image(read_as)
+        if values is None:
+            raise OSError(_unreadable(path, reader.geterror()))
+        is_straight = bool(spec.get_int_attribute("oiio:UnassociatedAlpha", 0))
+    finally:
+        reader.close()
+    values = np.asarray(values).reshape(spec.height, spec.width, spec.nchannels)[..., channels]
+    return Pixels(_on_canvas(values, spec), is_straight)
+
+
+def _unreadable(path: Path, reason: str) -> str:
+    return f"'{path}' cannot be read as a picture: {' '.join(reason.split())}"
+
+
+def _channels(names: list[str]) -> list[int]:
+    """Returns which channels are gray, or red, green and blue, each with or without alpha."""
+    by_name = {name.upper(): index for index, name in enumerate(names)}
+    for colors in (("R", "G", "B"), ("Y",)):
+        if all(name in by_name for name in colors):
+            return [by_name[name] for name in (*colors, "A") if name in by_name]
+    return list(range(len(names))) if len(names) <= _MOST_CHANNELS else []
+
+
+def _on_canvas(values: NDArray[Any], spec: Any) -> NDArray[Any]:
+    """Returns the whole picture of a file that holds a part of it, or more; 0 elsewhere."""
+    left, top = spec.x - spec.full_x, spec.y - spec.full_y
+    height, width = spec.full_height, spec.full_width
+    if (left, top, height, width) == (0, 0, *values.shape[:2]):
+        return values
+    canvas = np.zeros((height, width, values.shape[2]), values.dtype)
+    low_x, low_y = max(left, 0), max(top, 0)
+    high_x, high_y = min(left + values.shape[1], width), min(top + values.shape[0], height)
+    if low_x < high_x and low_y < high_y:
+        part = values[low_y - top : high_y - top, low_x - left : high_x - left]
+        canvas[low_y:high_y, low_x:high_x] = part
+    return canvas
+
+
+def write_picture(
+    path: Path, pixels: NDArray[Any], color_space: str, *, pixel_type: str = ""
+) -> None:
+    """Writes values as a picture file, just as they are.
+
+    A fourth channel is straight alpha of integers, and associated alpha of floats.
+
+    Args:
+        path: The file, whose ending says its kind; replaced where it exists.
+        pixels: (h, w, c) array of uint8, uint16 or float32, rows from the top.
+        color_space: What to say in `oiio:ColorSpace`.
+        pixel_type: "half" for 16-bit floats; the type of the array if empty.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    oiio = module()
+    height, width, channels = pixels.shape
+    spec = oiio.ImageSpec(width, height, channels, pixel_type or str(pixels.dtype))
+    spec.attribute("oiio:ColorSpace", color_space)
+    if pixels.dtype.kind == "u":
+        spec.attribute("oiio:UnassociatedAlpha", 1)
+    output = oiio.ImageOutput.create(str(path))
+    if output is None:
+        raise OSError(f"file '{path}': {oiio.geterror()}")
+    written = output.open(str(path), spec) and output.write_image(pixels)
+    message = output.geterror()
+    if not (output.close() and written):
+        raise OSError(f"file '{path}': cannot be written: {message or output.geterror()}")
+
+
+def write_texture(
+    path: Path,
+    levels: Sequence[NDArray[Any]],
+    *,
+    pixel_type: str,
+    color_space: str,
+    wrap_modes: str,
+    has_alpha: bool,
+    check: Check,
+) -> None:
+    """Writes levels, rows from the top, as a tiled mip-mapped TIFF file.
+
+    The levels go through OpenImageIO's own texture maker, which takes the images of all levels, so
+    that a file is what renderers know.
+
+    Args:
+        path: The file; replaced where it exists. A failure may leave a part of it.
+        levels: (h, w, c) arrays of floats, or bytes, from the full size down to 1 x 1.
+        pixel_type: "uint8" or "float".
+        color_space: What to say in `oiio:ColorSpace`.
+        wrap_modes: What to say in `wrapmodes`, such as "periodic,clamp".
+        has_alpha: Whether a fourth channel is alpha, or one more independent channel.
+        check: Called before each level.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    oiio = module()
+    with tempfile.TemporaryDirectory(prefix="prefilter-", dir=_work_folder(path)) as folder:
+        level_files = []
+        for number, level in enumerate(levels[1:], start=1):
+            check()
+            level_file = str(Path(folder) / f"{number}.tif")
+            _write_level(level_file, _buffer(level, has_alpha), number)
+            level_files.append(level_file)
+        check()
+
+        config = oiio.ImageSpec()
+        config.set_format(pixel_type)
+        config.tile_width = config.tile_height = TILE_SIZE
+        config.attribute("Software", "Prefilter")
+        config.attribute("compression", "zip")
+        config.attribute("oiio:ColorSpace", color_space)
+        config.attribute("wrapmodes", wrap_modes)
+        config.attribute("maketx:fileformatname", "tiff")
+        config.attribute("maketx:mipimages", _PATH_SEPARATOR.join(level_files))
+
+        full = _buffer(levels[0], has_alpha)
+        made = str(Path(folder) / f"texture{path.suffix}")
+        if not oiio.ImageBufAlgo.make_texture(oiio.MakeTxTexture, full, made, config):
+            raise OSError(f"cannot write '{made}': {oiio.geterror()}")
+        shutil.move(made, path)
+
+
+def _work_folder(path: Path) -> str:
+    """Returns a folder for temporary files whose path the texture maker does not misread.
+
+    It gets the paths of all levels in one string, and puts digits for the '%' in a path.
+    """
+    folders = (tempfile.gettempdir(), str(path.parent))
+    for folder in folders:
+        if _PATH_SEPARATOR not in folder and _PLACEHOLDER not in folder:
+            return folder
+    found = " and ".join(f"'{folder}'" for folder in folders)
+    raise OSError(
+        f"no folder for temporary files: found {found}, and one without ';' and '%' is needed"
+    )
+
+
+def _write_level(path: str, buffer: Any, number: int) -> None:
+    """Writes a level and opens it again: the texture maker aborts the process if it cannot."""
+    if not buffer.write(path):
+        raise OSError(f"cannot write level {number} to '{path}': {buffer.geterror()}")
+    reader = module().ImageInput.open(path)
+    if reader is None:
+        raise OSError(f"cannot read level {number} back from '{path}': {module().geterror()}")
+    reader.close()
+
+
+def _buffer(pixels: NDArray[Any], has_alpha: bool) -> Any:
+    """Returns an ImageBuf that says what is alpha."""
+    buffer = module().ImageBuf(pixels)
+    if not has_alpha:
+        buffer.specmod().alpha_channel = -1
+    return buffer

@@ -1,0 +1,239 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Pictures as arrays, and the light that their texels stand for."""
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import prefilter
+
+from . import openimageio
+from .openimageio import Check
+
+FloatArray = NDArray[np.float32]
+Texels = NDArray[Any]
+"""Of floats or of bytes."""
+
+_INDEPENDENT = frozenset({"CHANNEL_PACKED", "NONE"})
+_VALUES_A_BAND = 1 << 20
+LINEAR_REC709_NAMES = frozenset({"Linear", "Linear Rec.709"})
+"""The scene-linear spaces whose colors the curve of sRGB encodes."""
+
+
+class Encoding(Enum):
+    """How stored color relates to scene-linear color."""
+
+    NONE = "none"
+    SRGB = "srgb"
+    OCIO = "ocio"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """The pixels of an image, and what is needed to read them as light.
+
+    Attributes:
+        name: What it is called.
+        full_name: The name, and the file that Blender's datablock is linked from.
+        texels: (height, width, 3 or 4) values as Blender keeps them, floats or bytes, row 0 at the
+            bottom. An alpha that is 1 everywhere is left out.
+        is_float: Whether they are floats instead of bytes.
+        is_integer: Whether the values come from integers, of bytes or of a file of more bits.
+        encoding: How `texels` relate to scene-linear values.
+        colorspace: The name of its color space.
+        is_data: Whether the color space says that the values are no colors.
+        alpha_mode: What alpha means, as Blender names it: STRAIGHT, PREMUL, CHANNEL_PACKED or NONE.
+        linear_space: The name of the scene-linear space.
+        ocio_config: Path of the OpenColorIO configuration.
+        covers: Whether alpha is known to be coverage, whatever the alpha mode.
+    """
+
+    name: str
+    full_name: str
+    texels: Texels
+    is_float: bool
+    is_integer: bool
+    encoding: Encoding
+    colorspace: str
+    is_data: bool
+    alpha_mode: str
+    linear_space: str
+    ocio_config: str
+    covers: bool = False
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Height, width and number of channels."""
+        height, width, channels = self.texels.shape
+        return height, width, channels
+
+    @property
+    def stored(self) -> FloatArray:
+        """The texels as floats, as Blender gives them out; made anew of bytes."""
+        if self.texels.dtype == np.uint8:
+            return _looked_up(self.texels, _BYTE_VALUES, _BYTE_VALUES)
+        return self.texels
+
+    @property
+    def alpha_is_coverage(self) -> bool:
+        """Whether there is an alpha channel that says how much of a texel is covered."""
+        known = self.covers or self.alpha_mode not in _INDEPENDENT
+        return self.shape[2] == 4 and known and not self.is_data
+
+    @property
+    def alpha_is_associated(self) -> bool:
+        """Whether colors are multiplied by an alpha that is coverage."""
+        return self.alpha_is_coverage and not self.alpha_is_straight
+
+    @property
+    def alpha_is_straight(self) -> bool:
+        """Whether colors have to be multiplied by alpha before they are filtered."""
+        return self.alpha_is_coverage and (not self.is_float or self.alpha_mode in _INDEPENDENT)
+
+
+# Blender's own way from bytes to floats.
+_BYTE_VALUES = np.arange(256, dtype=np.float32) * np.float32(1 / 255)
+_DECODED_BYTES = prefilter.to_linear(_BYTE_VALUES[:, None, None])[:, 0, 0]
+
+
+# A large image leaves no memory for a second one of floats: a band is copied, and written to memory
+# that was read before.
+
+
+def without_fourth(texels: Texels) -> Texels:
+    """Returns texels of one axis without the fourth of their channels, in the same memory."""
+    count = len(texels) // 4
+    for start in range(0, count, _VALUES_A_BAND):
+        end = min(start + _VALUES_A_BAND, count)
+        band = texels[4 * start : 4 * end].reshape(-1, 4)[:, :3].ravel()
+        texels[3 * start : 3 * end] = band
+    return texels[: 3 * count]
+
+
+def _looked_up(
+    texels: NDArray[np.uint8], colors: FloatArray, alphas: FloatArray, check: Check = lambda: None
+) -> FloatArray:
+    """Returns the values that bytes stand for, by two tables."""
+    values = np.empty(texels.shape, np.float32)
+    rows = max(1, _VALUES_A_BAND // (texels.shape[1] * texels.shape[2]))
+    for start in range(0, len(texels), rows):
+        check()
+        band = slice(start, start + rows)
+        values[band] = colors[texels[band]]
+        if texels.shape[2] == 4:
+            values[band, :, 3] = alphas[texels[band, :, 3]]
+    return values
+
+
+def with_coverage(picture: Picture) -> Picture:
+    """Returns the picture with an alpha of 1, unless it has one or its channels are independent."""
+    height, width, channels = picture.shape
+    if channels == 4 or picture.is_data or picture.alpha_mode in _INDEPENDENT:
+        return picture
+    full = 255 if picture.texels.dtype == np.uint8 else 1
+    texels = np.full((height, width, 4), full, picture.texels.dtype)
+    texels[..., :3] = picture.texels
+    return replace(picture, texels=texels)
+
+
+def scene_linear(picture: Picture, check: Check = lambda: None) -> FloatArray:
+    """Returns the picture's values as light, with alpha as it is stored.
+
+    Args:
+        picture: The picture.
+        check: Called between the parts of a conversion that takes long.
+
+    Raises:
+        ValueError: The color space cannot be decoded.
+        OSError: It needs OpenImageIO's Python module, which is missing.
+    """
+    texels = picture.texels
+    if texels.dtype == np.uint8 and picture.encoding is Encoding.SRGB:
+        return _looked_up(texels, _DECODED_BYTES, _BYTE_VALUES, check)
+    return _convert(picture, picture.stored, check, decode=True)
+
+
+def light_or_bytes(picture: Picture, check: Check = lambda: None) -> tuple[Texels, str]:
+    """Returns what `prefilter` takes for the picture, and its `encoding`: bytes where it can.
+
+    Args:
+        picture: The picture.
+        check: As for `scene_linear`.
+
+    Raises:
+        ValueError: As `scene_linear`.
+        OSError: As `scene_linear`.
+    """
+    if picture.texels.dtype == np.uint8 and picture.encoding is not Encoding.OCIO:
+        return picture.texels, "srgb" if picture.encoding is Encoding.SRGB else "linear"
+    return scene_linear(picture, check), "linear"
+
+
+def encoded(picture: Picture, linear: FloatArray, check: Check = lambda: None) -> FloatArray:
+    """Returns scene-linear values as `picture` stores them: the inverse of `scene_linear`.
+
+    Args:
+        picture: What says how.
+        linear: The values.
+        check: Called between the parts of a conversion that takes long.
+
+    Raises:
+        ValueError: The color space cannot be encoded.
+        OSError: It needs OpenImageIO's Python module, which is missing.
+    """
+    return _convert(picture, linear, check, decode=False)
+
+
+def as_srgb(picture: Picture) -> Picture:
+    """Returns the picture with its values taken for sRGB-encoded colors."""
+    if picture.linear_space in LINEAR_REC709_NAMES:
+        return replace(picture, encoding=Encoding.SRGB)
+    return replace(picture, encoding=Encoding.OCIO, colorspace="sRGB")
+
+
+def automatic_bounds(
+    linear: FloatArray, *, is_associated: bool = False
+) -> tuple[float, float | None]:
+    """Returns the range of levels: 0 to 1, and wider where the image is.
+
+    Colors that are multiplied by alpha are solved for without a limit above, which would tear them
+    from alpha; then `capped` sets one.
+    """
+    low = linear.min(where=np.isfinite(linear), initial=0.0)
+    return float(low), None if is_associated else _highest(linear)
+
+
+def capped(level: FloatArray, linear: FloatArray) -> FloatArray:
+    """Returns a level with associated alpha: neither that nor colors are above the image's."""
+    divisor = np.maximum(level[..., 3:] / np.float32(_highest(linear[..., 3:])), 1)
+    made: FloatArray = level / divisor
+    np.minimum(made[..., :3], _highest(linear[..., :3]), out=made[..., :3])
+    return made
+
+
+def _highest(linear: FloatArray) -> float:
+    return float(linear.max(where=np.isfinite(linear), initial=1.0))
+
+
+def _convert(picture: Picture, pixels: FloatArray, check: Check, *, decode: bool) -> FloatArray:
+    if picture.encoding is Encoding.NONE:
+        return pixels
+    if picture.encoding is Encoding.SRGB:
+        return prefilter.to_linear(pixels) if decode else prefilter.to_srgb(pixels)
+    spaces = (picture.colorspace, picture.linear_space)
+    source, target = spaces if decode else reversed(spaces)
+    colors = np.ascontiguousarray(pixels[..., :3])
+    try:
+        converted = openimageio.color_convert(colors, source, target, picture.ocio_config, check)
+    except ValueError as error:
+        raise ValueError(
+            f"image '{picture.name}': cannot convert its color space '{picture.colorspace}': "
+            f"{error}"
+        ) from error
+    result = pixels.copy()
+    result[..., :3] = converted
+    return result

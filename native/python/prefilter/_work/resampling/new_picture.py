@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""A new image of an old one: what was read is computed anywhere, then handed on or written."""
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import prefilter
+
+from ..._border import staging
+from .. import alpha
+from ..files import pictures
+from ..outcome import Outcome
+from ..picture import FloatArray, Picture, encoded, scene_linear
+from ..progress import Progress, go_on, share
+from ..wording import Sentence
+
+Keep = Callable[["NewPicture", FloatArray], Outcome]
+
+_DECODED, _FILTERED = 0.1, 0.9  # What the progress is once these steps are done.
+_BYTE, _SHORT = 255, 65535
+
+
+class NewPicture:
+    """One new image, which a subclass says how to filter.
+
+    `write` belongs on the main thread; `compute` touches no Blender data and runs on any thread.
+    """
+
+    def __init__(
+        self,
+        picture: Picture,
+        settings: Any,
+        *,
+        target: Path | None = None,
+        keep: Keep | None = None,
+    ) -> None:
+        """Keeps what was read.
+
+        Args:
+            picture: The image.
+            settings: Of the subclass.
+            target: A file to write; None for what `keep` makes.
+            keep: Makes an image of the new pixels, as the picture stores them.
+        """
+        height, width = picture.shape[:2]
+        self.old_size = (width, height)
+        self.picture = picture
+        self._settings = settings
+        self._target = target
+        self._keep = keep
+        self._stored: FloatArray | None = None
+        self._staged: staging.StagedFile | None = None
+
+    @property
+    def suffix(self) -> str:
+        """The end of the name of the new image."""
+        raise NotImplementedError
+
+    @property
+    def summary(self) -> str:
+        """What is done to the image, for the user."""
+        raise NotImplementedError
+
+    def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
+        """Returns the pixels of the new image.
+
+        Args:
+            linear: Those of the old one as light, with alpha as it is stored.
+            progress: Called with the fraction done.
+        """
+        raise NotImplementedError
+
+    def compute(self, progress: Progress) -> None:
+        """Decodes, filters and encodes the pixels, and stages the file.
+
+        Raises:
+            prefilter.Cancelled: `progress` returned False.
+            ValueError: The library refuses the image or the settings.
+            MemoryError: There is not enough memory.
+            OSError: The file cannot be written.
+        """
+        picture = self.picture
+        linear = scene_linear(picture, partial(go_on, progress, 0.0))
+        go_on(progress, _DECODED)
+        result = self.filtered(linear, share(progress, _DECODED, _FILTERED))
+        if picture.alpha_is_coverage:
+            np.clip(result[..., 3], 0.0, 1.0, out=result[..., 3])
+        check = partial(go_on, progress, _FILTERED)
+        if self._target is None:
+            self._stored = encoded(picture, result, check)
+        else:
+            check()
+            self._staged = _stage(self._target, picture, result)
+        go_on(progress, 1.0)
+
+    def write(self) -> Outcome:
+        """Makes the image, or puts the file into place.
+
+        Raises:
+            OSError: It cannot be.
+        """
+        if self._staged is not None:
+            self._staged.commit()
+            done = Sentence("{} into '{}'", self.summary, self._target)
+            return Outcome(done, files=[str(self._target)])
+        assert self._stored is not None
+        assert self._keep is not None
+        return self._keep(self, self._stored)
+
+    def discard(self) -> None:
+        """Removes the file that was staged, if it was not put into place."""
+        if self._staged is not None:
+            self._staged.discard()
+
+
+def _stage(target: Path, picture: Picture, linear: FloatArray) -> staging.StagedFile:
+    """Writes a file with the alpha, the encoding and the depth that its kind should have."""
+    covers, straight = picture.alpha_is_coverage, picture.alpha_is_straight
+    if target.suffix.lower() == ".exr":
+        pixels = alpha.associated(linear) if straight else linear
+        return pictures.stage(target, pixels, is_data=picture.is_data, is_half=not picture.is_float)
+    pixels = alpha.unassociated(linear) if covers and not straight else linear
+    if not picture.is_data:
+        pixels = prefilter.to_srgb(pixels)
+    most = _SHORT if picture.is_float else _BYTE
+    whole = np.rint(pixels.clip(0.0, 1.0) * most).astype(np.uint16 if most == _SHORT else np.uint8)
+    return pictures.stage(target, whole, is_data=picture.is_data, is_half=False)

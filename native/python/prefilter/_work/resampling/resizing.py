@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Resizing an image."""
+
+from pathlib import Path
+
+import prefilter
+
+from ..._options.resampling import FILTERS, ResizeSettings
+from ..picture import FloatArray, Picture
+from ..progress import Progress
+from ..wording import Sentence
+from .new_picture import Keep, NewPicture
+
+
+class Resizing(NewPicture):
+    """One image of another size."""
+
+    def __init__(
+        self,
+        picture: Picture,
+        settings: ResizeSettings,
+        *,
+        target: Path | None = None,
+        keep: Keep | None = None,
+    ) -> None:
+        """Keeps what was read.
+
+        Args:
+            picture: The image.
+            settings: The size, the filter, and more.
+            target: See `NewPicture`.
+            keep: Likewise.
+        """
+        super().__init__(picture, settings, target=target, keep=keep)
+        self.new_size = settings.new_size(*self.old_size)
+
+    @property
+    def suffix(self) -> str:
+        """The size."""
+        return f"{self.new_size[0]}x{self.new_size[1]}"
+
+    @property
+    def summary(self) -> str:
+        """What is done to the image, for the user."""
+        return Sentence(
+            "Resized '{}' from {} x {} to {} x {} pixels with {}",
+            *(self.picture.name, *self.old_size, *self.new_size),
+            Sentence(FILTERS[self._settings.filter].label),
+        )
+
+    def filtered(self, linear: FloatArray, progress: Progress) -> FloatArray:
+        """Returns the pixels of the new image."""
+        settings = self._settings
+        return prefilter.resize(
+            linear,
+            *self.new_size,
+            filter=settings.filter,
+            constrained=settings.use_constrained or not self.picture.is_float,
+            wrap=settings.wrap,
+            premultiplied=not self.picture.alpha_is_straight,
+            progress=progress,
+            threads=settings.threads,
+        )

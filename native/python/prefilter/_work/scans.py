@@ -1,0 +1,132 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The surface of scans: settings as the library takes them, what is told of it, file to file."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import prefilter
+
+from .._options.scans import ScanSettings
+from .outcome import Outcome
+from .progress import Progress
+from .wording import Sentence, amount, listed
+
+STREAMED_TARGET = ".ply"
+
+_FEW = 1e-3
+"""The share of outliers that every scan may have."""
+
+
+class Streaming:
+    """Files of points to a file of their surface, without loading either."""
+
+    def __init__(
+        self,
+        sources: Sequence[Path],
+        target: Path,
+        settings: ScanSettings,
+        length: Callable[[float], str],
+    ) -> None:
+        """Takes what to read, what to write, and how; and what tells a length in words."""
+        self._sources = sources
+        self._target = target
+        self._settings = settings
+        self._length = length
+        self._report: prefilter.ReconstructionReport | None = None
+
+    def compute(self, progress: Progress) -> None:
+        """Writes the file.
+
+        Raises:
+            ValueError: A source is damaged, or has no surface.
+            OSError: A file cannot be read or written.
+        """
+        with labeled():
+            self._report = prefilter.reconstruct_file(
+                list(self._sources), self._target, progress=progress, **options(self._settings)
+            )
+
+    def write(self) -> Outcome:
+        """Returns what was done."""
+        assert self._report is not None
+        return outcome(self._sources, self._target, self._report, self._length)
+
+    def discard(self) -> None:
+        """Does nothing: the library leaves nothing beside the target."""
+
+
+@contextmanager
+def labeled() -> Iterator[None]:
+    """Calls the settings in messages what panels call them."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(str(error).replace("cell_size:", "Voxel Size:")) from error
+
+
+def options(settings: ScanSettings) -> dict[str, Any]:
+    """Returns the settings that the library has too."""
+    custom = settings.isovalue == "custom"
+    size = settings.voxel_size if settings.resolution == "size" else None
+    return {
+        "depth": settings.depth,
+        "cell_size": size,
+        "wavelet": settings.wavelet,
+        "smooth": settings.use_smooth,
+        "isovalue": settings.custom_isovalue if custom else settings.isovalue,
+        "fit": settings.use_fit,
+        "trim": settings.trim if settings.trim > 0.0 else None,
+        "memory_limit": settings.memory_limit or None,
+        "threads": settings.threads,
+    }
+
+
+def told(report: "prefilter.ReconstructionReport", length: Callable[[float], str]) -> str:
+    """Returns numbers about a surface, in words.
+
+    Args:
+        report: About the surface.
+        length: Returns a length in words.
+    """
+    points, triangles = amount(report.points, "point"), amount(report.triangles, "triangle")
+    return Sentence("{} in cells of {}: {}", points, length(report.cell), triangles)
+
+
+def oddities(report: "prefilter.ReconstructionReport") -> list[str]:
+    """Returns what is odd about the points, as warnings."""
+    found: list[str] = []
+    if report.dropped:
+        dropped = amount(report.dropped, "point")
+        text = "left out, because they have no normal, no finite position or no weight: {}"
+        found.append(Sentence(text, dropped))
+    if report.outliers > _FEW:
+        outliers = f"{100.0 * report.outliers:.2g} %"
+        text = (
+            "left out as outliers, because they are sampled much more sparsely than the rest: "
+            "{} of the points"
+        )
+        found.append(Sentence(text, outliers))
+    if report.is_flipped:
+        found.append(Sentence("most normals point inward; all were flipped"))
+    return found
+
+
+def outcome(
+    sources: Sequence[Path],
+    target: Path,
+    report: "prefilter.ReconstructionReport",
+    length: Callable[[float], str],
+    objects: Sequence[str] = (),
+) -> Outcome:
+    """Returns what was done, as users read it."""
+    several = len(sources) > 1
+    return Outcome(
+        Sentence("Reconstructed '{}' from {}", target.name, told(report, length)),
+        objects=list(objects),
+        files=[str(target)],
+        warnings=oddities(report),
+        notes=[f"read {listed(path.name for path in sources)}"] if several else [],
+    )

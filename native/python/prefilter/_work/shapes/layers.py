@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""What images are made of: contours that are filled, a UV map, an SVG file."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+import prefilter
+
+from ..._options.colors import Color
+from ..._options.shapes import RasterizeSettings
+from ..matrices import product
+from ..memory import Memory, free_memory
+from ..progress import Progress, go_on, share
+from .frames import Frame, check_memory, fitted_frame, whole_frame
+from .outlines import add_contour, box_of
+
+FloatArray = NDArray[np.float64]
+
+_WHITE = (1.0, 1.0, 1.0, 1.0)
+_TILES_PER_ROW = 10
+_LAYERS_AT_ONCE = 64
+_MOST_WARNINGS = 5
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """Shapes in an image.
+
+    Attributes:
+        width: In pixels.
+        height: In pixels.
+        shapes: Those of a coverage have one channel, others four.
+        color: Of a coverage: the color of all shapes. None where each shape has its own.
+        warnings: What is not in them.
+        place: Where the image is; None where that is not known.
+    """
+
+    width: int
+    height: int
+    shapes: list["prefilter.Shape"]
+    color: Color | None
+    warnings: Sequence[str] = ()
+    place: Any = None
+
+
+class Source(Protocol):
+    """What was read and can be drawn."""
+
+    @property
+    def name(self) -> str:
+        """What the image is named after."""
+
+    def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
+        """Returns the shapes in an image.
+
+        Raises:
+            ValueError: There are none, or they do not fit the settings.
+            OSError: A file cannot be read.
+            MemoryError: The image would not fit into memory.
+            prefilter.Cancelled: `progress` has said so.
+        """
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Contours on a plane that are filled together, as `outlines` has them."""
+
+    contours: list[FloatArray]
+    color: Color
+
+
+@dataclass(frozen=True)
+class Layers:
+    """Layers, from the farthest to the nearest."""
+
+    name: str
+    layers: list[Layer]
+    fill_rule: str
+    frame: Frame | None
+    """Where the plane is in the image; None to fit it."""
+    memory: Memory = free_memory
+    placed: Callable[[Frame], Any] = lambda _: None
+    """Returns where the image is."""
+
+    def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
+        """Returns the shapes in an image."""
+        frame = self.frame
+        if frame is None:
+            boxes = np.array([box_of(one) for layer in self.layers for one in layer.contours])
+            box = np.stack([boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)])
+            frame = fitted_frame(box, settings)
+        check_memory(frame, self.memory)
+        colors = {layer.color for layer in self.layers}
+        if settings.color != "material":
+            colors = {_WHITE}
+        # What is translucent covers itself only where shapes overlap.
+        is_coverage = len(colors) <= 1 and all(color[3] == 1.0 for color in colors)
+        shapes = []
+        for i, layer in enumerate(self.layers):
+            if i % _LAYERS_AT_ONCE == 0:
+                go_on(progress, i / len(self.layers))
+            shape = prefilter.Shape(self.fill_rule)
+            shape.color = (1.0,) if is_coverage else _associated(layer.color)
+            for contour in layer.contours:
+                add_contour(shape, product(contour, frame.to_pixels.T))
+            shapes.append(shape)
+        color = next(iter(colors), _WHITE) if is_coverage else None
+        return Drawn(frame.width, frame.height, shapes, color, place=self.placed(frame))
+
+
+@dataclass(frozen=True)
+class _Svg:
+    """An SVG file."""
+
+    name: str
+    path: Path
+    memory: Memory
+    placed: Callable[[FloatArray], Any]
+    """Returns where the image is, of half of its sides."""
+
+    def drawn(self, settings: RasterizeSettings, progress: Progress) -> Drawn:
+        """Reads the file, and returns its shapes in an image."""
+        drawing = prefilter.read_svg(self.path, progress=share(progress, 0.0, 0.5))
+        box = np.array([[0.0, 0.0], [drawing.width, drawing.height]])
+        frame = fitted_frame(box, settings)
+        check_memory(frame, self.memory)
+        scale = frame.to_pixels[0, 0]
+        made = drawing.shapes_for(
+            scale * drawing.width, scale * drawing.height, progress=share(progress, 0.5, 1.0)
+        )
+        move = np.concatenate([np.eye(2), frame.to_pixels[:2, 2:]], axis=1)
+        warnings = [str(one) for one in drawing.warnings]
+        more = len(warnings) - _MOST_WARNINGS
+        if more > 0:
+            warnings[_MOST_WARNINGS:] = [f"and {more} more"]
+        told = [f"'{self.path.name}': {'; '.join(warnings)}"] if warnings else []
+        shapes = [shape.transformed(move) for shape in made]
+        half = np.array([frame.width, frame.height]) / 2.0
+        half /= scale if settings.resolution == "density" else 2.0 * half.max()
+        return Drawn(frame.width, frame.height, shapes, None, told, self.placed(half))
+
+
+def uv_layers(
+    name: str,
+    polygons: Sequence[FloatArray],
+    settings: RasterizeSettings,
+    memory: Memory = free_memory,
+) -> Layers:
+    """Returns what the faces of a mesh cover in a tile of UV space.
+
+    Args:
+        name: What the image is named after.
+        polygons: The borders of what they cover, as `layouts.borders` returns them.
+        settings: The tile, and the size of the image.
+        memory: What the work may use.
+    """
+    row, column = divmod(settings.tile - 1001, _TILES_PER_ROW)
+    contours = []
+    for polygon in polygons:
+        corners = np.concatenate([polygon, np.ones((len(polygon), 1))], axis=1)
+        contours.append(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1))
+    low = (float(column), float(row))
+    frame = whole_frame(settings.width, settings.height, low, (low[0] + 1.0, low[1] + 1.0))
+    return Layers(name, [Layer(contours, _WHITE)], "nonzero", frame, memory)
+
+
+def svg_drawing(
+    argument: str,
+    path: str,
+    memory: Memory = free_memory,
+    placed: Callable[[FloatArray], Any] = lambda _: None,
+) -> Source:
+    """Returns an SVG file, which is read when it is drawn.
+
+    Args:
+        argument: What the path is called in messages.
+        path: The file.
+        memory: What the work may use.
+        placed: Returns where the image is, of half of its sides.
+
+    Raises:
+        OSError: There is no such file.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise OSError(f"{argument}: there is no file '{path}'")
+    return _Svg(file.stem, file, memory, placed)
+
+
+def _associated(color: Color) -> Color:
+    red, green, blue, alpha = color
+    return red * alpha, green * alpha, blue * alpha, alpha

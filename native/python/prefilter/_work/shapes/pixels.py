@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""From coverage and associated colors to what images and files hold."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import prefilter
+
+from ..._border import staging
+from ..._options.colors import Color
+from ..._options.shapes import RasterizeSettings
+from ..alpha import at_most_opaque, unassociated
+from ..files import pictures
+from ..progress import Progress, go_on, share
+
+FloatArray = NDArray[np.float32]
+
+_ROWS_AT_ONCE = 64
+
+
+@dataclass(frozen=True)
+class Pixels:
+    """What an image or a file holds, in scene-linear values.
+
+    Attributes:
+        values: (height, width, 1, 3 or 4), row 0 at the bottom: a mask, opaque colors, or colors
+            and alpha.
+        is_straight: Whether colors are not multiplied by alpha.
+        color: The straight color everywhere, of which `values` are the alpha; None for others.
+    """
+
+    values: FloatArray
+    is_straight: bool
+    color: Sequence[float] | None = None
+
+    @property
+    def channels(self) -> int:
+        """1 for a mask, 3 for opaque colors, 4 for colors and alpha."""
+        return self.values.shape[2] if self.color is None else 4
+
+    @property
+    def is_mask(self) -> bool:
+        """Whether the values are no colors."""
+        return self.channels == 1
+
+    def floats(self) -> FloatArray:
+        """Returns (height, width, channels) values."""
+        if self.color is None:
+            return self.values
+        found = np.empty((*self.values.shape[:2], 4), np.float32)
+        found[..., :3] = self.color
+        found[..., 3:] = self.values
+        return found
+
+    def encoded(self, kind: type[np.uint8] | type[np.uint16]) -> NDArray[Any]:
+        """Returns whole numbers, sRGB-encoded unless they are a mask."""
+        if self.color is None:
+            return _whole(self.values if self.is_mask else prefilter.to_srgb(self.values), kind)
+        found = np.empty((*self.values.shape[:2], 4), kind)
+        color = np.array([[self.color]], np.float32)
+        found[..., :3] = _whole(prefilter.to_srgb(color), kind)
+        found[..., 3:] = _whole(self.values, kind)
+        return found
+
+
+def finished(
+    raster: FloatArray,
+    color: Color | None,
+    settings: RasterizeSettings,
+    *,
+    is_straight: bool,
+    progress: Progress,
+) -> Pixels:
+    """Returns the pixels that the settings ask for.
+
+    Args:
+        raster: (height, width, 1) coverage, or (height, width, 4) associated colors and alpha. They
+            may overshoot, as those of many filters do. What it holds afterward is undefined.
+        color: What is covered, of a coverage.
+        settings: Colors, background and bleeding.
+        is_straight: Whether colors are not to be multiplied by alpha.
+        progress: Called with the fraction done.
+
+    Raises:
+        prefilter.Cancelled: `progress` has said so.
+    """
+    if settings.color != "material":
+        raster, color = raster[..., -1:], (1.0, 1.0, 1.0, 1.0)
+    if color is not None:
+        np.clip(raster, 0.0, 1.0, out=raster)
+        if settings.color == "mask":
+            return Pixels(raster, is_straight)
+        if settings.background == "transparent":
+            return _of_one_color(raster, color, settings, is_straight=is_straight)
+        raster = raster * np.array([*color[:3], 1.0], np.float32)
+    else:
+        raster = at_most_opaque(np.maximum(raster, 0.0))
+    go_on(progress, 0.3)
+    if settings.background == "color":
+        *rgb, alpha = settings.background_color
+        behind = np.array([*(alpha * one for one in rgb), alpha], np.float32)
+        raster = raster + (1.0 - raster[..., 3:]) * behind
+        if alpha == 1.0:
+            return Pixels(np.ascontiguousarray(raster[..., :3]), is_straight)
+    if not is_straight:
+        return Pixels(raster, is_straight)
+    straight = unassociated(raster)
+    if settings.use_bleed:
+        straight = prefilter.fill_transparent(
+            straight, progress=share(progress, 0.3, 1.0), threads=settings.threads
+        )
+    return Pixels(straight, is_straight)
+
+
+def _of_one_color(
+    coverage: FloatArray, color: Color, settings: RasterizeSettings, *, is_straight: bool
+) -> Pixels:
+    """Returns one color with a coverage as alpha: it bleeds everywhere as it is."""
+    if is_straight and settings.use_bleed:
+        return Pixels(coverage, is_straight, color[:3])
+    values = np.empty((*coverage.shape[:2], 4), np.float32)
+    visible = coverage > 0.0 if is_straight else coverage
+    np.multiply(visible, np.array(color[:3], np.float32), out=values[..., :3])
+    values[..., 3:] = coverage
+    return Pixels(values, is_straight)
+
+
+def _whole(values: FloatArray, kind: type[np.uint8] | type[np.uint16]) -> NDArray[Any]:
+    """Returns [0, 1] as whole numbers, rounded."""
+    most = np.float32(np.iinfo(kind).max)
+    found = np.empty(values.shape, kind)
+    # In bands, as temporary arrays of a whole image cost more than the arithmetic.
+    for start in range(0, len(values), _ROWS_AT_ONCE):
+        band = np.clip(values[start : start + _ROWS_AT_ONCE], np.float32(0.0), np.float32(1.0))
+        band *= most
+        band += np.float32(0.5)
+        found[start : start + _ROWS_AT_ONCE] = band
+    return found
+
+
+def stage(target: Path, pixels: Pixels, settings: RasterizeSettings) -> staging.StagedFile:
+    """Writes a picture beside its target: for PNG with 8 bits or, of floats, 16.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
+    values: NDArray[Any]
+    if target.suffix.lower() == ".png":
+        values = pixels.encoded(np.uint8 if settings.pixel_type == "byte" else np.uint16)
+    else:
+        values = pixels.floats()
+    return pictures.stage(
+        target, values, is_data=pixels.is_mask, is_half=settings.pixel_type != "float"
+    )

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""Shapes to an image, and to a file of it."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import prefilter
+
+from ..._border import staging
+from ..._options.options import check
+from ..._options.shapes import RasterizeSettings
+from ..outcome import Outcome
+from ..progress import Progress, go_on, share
+from ..wording import Sentence
+from . import pixels
+from .layers import Drawn, Source
+
+_READ, _DRAWN = 0.1, 2 / 3
+"""What the progress is once there are shapes, and once they are drawn."""
+
+
+def rasterized(
+    source: Source, settings: RasterizeSettings, progress: Progress, *, is_straight: bool
+) -> tuple[Drawn, pixels.Pixels]:
+    """Draws shapes.
+
+    Args:
+        source: The shapes.
+        settings: How.
+        progress: Called with the fraction done.
+        is_straight: Whether colors are not to be multiplied by alpha.
+
+    Raises:
+        ValueError: There are none, or they do not fit the settings.
+        MemoryError: The image does not fit into memory.
+        OSError: A file cannot be read.
+        prefilter.Cancelled: `progress` has said so.
+    """
+    drawn = source.drawn(settings, share(progress, 0.0, _READ))
+    if drawn.shapes:
+        raster: NDArray[Any] = prefilter.rasterize(
+            drawn.shapes,
+            drawn.width,
+            drawn.height,
+            filter=settings.filter,
+            overlap=settings.overlap,
+            progress=share(progress, _READ, _DRAWN),
+            threads=settings.threads,
+        )
+    else:
+        raster = np.zeros((drawn.height, drawn.width, 1), np.float32)
+    made = pixels.finished(
+        raster,
+        drawn.color if drawn.shapes else (1.0, 1.0, 1.0, 1.0),
+        settings,
+        is_straight=is_straight,
+        progress=share(progress, _DRAWN, 1.0),
+    )
+    return drawn, made
+
+
+def is_straight(target: Path, settings: RasterizeSettings) -> bool:
+    """Tells whether colors in a file are not multiplied by alpha."""
+    if settings.alpha != "auto":
+        return settings.alpha == "straight"
+    return target.suffix.lower() == ".png"
+
+
+def told(name: str, target: str, size: tuple[int, int]) -> str:
+    """Returns a line that says what was made."""
+    return Sentence("Rasterized '{}' to '{}': {} x {} pixels", name, target, *size)
+
+
+class RasterFile:
+    """Shapes to a file."""
+
+    def __init__(
+        self, source: Source, target: Path, settings: RasterizeSettings, warnings: list[str]
+    ) -> None:
+        """Takes what to draw, where to, and how; and what is to be told of it."""
+        check(settings)
+        self._source = source
+        self._target = target
+        self._settings = settings
+        self._warnings = warnings
+        self._staged: staging.StagedFile | None = None
+        self._done = ""
+
+    def compute(self, progress: Progress) -> None:
+        """Draws the shapes and stages the file; raises what `rasterized` does."""
+        drawn, made = rasterized(
+            self._source,
+            self._settings,
+            share(progress, 0.0, 0.9),
+            is_straight=is_straight(self._target, self._settings),
+        )
+        go_on(progress, 0.9)
+        self._warnings.extend(drawn.warnings)
+        self._done = told(self._source.name, str(self._target), (drawn.width, drawn.height))
+        self._staged = pixels.stage(self._target, made, self._settings)
+        go_on(progress, 1.0)
+
+    def write(self) -> Outcome:
+        """Puts the file into place."""
+        assert self._staged is not None
+        self._staged.commit()
+        return Outcome(self._done, files=[str(self._target)], warnings=self._warnings)
+
+    def discard(self) -> None:
+        """Removes what was staged, if it was not put into place."""
+        if self._staged is not None:
+            self._staged.discard()

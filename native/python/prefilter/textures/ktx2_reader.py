@@ -1,0 +1,346 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""KTX 2.0 files read back: what is written here, and what other tools write for glTF."""
+
+import math
+import os
+import struct
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, BinaryIO, NamedTuple
+
+import numpy as np
+
+from .. import _native
+from .._border.arguments import ProgressCallback, as_progress, progress_part
+from .._border.arrays import as_threads
+from .._border.input import as_path, open_file
+from .texel_formats import TEXEL_FORMATS
+
+_IDENTIFIER = b"\xabKTX 20\xbb\r\n\x1a\n"
+_HEADER = struct.Struct("<9I4I2Q")
+_LEVEL = struct.Struct("<3Q")
+_NONE, _BASIS_LZ, _ZSTD = 0, 1, 2
+_SCHEMES = {_NONE: "none", _BASIS_LZ: "basislz", _ZSTD: "zstd"}
+_MOST_SIDE = 1 << 16
+_MOST_ETC1S_TEXELS = 1 << 28
+"""1 GiB when decoded: a few bytes of it can stand for any number of texels."""
+_MOST_METADATA = 1 << 20
+_ETC1S, _UASTC = 163, 166
+_TRANSFER_SRGB = 2
+_FLAG_PREMULTIPLIED = 1
+
+_ALL = (0, 1, 2, 3)
+_CHANNELS: dict[tuple[int, tuple[int, ...]], tuple[int, ...]] = {
+    (_UASTC, (0,)): _ALL[:3],
+    (_UASTC, (3,)): _ALL,
+    (_UASTC, (4,)): (0,),
+    (_UASTC, (5,)): (0, 3),
+    (_UASTC, (6,)): (0, 1),
+    (_ETC1S, (0,)): _ALL[:3],
+    (_ETC1S, (0, 15)): _ALL,
+    (_ETC1S, (3,)): (0,),
+    (_ETC1S, (3, 4)): (0, 3),
+}
+"""Which of the decoded channels a texture has, by its color model and the channels it names."""
+
+
+class _Stored(NamedTuple):
+    """How texels are stored, of what a VkFormat says."""
+
+    name: str
+    is_srgb: bool
+    channels: int
+    dtype: Any
+    """None where they are blocks."""
+
+
+def _stored() -> dict[int, _Stored]:
+    found: dict[int, _Stored] = {}
+    for one in TEXEL_FORMATS.values():
+        for is_srgb, code in enumerate(one.vulkan):
+            if code:
+                dtype: Any = None if one.is_block else one.channel_type
+                found[code] = _Stored(one.name, bool(is_srgb), one.channels, dtype)
+    for first, name, dtype in ((70, "16", np.uint16), (76, "16f", np.float16)):
+        for number, channels in enumerate(("r", "rg", "rgb", "rgba")):
+            found.setdefault(first + 7 * number, _Stored(channels + name, False, number + 1, dtype))
+    for number, channels in enumerate(("r", "rg", "rgb")):
+        found[100 + 3 * number] = _Stored(f"{channels}32f", False, number + 1, np.float32)
+    found[23] = _Stored("rgb8", False, 3, np.uint8)
+    found[29] = _Stored("rgb8", True, 3, np.uint8)
+    return found
+
+
+_STORED = _stored()
+
+
+@dataclass(frozen=True)
+class Ktx2Info:
+    """What a KTX 2 file says of its levels.
+
+    Attributes:
+        format: How texels are stored: a name of `TEXEL_FORMATS`, "etc1s", or "r16", "rgb8" and the
+            like.
+        encoding: How bytes stand for colors: "linear" or "srgb".
+        alpha: What the fourth channel of four is, "straight" or "premultiplied"; None where there
+            is none.
+        supercompression: How levels are compressed once more: "none", "zstd" or "basislz".
+        metadata: Texts that the file holds, such as that of "KTXwriter".
+    """
+
+    format: str
+    encoding: str
+    alpha: str | None
+    supercompression: str
+    metadata: Mapping[str, str]
+
+
+class _RefusedError(ValueError):
+    """The message goes on from the name of the file."""
+
+
+def read_ktx2(
+    path: str | os.PathLike[str] | BinaryIO,
+    *,
+    progress: ProgressCallback | None = None,
+    threads: int = 0,
+) -> tuple[list[np.ndarray], Ktx2Info]:
+    """Reads a KTX 2.0 file: all its levels, decoded.
+
+    Every format that `write_ktx2` has is read, with or without zstd; UASTC and ETC1S (BasisLZ) with
+    any channels, as glTF's KHR_texture_basisu has them; and bytes, 16-bit numbers, half floats and
+    floats of one to four channels.
+
+    Args:
+        path: The file. Or one that is open to read bytes.
+        progress: Called with the fraction done, in [0, 1]; may return False to stop.
+        threads: How many to use; 0 = all processors. The result does not depend on it.
+
+    Returns:
+        The levels, (height, width, channels) each, level 0 first, row 0 at v = 0, the bottom: uint8
+        or uint16, which stand for a 255th and a 65535th each, or float32; and what the file says of
+        them. Red and alpha, where a file has just these, are two channels.
+
+    Raises:
+        ValueError: The file is no KTX 2 file, damaged, in another format, or it has several images
+            a level (an array, a cube map, a volume).
+        OSError: The file cannot be read.
+        Cancelled: The progress callback returned False.
+    """
+    report = as_progress(progress)
+    count = as_threads(threads)
+    who, data = _read(path)
+    try:
+        return _decoded(data, report, count)
+    except _RefusedError as error:
+        raise ValueError(f"path: {who}: {error}") from None
+    except (ValueError, struct.error) as error:
+        raise ValueError(f"path: {who} is damaged: {error}") from error
+
+
+def _read(path: Any) -> tuple[str, bytes]:
+    if hasattr(path, "read"):
+        data = path.read()
+        if not isinstance(data, bytes):
+            raise ValueError(f"path: {path!r}; a file that is open to read bytes is needed")
+        return "the file", data
+    source = as_path(path)
+    with open_file(source) as file:
+        return f"'{source}'", file.read()
+
+
+class _File(NamedTuple):
+    """The parts of a file, unpacked."""
+
+    stored: _Stored | None
+    """None for UASTC and ETC1S, which the descriptor tells."""
+    model: int
+    channel_names: tuple[int, ...]
+    width: int
+    height: int
+    levels: Sequence[bytes]
+    global_data: bytes
+    info: Ktx2Info
+
+
+def _decoded(
+    data: bytes, report: ProgressCallback | None, threads: int
+) -> tuple[list[np.ndarray], Ktx2Info]:
+    file = _parsed(data)
+    sizes = [
+        (max(1, file.width >> number), max(1, file.height >> number))
+        for number in range(len(file.levels))
+    ]
+    if file.model == _ETC1S:
+        levels = _of_etc1s(file, sizes, report)
+    else:
+        texels = [width * height for width, height in sizes]
+        levels = []
+        for number, (level, size) in enumerate(zip(file.levels, sizes, strict=True)):
+            done, end = (sum(texels[: number + i]) / sum(texels) for i in (0, 1))
+            part = progress_part(report, done, end)
+            levels.append(_of_level(file, level, size, part, threads))
+    if report is not None:
+        report(1.0)
+    orientation = file.info.metadata.get("KTXorientation", "rd")
+    rows = slice(None) if orientation[1:2] == "u" else slice(None, None, -1)
+    columns = slice(None, None, -1) if orientation[:1] == "l" else slice(None)
+    return [np.ascontiguousarray(level[rows, columns]) for level in levels], file.info
+
+
+def _parsed(data: bytes) -> _File:
+    if not data.startswith(_IDENTIFIER):
+        raise _RefusedError("no KTX 2 file")
+    header = _HEADER.unpack_from(data, len(_IDENTIFIER))
+    code, _, width, height, depth, layers, faces, count, scheme = header[:9]
+    descriptor_at, descriptor_bytes, metadata_at, metadata_bytes, global_at, global_bytes = header[
+        9:
+    ]
+    if depth or layers or faces != 1:
+        raise _RefusedError(
+            f"has a depth of {depth}, {layers} layers and {faces} faces; textures of one image a "
+            f"level, with a depth and layers of 0 and one face, are read"
+        )
+    if not (0 < width <= _MOST_SIDE and 0 < height <= _MOST_SIDE):
+        raise _RefusedError(
+            f"is {width} x {height} texels large; sides of 1 to {_MOST_SIDE} are read"
+        )
+    count = max(1, count)
+    if count > max(width, height).bit_length():
+        raise _RefusedError(f"has {count} levels, too many for {width} x {height} texels")
+    if scheme not in _SCHEMES:
+        raise _RefusedError(
+            f"has the supercompression {scheme}; 0 to 2 (none, BasisLZ, zstd) are read"
+        )
+    model, channel_names, is_srgb, is_premultiplied = _descriptor(
+        _part(data, descriptor_at, descriptor_bytes)
+    )
+    stored = _STORED.get(code)
+    is_basis = code == 0 and model == (_ETC1S if scheme == _BASIS_LZ else _UASTC)
+    if is_basis and (model, channel_names) not in _CHANNELS:
+        raise _RefusedError(f"has the channels {channel_names}, which its format does not know")
+    if not is_basis and (stored is None or scheme == _BASIS_LZ):
+        raise _RefusedError(
+            f"has the VkFormat {code} and the color model {model}, which are not read"
+        )
+    starts = len(_IDENTIFIER) + _HEADER.size
+    levels = []
+    for number in range(count):
+        offset, size, whole = _LEVEL.unpack_from(data, starts + number * _LEVEL.size)
+        level = _part(data, offset, size)
+        levels.append(_native.decompress(level, whole) if scheme == _ZSTD else level)
+    if is_basis:
+        channels = len(_CHANNELS[model, channel_names])
+        name = "etc1s" if model == _ETC1S else "uastc"
+    else:
+        assert stored is not None
+        channels, name, is_srgb = stored.channels, stored.name, stored.is_srgb
+    alpha = None
+    if channels == 4:
+        alpha = "premultiplied" if is_premultiplied else "straight"
+    info = Ktx2Info(
+        format=name,
+        encoding="srgb" if is_srgb else "linear",
+        alpha=alpha,
+        supercompression=_SCHEMES[scheme],
+        metadata=_metadata(_part(data, metadata_at, metadata_bytes)),
+    )
+    return _File(
+        None if is_basis else stored,
+        model if is_basis else 0,
+        channel_names,
+        width,
+        height,
+        levels,
+        _part(data, global_at, global_bytes),
+        info,
+    )
+
+
+def _part(data: bytes, start: int, size: int) -> bytes:
+    if start + size > len(data):
+        raise _RefusedError(
+            f"ends after {len(data)} bytes; what it refers to ends after {start + size}"
+        )
+    return data[start : start + size]
+
+
+def _descriptor(data: bytes) -> tuple[int, tuple[int, ...], bool, bool]:
+    """The color model, the channels of the samples, and whether sRGB and premultiplied."""
+    model, _, transfer, flags = struct.unpack_from("<4B", data, 12)
+    (size,) = struct.unpack_from("<H", data, 10)
+    samples = max(0, min(size - 24, len(data) - 28)) // 16
+    names = tuple(data[28 + 16 * number + 3] & 0xF for number in range(samples))
+    return model, names, transfer == _TRANSFER_SRGB, bool(flags & _FLAG_PREMULTIPLIED)
+
+
+def _metadata(data: bytes) -> dict[str, str]:
+    found: dict[str, str] = {}
+    at = 0
+    while at + 4 <= min(len(data), _MOST_METADATA):
+        (size,) = struct.unpack_from("<I", data, at)
+        key, _, value = _part(data, at + 4, size).partition(b"\0")
+        found[key.decode("utf-8", "replace")] = value.rstrip(b"\0").decode("utf-8", "replace")
+        at += 4 + size + -size % 4
+    return found
+
+
+def _of_level(
+    file: _File,
+    data: bytes,
+    size: tuple[int, int],
+    report: ProgressCallback | None,
+    threads: int,
+) -> np.ndarray:
+    """A level that is not in ETC1S, as stored: its first row first."""
+    width, height = size
+    stored = file.stored
+    if stored is not None and stored.dtype is not None:
+        dtype = np.dtype(stored.dtype).newbyteorder("<")
+        needed = width * height * stored.channels * dtype.itemsize
+        if len(data) != needed:
+            raise _RefusedError(
+                f"has {len(data)} bytes for {width} x {height} texels in '{stored.name}', which "
+                f"take {needed}"
+            )
+        texels = np.frombuffer(data, dtype).reshape(height, width, stored.channels)
+        return texels.astype(np.float32 if dtype.kind == "f" else stored.dtype)
+    is_srgb = file.info.encoding == "srgb"
+    name = "uastc" if stored is None else stored.name
+    blocks: np.ndarray = _native.decode_blocks(data, name, is_srgb, width, height, report, threads)
+    if blocks.dtype == np.uint16:
+        blocks = blocks.view(np.float16).astype(np.float32)
+    if stored is not None:
+        return blocks[..., : stored.channels]
+    return blocks[..., _CHANNELS[_UASTC, file.channel_names]]
+
+
+def _of_etc1s(
+    file: _File, sizes: Sequence[tuple[int, int]], report: ProgressCallback | None
+) -> list[np.ndarray]:
+    """All levels of a file in ETC1S, as stored."""
+    if math.prod(sizes[0]) > _MOST_ETC1S_TEXELS:
+        raise _RefusedError(
+            f"is {file.width} x {file.height} texels large; {_MOST_ETC1S_TEXELS} texels of ETC1S "
+            f"are read at most"
+        )
+    counts = struct.unpack_from("<2H4I", file.global_data)
+    images = [
+        struct.unpack_from("<5I", file.global_data, 20 + 20 * number)
+        for number in range(len(file.levels))
+    ]
+    at = 20 + 20 * len(images)
+    books = []
+    for length in counts[2:5]:
+        books.append(_part(file.global_data, at, length))
+        at += length
+    parts = [
+        (*size, _part(level, image[1], image[2]), _part(level, image[3], image[4]))
+        for size, level, image in zip(sizes, file.levels, images, strict=True)
+    ]
+    endpoints, selectors, tables = books
+    levels = _native.decode_etc1s(
+        (counts[0], counts[1], endpoints, selectors, tables), parts, report
+    )
+    return [level[..., _CHANNELS[_ETC1S, file.channel_names]] for level in levels]

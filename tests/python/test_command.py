@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command `prefilter`: what all of its commands have in common."""
+
+import subprocess
+import sys
+import time
+
+import pytest
+from prefilter._command import program
+
+
+def run(*arguments):
+    """Runs the command in a Python of its own."""
+    return subprocess.run(
+        [sys.executable, "-m", "prefilter", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def seconds(*arguments):
+    """Returns how long the quickest of a few runs takes."""
+    found = []
+    for _ in range(3):
+        began = time.monotonic()
+        subprocess.run([sys.executable, *arguments], capture_output=True, check=True)
+        found.append(time.monotonic() - began)
+    return min(found)
+
+
+def test_help_names_every_command_and_starts_quickly():
+    result = run("--help")
+    assert result.returncode == 0
+    assert result.stdout.startswith("usage: prefilter [-h]")
+    for name, purpose in program.COMMANDS.items():
+        assert name in result.stdout
+        assert purpose in " ".join(result.stdout.split())
+    # Python itself takes as long as it takes on this machine.
+    own = seconds("-m", "prefilter", "--help") - seconds("-c", "import numpy")
+    assert own < 0.2
+
+
+def test_version():
+    result = run("--version")
+    assert (result.returncode, result.stdout.split()[0]) == (0, "prefilter")
+
+
+@pytest.mark.parametrize("name", program.COMMANDS)
+def test_help_of_each_command(name, capsys):
+    assert program.main([name, "--help"]) == 0
+    assert capsys.readouterr().out.startswith(f"usage: prefilter {name}")
+
+
+@pytest.mark.parametrize("arguments", [[], ["bake"], ["mipmaps"], ["mipmaps", "--filter", "soft"]])
+def test_wrong_arguments_end_with_2(arguments, capsys):
+    assert program.main(arguments) == 2
+    told = capsys.readouterr().err
+    assert told.startswith("usage: prefilter")
+    assert "prefilter" in told.splitlines()[-1]
+    assert "error: " in told.splitlines()[-1]
+
+
+def test_neither_pictures_nor_meshes_are_loaded_for_help():
+    code = (
+        "import sys; from prefilter._command.program import main; main(['mipmaps', '--help']);"
+        "print('LOADED', *sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert not loaded & {"OpenImageIO", "trimesh"}

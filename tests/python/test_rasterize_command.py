@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command `rasterize`: pictures of SVG files and of UV maps."""
+
+import numpy as np
+import prefilter
+import pytest
+from command_files import fails, run, write_quad
+
+oiio = pytest.importorskip("OpenImageIO", reason="scripts/decoders.txt is not installed")
+
+SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="8" height="4">
+<circle cx="4" cy="2" r="1.7" fill="#ff8000"/></svg>"""
+
+
+@pytest.fixture
+def logo(tmp_path):
+    path = tmp_path / "logo.svg"
+    path.write_text(SVG)
+    return path
+
+
+def pixels(path, kind):
+    config = oiio.ImageSpec()
+    config.attribute("oiio:UnassociatedAlpha", 1)
+    reader = oiio.ImageInput.open(str(path), config)
+    spec = reader.spec()
+    values = np.asarray(reader.read_image(kind)).reshape(spec.height, spec.width, -1)
+    reader.close()
+    return np.flipud(values)
+
+
+def test_svg_to_floats_is_what_the_package_draws(logo, tmp_path, capsys):
+    out = tmp_path / "out.exr"
+    flags = ("--width", "64", "--height", "32", "--margin", "0", "--pixel-type", "float")
+    assert run("rasterize", logo, out, *flags, "--filter", "tent") == 0
+    assert "Rasterized 'logo' to" in capsys.readouterr().out
+    shapes = prefilter.read_svg(logo).shapes_for(64.0, 32.0)
+    expected = prefilter.rasterize(shapes, 64, 32, filter="tent")
+    np.testing.assert_allclose(pixels(out, "float"), np.clip(expected, 0, None), atol=1e-6)
+
+
+def test_svg_to_bytes(logo, tmp_path):
+    out = tmp_path / "out.png"
+    assert run("rasterize", logo, out, "--side", "80", "--margin", "0") == 0
+    found = pixels(out, "uint8")
+    assert found.shape == (40, 80, 4)
+    assert found[20, 40].tolist() == [255, 128, 0, 255]
+    assert found[0, 0].tolist() == [255, 128, 0, 0]
+    more = ("--background", "#ffffff", "--density", "2", "--margin", "1")
+    assert run("rasterize", logo, out, *more) == 0
+    found = pixels(out, "uint8")
+    assert found.shape == (10, 18, 3)
+    assert found[0, 0].tolist() == [255, 255, 255]
+
+
+def test_mask_of_a_uv_map(tmp_path):
+    pytest.importorskip("trimesh", reason="scripts/decoders.txt is not installed")
+    path = write_quad(tmp_path / "quad.obj")
+    path.write_text(path.read_text().replace("vt 1 0\nvt 1 1", "vt 0.5 0\nvt 0.5 1"))
+    out = tmp_path / "mask.png"
+    assert run("rasterize", path, out, "--uv", "--side", "8") == 0
+    found = pixels(out, "uint8")
+    assert found.shape == (8, 8, 1)
+    assert (found[:, :4] == 255).all()
+    assert (found[:, 4:] == 0).all()
+
+
+def test_what_is_refused(logo, tmp_path, capsys):
+    out = tmp_path / "out.png"
+    for words, arguments in {
+        "INPUT: found 'a.blend'": ("a.blend", out),
+        "OUTPUT: found 'a.jpg'": (logo, "a.jpg"),
+        "an SVG file has neither objects nor a UV map": (logo, out, "--uv"),
+        "--uv: needed for meshes": ("a.obj", out),
+        "only one of these": (logo, out, "--side", "8", "--density", "2"),
+        "--filter: found 'soft'": (logo, out, "--filter", "soft"),
+    }.items():
+        assert words in fails(capsys, 2, "rasterize", *arguments)
+    none = tmp_path / "none.svg"
+    assert "INPUT: there is no file" in fails(capsys, 1, "rasterize", none, out)
+    told = fails(capsys, 1, "rasterize", logo, out, "--side", "8", "--margin", "9")
+    assert "leaves no room" in told
+    bare = write_quad(tmp_path / "bare.obj", has_uvs=False)
+    assert "has no UV map" in fails(capsys, 1, "rasterize", bare, out, "--uv")
+    assert not out.exists()

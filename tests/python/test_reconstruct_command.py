@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+"""The command `reconstruct`: the file that the package's function writes."""
+
+import clouds
+import numpy as np
+import prefilter
+import pytest
+from command_files import fails, run
+
+
+@pytest.fixture
+def scan(tmp_path):
+    positions, normals = clouds.sphere(3000).both
+    path = tmp_path / "scan.xyz"
+    np.savetxt(path, np.hstack([positions, normals]), fmt="%.9g")
+    return path
+
+
+def test_the_file_is_that_of_the_package(scan, tmp_path, capsys):
+    out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
+    assert run("reconstruct", scan, out, "--depth", "5", "--no-fit", "--isovalue", "half") == 0
+    told = capsys.readouterr()
+    assert "Reconstructed 'out.ply' from 3000 points in cells of 0." in told.out
+    assert "100 %" in told.err
+    prefilter.reconstruct_file(scan, expected, depth=5, fit=False, isovalue="half")
+    assert out.read_bytes() == expected.read_bytes()
+
+
+def test_several_sources_and_a_size(scan, tmp_path, capsys):
+    other = tmp_path / "other.xyz"
+    other.write_bytes(scan.read_bytes())
+    out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
+    assert run("reconstruct", scan, other, out, "--voxel-size", "0.1") == 0
+    assert "read 'scan.xyz', 'other.xyz'" in capsys.readouterr().out
+    prefilter.reconstruct_file([scan, other], expected, cell_size=0.1)
+    assert out.read_bytes() == expected.read_bytes()
+
+
+def test_an_isovalue_of_ones_own(scan, tmp_path):
+    out, expected = tmp_path / "out.ply", tmp_path / "expected.ply"
+    assert run("reconstruct", scan, out, "--depth", "5", "--custom-isovalue", "0.3") == 0
+    prefilter.reconstruct_file(scan, expected, depth=5, isovalue=0.3)
+    assert out.read_bytes() == expected.read_bytes()
+
+
+def test_what_is_refused(scan, tmp_path, capsys):
+    out = tmp_path / "out.ply"
+    for words, arguments in {
+        "SOURCE: found 'scan.blend'": ("scan.blend", out),
+        "TARGET: found 'out.glb'": (scan, "out.glb"),
+        "--voxel-size: not allowed with argument --depth": (
+            *(scan, out, "--depth", "5", "--voxel-size", "1"),
+        ),
+        "--depth: found '99'": (scan, out, "--depth", "99"),
+    }.items():
+        assert words in fails(capsys, 2, "reconstruct", *arguments)
+    assert "none.xyz" in fails(capsys, 1, "reconstruct", tmp_path / "none.xyz", out)
+    told = fails(capsys, 1, "reconstruct", scan, out, "--voxel-size", "1e-5")
+    assert "Voxel Size: " in told
+    assert not out.exists()
