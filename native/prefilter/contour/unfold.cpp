@@ -48,7 +48,8 @@ constexpr int kMostRegions = 8;
 constexpr double kCubeCells = 2.0;
 constexpr int kRings = 4;  // around folds
 constexpr int kSlidingRings = 3;
-constexpr int kMostRounds = 8;  // of sliding
+constexpr int kMostRounds = 8;   // of sliding
+constexpr int kMostPasses = 16;  // of unfolding loops, as two that share a side may undo each other
 constexpr double kLeastGain = 1e-3;
 // How far vertices slide that fold where they are halfway, in cells: they remain the nearest to
 // these places.
@@ -232,7 +233,8 @@ std::optional<Slide> best_slide(const std::array<std::uint32_t, 2>& pair,
           if (places[v][a] % 2 == 0) position[a] = (0.5 * places[v][a] + share) * cell[a];
         }
         std::vector<Triangle> triangles = before;
-        while (unfold_loops(region->positions, places, folded(triangles), &triangles)) {
+        for (int pass = 0; pass < kMostPasses; ++pass) {
+          if (!unfold_loops(region->positions, places, folded(triangles), &triangles)) break;
         }
         const double sum = excess({region->positions, triangles});
         if (sum >= least) continue;
@@ -291,8 +293,9 @@ Flags movable_vertices(const VertexSamples& samples, const Crossings& crossings,
 }
 
 void unfold_all_loops(std::span<const GridPlace> places, Region* region) {
-  while (unfold_loops(region->positions, places, folded_pairs(region->view(), 0, {}),
-                      &region->triangles)) {
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    const auto pairs = folded_pairs(region->view(), 0, {});
+    if (!unfold_loops(region->positions, places, pairs, &region->triangles)) return;
   }
 }
 
