@@ -25,6 +25,10 @@ std::unique_ptr<BlockEncoder<Channel>> make_encoder(const BlockOptions& options)
 template <>
 std::unique_ptr<ByteEncoder> make_encoder<std::uint8_t>(const BlockOptions& options) {
   switch (options.format) {
+    case BlockFormat::kBc3:
+    case BlockFormat::kBc4:
+    case BlockFormat::kBc5:
+      return make_channel_encoder(options);
     case BlockFormat::kBc7:
       return make_bc7enc_encoder();
     case BlockFormat::kEtc2Rgb:

@@ -12,6 +12,10 @@ namespace prefilter {
 /// libsquish: kBc1, kBc1Rgb, kBc3, kBc4, kBc5.
 std::unique_ptr<ByteEncoder> make_squish_encoder(const BlockOptions& options);
 
+/// The closer one of libsquish and Convection Texture Tools in channels of their own: the alpha of
+/// kBc3, kBc4, kBc5.
+std::unique_ptr<ByteEncoder> make_channel_encoder(const BlockOptions& options);
+
 /// bc7enc: kBc7.
 std::unique_ptr<ByteEncoder> make_bc7enc_encoder();
 
