@@ -60,6 +60,7 @@ def specks(seed):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_lost_is_what_is_far_from_the_surface(seed):
+    pytest.importorskip("scipy", reason="scipy finds nearest triangles")
     solid = specks(seed)
     tree = voxelized(solid)
     positions, triangles = tree.contour(
