@@ -4,6 +4,7 @@
 
 Run inside of Blender, it does the work once and prints what `clock` does.
 usage: blender --background --factory-startup --python voxel_remesh.py -- MESH.npz CELL [whole]
+       [RESULT.npz]
 
 `suzanne.npz` without a file of this name is Blender's own Suzanne, subdivided, with its UV map.
 """
@@ -40,6 +41,34 @@ class VoxelRemesh:
     def measure(self) -> "Measurement":
         """See `Peer`."""
         return run_clocked(self._command)
+
+    def made(self, result: Path) -> None:
+        """Does the work once, and writes positions and quads, and what they were made of."""
+        run([*self._command, str(result)])
+
+
+def write(mesh: Any, result: Path, **more: Any) -> None:
+    """Writes positions and faces of one size to a file, and arrays besides these."""
+    import numpy as np
+
+    positions = np.empty((len(mesh.vertices), 3), np.float32)
+    mesh.vertices.foreach_get("co", positions.ravel())
+    faces = np.empty(len(mesh.loops), np.int32)
+    mesh.loops.foreach_get("vertex_index", faces)
+    np.savez(result, positions=positions, faces=faces.reshape(len(mesh.polygons), -1), **more)
+
+
+def triangulated(obj: Any) -> dict[str, Any]:
+    """Returns the triangles that an object's mesh is drawn as."""
+    import numpy as np
+
+    mesh = obj.data
+    mesh.calc_loop_triangles()
+    source = np.empty((len(mesh.vertices), 3), np.float32)
+    mesh.vertices.foreach_get("co", source.ravel())
+    triangles = np.empty((len(mesh.loop_triangles), 3), np.int32)
+    mesh.loop_triangles.foreach_get("vertices", triangles.ravel())
+    return {"source": source, "triangles": triangles}
 
 
 def new_object(mesh: Path) -> Any:
@@ -79,12 +108,10 @@ def _suzanne() -> Any:
     return obj
 
 
-def remesh(mesh: Path, cell: float, *, is_whole: bool) -> Callable[[], Any]:
+def remesh(obj: Any, cell: float, *, is_whole: bool) -> Callable[[], Any]:
     """Returns the work."""
     import bpy
 
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    obj = new_object(mesh)
     obj.data.remesh_voxel_size = cell
     obj.data.remesh_voxel_adaptivity = 0.0
     for option in () if is_whole else ("fix_poles", "preserve_volume", "preserve_attributes"):
@@ -99,14 +126,18 @@ def remesh(mesh: Path, cell: float, *, is_whole: bool) -> Callable[[], Any]:
 
 
 if __package__:
-    from . import Measurement
+    from . import Measurement, run
     from .clock import pinned, run_clocked
 elif __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).resolve().parent))
+    import bpy
     from clock import clocked
 
     arguments = sys.argv[sys.argv.index("--") + 1 :]
-    result = clocked(
-        remesh(Path(arguments[0]), float(arguments[1]), is_whole=arguments[2:] == ["whole"])
-    )
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    chosen = new_object(Path(arguments[0]))
+    source = triangulated(chosen) if arguments[-1].endswith(".npz") else {}
+    result = clocked(remesh(chosen, float(arguments[1]), is_whole="whole" in arguments[2:]))
     print(len(result.polygons), "faces,", len(result.vertices), "vertices")
+    if source:
+        write(result, Path(arguments[-1]), **source)

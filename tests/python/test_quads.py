@@ -135,6 +135,46 @@ def test_vertices_are_on_spheres(interpolant):
     assert most_turn(found.positions, found.quads) < 20.0
 
 
+def beside(quads, count):
+    """The mean of the vertices beside each one, as a matrix would give it."""
+    ends = np.unique(np.sort(sides(quads)[0], axis=1), axis=0)
+    ends = np.concatenate([ends, ends[:, ::-1]])
+
+    def mean(positions):
+        sums = np.zeros((count, 3))
+        np.add.at(sums, ends[:, 0], positions[ends[:, 1]])
+        return sums / np.bincount(ends[:, 0], minlength=count)[:, None]
+
+    return mean
+
+
+def test_quads_are_regular_where_there_are_no_edges():
+    """Of Blender's Voxel Remesh sides differ by 0.22 of their mean, the shortest by more than half.
+
+    No vertex is far from the middle of those beside it.
+    """
+    ball = sphere(10.0, 6)
+    tree = prefilter.voxelize(
+        ball.positions, ball.triangles, depth=5, bounds=((-16,) * 3, (16,) * 3)
+    )
+    found = tree.quad_contour()
+    ends = found.positions[sides(found.quads)[0]]
+    lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
+    assert lengths.std() < 0.17 * lengths.mean()
+    assert lengths.min() > 0.6 * lengths.mean()
+    assert lengths.max() < 1.4 * lengths.mean()
+    up = found.positions / np.linalg.norm(found.positions, axis=1, keepdims=True)
+    off = beside(found.quads, len(found.positions))(found.positions) - found.positions
+    off -= np.einsum("ij,ij->i", off, up)[:, None] * up
+    assert np.linalg.norm(off, axis=1).mean() < 0.03
+    corners = found.positions[found.quads]
+    after = np.roll(corners, -1, axis=1) - corners
+    before = np.roll(corners, 1, axis=1) - corners
+    cosines = np.einsum("ijk,ijk->ij", after, before)
+    cosines /= np.linalg.norm(after, axis=2) * np.linalg.norm(before, axis=2)
+    assert np.abs(cosines).max() < np.cos(np.radians(30))
+
+
 @pytest.mark.parametrize("operation", ["union", "intersection", "difference"])
 def test_rims_lie_on_both_operands(operation):
     first, second = cube(5), cube(57, 0.8, (0.45, 0.35, 0.3))

@@ -10,6 +10,7 @@
 
 #include "prefilter/base/parallel.h"
 #include "prefilter/contour/linked_loops.h"
+#include "prefilter/contour/relax_places.h"
 
 namespace prefilter {
 namespace {
@@ -36,28 +37,28 @@ class Placer {
     return (1.0 / static_cast<double>(loop.size())) * sum;
   }
 
-  // Of the surface at a vertex: as sampled, or from the middles of the loops around it.
-  Vector3 normal(std::int32_t vertex, const std::vector<Vector3>& middles) const {
-    const auto& quad = loops_.quads[static_cast<std::size_t>(vertex)];
+  // Of the surface at a vertex: as sampled, or from where the loops around it are.
+  Vector3 normal(std::size_t vertex, const std::vector<Vector3>& around) const {
+    const auto& quad = loops_.quads[vertex];
     const auto at = [&](std::size_t k) -> const Vector3& {
-      return middles[static_cast<std::size_t>(quad[k])];
+      return around[static_cast<std::size_t>(quad[k])];
     };
     const Vector3 found = unit(cross(at(2) - at(0), at(3) - at(1)));
-    const SourcePoint* sample = sample_of(vertex);
+    const SourcePoint* sample = sample_of(static_cast<std::int32_t>(vertex));
     if (sample == nullptr) return found;
     return dot(sample->normal, found) < 0.0 ? -1.0 * sample->normal : sample->normal;
   }
 
-  // `around` is where the loops are that tell the normals.
+  // `normals` are those of the vertices.
   Vector3 smooth(std::size_t i, const std::vector<Vector3>& middles,
-                 const std::vector<Vector3>& around) const {
+                 const std::vector<Vector3>& normals) const {
     const std::span<const std::int32_t> loop = loops_.loop(i);
     Vector3 up{};
-    for (const std::int32_t v : loop) up = up + normal(v, around);
+    for (const std::int32_t v : loop) up = up + normals[static_cast<std::size_t>(v)];
     up = unit(up);
     double height = 0.0;
     for (const std::int32_t v : loop) {
-      const Vector3 n = normal(v, around);
+      const Vector3& n = normals[static_cast<std::size_t>(v)];
       const double cosine = dot(n, up);
       if (cosine < kLeastCosine) return middles[i];
       height += dot(n, positions_[static_cast<std::size_t>(v)] - middles[i]) / cosine;
@@ -234,8 +235,8 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
   places.positions.resize(loops.size());
   places.is_sharp.assign(loops.size(), 0);
   places.on_edge.assign(loops.size(), -1);
-  const auto for_loops = [&](const Progress& part, const auto& visit) {
-    parallel_ranges(static_cast<std::int64_t>(loops.size()), kLoopsPerTask, threads, part,
+  const auto for_each = [&](std::size_t count, const Progress& part, const auto& visit) {
+    parallel_ranges(static_cast<std::int64_t>(count), kLoopsPerTask, threads, part,
                     [&](std::int64_t begin, std::int64_t end) {
                       for (auto i = static_cast<std::size_t>(begin);
                            i < static_cast<std::size_t>(end); ++i) {
@@ -243,22 +244,27 @@ DualPlaces dual_places(const DualLoops& loops, const std::vector<Vector3>& posit
                       }
                     });
   };
-  for_loops(progress.part(0.0, 0.2), [&](std::size_t i) {
+  for_each(loops.size(), progress.part(0.0, 0.1), [&](std::size_t i) {
     places.middles[i] = Placer::middle(loops.loop(i), positions);
     places.safe[i] = Placer::middle(loops.loop(i), halfway);
     const auto corner = static_cast<std::size_t>(loops.loop(i).front());
     places.cells[i] = cell_of(halfway[corner], loops.first_edges[i], cell);
   });
   // First by normals from the middles; then by those from where that puts the loops.
-  std::vector<Vector3> first(loops.size());
-  for_loops(progress.part(0.2, 0.4),
-            [&](std::size_t i) { first[i] = placer.smooth(i, places.middles, places.middles); });
-  for_loops(progress.part(0.4, 0.6),
-            [&](std::size_t i) { places.positions[i] = placer.smooth(i, places.middles, first); });
+  std::vector<Vector3> normals(positions.size());
+  for (const double begin : {0.1, 0.3}) {
+    const std::vector<Vector3>& around = begin == 0.1 ? places.middles : places.positions;
+    for_each(normals.size(), progress.part(begin, begin + 0.1),
+             [&](std::size_t v) { normals[v] = placer.normal(v, around); });
+    for_each(loops.size(), progress.part(begin + 0.1, begin + 0.2), [&](std::size_t i) {
+      places.positions[i] = placer.smooth(i, places.middles, normals);
+    });
+  }
   if (features != nullptr) {
-    place_features(placer, side, progress.part(0.6, 1.0), threads, &places);
+    place_features(placer, side, progress.part(0.5, 0.8), threads, &places);
     place_tips(loops, edges.samples, &places);
   }
+  relax_places(loops, positions, normals, progress.part(0.8, 1.0), threads, &places);
   return places;
 }
 
