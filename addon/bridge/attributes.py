@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""Arrays of a mesh: where its vertices and corners are, and weights that a user has painted."""
+"""Arrays of a mesh: where its vertices and corners are, attributes, and painted weights."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +14,30 @@ _LUMINANCE = (0.2126, 0.7152, 0.0722)
 # What weights may be.
 _DOMAINS = frozenset({"POINT", "FACE", "CORNER"})
 _COLOR_TYPES = frozenset({"FLOAT_COLOR", "BYTE_COLOR"})
-_TYPES = {"FLOAT": np.float32, "INT": np.int32, "INT8": np.int8, "BOOLEAN": np.bool_}
+_NUMBER_TYPES = frozenset({"FLOAT", "INT", "INT8", "BOOLEAN"})
+# What Blender keeps in attributes, and the add-on carries by itself or not at all.
+_BUILT_IN = frozenset(
+    {
+        *("position", "material_index", "sharp_face", "sharp_edge", "custom_normal", "uv_seam"),
+        *("crease_vert", "crease_edge", "bevel_weight_vert", "bevel_weight_edge"),
+    }
+)
+# By the type of an attribute: what its values are called, how many there are, and of which type.
+_VALUES: dict[str, tuple[str, int, Any]] = {
+    "FLOAT": ("value", 1, np.float32),
+    "INT": ("value", 1, np.int32),
+    "INT8": ("value", 1, np.int8),
+    "BOOLEAN": ("value", 1, np.bool_),
+    "FLOAT2": ("vector", 2, np.float32),
+    "FLOAT_VECTOR": ("vector", 3, np.float32),
+    "FLOAT4": ("vector", 4, np.float32),
+    "FLOAT_COLOR": ("color", 4, np.float32),
+    "BYTE_COLOR": ("color", 4, np.float32),
+    "INT16_2D": ("value", 2, np.int16),
+    "INT32_2D": ("value", 2, np.int32),
+    "QUATERNION": ("value", 4, np.float32),
+    "FLOAT4X4": ("value", 16, np.float32),
+}
 
 
 @dataclass(frozen=True)
@@ -28,6 +51,31 @@ class Weights:
 
     domain: str
     values: NDArray[np.float64]
+
+
+def is_free(attribute: bpy.types.Attribute) -> bool:
+    """Returns whether an attribute is a user's, and nothing that Blender needs."""
+    is_hidden = attribute.name.startswith(".") or attribute.is_internal
+    return not (is_hidden or attribute.name in _BUILT_IN)
+
+
+def is_read(attribute: bpy.types.Attribute) -> bool:
+    """Returns whether an attribute is of a type whose values are arrays; texts are not."""
+    return attribute.data_type in _VALUES
+
+
+def values_of(attribute: bpy.types.Attribute) -> NDArray[Any]:
+    """Returns the values, (n, c), of an attribute of a type that `is_read`."""
+    field, width, dtype = _VALUES[attribute.data_type]
+    values = np.empty((len(attribute.data), width), dtype)
+    attribute.data.foreach_get(field, values.ravel())
+    return values
+
+
+def set_values(attribute: bpy.types.Attribute, values: NDArray[Any]) -> None:
+    """Gives an attribute the values that `values_of` would return."""
+    field, _, dtype = _VALUES[attribute.data_type]
+    attribute.data.foreach_set(field, np.ascontiguousarray(values, dtype).ravel())
 
 
 def positions(mesh: bpy.types.Mesh) -> NDArray[np.float32]:
@@ -99,18 +147,14 @@ def read_weights(
         raise ValueError(
             f"{found} on the domain {attribute.domain}; POINT, FACE or CORNER is needed"
         )
-    count = len(attribute.data)
     if attribute.data_type in _COLOR_TYPES:
-        colors = np.empty((count, 4), np.float32)
-        attribute.data.foreach_get("color", colors.ravel())
+        colors = values_of(attribute)
         return Weights(attribute.domain, colors[:, :3] @ np.array(_LUMINANCE))
-    if attribute.data_type not in _TYPES:
+    if attribute.data_type not in _NUMBER_TYPES:
         raise ValueError(
             f"{found} of the type {attribute.data_type}; a number, a color or a boolean is needed"
         )
-    values: NDArray[Any] = np.empty(count, _TYPES[attribute.data_type])
-    attribute.data.foreach_get("value", values)
-    return Weights(attribute.domain, values.astype(np.float64))
+    return Weights(attribute.domain, values_of(attribute)[:, 0].astype(np.float64))
 
 
 def names_of_weights(obj: bpy.types.Object) -> list[str]:
@@ -120,7 +164,7 @@ def names_of_weights(obj: bpy.types.Object) -> list[str]:
         attribute.name
         for attribute in obj.data.attributes
         if attribute.domain in _DOMAINS
-        and attribute.data_type in {*_TYPES, *_COLOR_TYPES}
+        and attribute.data_type in _NUMBER_TYPES | _COLOR_TYPES
         and not attribute.is_internal
     ]
     return names

@@ -18,28 +18,14 @@ UV_MAP = "UV_MAP"
 ATTRIBUTE = "ATTRIBUTE"
 VERTEX_GROUP = "VERTEX_GROUP"
 NORMALS = "NORMALS"
+FREESTYLE = "FREESTYLE"
+"""Faces that are marked for Freestyle, in Blenders that have no attribute for that."""
 SHADED_KEY = "prefilter_shaded"
 """Tags meshes whose normals follow from their triangles: other triangles get others."""
 
-# By the type of an attribute: what its values are called, how many there are, and of which type.
-_TYPES: dict[str, tuple[str, int, Any]] = {
-    "FLOAT": ("value", 1, np.float32),
-    "INT": ("value", 1, np.int32),
-    "INT8": ("value", 1, np.int8),
-    "BOOLEAN": ("value", 1, np.bool_),
-    "FLOAT2": ("vector", 2, np.float32),
-    "FLOAT_VECTOR": ("vector", 3, np.float32),
-    "FLOAT_COLOR": ("color", 4, np.float32),
-    "BYTE_COLOR": ("color", 4, np.float32),
-}
+_FREESTYLE_PROPERTY = "use_freestyle_mark"
 _DOMAINS = ("POINT", "CORNER", "FACE")
-# What Blender keeps in attributes, and the add-on carries by itself or not at all.
-_BUILT_IN = frozenset(
-    {
-        *("position", "material_index", "sharp_face", "sharp_edge", "custom_normal"),
-        *("crease_vert", "crease_edge", "bevel_weight_vert", "bevel_weight_edge", "freestyle_face"),
-    }
-)
+_ROTATIONS = frozenset({"QUATERNION", "FLOAT4X4"})
 FACE_SETS = ".sculpt_face_set"
 _SCULPTED = frozenset({".sculpt_mask", FACE_SETS})
 """What Sculpt Mode keeps in attributes."""
@@ -50,8 +36,8 @@ class Layer:
     """Values of a mesh, and which of them the corners of its triangles have.
 
     Attributes:
-        kind: COLOR, UV_MAP, ATTRIBUTE, VERTEX_GROUP or NORMALS.
-        name: The attribute's; empty for normals.
+        kind: COLOR, UV_MAP, ATTRIBUTE, VERTEX_GROUP, NORMALS or FREESTYLE.
+        name: The attribute's; empty for the last two.
         data_type: As Blender names types of attributes.
         domain: POINT, CORNER or FACE.
         values: (k, c).
@@ -69,6 +55,11 @@ class Layer:
     def key(self) -> tuple[str, str]:
         """What layers of several meshes have in common that become one."""
         return self.kind, self.name
+
+    @property
+    def is_blended(self) -> bool:
+        """Whether a mean of values is a value in between; of matrices it is none."""
+        return self.values.dtype.kind == "f" and self.data_type not in _ROTATIONS
 
     def turned(self) -> "Layer":
         """Returns the layer of triangles that go the other way around."""
@@ -159,6 +150,11 @@ def read_layers(
     yield from _read_attributes(mesh, indices, wanted)
     if not wanted.attributes:
         return
+    if _FREESTYLE_PROPERTY in bpy.types.MeshPolygon.bl_rna.properties:
+        flags = np.empty((len(mesh.polygons), 1), np.bool_)
+        mesh.polygons.foreach_get(_FREESTYLE_PROPERTY, flags.ravel())
+        if flags.any():
+            yield Layer(FREESTYLE, "", "BOOLEAN", "FACE", flags, indices("FACE"))
     for name, values in attributes.group_weights(shown, mesh):
         yield Layer(VERTEX_GROUP, name, "FLOAT", "POINT", values[:, None], triangles.vertices)
     if mesh.has_custom_normals and SHADED_KEY not in shown.original.data:
@@ -179,30 +175,36 @@ def _read_attributes(
         is_wanted = {
             COLOR: wanted.colors,
             UV_MAP: wanted.uv_maps,
-            ATTRIBUTE: wanted.attributes and _is_free(attribute),
+            ATTRIBUTE: wanted.attributes and _is_wanted(attribute),
         }
         domain = attribute.domain
-        if not is_wanted[kind] or attribute.data_type not in _TYPES or domain not in _DOMAINS:
-            continue
-        field, width, dtype = _TYPES[attribute.data_type]
-        values = np.empty((len(attribute.data), width), dtype)
-        attribute.data.foreach_get(field, values.ravel())
-        yield Layer(kind, attribute.name, attribute.data_type, domain, values, indices(domain))
+        if is_wanted[kind] and domain in _DOMAINS and attributes.is_read(attribute):
+            values = attributes.values_of(attribute)
+            yield Layer(kind, attribute.name, attribute.data_type, domain, values, indices(domain))
 
 
 def write_layer(mesh: bpy.types.Mesh, layer: NewLayer) -> None:
-    """Adds a color attribute, a UV map or another attribute to a mesh."""
+    """Adds a color attribute, a UV map or another attribute to a mesh, or marks its faces."""
+    if layer.kind == FREESTYLE:
+        mesh.polygons.foreach_set(_FREESTYLE_PROPERTY, layer.values[:, 0])
+        return
     if layer.kind == UV_MAP:
         # Attributes of UVs that are made as such become no maps in all versions.
         made = mesh.uv_layers.new(name=layer.name, do_init=False)
         attribute = mesh.attributes[made.name]
     else:
         attribute = mesh.attributes.new(layer.name, layer.data_type, layer.domain)
-    field, _, dtype = _TYPES[layer.data_type]
-    attribute.data.foreach_set(field, np.ascontiguousarray(layer.values, dtype).ravel())
+    attributes.set_values(attribute, layer.values)
 
 
-def _is_free(attribute: bpy.types.Attribute) -> bool:
-    name = attribute.name
-    is_hidden = name.startswith(".") or attribute.is_internal
-    return name in _SCULPTED or not (is_hidden or name in _BUILT_IN)
+def unread(mesh: bpy.types.Mesh) -> set[str]:
+    """Returns the names of a user's attributes that are of no type that can be carried."""
+    return {
+        attribute.name
+        for attribute in mesh.attributes
+        if attributes.is_free(attribute) and not attributes.is_read(attribute)
+    }
+
+
+def _is_wanted(attribute: bpy.types.Attribute) -> bool:
+    return attribute.name in _SCULPTED or attributes.is_free(attribute)

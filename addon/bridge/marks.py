@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-"""What a user has marked edges and vertices with: seams, creases and bevel weights."""
+"""What edges and vertices are marked with: seams, Freestyle's marks, weights, other attributes."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,9 +10,27 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-SEAM = "seam"
-_EDGE_WEIGHTS = ("crease_edge", "bevel_weight_edge")
-_VERTEX_WEIGHTS = ("crease_vert", "bevel_weight_vert")
+from .attributes import is_free, is_read, set_values, values_of
+
+_FLAG = "FLAG"
+_FLAGS = {"use_seam": "uv_seam", "use_freestyle_mark": "freestyle_edge"}
+"""Properties of edges, and the attributes that later Blenders keep them in."""
+_WEIGHTS = frozenset({"crease_edge", "bevel_weight_edge", "crease_vert", "bevel_weight_vert"})
+
+
+@dataclass(frozen=True)
+class MarkKind:
+    """What is kept for each edge or vertex.
+
+    Attributes:
+        name: Of Blender's attribute, or of the property of edges.
+        data_type: As Blender names types of attributes; that of properties is their own.
+        domain: EDGE or POINT.
+    """
+
+    name: str
+    data_type: str
+    domain: str
 
 
 @dataclass(frozen=True)
@@ -20,19 +38,14 @@ class Marks:
     """Marked edges, or vertices.
 
     Attributes:
-        name: SEAM, or that of Blender's attribute.
+        kind: What they have.
         ends: (k, 2, 3) in space; of vertices, both are one place.
-        values: (k,) float32, above 0.
+        values: (k, c), not 0.
     """
 
-    name: str
+    kind: MarkKind
     ends: NDArray[np.floating]
-    values: NDArray[np.float32]
-
-    @property
-    def is_of_vertices(self) -> bool:
-        """Whether it marks vertices."""
-        return self.name in _VERTEX_WEIGHTS
+    values: NDArray[Any]
 
 
 @dataclass(frozen=True)
@@ -40,40 +53,51 @@ class NewMarks:
     """What a new mesh has of them.
 
     Attributes:
-        name: As of `Marks`.
-        values: One for each edge, or vertex; 0 where it is not marked.
+        kind: As of `Marks`.
+        values: (n, c) of all edges, or vertices; 0 where they are not marked.
     """
 
-    name: str
-    values: NDArray[np.float32]
+    kind: MarkKind
+    values: NDArray[Any]
 
 
-def read_marks(mesh: bpy.types.Mesh) -> Iterator[tuple[str, NDArray[np.int32], NDArray[Any]]]:
-    """Yields names of marks, the vertices (k, 2) of what has them, and values above 0."""
+def read_marks(
+    mesh: bpy.types.Mesh,
+) -> Iterator[tuple[MarkKind, NDArray[np.int32], NDArray[Any]]]:
+    """Yields kinds of marks, the vertices (k, 2) of what has them, and values that are not 0."""
     ends = np.empty((len(mesh.edges), 2), np.int32)
     mesh.edges.foreach_get("vertices", ends.ravel())
-    seams = np.empty(len(mesh.edges), bool)
-    mesh.edges.foreach_get("use_seam", seams)
-    if seams.any():
-        yield SEAM, ends[seams], np.ones(int(seams.sum()), np.float32)
-    for names, of in ((_EDGE_WEIGHTS, ends), (_VERTEX_WEIGHTS, None)):
-        for name in names:
-            attribute = mesh.attributes.get(name)
-            if attribute is None or attribute.data_type != "FLOAT":
-                continue
-            values = np.empty(len(attribute.data), np.float32)
-            attribute.data.foreach_get("value", values)
-            marked = np.flatnonzero(values > 0.0)
-            if len(marked):
-                both = np.stack([marked, marked], axis=1) if of is None else of[marked]
-                yield name, both.astype(np.int32), values[marked]
+    for kind, values in _kinds(mesh):
+        marked = np.flatnonzero(values.any(axis=1))
+        if not len(marked):
+            continue
+        of = ends[marked]
+        if kind.domain == "POINT":
+            of = np.stack([marked, marked], axis=1).astype(np.int32)
+        yield kind, of, values[marked]
 
 
 def write_marks(mesh: bpy.types.Mesh, marks: NewMarks) -> None:
     """Marks the edges or vertices of a mesh."""
-    if marks.name == SEAM:
-        mesh.edges.foreach_set("use_seam", marks.values > 0.0)
-        return
-    domain = "POINT" if marks.name in _VERTEX_WEIGHTS else "EDGE"
-    attribute = mesh.attributes.new(marks.name, "FLOAT", domain)
-    attribute.data.foreach_set("value", marks.values)
+    kind = marks.kind
+    if kind.data_type == _FLAG:
+        mesh.edges.foreach_set(kind.name, marks.values[:, 0])
+    else:
+        set_values(mesh.attributes.new(kind.name, kind.data_type, kind.domain), marks.values)
+
+
+def _kinds(mesh: bpy.types.Mesh) -> Iterator[tuple[MarkKind, NDArray[Any]]]:
+    flags = {
+        name: of for name, of in _FLAGS.items() if name in bpy.types.MeshEdge.bl_rna.properties
+    }
+    for name in flags:
+        values = np.empty((len(mesh.edges), 1), np.bool_)
+        mesh.edges.foreach_get(name, values.ravel())
+        yield MarkKind(name, _FLAG, "EDGE"), values
+    for attribute in mesh.attributes:
+        if attribute.name in flags.values() or not is_read(attribute):
+            continue
+        is_weight = attribute.name in _WEIGHTS and attribute.data_type == "FLOAT"
+        if is_weight or (attribute.domain == "EDGE" and is_free(attribute)):
+            kind = MarkKind(attribute.name, attribute.data_type, attribute.domain)
+            yield kind, values_of(attribute)

@@ -8,14 +8,15 @@ away keep their precision.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import Any
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 from . import attributes
-from .layers import COLOR, UV_MAP, Layer, Triangles, Wanted, read_layers
-from .marks import Marks, read_marks
+from .layers import COLOR, UV_MAP, Layer, Triangles, Wanted, read_layers, unread
+from .marks import MarkKind, Marks, read_marks
 
 FloatArray = NDArray[np.float64]
 Positions = NDArray[np.floating]
@@ -79,7 +80,8 @@ class Solid:
         materials: Those of the object's slots, in their order, then those of its instances.
         active: By kind, the names of the active color attribute and UV map.
         rendered: Likewise of those that renders use.
-        marks: Seams and weights of edges and vertices, in space.
+        marks: Seams, and weights and other attributes of edges and vertices, in space.
+        left_out: The names of attributes of other types.
         locked_groups: The vertex groups whose weights are locked.
         kept_modifiers: Those of its modifiers that it does not show.
     """
@@ -90,6 +92,7 @@ class Solid:
     active: dict[str, str] = field(default_factory=dict)
     rendered: dict[str, str] = field(default_factory=dict)
     marks: list[Marks] = field(default_factory=list)
+    left_out: set[str] = field(default_factory=set)
     locked_groups: set[str] = field(default_factory=set)
     kept_modifiers: set[str] = field(default_factory=set)
 
@@ -167,7 +170,7 @@ class _LocalMesh:
     face_materials: NDArray[np.int32]
     slots: list[MaterialKey | None]
     layers: list[Layer]
-    marks: list[tuple[str, NDArray[np.int32], NDArray[np.float32]]]
+    marks: list[tuple[MarkKind, NDArray[np.int32], NDArray[Any]]]
     faces: NDArray[np.int32] | None
 
 
@@ -216,8 +219,8 @@ class _Reader:
         else:
             found = [self._slot(key) for key in local.slots]
         slots = np.array(found or [self._slot(None)], np.int32)
-        for name, ends, values in local.marks:
-            self.solid.marks.append(Marks(name, positions[ends], values))
+        for kind, ends, values in local.marks:
+            self.solid.marks.append(Marks(kind, positions[ends], values))
         materials = slots[local.face_materials]
         self.solid.parts.append(
             Part(positions, triangles, materials, layers, local.faces if is_own else None, is_own)
@@ -250,7 +253,10 @@ class _Reader:
         elif faces is not None:
             materials = materials[faces]
         layers = list(read_layers(shown, mesh, Triangles(triangles, corners, faces), self._wanted))
-        marks = list(read_marks(mesh)) if self._wanted.attributes else []
+        marks = []
+        if self._wanted.attributes:
+            marks = list(read_marks(mesh))
+            self.solid.left_out |= unread(mesh)
         self._note_active(mesh)
         return _LocalMesh(positions, triangles, materials, slots, layers, marks, faces)
 

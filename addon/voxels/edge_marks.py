@@ -3,12 +3,13 @@
 """Which edges and vertices of a surface lie where those of its sources were marked."""
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 import prefilter
 from numpy.typing import NDArray
 
-from ..bridge.marks import Marks, NewMarks
+from ..bridge.marks import MarkKind, Marks, NewMarks
 
 _REACH = 0.1
 """In cells, of edges and vertices from what they stand for."""
@@ -16,6 +17,7 @@ _ALONG = 0.97
 """Least cosine between an edge and what it lies on."""
 
 FloatArray = NDArray[np.float64]
+Values = NDArray[Any]
 
 
 def carried_marks(
@@ -35,8 +37,8 @@ def carried_marks(
         threads: How many, or 0.
     """
     return [
-        NewMarks(name, values)
-        for name, values in _carried(marks, positions, edges, _REACH * cell, threads)
+        NewMarks(kind, values)
+        for kind, values in _carried(marks, positions, edges, _REACH * cell, threads)
         if values.any()
     ]
 
@@ -47,15 +49,18 @@ def _carried(
     edges: "prefilter.MeshEdges",
     reach: float,
     threads: int,
-) -> Iterator[tuple[str, NDArray[np.float32]]]:
-    for name in dict.fromkeys(one.name for one in marks):
-        of_name = [one for one in marks if one.name == name]
-        ends = np.concatenate([one.ends for one in of_name]).astype(np.float64)
-        values = np.concatenate([one.values for one in of_name])
-        if of_name[0].is_of_vertices:
-            yield name, _of_vertices(ends[:, 0], values, positions, reach, threads)
+) -> Iterator[tuple[MarkKind, Values]]:
+    kinds: dict[str, MarkKind] = {}
+    for one in marks:
+        kinds.setdefault(one.kind.name, one.kind)
+    for kind in kinds.values():
+        of_kind = [one for one in marks if one.kind == kind]
+        ends = np.concatenate([one.ends for one in of_kind]).astype(np.float64)
+        values = np.concatenate([one.values for one in of_kind])
+        if kind.domain == "POINT":
+            yield kind, _of_vertices(ends[:, 0], values, positions, reach, threads)
         else:
-            yield name, _of_edges(ends, values, positions, edges, reach, threads)
+            yield kind, _of_edges(ends, values, positions, edges, reach, threads)
 
 
 def _nearest(
@@ -74,35 +79,35 @@ def _nearest(
 
 def _of_vertices(
     places: FloatArray,
-    values: NDArray[np.float32],
+    values: Values,
     positions: FloatArray,
     reach: float,
     threads: int,
-) -> NDArray[np.float32]:
+) -> Values:
     """Returns values of vertices: the nearest one to each marked place has that of the place."""
     nearest, distances = _nearest(positions, np.stack([places, places], axis=1), threads)
     near = np.flatnonzero(distances <= reach)
     order = near[np.argsort(distances[near], kind="stable")]
     _, firsts = np.unique(nearest[order], return_index=True)
     chosen = order[firsts]
-    result = np.zeros(len(positions), np.float32)
+    result = np.zeros((len(positions), values.shape[1]), values.dtype)
     result[chosen] = values[nearest[chosen]]
     return result
 
 
 def _of_edges(
     ends: FloatArray,
-    values: NDArray[np.float32],
+    values: Values,
     positions: FloatArray,
     edges: "prefilter.MeshEdges",
     reach: float,
     threads: int,
-) -> NDArray[np.float32]:
+) -> Values:
     """Returns values of edges: those that lie on marked ones have theirs."""
     _, distances = _nearest(positions, ends, threads)
     is_near = distances <= reach
     candidates = np.flatnonzero(is_near[edges.vertices].all(axis=1))
-    result = np.zeros(len(edges.vertices), np.float32)
+    result = np.zeros((len(edges.vertices), values.shape[1]), values.dtype)
     if not len(candidates):
         return result
     a, b = np.moveaxis(positions[edges.vertices[candidates]], 1, 0)

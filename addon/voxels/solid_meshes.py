@@ -132,7 +132,7 @@ def _are_alike(one: Layer, other: Layer) -> bool:
 
 
 def _missing(first: Layer, mesh: SolidMesh) -> Layer:
-    """Returns a layer for a mesh that lacks it: white, its own normals, the face set 1, or 0."""
+    """Returns a layer for a mesh that lacks it: white, its own normals, no turn, set 1, or 0."""
     width = 1 if first.domain == "FACE" else 3
     if first.kind == NORMALS:
         a, b, c = np.moveaxis(mesh.positions[mesh.triangles], 1, 0)
@@ -143,4 +143,8 @@ def _missing(first: Layer, mesh: SolidMesh) -> Layer:
         return replace(first, values=values, corners=corners)
     fill = 1 if first.kind == COLOR or first.name == FACE_SETS else 0
     values = np.full((1, first.values.shape[1]), fill, first.values.dtype)
+    if first.data_type == "QUATERNION":
+        values[0, 0] = 1
+    if first.data_type == "FLOAT4X4":
+        values[0] = np.eye(4).ravel()
     return replace(first, values=values, corners=np.zeros((len(mesh.triangles), width), np.int32))

@@ -2,7 +2,7 @@
 
 """What voxelizing and combining have in common: meshes to cells, and cells to a surface."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,7 +18,7 @@ from ..bridge.place import Place
 from ..bridge.units import length, volume
 from ..core.jobs import Progress, go_on, share
 from ..core.translations import marked
-from ..core.wording import Sentence, amount
+from ..core.wording import Sentence, amount, listed
 from .choices import VoxelSettings
 from .edge_marks import carried_marks
 from .findings import Findings, Report, Walls, advice_on, find, line, walls_in
@@ -65,18 +65,20 @@ class Operand:
         name: Of the object.
         mesh: What was read.
         measures: Of the mesh.
+        left_out: The names of attributes that are not carried.
     """
 
     name: str
     mesh: SolidMesh
     measures: "prefilter.MeshMeasures"
+    left_out: Collection[str] = ()
 
     @classmethod
     def of(cls, solid: solids.Solid, settings: VoxelSettings) -> "Operand":
         """Returns the mesh of a solid."""
         mesh = solid_mesh(solid.parts)
         measures = prefilter.measure_mesh(mesh.positions, mesh.triangles, threads=settings.threads)
-        return cls(solid.name, mesh, measures)
+        return cls(solid.name, mesh, measures, solid.left_out)
 
 
 @dataclass(frozen=True)
@@ -148,6 +150,8 @@ def voxelized(
     made = surfaces.occupancy(mesh.positions, mesh.triangles, grid, settings, progress)
     positions, triangles, origins = made.positions, made.triangles, made.origins
     told.tell(operand.name, made)
+    if operand.left_out:
+        told.warnings.append(Sentence(_LEFT_OUT, operand.name, listed(sorted(operand.left_out))))
     if _adaptivity(settings) and _has_painted_colors(mesh):
         told.notes.append(Sentence(_SMALL, operand.name))
     tree = made.tree
@@ -265,6 +269,7 @@ def _shading(
     return weighted_normals(positions, triangles, edges, sharp_angle(settings.smooth_angle))
 
 
+_LEFT_OUT = marked("object '{}': attributes of types that cannot be kept: {}")
 _SMALL = marked("object '{}' has painted colors, for which triangles stay small")
 
 

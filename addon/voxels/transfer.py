@@ -248,7 +248,7 @@ def _blended(layer: Layer, found: "prefilter.CornerPoints") -> NDArray[Any]:
         rows = slice(start, start + _ROWS)
         corners = layer.corners[found.triangles[rows]]
         weights = found.weights[rows]
-        if layer.values.dtype.kind == "f":
+        if layer.is_blended:
             values[rows] = np.einsum("ij,ijk->ik", weights, layer.values[corners])
         else:
             nearest = weights.argmax(axis=1)
@@ -261,8 +261,20 @@ def _new_layer(layer: Layer, domain: str, values: NDArray[Any]) -> NewLayer:
 
 
 def renumbered(meshes: list[SolidMesh], numbers: list[Labels]) -> list[SolidMesh]:
+        elif layer.data_type == "QUATERNION":
+            values[rows] = _blended_rotations(layer.values[corners], weights)
     """Returns meshes with other numbers for their materials: what each was is the index."""
     return [
         replace(mesh, materials=new[mesh.materials])
         for mesh, new in zip(meshes, numbers, strict=True)
     ]
+def _blended_rotations(
+    rotations: NDArray[np.float32], weights: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Returns unit quaternions between three each; two of opposite sign are one rotation."""
+    cosines = np.einsum("ijk,ik->ij", rotations, rotations[:, 0])
+    sums = np.einsum("ij,ijk->ik", np.where(cosines < 0.0, -weights, weights), rotations)
+    lengths = np.linalg.norm(sums, axis=1, keepdims=True)
+    return np.where(lengths > 0.0, sums / np.maximum(lengths, 1e-30), rotations[:, 0])
+
+

@@ -165,6 +165,178 @@ def test_marks_lie_on_the_edges_that_had_them(options):
     assert points[corner] == 1.0
 
 
+VALUES = {
+    "FLOAT": -0.75,
+    "INT": 70000,
+    "INT8": -3,
+    "BOOLEAN": True,
+    "FLOAT2": (0.5, -0.25),
+    "FLOAT_VECTOR": (0.0, 2.0, -1.0),
+    "FLOAT4": (0.0, 0.0, 0.5, 1.0),
+    "FLOAT_COLOR": (0.25, 0.5, 0.75, 1.0),
+    "BYTE_COLOR": (1.0, 0.0, 1.0, 1.0),
+    "INT16_2D": (-7, 300),
+    "INT32_2D": (100000, -1),
+    "QUATERNION": (0.5, -0.5, 0.5, 0.5),
+    "FLOAT4X4": tuple(range(16)),
+}
+"""One value of each type that attributes may have, but for texts."""
+FIELDS = {"FLOAT2": "vector", "FLOAT_VECTOR": "vector", "FLOAT4": "vector"}
+
+
+def types():
+    """Returns all types of attributes that this Blender has."""
+    items = bpy.types.Attribute.bl_rna.properties["data_type"].enum_items
+    return [item.identifier for item in items]
+
+
+def field_of(data_type):
+    return "color" if data_type.endswith("COLOR") else FIELDS.get(data_type, "value")
+
+
+def values_of(attribute):
+    width = np.size(VALUES[attribute.data_type])
+    dtype = np.int32 if attribute.data_type.startswith("INT") else np.float32
+    dtype = bool if attribute.data_type == "BOOLEAN" else dtype
+    found = np.zeros(len(attribute.data) * width, dtype)
+    attribute.data.foreach_get(field_of(attribute.data_type), found)
+    return found.reshape(-1, width)
+
+
+def others_of(data_type):
+    """Returns what elements have that have not the value of their type: 0, or no turn."""
+    others = np.zeros(np.size(VALUES[data_type]))
+    others[0] = data_type == "QUATERNION"
+    return others
+
+
+def fill(attribute, chosen, others=0):
+    """Gives some elements the value of their type."""
+    values = np.zeros_like(values_of(attribute))
+    values[:] = others
+    values[chosen] = VALUES[attribute.data_type]
+    attribute.data.foreach_set(field_of(attribute.data_type), values.ravel())
+
+
+def test_there_are_values_of_all_types():
+    assert set(types()) - set(VALUES) == {"STRING"}
+
+
+@pytest.mark.parametrize("options", [{}, {"faces": "quads"}])
+def test_attributes_of_edges_lie_on_the_edges_that_had_them(options):
+    box = marked_box()
+    tops = [all(box.data.vertices[v].co.z > 0 for v in edge.vertices) for edge in box.data.edges]
+    of_types = [name for name in types() if name in VALUES]
+    for data_type in of_types:
+        fill(box.data.attributes.new(f"All {data_type}", data_type, "EDGE"), np.array(tops))
+    assert voxelize(**options) == {"FINISHED"}
+    mesh = box.data
+    places = np.array([vertex.co for vertex in mesh.vertices])
+    lows = places[[list(edge.vertices) for edge in mesh.edges]][:, :, 2].min(axis=1)
+    for data_type in of_types:
+        attribute = mesh.attributes[f"All {data_type}"]
+        assert (attribute.data_type, attribute.domain) == (data_type, "EDGE")
+        values = values_of(attribute)
+        is_marked = values.any(axis=1)
+        assert length_of(mesh, np.flatnonzero(is_marked)) == pytest.approx(8.0, rel=0.01)
+        assert lows[is_marked].min() > 0.99
+        expected = np.broadcast_to(VALUES[data_type], values[is_marked].shape)
+        np.testing.assert_array_equal(values[is_marked], expected)
+
+
+@pytest.mark.parametrize("domain", ["POINT", "CORNER", "FACE"])
+def test_attributes_of_all_types_arrive(domain, capfd):
+    box = bodies.cube(rotation_euler=(0.3, 0.7, 1.1))
+    mesh = box.data
+    where = {
+        "POINT": [vertex.co.x for vertex in mesh.vertices],
+        "CORNER": [mesh.vertices[loop.vertex_index].co.x for loop in mesh.loops],
+        "FACE": [face.center.x for face in mesh.polygons],
+    }
+    for data_type in types():
+        attribute = mesh.attributes.new(f"All {data_type}", data_type, domain)
+        if data_type in VALUES:
+            fill(attribute, np.array(where[domain]) > 0.5, others_of(data_type))
+    assert voxelize(adaptivity=0.0) == {"FINISHED"}
+    told = "object 'Cube': attributes of types that cannot be kept: 'All STRING'"
+    assert told in capfd.readouterr().out
+    mesh = box.data
+    assert "All STRING" not in mesh.attributes
+    places = np.array([vertex.co.x for vertex in mesh.vertices])
+    corners = np.array([loop.vertex_index for loop in mesh.loops])
+    for data_type, value in VALUES.items():
+        if data_type not in types():
+            continue
+        attribute = mesh.attributes[f"All {data_type}"]
+        values = values_of(attribute)
+        if domain == "FACE":
+            share = np.array([face.normal.x > 0.5 for face in mesh.polygons], float)
+        else:
+            share = (places[corners] if attribute.domain == "CORNER" else places) / 2 + 0.5
+        is_sure = (share < 1e-3) | (share > 1 - 1e-3)
+        assert is_sure.sum() > 100
+        expected = np.where((share > 0.5)[:, None], value, others_of(data_type))
+        np.testing.assert_allclose(values[is_sure], expected[is_sure], atol=3e-3, rtol=3e-3)
+
+
+def test_rotations_between_others():
+    """Half of the way between no turn and one by 90 degrees is one by 45; signs are no matter."""
+    box = bodies.cube()
+    turns = box.data.attributes.new("Turn", "QUATERNION", "POINT")
+    half = np.sqrt(0.5)
+    for vertex in box.data.vertices:
+        sign = -1.0 if vertex.co.y > 0 else 1.0
+        turn = (half, 0.0, 0.0, half) if vertex.co.x > 0 else (1.0, 0.0, 0.0, 0.0)
+        turns.data[vertex.index].value = [sign * one for one in turn]
+    voxelize(adaptivity=0.0)
+    mesh = box.data
+    values = values_of(mesh.attributes["Turn"])
+    np.testing.assert_allclose(np.linalg.norm(values, axis=1), 1.0, atol=1e-6)
+    places = np.array([vertex.co.x for vertex in mesh.vertices])
+    # A mean of both that is made as long as one again.
+    share = (places + 1) / 2
+    expected = np.stack([1 - share + half * share, half * share], axis=1)
+    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+    np.testing.assert_allclose(np.abs(values[:, [0, 3]]), expected, atol=2e-3)
+
+
+def freestyle(mesh, element):
+    """Returns which edges, or faces, are marked for Freestyle."""
+    elements, attribute = (
+        (mesh.edges, "freestyle_edge") if element == "edge" else (mesh.polygons, "freestyle_face")
+    )
+    if hasattr(elements[0], "use_freestyle_mark"):
+        return np.array([one.use_freestyle_mark for one in elements])
+    if attribute not in mesh.attributes:
+        return np.zeros(len(elements), bool)
+    return np.array([one.value for one in mesh.attributes[attribute].data])
+
+
+def mark_for_freestyle(mesh, element, chosen):
+    elements, attribute = (
+        (mesh.edges, "freestyle_edge") if element == "edge" else (mesh.polygons, "freestyle_face")
+    )
+    if hasattr(elements[0], "use_freestyle_mark"):
+        elements.foreach_set("use_freestyle_mark", chosen)
+    else:
+        made = mesh.attributes.new(attribute, "BOOLEAN", "EDGE" if element == "edge" else "FACE")
+        made.data.foreach_set("value", chosen)
+
+
+def test_marks_for_freestyle():
+    box = marked_box()
+    mesh = box.data
+    tops = [all(mesh.vertices[v].co.z > 0 for v in edge.vertices) for edge in mesh.edges]
+    mark_for_freestyle(mesh, "edge", tops)
+    mark_for_freestyle(mesh, "face", [face.center.z > 0.9 for face in mesh.polygons])
+    assert voxelize() == {"FINISHED"}
+    mesh = box.data
+    edges = np.flatnonzero(freestyle(mesh, "edge"))
+    assert length_of(mesh, edges) == pytest.approx(8.0, rel=0.01)
+    expected = [face.center.z > 0.99 for face in mesh.polygons]
+    np.testing.assert_array_equal(freestyle(mesh, "face"), expected)
+
+
 def test_marks_of_operands():
     other = marked_box()
     other.name, other.location = "Other", (5, 0, 0)
