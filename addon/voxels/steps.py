@@ -183,7 +183,7 @@ def contoured(
     positions, faces, origins = _surface(tree, sources, settings, share(progress, 0.0, middle))
     if len(faces) == 0:
         raise ValueError(surfaces.empty())
-    transfer = Transfer(sources, positions, faces, origins, settings.threads)
+    transfer = Transfer(sources, positions, faces, origins, grid.spacing, settings.threads)
     face_materials, layers = transfer.run(place, share(progress, middle, 1.0))
     go_on(progress, 1.0)
     local, turned = place.localize(positions, faces)

@@ -19,6 +19,7 @@ from ..bridge.place import Place
 from ..bridge.solids import Positions
 from ..core.jobs import Progress, share
 from .quads import corners_of, each_half, halves
+from .small_sets import NumberedFaces, with_small_sets
 from .solid_meshes import SolidMesh, join
 
 _LEAST_CHART = 4.0
@@ -109,17 +110,19 @@ class Transfer:
         positions: NDArray[np.float64],
         faces: NDArray[np.int32],
         origins: NDArray[np.int64] | None,
+        cell: float,
         threads: int,
     ) -> None:
         """Keeps the surface, of triangles or of quads.
 
-        `origins` are of all sources' triangles, or None where not known.
+        `origins` are of all sources' triangles, or None where not known; `cell` is the side of one.
         """
         self._mesh = join([source.mesh for source in sources])
         self._sources = sources
         self._positions = positions
         self._faces = faces
         self._origins = origins
+        self._cell = cell
         self._threads = threads
 
     def run(
@@ -209,8 +212,7 @@ class Transfer:
         place: Place,
     ) -> NewLayer:
         if layer.domain == "FACE":
-            values = layer.values[layer.corners[origins, 0]]
-            return _new_layer(layer, "FACE", values)
+            return _new_layer(layer, "FACE", self._of_faces(layer, origins))
         values = _blended(layer, found)
         has_rims = len(values) > len(self._positions)
         if _is_of_vertices(layer, has_rims=has_rims):
@@ -220,6 +222,15 @@ class Transfer:
         if layer.kind == NORMALS:
             values = place.localize_normals(self._facing(values))
         return _new_layer(layer, "CORNER", values)
+
+    def _of_faces(self, layer: Layer, origins: NDArray[np.int32]) -> NDArray[Any]:
+        of_source = layer.values[layer.corners[:, 0]]
+        values = of_source[origins]
+        if layer.values.dtype.kind == "f" or layer.values.shape[1] > 1:
+            return values
+        source = NumberedFaces(self._mesh.positions, self._mesh.triangles, of_source[:, 0])
+        surface = NumberedFaces(self._positions, self._faces, values[:, 0])
+        return with_small_sets(source, surface, self._cell, self._threads)[:, None]
 
     def _facing(self, normals: NDArray[np.float32]) -> NDArray[np.float32]:
         """Returns normals of corners toward the outside: subtracted objects are inside out."""
@@ -250,24 +261,14 @@ def _blended(layer: Layer, found: "prefilter.CornerPoints") -> NDArray[Any]:
         weights = found.weights[rows]
         if layer.is_blended:
             values[rows] = np.einsum("ij,ijk->ik", weights, layer.values[corners])
+        elif layer.data_type == "QUATERNION":
+            values[rows] = _blended_rotations(layer.values[corners], weights)
         else:
             nearest = weights.argmax(axis=1)
             values[rows] = layer.values[corners[np.arange(len(corners)), nearest]]
     return values
 
 
-def _new_layer(layer: Layer, domain: str, values: NDArray[Any]) -> NewLayer:
-    return NewLayer(layer.kind, layer.name, layer.data_type, domain, values)
-
-
-def renumbered(meshes: list[SolidMesh], numbers: list[Labels]) -> list[SolidMesh]:
-        elif layer.data_type == "QUATERNION":
-            values[rows] = _blended_rotations(layer.values[corners], weights)
-    """Returns meshes with other numbers for their materials: what each was is the index."""
-    return [
-        replace(mesh, materials=new[mesh.materials])
-        for mesh, new in zip(meshes, numbers, strict=True)
-    ]
 def _blended_rotations(
     rotations: NDArray[np.float32], weights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
@@ -278,3 +279,13 @@ def _blended_rotations(
     return np.where(lengths > 0.0, sums / np.maximum(lengths, 1e-30), rotations[:, 0])
 
 
+def _new_layer(layer: Layer, domain: str, values: NDArray[Any]) -> NewLayer:
+    return NewLayer(layer.kind, layer.name, layer.data_type, domain, values)
+
+
+def renumbered(meshes: list[SolidMesh], numbers: list[Labels]) -> list[SolidMesh]:
+    """Returns meshes with other numbers for their materials: what each was is the index."""
+    return [
+        replace(mesh, materials=new[mesh.materials])
+        for mesh, new in zip(meshes, numbers, strict=True)
+    ]

@@ -94,6 +94,34 @@ def test_what_an_object_was_made_of_stays():
     assert len(bpy.context.active_object.data.vertices) == 162
 
 
+@pytest.mark.parametrize("faces", ["triangles", "quads"])
+def test_face_sets_of_the_size_of_a_cell_survive(faces):
+    """A hundred and more of them, of a few faces of a fine ball each, in the middle of others."""
+    ball = sculpted(subdivisions=6)
+    cell = 2 / 28
+    middles = np.array([face.center for face in ball.data.polygons])
+    count = 120
+    steps = np.arange(count) + 0.5
+    z, turn = 1 - 2 * steps / count, steps * np.pi * (3 - np.sqrt(5))
+    flat = np.sqrt(1 - z**2)
+    places = np.stack([flat * np.cos(turn), flat * np.sin(turn), z], axis=1)
+    sets = np.where(middles[:, 0] > 0, 3, 7).astype(np.int32)
+    distances = np.linalg.norm(middles[:, None] - places, axis=2)
+    is_small = distances.min(axis=1) < 0.56 * cell
+    sets[is_small] = 100 + distances[is_small].argmin(axis=1)
+    before = {one: float(np.sum(sets == one)) for one in np.unique(sets)}
+    areas = 4 * np.pi / len(middles)
+    assert 0.8 < np.mean([n for one, n in before.items() if one >= 100]) * areas / cell**2 < 1.2
+    ball.data.attributes[".sculpt_face_set"].data.foreach_set("value", sets)
+    assert bpy.ops.prefilter.voxelize(depth=5, faces=faces) == {"FINISHED"}
+    mesh = ball.data
+    _, found = values(mesh, ".sculpt_face_set", np.int32)
+    assert set(np.unique(found)) == {3, 7, *range(100, 100 + count)}
+    for face in np.flatnonzero(found >= 100):
+        place = np.array(mesh.polygons[face].center)
+        assert np.linalg.norm(place - places[found[face] - 100]) < 1.1 * cell
+
+
 def test_in_object_mode_too():
     ball = sculpted()
     bpy.ops.object.mode_set(mode="OBJECT")
