@@ -32,8 +32,10 @@ __all__ = (
     "PROPORTIONS",
     "RESULT_SIZES",
     "SIZES",
+    "SPECTRA",
     "SUFFIXES",
     "TABLE_FILTERS",
+    "TARGETS",
     "WARPS",
     "WRAPS",
     "PlaneSettings",
@@ -48,6 +50,11 @@ LANGUAGES = {
     "osl": Choice("OSL", "Shader code for renderers with Open Shading Language"),
     "json": Choice("Table", "The table itself, to load again"),
 }
+SPECTRA = {
+    "natural": Choice("Natural", "Images with edges and gradients, such as photographs"),
+    "white": Choice("White Noise", "Images with as much detail of every size"),
+}
+TARGETS = {"filter": Choice("Same as Filter", "The filter of the levels"), **TABLE_FILTERS}
 
 
 @dataclass(frozen=True)
@@ -55,7 +62,14 @@ class TableSettings:
     """What `prefilter.SamplingTable.build` does, and what is made of the table."""
 
     filter: str = one_of(
-        "lanczos2", "Filter", "Filter to reproduce", TABLE_FILTERS, metavar="FILTER"
+        "lanczos2", "Filter", "Filter of the mipmap's levels", TABLE_FILTERS, metavar="FILTER"
+    )
+    target: str = one_of(
+        "filter",
+        "Target",
+        "Filter to reproduce. With the levels of Tent, Box is the mean over a pixel",
+        TARGETS,
+        metavar="FILTER",
     )
     texels: int = number(
         8,
@@ -99,6 +113,9 @@ class TableSettings:
         display={"soft_max": 100.0, "precision": 2},
         metavar="WEIGHT",
     )
+    spectrum: str = one_of(
+        "natural", "Spectrum", "Images to be closest to the filter on", SPECTRA, metavar="SPECTRUM"
+    )
     use_certify: bool = switch(
         False,
         "Certify",
@@ -125,7 +142,7 @@ class TableSettings:
     def is_standard(self) -> bool:
         """Whether the table comes with the package, if it comes at all."""
         standard = TableSettings()
-        names = ("grid", "slices", "degree", "ramp_weight", "use_certify")
+        names = ("grid", "slices", "degree", "ramp_weight", "spectrum", "use_certify")
         return all(getattr(self, name) == getattr(standard, name) for name in names)
 
 

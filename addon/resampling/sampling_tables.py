@@ -10,6 +10,7 @@ from pathlib import Path
 import bpy
 import prefilter
 from prefilter._work.resampling.resampling import load
+from prefilter.sampling.sampling_table import STANDARD_TARGETS
 
 from ..bridge.files import staging
 from ..core.jobs import Progress, go_on, share
@@ -75,13 +76,14 @@ class TableMaking:
             staging.commit_all(self._staged)
             where = listed(str(target) for target in self._targets)
         else:
-            name = f"{table.filter}-{table.texels}.{self._settings.language}"
+            of = table.filter if table.target == table.filter else f"{table.filter}-{table.target}"
+            name = f"{of}-{table.texels}.{self._settings.language}"
             self.text = _write_text(name, self._source)
             where = listed([self.text.name])
         return Outcome(
             Sentence(
                 "Wrote {}: {} from {} texels, with {} times the error of trilinear interpolation",
-                *(where, Sentence(TABLE_FILTERS[table.filter].label), table.texels),
+                *(where, Sentence(TABLE_FILTERS[table.target].label), table.texels),
                 f"{table.error_ratio:.3g}",
             ),
             files=[str(target) for target in self._targets],
@@ -97,14 +99,18 @@ class TableMaking:
         settings = self._settings
         if settings.table:
             return load("Load", settings.table)
-        if settings.is_standard and str(settings.texels) in METHODS:
-            return prefilter.SamplingTable.standard(settings.filter, settings.texels)
+        target = None if settings.target in ("filter", settings.filter) else settings.target
+        has_standard = target is None or (settings.filter, target) in STANDARD_TARGETS
+        if settings.is_standard and has_standard and str(settings.texels) in METHODS:
+            return prefilter.SamplingTable.standard(settings.filter, settings.texels, target=target)
         return prefilter.SamplingTable.build(
             settings.filter,
             texels=settings.texels,
             subdomains=(settings.grid, settings.grid, settings.slices),
             degree=settings.degree,
             ramp_weight=settings.ramp_weight,
+            spectrum=settings.spectrum,
+            target=target,
             certify=settings.use_certify,
             progress=progress,
             threads=settings.threads,

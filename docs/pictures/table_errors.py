@@ -52,7 +52,12 @@ def curve(subdomains: tuple[int, int, int], degree: int) -> list[float]:
     """The error for each number of texels, as a share of trilinear interpolation's."""
     return [
         prefilter.SamplingTable.build(
-            "tent", texels=texels, subdomains=subdomains, degree=degree, ramp_weight=0
+            "tent",
+            texels=texels,
+            subdomains=subdomains,
+            degree=degree,
+            ramp_weight=0,
+            spectrum="white",
         ).error_ratio
         for texels in TEXELS
     ]

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "bind_options.h"
 #include "convert.h"
 #include "instances.h"
 #include "prefilter/tables/build_table.h"
@@ -27,14 +28,16 @@ using SectionArrays =
     std::tuple<Array<int>, Array<double>, Array<double>, Array<double>, Array<double>>;
 
 void bind_table_shape(py::module_& m) {
-  py::class_<TableShape>(m, "TableShape")
-      .def(py::init<>())
+  py::class_<TableShape> shape(m, "TableShape");
+  shape.def(py::init<>())
       .def_readwrite("filter", &TableShape::filter)
       .def_readwrite("texels", &TableShape::texels)
       .def_readwrite("grid", &TableShape::grid)
       .def_readwrite("slices", &TableShape::slices)
       .def_readwrite("degree", &TableShape::degree)
-      .def_readwrite("ramp_weight", &TableShape::ramp_weight);
+      .def_readwrite("ramp_weight", &TableShape::ramp_weight)
+      .def_readwrite("target", &TableShape::target);
+  bind_named(shape, "spectrum", &TableShape::spectrum, kImageSpectra);
 }
 
 SamplingTable bound_build(const TableShape& shape, bool certify, const py::object& progress,

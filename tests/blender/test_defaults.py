@@ -15,6 +15,7 @@ ABSENT = {
     "memory_limit": (0, None),
     "background": ("transparent", None),
     "table": ("", None),
+    "target": ("filter", None),
     # Without it, occupancies are exact.
     "thickness": (1.5, 0.0),
 }
@@ -36,7 +37,7 @@ def defaults(function):
         ("scans.choices.ScanSettings", prefilter.reconstruct_file, 8),
         ("resampling.choices.ResizeSettings", prefilter.resize, 3),
         ("resampling.choices.ResampleSettings", prefilter.resample, 4),
-        ("resampling.choices.TableSettings", prefilter.SamplingTable.build, 5),
+        ("resampling.choices.TableSettings", prefilter.SamplingTable.build, 7),
         ("voxels.choices.VoxelSettings", prefilter.voxelize, 2),
         ("voxels.choices.VoxelSettings", prefilter.Octree.contour, 2),
     ],

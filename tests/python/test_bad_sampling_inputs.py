@@ -67,11 +67,11 @@ ROWS = [
             ({"table": None}, ["table: None", "or 'trilinear'"]),
             (
                 {"table": prefilter.SamplingTable.standard("box", 4)},
-                ["table: it reproduces 'box'", "filtered by 'tent'"],
+                ["table: it is for levels of 'box'", "filtered by 'tent'"],
             ),
             (
                 {"levels": prefilter.mipmaps(IMAGE, filter="box")},
-                ["table: it reproduces 'tent'", "filtered by 'box'"],
+                ["table: it is for levels of 'tent'", "filtered by 'box'"],
             ),
             ({"coordinates": np.full((3, 2), NAN)}, ["coordinates: found nan in row 0"]),
             ({"scales": -1.0}, ["scales: found -1", "at least 0"]),
@@ -96,7 +96,7 @@ ROWS = [
             ({"table": "linear"}, ["table: 'linear'", "a SamplingTable is needed"]),
             (
                 {"levels": prefilter.sampling_levels(IMAGE, "box")},
-                ["table: it reproduces 'tent'", "filtered by 'box'"],
+                ["table: it is for levels of 'tent'", "filtered by 'box'"],
             ),
         )
     ),

@@ -29,7 +29,7 @@ def noise(size, channels, seed=0):
 def test_errors_of_samples_of_noise_are_those_of_the_table(filter):
     image = noise(128, 8)
     levels = prefilter.sampling_levels(image, filter, wrap="repeat", premultiplied=True)
-    table = prefilter.SamplingTable.standard(filter, 6)
+    table = prefilter.SamplingTable.build(filter, texels=6, spectrum="white")
     coordinates = np.random.default_rng(1).random((600, 2))
     squares = dict.fromkeys(("table", "trilinear"), 0.0)
     shares, weights = np.polynomial.legendre.leggauss(2)
@@ -53,7 +53,7 @@ def test_weights_of_the_image_are_as_far_off_as_the_table_says(filter, levels, s
     size = 16
     impulses = np.eye(size * size, dtype=np.float32).reshape(size, size, -1)
     pyramid = prefilter.sampling_levels(impulses, filter, wrap="repeat", premultiplied=True)
-    table = prefilter.SamplingTable.standard(filter, 6)
+    table = prefilter.SamplingTable.build(filter, texels=6, spectrum="white")
     inside = np.random.default_rng(2).random((24, 2))
     coordinates = (8 + 2 ** (levels - 1) * inside) / size
     found = prefilter.sample(pyramid, table, coordinates, scale, wrap="repeat")

@@ -20,7 +20,7 @@ LEVELS = (3, 2, 1)
 def small_tables():
     return {
         filter: prefilter.SamplingTable.build(
-            filter, texels=5, subdomains=(2, 2, 1), ramp_weight=0.0
+            filter, texels=5, subdomains=(2, 2, 1), ramp_weight=0.0, spectrum="white"
         )
         for filter in FILTERS
     }
@@ -29,7 +29,7 @@ def small_tables():
 @pytest.fixture(scope="module")
 def quadratic():
     return prefilter.SamplingTable.build(
-        "tent", texels=6, subdomains=(3, 3, 1), degree=2, ramp_weight=0.0
+        "tent", texels=6, subdomains=(3, 3, 1), degree=2, ramp_weight=0.0, spectrum="white"
     )
 
 
@@ -135,7 +135,9 @@ EXHAUSTIVE = [
 
 @pytest.mark.parametrize(("filter", "levels", "texels", "shape"), EXHAUSTIVE)
 def test_the_best_of_all_sets_is_found(filter, levels, texels, shape):
-    table = prefilter.SamplingTable.build(filter, texels=texels, subdomains=shape, ramp_weight=0.0)
+    table = prefilter.SamplingTable.build(
+        filter, texels=texels, subdomains=shape, ramp_weight=0.0, spectrum="white"
+    )
     section = table.section(levels)
     for part, error, offsets in zip(
         parts_of(table, levels), section.errors, section.offsets, strict=True
@@ -155,14 +157,9 @@ def test_the_best_of_all_sets_is_found(filter, levels, texels, shape):
 
 
 @pytest.mark.parametrize("filter", FILTERS)
-def test_standard_tables_are_within_the_errors_that_they_state(filter):
-    table = prefilter.SamplingTable.standard(filter, texels=8)
-    assert (table.filter, table.texels, table.subdomains, table.degree) == (
-        filter,
-        8,
-        (4, 4, 2),
-        1,
-    )
+def test_tables_of_the_standard_shape_are_within_the_errors_that_they_state(filter):
+    table = prefilter.SamplingTable.build(filter, spectrum="white")
+    assert (table.texels, table.subdomains, table.degree) == (8, (4, 4, 2), 1)
     for levels in LEVELS:
         section = table.section(levels)
         for index in (1, len(section.errors) - 1):
@@ -184,7 +181,9 @@ def test_standard_tables_are_within_the_errors_that_they_state(filter):
 @pytest.mark.parametrize("levels", LEVELS)
 @pytest.mark.parametrize("filter", ["tent", "lanczos2"])
 def test_weights_that_heed_ramps_are_the_best_for_their_texels(filter, levels):
-    table = prefilter.SamplingTable.build(filter, texels=5, subdomains=(2, 2, 1), ramp_weight=3.0)
+    table = prefilter.SamplingTable.build(
+        filter, texels=5, subdomains=(2, 2, 1), ramp_weight=3.0, spectrum="white"
+    )
     section = table.section(levels)
     (part,) = parts_of(table, levels)
     system = oracle.System(
@@ -194,7 +193,9 @@ def test_weights_that_heed_ramps_are_the_best_for_their_texels(filter, levels):
     found = system.value(section.coefficients[0])
     assert found == pytest.approx(least, rel=1e-4, abs=NO_ERROR)
     # Those that do not heed them are far from that.
-    free = prefilter.SamplingTable.build(filter, texels=5, subdomains=(2, 2, 1), ramp_weight=0.0)
+    free = prefilter.SamplingTable.build(
+        filter, texels=5, subdomains=(2, 2, 1), ramp_weight=0.0, spectrum="white"
+    )
     offsets = free.section(levels).offsets[0].tolist()
     system = oracle.System(filter, 1, part, offsets, *rule(filter, levels), ramp_weight=3.0)
     if found > 1e-6:
@@ -204,7 +205,7 @@ def test_weights_that_heed_ramps_are_the_best_for_their_texels(filter, levels):
 @pytest.mark.parametrize(("levels", "texels"), [(3, 2), (1, 3)])
 def test_the_best_of_all_sets_that_heed_ramps_is_found(levels, texels):
     table = prefilter.SamplingTable.build(
-        "tent", texels=texels, subdomains=(1, 1, 1), ramp_weight=3.0
+        "tent", texels=texels, subdomains=(1, 1, 1), ramp_weight=3.0, spectrum="white"
     )
     (part,) = parts_of(table, levels)
     system = oracle.System(

@@ -13,7 +13,6 @@
 
 #include "prefilter/base/error.h"
 #include "prefilter/base/parallel.h"
-#include "prefilter/filters/kernel.h"
 #include "prefilter/tables/certify.h"
 #include "prefilter/tables/exchange_search.h"
 #include "prefilter/tables/subdomain_system.h"
@@ -71,7 +70,6 @@ void store(const SubdomainSystem& system, const FittedSet& set, const TableShape
 SamplingTable build_sampling_table(const BuildTableOptions& options) {
   const TableShape& shape = options.shape;
   check_shape(shape);
-  const Kernel& kernel = *find_kernel(shape.filter);
   SamplingTable table;
   table.shape = shape;
   std::vector<std::pair<int, int>> subdomains;  // section, index
@@ -88,7 +86,7 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
                [&](std::int64_t i) {
                  const auto [number, index] = subdomains[i];
                  TableSection& section = table.sections[number];
-                 const SubdomainSystem system(kernel, shape, section, index);
+                 const SubdomainSystem system(shape, section, index);
                  if (section.levels == 3 && system.candidates() < shape.texels) {
                    throw_invalid("texels: found " + std::to_string(shape.texels) + "; a part has " +
                                  std::to_string(system.candidates()) + " candidates only");
@@ -102,7 +100,7 @@ SamplingTable build_sampling_table(const BuildTableOptions& options) {
   for (std::size_t i = 0; i < subdomains.size(); ++i) {
     const auto [number, index] = subdomains[i];
     TableSection& section = table.sections[number];
-    const SubdomainSystem system(kernel, shape, section, index);
+    const SubdomainSystem system(shape, section, index);
     const auto done = static_cast<double>(i);
     const Progress progress =
         options.progress.part(kShareOfSearch, 1.0).part(done / count, (done + 1.0) / count);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "prefilter/base/error.h"
+#include "prefilter/base/names.h"
 #include "prefilter/base/text.h"
 #include "prefilter/filters/kernel.h"
 
@@ -112,6 +113,7 @@ void check_shape(const TableShape& shape) {
     }
   };
   kernel_named(shape.filter);
+  if (!shape.target.empty()) element_named("target", shape.target, kernels(), &Kernel::name);
   check("texels", shape.texels, kFewestTexels, kMostTexels);
   check("subdomains", shape.grid, 1, kMostParts);
   check("subdomains", shape.slices, 1, kMostParts);

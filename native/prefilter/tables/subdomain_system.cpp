@@ -9,21 +9,34 @@
 #include <map>
 #include <utility>
 
+#include "prefilter/filters/kernel.h"
 #include "prefilter/tables/bordered_rows.h"
 #include "prefilter/tables/filter_products.h"
 
 namespace prefilter {
 namespace {
 
+using Products = FilterProducts::Products;
+
+// Of the plane, by those along x and along y.
+double over_plane(const double* x, const double* y, int scales) {
+  double sum = 0.0;
+  for (int scale = 0; scale < scales; ++scale) sum += x[scale] * y[scale];
+  return sum;
+}
+double over_plane(const Products& x, const Products& y) {
+  return over_plane(x.data(), y.data(), FilterProducts::kMostScales);
+}
+
 // Products along an axis of the texels that matter, level by level, with the filter of a sample.
 class AxisProducts {
  public:
-  AxisProducts(const FilterProducts& filters, const Subdomain& subdomain) : filters_(filters) {
-    const double width = filters.width(subdomain.f_high());
-    for (int finer = 0; finer < filters.levels(); ++finer) {
-      ranges_.push_back(filters.overlapping(finer, subdomain.y_low(), subdomain.x_high(), width));
+  AxisProducts(FilterProducts* filters, const Subdomain& subdomain) : filters_(filters) {
+    const double width = filters->width(subdomain.f_high());
+    for (int finer = 0; finer < filters->levels(); ++finer) {
+      ranges_.push_back(filters->overlapping(finer, subdomain.y_low(), subdomain.x_high(), width));
     }
-    for (int finer = 0; finer < filters.levels(); ++finer) {
+    for (int finer = 0; finer < filters->levels(); ++finer) {
       begins_.push_back(static_cast<int>(texels_.size()));
       for (int i = ranges_[finer].first; i <= ranges_[finer].last; ++i) {
         texels_.emplace_back(finer, i);
@@ -32,31 +45,35 @@ class AxisProducts {
   }
 
   int count() const { return static_cast<int>(texels_.size()); }
+  int scales() const { return filters_->scales(); }
   // The number of texel i of a level, of those that this object knows.
   int number(int finer, int i) const { return begins_[finer] + i - ranges_[finer].first; }
 
-  std::vector<double> of_texels() const {
-    std::vector<double> products;
+  // [texel][texel]
+  std::vector<Products> of_texels() const {
+    std::vector<Products> products;
     for (const auto& [finer_i, i] : texels_) {
       for (const auto& [finer_j, j] : texels_) {
-        products.push_back(filters_.of_texels(finer_i, i, finer_j, j));
+        products.push_back(filters_->of_texels(finer_i, i, finer_j, j));
       }
     }
     return products;
   }
 
+  // [texel][scale]
   const std::vector<double>& with_sample(double x, double f) {
     std::vector<double>& products = with_samples_[{x, f}];
     if (products.empty()) {
       for (const auto& [finer, i] : texels_) {
-        products.push_back(filters_.with_sample(finer, i, x, f));
+        const Products of_scales = filters_->with_sample(finer, i, x, f);
+        products.insert(products.end(), of_scales.begin(), of_scales.begin() + scales());
       }
     }
     return products;
   }
 
  private:
-  const FilterProducts& filters_;
+  FilterProducts* filters_;
   std::vector<FilterProducts::Texels> ranges_;
   std::vector<int> begins_;
   std::vector<std::pair<int, int>> texels_;  // level, index
@@ -75,32 +92,38 @@ LinearWeights linear_weights(int finer, double x) {
   return {static_cast<int>(first), {first + 1.0 - position, position - first}};
 }
 
+void add(const Products& products, double factor, Products* sum) {
+  for (int scale = 0; scale < FilterProducts::kMostScales; ++scale) {
+    (*sum)[scale] += factor * products[scale];
+  }
+}
+
 // Products along an axis of linear interpolation in the cell's level and the finer one.
 class InterpolationProducts {
  public:
-  explicit InterpolationProducts(const FilterProducts& filters)
-      : filters_(filters), levels_(std::min(filters.levels(), 2)) {}
+  explicit InterpolationProducts(FilterProducts* filters)
+      : filters_(filters), levels_(std::min(filters->levels(), 2)) {}
 
   struct WithSample {
-    double of_sample = 0.0;
-    std::array<double, 2> of_levels{};
+    Products of_sample{};
+    std::array<Products, 2> of_levels{};
   };
   const WithSample& with_sample(double x, double f) {
     const auto [found, is_new] = with_samples_.try_emplace({x, f});
     WithSample& products = found->second;
     if (!is_new) return products;
-    products.of_sample = filters_.of_sample(x, f);
+    products.of_sample = filters_->of_sample(x, f);
     for (int finer = 0; finer < levels_; ++finer) {
       const LinearWeights linear = linear_weights(finer, x);
       for (int i = 0; i < 2; ++i) {
-        products.of_levels[finer] +=
-            linear.weights[i] * filters_.with_sample(finer, linear.first + i, x, f);
+        add(filters_->with_sample(finer, linear.first + i, x, f), linear.weights[i],
+            &products.of_levels[finer]);
       }
     }
     return products;
   }
 
-  using OfLevels = std::array<std::array<double, 2>, 2>;
+  using OfLevels = std::array<std::array<Products, 2>, 2>;
   const OfLevels& of_levels(double x) {
     const auto [found, is_new] = of_levels_.try_emplace(x);
     OfLevels& products = found->second;
@@ -111,8 +134,8 @@ class InterpolationProducts {
         for (int k = 0; k < 4; ++k) {
           const int i = k / 2;
           const int j = k % 2;
-          products[a][b] += left.weights[i] * right.weights[j] *
-                            filters_.of_texels(a, left.first + i, b, right.first + j);
+          add(filters_->of_texels(a, left.first + i, b, right.first + j),
+              left.weights[i] * right.weights[j], &products[a][b]);
         }
       }
     }
@@ -120,13 +143,13 @@ class InterpolationProducts {
   }
 
  private:
-  const FilterProducts& filters_;
+  FilterProducts* filters_;
   int levels_;
   std::map<std::pair<double, double>, WithSample> with_samples_;
   std::map<double, OfLevels> of_levels_;
 };
 
-double trilinear_error(const FilterProducts& filters, const Subdomain& subdomain, int panels) {
+double trilinear_error(FilterProducts* filters, const Subdomain& subdomain, int panels) {
   InterpolationProducts axis(filters);
   double error = 0.0;
   for (const Subdomain::Node& node : subdomain.quadrature(panels)) {
@@ -134,13 +157,13 @@ double trilinear_error(const FilterProducts& filters, const Subdomain& subdomain
     const auto& along_y = axis.with_sample(node.y, node.f);
     const auto& of_levels_x = axis.of_levels(node.x);
     const auto& of_levels_y = axis.of_levels(node.y);
-    const bool has_finer = filters.levels() > 1;
+    const bool has_finer = filters->levels() > 1;
     const std::array<double, 2> shares = {has_finer ? node.f : 1.0, has_finer ? 1.0 - node.f : 0.0};
-    double value = along_x.of_sample * along_y.of_sample;
+    double value = over_plane(along_x.of_sample, along_y.of_sample);
     for (int a = 0; a < 2; ++a) {
-      value -= 2.0 * shares[a] * along_x.of_levels[a] * along_y.of_levels[a];
+      value -= 2.0 * shares[a] * over_plane(along_x.of_levels[a], along_y.of_levels[a]);
       for (int b = 0; b < 2; ++b) {
-        value += shares[a] * shares[b] * of_levels_x[a][b] * of_levels_y[a][b];
+        value += shares[a] * shares[b] * over_plane(of_levels_x[a][b], of_levels_y[a][b]);
       }
     }
     error += node.weight * value;
@@ -189,13 +212,15 @@ std::vector<double> right_sides_of(const std::vector<Candidate>& candidates,
                                    const OrthonormalBasis& basis,
                                    const std::vector<Subdomain::Node>& nodes, AxisProducts* axis) {
   std::vector<double> sides(candidates.size() * basis.count);
+  const int scales = axis->scales();
   for (const Subdomain::Node& node : nodes) {
     std::array<double, kMostTerms> polynomials = polynomials_at(basis, node);
     for (int p = 0; p < basis.count; ++p) polynomials[p] *= node.weight;
-    const std::vector<double>& along_x = axis->with_sample(node.x, node.f);
-    const std::vector<double>& along_y = axis->with_sample(node.y, node.f);
+    const double* const along_x = axis->with_sample(node.x, node.f).data();
+    const double* const along_y = axis->with_sample(node.y, node.f).data();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      const double product = along_x[candidates[i].along_x] * along_y[candidates[i].along_y];
+      const double product = over_plane(along_x + candidates[i].along_x * scales,
+                                        along_y + candidates[i].along_y * scales, scales);
       for (int p = 0; p < basis.count; ++p) sides[i * basis.count + p] += product * polynomials[p];
     }
   }
@@ -205,40 +230,53 @@ std::vector<double> right_sides_of(const std::vector<Candidate>& candidates,
 // [i][j]: of two texels over the plane.
 std::vector<double> products_between(const std::vector<Candidate>& candidates,
                                      const AxisProducts& axis) {
-  const std::vector<double> of_texels = axis.of_texels();
-  const auto along_axis = [&](int i, int j) {
+  const std::vector<Products> of_texels = axis.of_texels();
+  const auto along_axis = [&](int i, int j) -> const Products& {
     return of_texels[static_cast<std::size_t>(i) * axis.count() + j];
   };
   std::vector<double> products;
   products.reserve(candidates.size() * candidates.size());
   for (const Candidate& a : candidates) {
     for (const Candidate& b : candidates) {
-      products.push_back(along_axis(a.along_x, b.along_x) * along_axis(a.along_y, b.along_y));
+      products.push_back(
+          over_plane(along_axis(a.along_x, b.along_x), along_axis(a.along_y, b.along_y)));
     }
   }
   return products;
 }
 
+// Of Gauss's rule along an axis of a subdomain. Boxes meet at edges, where their product has a
+// kink, or a bend if images are natural; sums have one where a texel of level 0 comes into a
+// filter's reach, and bilinear interpolation between texels.
+int panels_of(const TableShape& shape, int levels, bool has_box) {
+  if (has_box) return levels == 3 && shape.spectrum == ImageSpectrum::kNatural ? 2 : 4;
+  return levels == 3 ? 1 : 3;
+}
+
 }  // namespace
 
-SubdomainSystem::SubdomainSystem(const Kernel& kernel, const TableShape& shape,
-                                 const TableSection& section, int index) {
+SubdomainSystem::SubdomainSystem(const TableShape& shape, const TableSection& section, int index) {
   const Subdomain subdomain(shape, section, index);
   basis = orthonormal_basis(subdomain, shape.degree);
   unit = std::sqrt(subdomain.volume());
-  const FilterProducts filters(kernel, section.levels);
-  // Boxes meet at edges, where their product has a kink; sums have one where a texel of level 0
-  // comes into a filter's reach, and bilinear interpolation between texels.
-  const int panels = kernel.degree() == 0 ? 4 : (section.levels == 3 ? 1 : 3);
-  trilinear_error = prefilter::trilinear_error(filters, subdomain, std::max(panels, 2));
+  const Kernel& kernel = *find_kernel(shape.filter);
+  const Kernel& sample = *find_kernel(shape.sample_filter());
+  FilterProducts filters(kernel, sample, section.levels, shape.spectrum);
+  const int panels = panels_of(shape, section.levels, kernel.degree() == 0 || sample.degree() == 0);
+  trilinear_error = prefilter::trilinear_error(&filters, subdomain, std::max(panels, 2));
 
-  AxisProducts axis(filters, subdomain);
+  AxisProducts axis(&filters, subdomain);
   const std::vector<Candidate> candidates = candidates_of(filters, subdomain, axis);
   const auto nodes = subdomain.quadrature(panels);
   const std::vector<double> sides = right_sides_of(candidates, basis, nodes, &axis);
+  std::map<std::pair<double, double>, Products> of_samples;
+  const auto of_sample = [&](double x, double f) {
+    const auto [found, is_new] = of_samples.try_emplace({x, f});
+    if (is_new) found->second = filters.of_sample(x, f);
+    return found->second;
+  };
   for (const Subdomain::Node& node : nodes) {
-    filter_square +=
-        node.weight * filters.of_sample(node.x, node.f) * filters.of_sample(node.y, node.f);
+    filter_square += node.weight * over_plane(of_sample(node.x, node.f), of_sample(node.y, node.f));
   }
   // Sums over texels of level 0 can be zero where supports overlap.
   std::vector<Candidate> kept;
@@ -250,9 +288,10 @@ SubdomainSystem::SubdomainSystem(const Kernel& kernel, const TableShape& shape,
     right_sides.insert(right_sides.end(), side, side + basis.count);
   }
   products = products_between(kept, axis);
-  // Sums over texels of level 0 are integrals times the number of those in a cell.
-  add_ramps(subdomain, section.levels == 3 ? shape.ramp_weight
-                                           : shape.ramp_weight / (section.levels * section.levels));
+  // Sums over texels of level 0 of white images are integrals times the number of those in a cell.
+  const bool are_counts = section.levels < 3 && shape.spectrum == ImageSpectrum::kWhite;
+  add_ramps(subdomain,
+            are_counts ? shape.ramp_weight / (section.levels * section.levels) : shape.ramp_weight);
 }
 
 void SubdomainSystem::add_ramps(const Subdomain& subdomain, double weight) {

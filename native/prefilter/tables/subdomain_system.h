@@ -2,7 +2,9 @@
 
 // Equation 6.4 for a subdomain: which of its texels, with which weights.
 //
-// What is minimized is that, plus TableShape::ramp_weight times the squared distance between the
+// Its inner integral is over the plane for white images, and for natural ones over the correlations
+// between all places of it, see filter_products.h. What is minimized is that, plus
+// TableShape::ramp_weight times the squared distance between the
 // sample and the weighted center of its texels, integrated over the subdomain. As weights sum to 1
 // the distance is a weighted sum too, and products and right sides hold both.
 //
@@ -16,7 +18,6 @@
 #include <vector>
 
 #include "prefilter/base/outline.h"
-#include "prefilter/filters/kernel.h"
 #include "prefilter/tables/sampling_table.h"
 #include "prefilter/tables/subdomain.h"
 
@@ -31,8 +32,7 @@ struct FittedSet {
 };
 
 struct SubdomainSystem {
-  SubdomainSystem(const Kernel& kernel, const TableShape& shape, const TableSection& section,
-                  int index);
+  SubdomainSystem(const TableShape& shape, const TableSection& section, int index);
 
   int candidates() const { return static_cast<int>(texels.size()); }
   int polynomials() const { return basis.count; }

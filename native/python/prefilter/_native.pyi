@@ -65,6 +65,8 @@ class TableShape:
     slices: int
     degree: int
     ramp_weight: float
+    spectrum: str
+    target: str
 
 class SamplingTable:
     def __init__(self, shape: TableShape, sections: Sequence[tuple[np.ndarray, ...]]) -> None: ...

@@ -26,7 +26,7 @@ TableSection section_of(const TableShape& shape, int levels) {
 
 TEST(FilterProducts, AreIntegralsForThreeLevels) {
   for (const Kernel& kernel : kernels()) {
-    const FilterProducts products(kernel, 3);
+    FilterProducts products(kernel, kernel, 3, ImageSpectrum::kWhite);
     const double width = products.width(0.3);
     // By the midpoint rule, fine enough for the box.
     constexpr int kParts = 200000;
@@ -37,17 +37,18 @@ TEST(FilterProducts, AreIntegralsForThreeLevels) {
       const double x = low + (i + 0.5) * step;
       sum += step * 2.0 * kernel.value((x - 0.75) * 2.0) * kernel.value((x - 0.2) / width) / width;
     }
-    EXPECT_NEAR(products.with_sample(1, 1, 0.2, 0.3), sum, 2.0 * 2.0 / width * step)
+    EXPECT_NEAR(products.with_sample(1, 1, 0.2, 0.3)[0], sum, 2.0 * 2.0 / width * step)
         << kernel.name();
   }
 }
 
 TEST(FilterProducts, AreSumsOverTheImageForFewerLevels) {
   // The tent at the middle of four texels of the image, two texels wide, and a texel of it.
-  const FilterProducts products(*find_kernel("tent"), 2);
-  EXPECT_NEAR(products.with_sample(1, 0, 0.5, 1.0), 0.375, 1e-15);
-  EXPECT_NEAR(products.of_texels(0, 0, 0, 0), 2 * 0.375 * 0.375 + 2 * 0.125 * 0.125, 1e-15);
-  EXPECT_NEAR(products.of_texels(1, 0, 1, 1), 0.0, 1e-15);
+  const Kernel& tent = *find_kernel("tent");
+  FilterProducts products(tent, tent, 2, ImageSpectrum::kWhite);
+  EXPECT_NEAR(products.with_sample(1, 0, 0.5, 1.0)[0], 0.375, 1e-15);
+  EXPECT_NEAR(products.of_texels(0, 0, 0, 0)[0], 2 * 0.375 * 0.375 + 2 * 0.125 * 0.125, 1e-15);
+  EXPECT_NEAR(products.of_texels(1, 0, 1, 1)[0], 0.0, 1e-15);
 }
 
 TEST(OrthonormalBasis, IsOrthonormal) {
@@ -88,7 +89,7 @@ TEST(FindSet, LeavesNoExchangeThatHelps) {
   const TableShape shape{"tent", 4, 4, 2, 1};
   const TableSection section = section_of(shape, 3);
   for (const int index : {0, 4}) {
-    const SubdomainSystem system(*find_kernel("tent"), shape, section, index);
+    const SubdomainSystem system(shape, section, index);
     const FittedSet found = find_set(system, 4, Progress());
     ASSERT_EQ(found.members.size(), 4U);
     for (std::size_t out = 0; out < found.members.size(); ++out) {
@@ -104,7 +105,7 @@ TEST(FindSet, LeavesNoExchangeThatHelps) {
 
 TEST(FitSet, HasWeightsThatSumToOneAndNoBetterNeighbors) {
   const TableShape shape{"lanczos2", 4, 4, 2, 1};
-  const SubdomainSystem system(*find_kernel("lanczos2"), shape, section_of(shape, 3), 2);
+  const SubdomainSystem system(shape, section_of(shape, 3), 2);
   const std::vector<int> members = {3, 40, 7, 100};
   const FittedSet set = fit_set(system, members);
   const int polynomials = system.polynomials();
@@ -138,7 +139,7 @@ TEST(FitSet, HasWeightsThatSumToOneAndNoBetterNeighbors) {
 
 TEST(FitSet, HasNoWeightsWhereATexelIsThereTwice) {
   const TableShape shape{"tent", 2, 1, 1, 1};
-  const SubdomainSystem system(*find_kernel("tent"), shape, section_of(shape, 3), 0);
+  const SubdomainSystem system(shape, section_of(shape, 3), 0);
   EXPECT_FALSE(std::isfinite(fit_set(system, std::vector<int>{5, 5}).error));
 }
 

@@ -21,7 +21,7 @@ SubdomainSystem system_of(const TableShape& shape, int levels, int index) {
   TableSection section;
   section.levels = levels;
   section.slices = levels == 1 ? 1 : shape.slices;
-  return {*find_kernel(shape.filter), shape, section, index};
+  return {shape, section, index};
 }
 
 // The candidates that are listed first: nothing that a search would settle for.
@@ -131,7 +131,8 @@ TEST(CertifySet, FindsTheLeastErrorOfAllSetsOfFewCandidates) {
 TEST(CertifySet, ProvesEverySubdomainOfTheTent) {
   for (const int texels : {4, 8}) {
     for (int index = 0; index < 6; ++index) {
-      const SubdomainSystem system = system_of({"tent", texels, 4, 2, 1}, 3, index);
+      const SubdomainSystem system =
+          system_of({"tent", texels, 4, 2, 1, 5.0, ImageSpectrum::kWhite}, 3, index);
       const FittedSet found = find_set(system, texels, Progress());
       const CertifiedSet certified = certify_set(system, found, enough());
       EXPECT_EQ(certified.gap, 0.0) << texels << " " << index;
@@ -170,7 +171,7 @@ TEST(CertifySet, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(CertifySet, HasNothingToProveWhereAllCandidatesAreIn) {
-  const SubdomainSystem system = system_of({"tent", 4, 4, 2, 1}, 1, 0);
+  const SubdomainSystem system = system_of({"tent", 4, 4, 2, 1, 5.0, ImageSpectrum::kWhite}, 1, 0);
   ASSERT_EQ(system.candidates(), 4);
   const CertifiedSet certified = certify_set(system, poor_set(system, 4), enough());
   EXPECT_EQ(certified.gap, 0.0);

@@ -14,6 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "prefilter/base/names.h"
+
 namespace prefilter {
 
 inline constexpr int kFewestTexels = 2;
@@ -31,9 +33,18 @@ struct TexelOffset {
   bool operator==(const TexelOffset&) const = default;
 };
 
-/// How a table is divided.
+/// What images are taken to be when a table is built: how much it counts what the texels leave of a
+/// filter at each frequency.
+enum class ImageSpectrum {
+  kNatural,  // power falls with the square of the frequency, as of photographs: edges and ramps
+  kWhite,    // noise, with as much power at all frequencies: equation 6.3 as it is printed
+};
+inline constexpr Named<ImageSpectrum> kImageSpectra[] = {{"natural", ImageSpectrum::kNatural},
+                                                         {"white", ImageSpectrum::kWhite}};
+
+/// How a table is divided, and what its error is.
 struct TableShape {
-  std::string filter = "lanczos2";  // of kernels()
+  std::string filter = "lanczos2";  // of kernels(): that of the levels
   int texels = 8;                   // kFewestTexels to kMostTexels
   int grid = 4;                     // parts of a cell along x, and along y
   int slices = 2;                   // parts from one level to the next
@@ -42,6 +53,10 @@ struct TableShape {
   // where the sample is: its squared distance in cells, against equation 6.3. Ramps then come out
   // as they are, and do not step from subdomain to subdomain. 0 to kMostRampWeight.
   double ramp_weight = 5.0;
+  ImageSpectrum spectrum = ImageSpectrum::kNatural;
+  std::string target{};  // of kernels(): what samples are to be; empty: the filter of the levels
+
+  const std::string& sample_filter() const { return target.empty() ? filter : target; }
 
   /// Of a polynomial: 1, x, y, f, and for degree 2 also xx, yy, ff, xy, xf, yf. Where only one
   /// level is there f has nothing to tell, and stands for xy: what bilinear weights need.
@@ -60,7 +75,7 @@ struct TableSection {
   // By subdomain, see subdomain_of:
   std::vector<TexelOffset> texels;   // [subdomain][texel]
   std::vector<double> coefficients;  // [subdomain][texel][term]; of a term they sum to 1 or to 0
-  std::vector<double> errors;        // [subdomain]: equation 6.3, integrated over the subdomain
+  std::vector<double> errors;  // [subdomain]: equation 6.3 by the spectrum, integrated over it
   std::vector<double> trilinear_errors;  // of trilinear interpolation, likewise
   std::vector<double> gaps;  // [subdomain]: how much lower what is minimized may still be for
                              // another set, as a share of it; 0 where proven optimal; empty if not

@@ -86,7 +86,7 @@ def native_table(
     filter = getattr(levels, "filter", None)
     if filter not in (None, table.filter):
         raise ValueError(
-            f"table: it reproduces '{table.filter}', and the levels are filtered by '{filter}';"
+            f"table: it is for levels of '{table.filter}', and these are filtered by '{filter}';"
             " both must be the same"
         )
     return table._native

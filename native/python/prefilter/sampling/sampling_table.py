@@ -31,6 +31,9 @@ from .levels import SAMPLING_FILTERS
 STANDARD_TEXELS = (4, 6, 8)
 """How many texels the tables have that come with the package, one for each filter."""
 
+STANDARD_TARGETS = (("tent", "box"),)
+"""Filters of levels and targets of which there are such tables too."""
+
 _FORMAT = "prefilter sampling table"
 _VERSION = 1
 _LEVELS = (3, 2, 1)
@@ -40,6 +43,8 @@ _CHECKS: dict[str, Check] = {
     "texels": partial(as_int, "texels", allowed="a whole number from 2 to 16 is needed"),
     "degree": partial(as_int, "degree", allowed="1 or 2 is needed"),
     "ramp_weight": partial(as_number, "ramp_weight"),
+    "spectrum": partial(as_name, "spectrum"),
+    "target": lambda target: "" if target is None else as_name("target", target),
 }
 
 
@@ -61,7 +66,8 @@ class TableSection(NamedTuple):
             cell have 0 to 2^below - 1.
         coefficients: (subdomains, texels, terms) of the weights as polynomials in x, y and f: of 1,
             x, y, f, and for degree 2 also xx, yy, ff, xy, xf, yf.
-        errors: (subdomains): equation 6.3, integrated over the subdomain.
+        errors: (subdomains): equation 6.3, by the table's `spectrum`, integrated over the
+            subdomain.
         trilinear_errors: The same of trilinear interpolation.
         gaps: (subdomains): how much lower what `build` minimizes may be for another set, as a
             share of it; 0 where the set is proven to be the best. None for tables that are not
@@ -96,28 +102,38 @@ class SamplingTable:
         subdomains: tuple[int, int, int] = (4, 4, 2),
         degree: int = 1,
         ramp_weight: float = 5.0,
+        spectrum: str = "natural",
+        target: str | None = None,
         certify: bool = False,
         progress: ProgressCallback | None = None,
         threads: int = 0,
     ) -> "SamplingTable":
         """Finds the sets of texels and the weights with the least errors (section 6.2).
 
-        The error is the integral over the plane of the squared difference between the filter and
-        the weighted sum of the texels' filters, averaged over a subdomain (equation 6.4). Sets are
+        The error is the mean square of what samples are off, over images of a spectrum and over a
+        subdomain. For "white" images, whose values have nothing to do with each other, that is the
+        integral over the plane of the squared difference between the filter and the weighted sum of
+        the texels' filters (equation 6.4). In "natural" ones the power falls with the square of the
+        frequency, from 16 to 1/16 of a cell, so that slow differences count more. Sets are
         found by exchanging one texel at a time, from many starts, until no exchange helps. Where
-        the finest of the levels is the image itself, that is, for two levels and for one, the
-        integral is a sum over its texels.
+        the finest of the levels is the image itself, that is, for two levels and for one, integrals
+        are sums over its texels.
 
         Args:
-            filter: A name of `SAMPLING_FILTERS`.
+            filter: A name of `SAMPLING_FILTERS`: what the levels are filtered with.
             texels: How many each sample reads, 2 to 16.
             subdomains: Parts of a cell along x, the same along y, and parts from level to level; 1
                 to 16 each.
             degree: Of the weights, as polynomials of the place and the scale: 1 or 2.
             ramp_weight: How much it counts that ramps come out as they are, 0 to 10^6: the squared
                 distance, in cells, between a sample and the weighted center of its texels is
-                multiplied by it and added to what is minimized. With 0, that is equation 6.4 alone,
+                multiplied by it and added to what is minimized. With 0, that is the error alone,
                 and samples of smooth images step where the set of texels changes.
+            spectrum: "natural": what images are like, with edges and gradients. "white": noise, as
+                in the dissertation.
+            target: What samples are to be, a name of `SAMPLING_FILTERS`; None: the levels' filter.
+                "box" is the mean over a pixel, to which tables with levels of "tent" come closer
+                than those with levels of "box".
             certify: Whether to prove how far from the best the sets are at most, by branch and
                 bound; `TableSection.gaps` then says so. Takes a second for the tent, minutes for
                 Lanczos 2 with 8 texels, and up to half an hour where there is no proof in the end.
@@ -137,12 +153,15 @@ class SamplingTable:
         )
 
     @classmethod
-    def standard(cls, filter: str = "lanczos2", texels: int = 8) -> "SamplingTable":
+    def standard(
+        cls, filter: str = "lanczos2", texels: int = 8, *, target: str | None = None
+    ) -> "SamplingTable":
         """A table that comes with the package: `build` with its defaults has made it.
 
         Args:
             filter: A name of `SAMPLING_FILTERS`.
             texels: 4, 6 or 8.
+            target: None, or with the filter "tent" also "box": the mean over a pixel.
 
         Raises:
             ValueError: There is no such table.
@@ -153,6 +172,13 @@ class SamplingTable:
                 f"texels: {texels!r}; standard tables have 4, 6 or 8. SamplingTable.build makes "
                 "others"
             )
+        if target not in (None, name):
+            if (name, target) not in STANDARD_TARGETS:
+                raise ValueError(
+                    f"target: {target!r} with levels of '{name}'; standard tables have 'box' with "
+                    "levels of 'tent', else None. SamplingTable.build makes others"
+                )
+            name = f"{name}-{target}"
         file = resources.files(__package__) / "tables" / f"{name}-{int(texels)}.json"
         return cls(_parsed(file.read_bytes()))
 
@@ -176,9 +202,9 @@ class SamplingTable:
         """Writes the table as a JSON file, in place of one that may be there.
 
         The object in it has the members "format" ("prefilter sampling table"), "version" (1),
-        "filter", "texels", "subdomains", "degree", "ramp_weight", and "sections", a list of
-        objects with the attributes of `TableSection`, for 3, 2 and 1 levels; "gaps" is null
-        without a certificate.
+        "filter", "texels", "subdomains", "degree", "ramp_weight", "spectrum" ("white" where it is
+        absent), "target" (null: the filter itself), and "sections", a list of objects with the
+        attributes of `TableSection`, for 3, 2 and 1 levels; "gaps" is null without a certificate.
 
         Raises:
             ValueError: That is no path.
@@ -194,8 +220,13 @@ class SamplingTable:
 
     @property
     def filter(self) -> str:
-        """The name of the filter that it reproduces, and that the levels are to be made with."""
+        """The name of the filter that the levels are to be made with."""
         return self._native.shape.filter
+
+    @property
+    def target(self) -> str:
+        """The name of the filter that it reproduces: that of the levels, or another one."""
+        return self._native.shape.target or self.filter
 
     @property
     def texels(self) -> int:
@@ -219,10 +250,16 @@ class SamplingTable:
         return self._native.shape.ramp_weight
 
     @property
+    def spectrum(self) -> str:
+        """What it took images to be when it was built: "natural" or "white"."""
+        return self._native.shape.spectrum
+
+    @property
     def error_ratio(self) -> float:
         """The error as a share of trilinear interpolation's, where three levels are available.
 
-        Both are integrals of equation 6.3 over all places and scales, of filters of integral 1.
+        Both are integrals of equation 6.3, by the `spectrum`, over all places and scales, of
+        filters of integral 1.
         """
         return self._native.error_ratio(3)
 
@@ -302,9 +339,10 @@ class SamplingTable:
 
     def __repr__(self) -> str:
         """What tells it from other tables."""
+        of = self.filter if self.target == self.filter else f"{self.target} from {self.filter}"
         return (
-            f"<SamplingTable {self.filter}, {self.texels} texels, subdomains {self.subdomains}, "
-            f"degree {self.degree}, ramp weight {self.ramp_weight:g}>"
+            f"<SamplingTable {of}, {self.texels} texels, subdomains {self.subdomains}, "
+            f"degree {self.degree}, ramp weight {self.ramp_weight:g}, {self.spectrum}>"
         )
 
 
@@ -347,6 +385,8 @@ def _formatted(table: SamplingTable) -> str:
         "subdomains": list(table.subdomains),
         "degree": table.degree,
         "ramp_weight": table.ramp_weight,
+        "spectrum": table.spectrum,
+        "target": None if table.target == table.filter else table.target,
     }
     members = [f"{json.dumps(name)}: {json.dumps(value)}" for name, value in head.items()]
     joined = ",\n".join(sections)
@@ -371,6 +411,9 @@ def _parsed(data: bytes) -> _native.SamplingTable:
     shape.degree = _count(found, "degree")
     shape.grid, shape.slices = _as_subdomains(_member(found, "subdomains", list))
     shape.ramp_weight = as_number("ramp_weight", _member(found, "ramp_weight", int, float))
+    # Files of before there was a choice have neither.
+    shape.spectrum = _member({"spectrum": "white", **found}, "spectrum", str)
+    shape.target = _member({"target": None, **found}, "target", str, type(None)) or ""
     sections = _member(found, "sections", list)
     if len(sections) != len(_LEVELS):
         raise ValueError(f"sections: found {len(sections)}; {len(_LEVELS)} are needed")
